@@ -1,9 +1,9 @@
-"""Which mapping stays even while the camera turns?
+"""Imbalance of three mappings over a turn of the camera
 
-What is the mean imbalance of {scene} over a turn of the camera, for three mappings?
+What is the mean imbalance of {scene} over a full turn of the camera, for three mappings?
 
-- {scene} at {size} x {size} on {pes} PEs, {frames} frames of one turn.
-- u = (max load - mean load) / mean load, from one cost image of each frame.
+- {scene} at {size} x {size} on {pes} PEs, {frames} frames.
+- u = (max load - mean load) / mean load, from the cost image of each frame.
 """
 import pandas as pd
 import raya
@@ -20,12 +20,12 @@ def run(lab, scenes):
         cost = lab.costs(scene.turned(360 * frame / frames), size).trace
         for name, options in MAPPINGS.items():
             loads = raya.loads(cost, pes=size, **options)
-            rows.append({"turned by (degrees)": 360 * frame / frames, "mapping": name,
+            rows.append({"angle (degrees)": 360 * frame / frames, "mapping": name,
                          "u": loads.max() / loads.mean() - 1})
     rows = pd.DataFrame(rows)
-    means = {name: estimate(some["u"]).text() for name, some in rows.groupby("mapping", sort=False)}
+    means = {name: estimate(group["u"]).text() for name, group in rows.groupby("mapping", sort=False)}
     return Page({"scene": scene.name, "size": size, "pes": size, "frames": frames},
                 [f"Mean u over the turn: {', '.join(f'{u} ({name})' for name, u in means.items())}."],
-                tables=[Table("my-study", "u of every frame", rows)],
-                plots=[Plot("my-study", "Imbalance over a turn", "turned by (degrees)", "u",
-                            series_by(rows, "mapping", "turned by (degrees)", "u"), log="y")])
+                tables=[Table("my-study", "Imbalance of every frame", rows)],
+                plots=[Plot("my-study", "Imbalance over a turn of the camera", "angle (degrees)", "u",
+                            series_by(rows, "mapping", "angle (degrees)", "u"), log="y")])

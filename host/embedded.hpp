@@ -1,12 +1,12 @@
-// Files that the program carries within itself, so that it runs from anywhere.
+// Files embedded in the program.
 #pragma once
 #include <map>
 #include <string>
 
 namespace raya {
 
-/// Text by path from the project's root: everything below kernels/, the scenes that `bench` and `study` take by
-/// default, the names of studies, styles and scripts of pages. Defined in a file that the build makes.
+/// Texts by path relative to the project's root: kernels/, the default scenes of `bench` and `study`, the list of
+/// studies, styles and scripts of pages. The build generates the definition.
 const std::map<std::string, std::string>& embedded_files();
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// raya: traces rays on models of distributed-memory array machines.
+// raya: a ray tracer on models of distributed-memory array machines.
 #include "host/cli/commands.hpp"
 #include "host/version.hpp"
 

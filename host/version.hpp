@@ -1,16 +1,16 @@
-// Which raya this is. The build makes the definitions.
+// Version texts, defined by the build.
 #pragma once
 
 namespace raya {
 
-/// "1.2.3": the version of CMake's project(), which stands nowhere else.
+/// "1.2.3": the version in CMake's project().
 const char* raya_version();
 
-/// "raya 1.2.3", by which files name what made them.
+/// "raya 1.2.3", for output files.
 const char* name_and_version();
 
-/// "commit 0123456789ab, Release, GNU 12.2.0"; "with changes" behind the commit where files differ from it, and no
-/// commit where the sources are no checkout. Of the program alone: a commit links tests and libraries not anew.
+/// "commit 0123456789ab, Release, GNU 12.2.0". "with changes" follows the commit if files differ from it; no commit if
+/// the sources are not a checkout. Linked into the program only, so that a commit does not relink tests and libraries.
 const char* commit_and_build();
 
 }  // namespace raya

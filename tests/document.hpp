@@ -1,4 +1,4 @@
-// A JSON document as another program reads it: what tests look at, whatever host/base/json.hpp makes of it.
+// JSON documents for tests, parsed by nlohmann::json, which is independent of host/base/json.hpp.
 #pragma once
 #include <filesystem>
 #include <fstream>
@@ -8,11 +8,11 @@
 
 namespace raya {
 
-using Document = nlohmann::ordered_json;  // two are equal only if their members stand in the same order
+using Document = nlohmann::ordered_json;  // equality requires the same order of members
 
 inline Document read_back(const Json& json) { return Document::parse(json.dump()); }
 
-/// Of a file.
+/// Parses a file.
 inline Document json_of(const std::filesystem::path& path) {
     return Document::parse(std::ifstream(path, std::ios::binary));
 }

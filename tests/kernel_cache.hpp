@@ -1,6 +1,6 @@
-// The kernel cache of a test program: its own, since two programs must not write one (pocl issue 586: what one has half
-// replaced the other reads), filled with what programs before it have built. So a kernel that several need is built
-// once.
+// The kernel cache of a test program. Each program has a cache of its own, because a program may read an entry that
+// another is replacing (pocl issue 586). It starts with the kernels that earlier programs built, so that a kernel which
+// several programs need is built once.
 #pragma once
 #include <unistd.h>
 
@@ -12,9 +12,9 @@
 
 namespace raya {
 
-/// Sets POCL_CACHE_DIR to a fresh folder. The environment variable RAYA_KERNEL_STORE may name a folder that programs
-/// share, those of one run and of later ones (tools/test): its entries are named after source, options, device and
-/// driver, and a build that fails adds none (test_program.cpp). Without it the cache starts empty.
+/// Sets POCL_CACHE_DIR to a new folder. The environment variable RAYA_KERNEL_STORE may name a folder that the programs
+/// of this run and of later ones share (tools/test). PoCL names its entries after source, options, device and driver,
+/// and a failed build adds none (test_program.cpp). Without RAYA_KERNEL_STORE the cache starts empty.
 class KernelCache {
   public:
     KernelCache() {
@@ -22,7 +22,7 @@ class KernelCache {
         if (!store_.empty() && std::filesystem::is_directory(store_)) add_missing(store_, folder_.path());
     }
 
-    /// Adds what has been built to the store.
+    /// Adds the kernels that were built to the store.
     ~KernelCache() {
         if (!store_.empty()) add_missing(folder_.path(), store_);
     }
@@ -36,9 +36,9 @@ class KernelCache {
         return named == nullptr ? "" : named;
     }
 
-    // Others may do the same at the same time: a file appears whole or not at all, and one that is there stays.
+    // Several programs may do this at once: a file appears complete or not at all, and existing files stay.
     static void add_missing(const std::filesystem::path& from, const std::filesystem::path& to) {
-        std::error_code none;  // a file that is gone, or a full disk: then a kernel is built twice
+        std::error_code none;  // ignored (file removed, disk full): a kernel is then built twice
         for (const auto& entry : std::filesystem::recursive_directory_iterator(from, none)) {
             const std::filesystem::path target = to / entry.path().lexically_relative(from);
             if (!entry.is_regular_file(none) || is_unfinished(entry.path()) || std::filesystem::exists(target, none))
@@ -56,7 +56,7 @@ class KernelCache {
         return name.find(".part") != std::string::npos || name.starts_with("tempfile");
     }
 
-    // Beside the store, so that files need no copies.
+    // On the store's file system, so that hard links work instead of copies.
     std::filesystem::path store_ = store();
     TemporaryFolder folder_{store_.empty() ? "raya-test-kernels" : (store_.parent_path() / "kernels").string()};
 };

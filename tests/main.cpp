@@ -1,4 +1,4 @@
-// Runs the tests of one folder.
+// The main program of the tests of one folder.
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -7,7 +7,7 @@
 #include "tests/kernel_cache.hpp"
 #include "tests/paths.h"
 
-// What a developer's devices were tuned to is no part of a test, nor are kernels that were compiled before it.
+// Tests ignore the values that raya tune has stored for a developer's devices, and kernel binaries next to the program.
 int main(int argc, char** argv) {
     setenv("RAYA_TUNED", "off", 0);
     setenv("RAYA_BINARIES", "off", 0);

@@ -1,1 +1,1 @@
-// Nothing but the test programs' precompiled header: CMake makes it for a file that takes it, and main.cpp does not.
+// Empty, for the test programs' precompiled header: CMake makes one only for a file that uses it; main.cpp does not.

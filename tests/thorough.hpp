@@ -1,4 +1,4 @@
-// How much a test looks at: what one waits for, or everything.
+// How many cases a test runs: few by default (fast tests), all with RAYA_THOROUGH=1.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -10,24 +10,24 @@
 
 namespace raya {
 
-/// Whether RAYA_THOROUGH=1 is set, as ctest's entries labelled `sweep` do: all formats, lanes, scenes and random cases.
-/// Else few of each, so chosen that every kind of fault is still seen.
+/// Returns true if RAYA_THOROUGH=1 is set, as in ctest's entries labelled `sweep`. A test then runs all formats, lanes,
+/// scenes and random cases, otherwise a few of each, chosen so that they still find every kind of fault.
 inline bool thorough() {
     const char* text = std::getenv("RAYA_THOROUGH");
     return text != nullptr && std::string_view(text) == "1";
 }
 
-/// Lanes of a case that does not care: 0, the device's own, where everything is looked at or RAYA_OWN_LANES is set;
-/// else four, whose kernels are compiled in a third of the time of sixteen.
-inline std::uint32_t usual_lanes() { return thorough() || std::getenv("RAYA_OWN_LANES") != nullptr ? 0 : 4; }
+/// Lanes for cases that hold for any number of them: 0, the device's default, if thorough() or RAYA_OWN_LANES is set;
+/// otherwise 4, whose kernels compile in a third of the time of 16 lanes.
+inline std::uint32_t default_test_lanes() { return thorough() || std::getenv("RAYA_OWN_LANES") != nullptr ? 0 : 4; }
 
-/// The first `few` of `all`, or all of them: for `for (... : quick(2, {...}))`.
+/// Returns the first `few` of `all`, or all of them if thorough(): `for (... : quick(2, {...}))`.
 template <class T>
 std::vector<T> quick(std::size_t few, std::initializer_list<T> all) {
     return {all.begin(), thorough() ? all.end() : all.begin() + few};
 }
 
-/// The same of a container, which may have fewer.
+/// Same for a container, which may have fewer than `few` elements.
 template <class Container>
 auto quick_of(std::size_t few, const Container& all) {
     using std::begin;
@@ -35,14 +35,14 @@ auto quick_of(std::size_t few, const Container& all) {
     return std::vector(begin(all), begin(all) + (thorough() ? size(all) : std::min(few, size(all))));
 }
 
-/// For crossings of many things with many values: everything, or the next one value in turn.
+/// For products of many cases and many values: returns all values if thorough(), otherwise one, the next at each call.
 template <class Container>
-Container by_turns(const Container& all) {
+Container all_or_next(const Container& all) {
     static std::size_t turn = 0;
     return thorough() ? all : Container{all[turn++ % all.size()]};
 }
 
-/// So many random cases.
+/// Returns the number of random cases: `all` if thorough(), otherwise `few`.
 inline unsigned quick_cases(unsigned few, unsigned all) { return thorough() ? all : few; }
 
 }  // namespace raya

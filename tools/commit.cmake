@@ -1,16 +1,16 @@
-# Writes OUTPUT, a C++ file with the commit of the sources in ROOT and with BUILD, unless it says so already: see
-# host/version.hpp. Sources that `git archive` packed know their commit too; others have none.
+# Writes OUTPUT, a C++ file with the commit of the sources in ROOT and with BUILD, if its content changes; see host/version.hpp.
+# The commit comes from git, or from tools/commit.txt in sources that `git archive` packed; other sources have none.
 set(commit "")
 file(STRINGS ${ROOT}/tools/commit.txt packed REGEX "^[0-9a-f]+$")
 if(packed)
     string(SUBSTRING "${packed}" 0 12 commit)
-elseif(EXISTS ${ROOT}/.git)  # not that of a folder above
+elseif(EXISTS ${ROOT}/.git)  # not a repository in a folder above ROOT
     find_program(GIT git)
     if(GIT)
-        execute_process(COMMAND ${GIT} -C ${ROOT} describe --always --exclude=* --abbrev=12 "--dirty= with changes" OUTPUT_VARIABLE told
+        execute_process(COMMAND ${GIT} -C ${ROOT} describe --always --exclude=* --abbrev=12 "--dirty= with changes" OUTPUT_VARIABLE described
                         OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failure)
         if(failure EQUAL 0)
-            set(commit "${told}")
+            set(commit "${described}")
         endif()
     endif()
 endif()

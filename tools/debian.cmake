@@ -1,4 +1,4 @@
-# What CPack does with an installation before it packs it: what Debian wants of files, and which packages it depends on. Run by CPack.
+# CPack runs this script on the staged installation before it packs it. It makes the files follow Debian's policy and finds the packages to depend on.
 set(staged ${CPACK_TEMPORARY_INSTALL_DIRECTORY})
 set(doc ${staged}/usr/share/doc/raya)
 
@@ -15,7 +15,7 @@ file(GLOB pages ${staged}/usr/share/man/man1/*.1)
 run(gzip -9n ${pages})
 file(RENAME ${staged}/usr/share/zsh/site-functions ${staged}/usr/share/zsh/vendor-completions)
 
-# Terms: ours, and those of headers whose code is in the program.
+# Licences: raya's, and those of headers whose code is in the program.
 file(READ ${CPACK_RAYA_SOURCES}/LICENSE licence)
 string(REGEX REPLACE "^MIT License\n\nCopyright \\(c\\) ([^\n]*)\n\n" "" licence "${licence}")
 set(copyright "${CMAKE_MATCH_1}")
@@ -40,13 +40,13 @@ foreach(package IN ITEMS opencl-clhpp-headers libcli11-dev nlohmann-json3-dev li
     file(RENAME ${doc}/licences-${package} ${doc}/licences/${package})
 endforeach()
 
-# `raya study` and the Python module need Python, all else does not.
+# Only `raya study` and the Python module need Python.
 if(IS_DIRECTORY ${staged}/usr/lib/python3)
     file(WRITE ${staged}/usr/share/lintian/overrides/raya
          "# python3 is suggested, not needed: raya renders without it.\nraya: python-package-missing-depends-on-python\n")
 endif()
 
-# Debian's own list of changes, of the release's date.
+# Debian's changelog, with the date of the release.
 file(STRINGS ${doc}/CHANGELOG.md headings REGEX "^## ${CPACK_PACKAGE_VERSION}, ")
 string(REGEX REPLACE "^## [^,]*, ([0-9-]+).*" "\\1" released "${headings}")
 execute_process(COMMAND date -u -R -d "${released}" OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
@@ -54,13 +54,13 @@ execute_process(COMMAND date -u +%s -d "${released}" OUTPUT_VARIABLE seconds OUT
 file(WRITE ${doc}/changelog
      "raya (${CPACK_PACKAGE_VERSION}) unstable; urgency=medium
 
-  * What has changed is told in CHANGELOG.md beside this file.
+  * CHANGELOG.md in this folder lists the changes.
 
  -- ${CPACK_PACKAGE_CONTACT}  ${date}
 ")
 run(gzip -9n ${doc}/changelog)
 
-# The program's libraries are needed; those of pictures and MPI are loaded when they are asked for, and what asks says what is missing.
+# The package depends on the program's libraries. The libraries of pictures and MPI are loaded on use; raya prints what is missing.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, python3-scipy, python3-pandas, python3-matplotlib, python3-jinja2, python3-tqdm, openmpi-bin")
 set(modules -dRecommends -e${staged}/usr/lib/raya/raya_pictures.so)
@@ -68,16 +68,16 @@ if(EXISTS ${staged}/usr/lib/raya/raya_mpi.so)
     list(APPEND modules -dSuggests -e${staged}/usr/lib/raya/raya_mpi.so)
 endif()
 set(scratch ${CPACK_TOPLEVEL_DIRECTORY}/shlibdeps)
-file(WRITE ${scratch}/debian/control "")  # it runs where there is one
-execute_process(COMMAND dpkg-shlibdeps -O -dDepends -e${staged}/usr/bin/raya ${modules} WORKING_DIRECTORY ${scratch} OUTPUT_VARIABLE told
+file(WRITE ${scratch}/debian/control "")  # dpkg-shlibdeps requires this file
+execute_process(COMMAND dpkg-shlibdeps -O -dDepends -e${staged}/usr/bin/raya ${modules} WORKING_DIRECTORY ${scratch} OUTPUT_VARIABLE dependencies
                 COMMAND_ERROR_IS_FATAL ANY)
 foreach(field IN ITEMS Depends Recommends Suggests)
     string(TOUPPER ${field} upper)
-    if(told MATCHES "shlibs:${field}=([^\n]*)")
+    if(dependencies MATCHES "shlibs:${field}=([^\n]*)")
         list(PREPEND CPACK_DEBIAN_PACKAGE_${upper} "${CMAKE_MATCH_1}")
         list(JOIN CPACK_DEBIAN_PACKAGE_${upper} ", " CPACK_DEBIAN_PACKAGE_${upper})
     endif()
 endforeach()
 
-# The same files, the same bytes.
+# The date of the release for all files: the same files give the same bytes.
 run(find ${staged} -exec touch -h -d @${seconds} {} +)

@@ -1,6 +1,6 @@
-# Writes OUTPUT, a C++ file that holds every one of FILES (paths below ROOT, separated by |) as (path, text): see host/embedded.hpp.
+# Writes OUTPUT, a C++ file with a map of path to text for FILES (paths below ROOT, separated by |); see host/embedded.hpp.
 string(REPLACE "|" ";" files "${FILES}")
-set(text "// Made by tools/embed.cmake; edit the files that it holds.\n#include \"host/embedded.hpp\"\n\nnamespace raya {\n\n")
+set(text "// Made by tools/embed.cmake; edit the files that it contains.\n#include \"host/embedded.hpp\"\n\nnamespace raya {\n\n")
 string(APPEND text "const std::map<std::string, std::string>& embedded_files() {\n")
 string(APPEND text "    static const std::map<std::string, std::string> files = {\n")
 foreach(name IN LISTS files)

@@ -1,17 +1,16 @@
-# What `cmake --install build --prefix DIR` makes, and of that a Debian package: tools/package. Everything is found from where the
-# program lies, so that the folder may be moved.
+# Installation (`cmake --install build --prefix DIR`) and Debian package (tools/package). The program finds all files relative to itself, so the
+# folder can be moved.
 include(GNUInstallDirs)
 set(doc ${CMAKE_INSTALL_DATADIR}/doc/raya)
 
 install(TARGETS raya RUNTIME)
-# Beside the program's own name: where host/base/module.cpp looks, which no multiarch folder is.
+# lib/raya: the folder in which host/base/module.cpp searches, without a multiarch folder.
 install(TARGETS raya_pictures LIBRARY DESTINATION lib/raya)
 if(TARGET raya_mpi)
     install(TARGETS raya_mpi LIBRARY DESTINATION lib/raya)
 endif()
 
-
-# The Python module with the laboratory, for Debian's Python; `pip install .` puts both and the program into one package of a wheel.
+# The Python module with the laboratory, for Debian's Python. `pip install .` puts both and the program into one package of a wheel.
 if(TARGET raya_python)
     set(package lib/python3/dist-packages/raya)
     if(SKBUILD)
@@ -33,14 +32,14 @@ install(FILES ${completion_folder}/_raya DESTINATION ${CMAKE_INSTALL_DATADIR}/zs
 install(FILES ${completion_folder}/raya.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/raya/scenes FILES_MATCHING PATTERN "*.nff" PATTERN "README.md")
-# Documents lie to each other as they do here, so that their links hold.
-install(FILES README.md CONTRIBUTING.md CHANGELOG.md LICENSE DESTINATION ${doc})
-install(DIRECTORY docs DESTINATION ${doc} FILES_MATCHING REGEX "\\.(md|png|yml|json|ipynb|py)$")
+# Documents are installed in the folder structure of the sources, so that their links work.
+install(FILES README.md CONTRIBUTING.md CHANGELOG.md SECURITY.md LICENSE DESTINATION ${doc})
+install(DIRECTORY docs DESTINATION ${doc} FILES_MATCHING REGEX "\\.(md|png|svg|dot|yml|json|ipynb|py)$")
 install(FILES scenes/README.md DESTINATION ${doc}/scenes)
 install(FILES kernels/README.md DESTINATION ${doc}/kernels)
 install(FILES kernels/number/README.md DESTINATION ${doc}/kernels/number)
 
-# The number layer, for other projects: headers, `pkg-config --cflags raya-number` for a kernel's build options, and an example.
+# The number layer for other projects: headers, an example, and kernel build options by `pkg-config --cflags raya-number`.
 set(number ${CMAKE_INSTALL_INCLUDEDIR}/raya)
 set(number_from_prefix ${number})
 configure_file(tools/raya-number.pc.in raya-number.pc @ONLY)
@@ -49,21 +48,21 @@ install(FILES ${number_headers} DESTINATION ${number}/number)
 install(FILES kernels/number/example/harmonic.cpp kernels/number/example/harmonic.cl DESTINATION ${doc}/kernels/number/example)
 install(FILES ${PROJECT_BINARY_DIR}/raya-number.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig)
 
-# The Debian package. CPack packs what is installed of what is built already; debhelper would compile all of it once more, in a
-# source package that nobody asks for, and would want the version in a file of its own.
+# The Debian package. CPack packs the installation of an existing build; debhelper would compile everything again from a source package, and would
+# need the version in a second file.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "the raya authors")
-set(CPACK_PACKAGE_CONTACT "the raya authors <raya@example.org>")  # nobody has an address; tools/debian.cmake takes that of who packs
+set(CPACK_PACKAGE_CONTACT "the raya authors <raya@example.org>")  # a placeholder: tools/debian.cmake uses the packager's address
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "ray tracing on models of distributed-memory array machines")
 set(CPACK_PACKAGE_DESCRIPTION
-    "raya renders NFF scenes on models of array machines of the literature, a
-ring of DSPs and a torus of transputers, written as OpenCL kernels, to the
-same image bit for bit on every device. It measures how evenly their loads
-are spread, and verifies OpenCL devices, their drivers and compilers by
-single operations, hits and whole images.
+    "raya renders NFF scenes on models of two array machines from the
+literature, a ring of DSPs and a torus of transputers, written as OpenCL
+kernels. Every device gives the same image, bit for bit. raya measures the
+load balance of these machines, and verifies OpenCL devices, drivers and
+compilers by single operations, ray hits and whole images.
 
-PNG and OpenEXR files are written where OpenImageIO is installed, PPM and
-PFM in any case.")
+raya writes PPM and PFM files, and PNG and OpenEXR files if OpenImageIO is
+installed.")
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

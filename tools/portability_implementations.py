@@ -1,17 +1,17 @@
-"""The OpenCL implementations that tools/portability knows: how programs are started under each, and what those lack that are not here."""
+"""The OpenCL implementations of tools/portability: how programs are started on each, and why some cannot run."""
 import os, resource, shutil, subprocess, tempfile
 from pathlib import Path
 
 VENDORS = Path("/etc/OpenCL/vendors")
-FETCHED = "implementations"  # folder of the build folder: what tools/portability --setup brings (tools/portability_setup.py)
+FETCHED = "implementations"  # folder in the build folder to which tools/portability --setup fetches (tools/portability_setup.py)
 
 
 class Implementation:
-    """How programs are started under one implementation. `slow`: fewer cases. `lacking`: why it cannot run, and the remedy. `of_device`: its
-    driver may be installed where its device is not. `budget`: seconds that one kernel may take to compile.
+    """Starts programs on one implementation. `slow`: it gets fewer cases. `lacking`: why it cannot run, with the remedy. `of_device`: its
+    driver may be installed without its device. `budget`: maximum seconds to compile a kernel.
 
-    `watches`: it looks for faults itself and tells them on stderr alone, its exit code is 0 all the same. raya writes nothing there as long
-    as all is right, so any line there counts. (Not Oclgrind's --log: each OpenCL context empties that file.)
+    `watches`: it detects faults and reports them on stderr only, with exit code 0. raya itself prints nothing on stderr unless something is
+    wrong, so every line there is a fault. (Oclgrind's --log is not used: each OpenCL context truncates that file.)
     """
 
     def __init__(self, name, variables=None, prefix=(), slow=False, lacking=None, watches=False, of_device=False, budget=60):
@@ -19,8 +19,8 @@ class Implementation:
         self.variables, self.of_device, self.budget = dict(variables or {}), of_device, budget
 
     def run(self, command, scratch, limit, more=None):
-        """Exit code, None where it ran past `limit` seconds; stdout and stderr together; stdout; what `watches` found, or nothing."""
-        # What the caller chose for himself, a CI job's pin to one implementation for instance, chooses nothing here.
+        """(exit code, None after `limit` seconds; stdout and stderr; stdout; faults found by an implementation with `watches`)"""
+        # Ignores the caller's own settings, such as a CI job's choice of an implementation.
         chosen = ("RAYA_", "POCL_", "OCL_ICD_", "OCLGRIND_", "RUSTICL_", "CL_CONFIG_")
         inherited = {k: v for k, v in os.environ.items() if not k.startswith(chosen)}
         caches = {"POCL_CACHE_DIR": str(scratch), "MESA_SHADER_CACHE_DIR": str(scratch)}
@@ -33,13 +33,13 @@ class Implementation:
         return done.returncode, done.stdout + done.stderr, done.stdout, self.found_by_itself(done.stderr)
 
     def found_by_itself(self, stderr):
-        """The first line, and how many more there are."""
+        """The first line of stderr, and the number of others; empty without `watches`."""
         lines = [line.strip() for line in stderr.splitlines() if line.strip()] if self.watches else []
         return "" if not lines else lines[0] + (f" (and {len(lines) - 1} more lines)" if len(lines) > 1 else "")
 
 
 def processor_seconds():
-    """Of all programs that were run so far, and those that they started: what else the machine does is not in it."""
+    """Processor seconds of all programs run so far, with their children; independent of the machine's other load."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -49,12 +49,12 @@ def icd(name):
 
 
 def variants_of(name, driver, lacking, variants):
-    """`driver`: the .icd file; `variants`: what is added to the name, and the variables that make it."""
+    """Implementations of one driver. `driver`: its .icd file; `variants`: [(suffix of the name, environment variables)]."""
     return [Implementation(name + more, {"OCL_ICD_VENDORS": str(driver), **variables}, lacking=lacking) for more, variables in variants]
 
 
 def known_implementations(build):
-    """All that could run here, first those that are fast; `build`: the build folder."""
+    """All known implementations, the fast ones first; `build`: the build folder."""
     unoptimised = (" -cl-opt-disable", {"RAYA_BUILD_OPTIONS": "-cl-opt-disable"})
     no_pocl = None if icd("pocl").exists() else "not installed (Debian: pocl-opencl-icd)"
     found = variants_of("PoCL", icd("pocl"), no_pocl, [
@@ -63,10 +63,10 @@ def known_implementations(build):
     for name, file, variants in [("PoCL 3.0 (PyPI)", "pocl-3.0", [("", {})]), ("Intel CPU", "intel-cpu", [("", {}), unoptimised])]:
         driver = (build / FETCHED / f"{file}.icd").absolute()
         found += variants_of(name, driver, None if driver.exists() else "not set up (tools/portability --setup fetches it)", variants)
-    # Unoptimised: Oclgrind 21.10 does not know all that the optimiser makes. Its build options are its own argument.
+    # Unoptimised: Oclgrind 21.10 does not support all optimised code. Build options are an argument of Oclgrind.
     found.append(Implementation("Oclgrind", prefix=["oclgrind", "--build-options", "-cl-opt-disable"], slow=True, watches=True,
                                 lacking=None if shutil.which("oclgrind") else "not installed (Debian: oclgrind)"))
-    # One lane: its compiler takes a minute for a kernel of 16.
+    # One lane: its compiler takes a minute for a kernel with 16 lanes.
     rusticl = {"OCL_ICD_VENDORS": str(icd("rusticl")), "RUSTICL_ENABLE": "llvmpipe", "RAYA_NUMBER_LANES": "1"}
     found.append(Implementation("rusticl llvmpipe", rusticl, slow=True, budget=300,
                                 lacking=None if icd("rusticl").exists() else "not installed (Debian: mesa-opencl-icd)"))
@@ -78,7 +78,7 @@ def known_implementations(build):
 
 
 def note_missing_devices(implementations, raya):
-    """A driver for a device that is not here, a GPU's for instance, is no fault."""
+    """Marks implementations whose driver has no device here, such as a GPU's, as unable to run."""
     for implementation in implementations:
         if implementation.of_device and implementation.run([raya, "devices"], tempfile.gettempdir(), 120)[0] == 3:
             implementation.lacking = "its driver is installed, and shows no device"

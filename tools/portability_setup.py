@@ -1,37 +1,37 @@
-"""What `tools/portability --setup` does: OpenCL implementations that Debian lacks come from PyPI into the build folder.
+"""`tools/portability --setup`: fetches OpenCL implementations that Debian does not have from PyPI into the build folder.
 
-Each is a file of tests/portability/packages/, which names packages, versions and hashes as pip reads them. Its wheels are unpacked to
-build/implementations/NAME, and build/implementations/NAME.icd, which an OpenCL loader reads, names the driver. Nothing is installed: no file
-lies anywhere else, and to remove the folder removes all.
+Each is a file in tests/portability/packages/ with packages, versions and hashes in pip's format. Its wheels are unpacked to
+build/implementations/NAME; build/implementations/NAME.icd, which OpenCL loaders read, names the driver. There are no files outside that folder:
+to uninstall everything, remove it.
 """
 import os, re, shutil, subprocess, sys, tempfile, zipfile
 from pathlib import Path
 
 from portability_implementations import FETCHED
 
-DRIVERS = {"intel-cpu": "lib/libintelocl.so", "pocl-3.0": "pyopencl/.libs/libpocl-*.so"}  # in what is unpacked
+DRIVERS = {"intel-cpu": "lib/libintelocl.so", "pocl-3.0": "pyopencl/.libs/libpocl-*.so"}  # path in the unpacked wheels
 
 
 class SetupError(Exception):
-    """With the remedy."""
+    """A failed setup; the message has the remedy."""
 
 
 def fetch(packages, folder):
-    """The wheels that the file `packages` names: pip verifies versions and hashes."""
+    """Downloads the wheels of the file `packages` to the folder; pip verifies versions and hashes. Returns their paths."""
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--no-cache-dir", "--only-binary", ":all:", "--require-hashes",
                "--disable-pip-version-check", "-r", str(packages), "-d", str(folder)]
     done = subprocess.run(command, capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL)
     if "No module named pip" in done.stderr:
         raise SetupError(f"{sys.executable} has no pip; remedy: apt-get install python3-pip")
     if done.returncode != 0:
-        told = [line for line in done.stderr.splitlines() if "WARNING" not in line and line.strip()]
-        raise SetupError(f"{packages.name}: pip got no packages: {' / '.join(told[-6:])}; remedy: a network, or a folder with the wheels of that "
+        lines = [line for line in done.stderr.splitlines() if "WARNING" not in line and line.strip()]
+        raise SetupError(f"{packages.name}: pip got no packages: {' / '.join(lines[-6:])}; remedy: a network, or a folder with the wheels of that "
                          "file and PIP_NO_INDEX=1 PIP_FIND_LINKS=FOLDER; Linux on x86-64")
     return sorted(folder.glob("*.whl"))
 
 
 def unpack(wheel, folder):
-    """The wheel's data (X.data/data/...) and packages. Members that are equal become one file: wheels know no links and hold libraries twice."""
+    """Unpacks a wheel's data (X.data/data/...) and packages. Equal members become hard links: wheels have no links and contain libraries twice."""
     seen = {}
     with zipfile.ZipFile(wheel) as members:
         for member in members.infolist():
@@ -49,10 +49,10 @@ def unpack(wheel, folder):
 
 
 def cpu_that_llvm_14_lacks(cpuinfo):
-    """A name that LLVM 14 has for what this CPU can do, where it has none for the CPU itself. None: it knows the CPU.
+    """LLVM 14's name of a CPU with the same features, for CPUs that LLVM 14 does not know; None for a CPU that it knows.
 
-    Of AMD's after family 25 it says "generic", a name that its own compiler then refuses; Zen 4 it takes for Zen 3, family 25 too, which has
-    no AVX-512, and ends on vectors of 16 floats ("Cannot emit physreg copy instruction")."""
+    LLVM 14 calls AMD CPUs after family 25 "generic", a name that its own compiler rejects. It takes Zen 4 for Zen 3, which is family 25 too
+    but has no AVX-512, and aborts on vectors of 16 floats ("Cannot emit physreg copy instruction")."""
     def value(key):
         return (re.search(rf"^{key}\s*: (.*)$", cpuinfo, re.MULTILINE) or ["", ""])[1]
     family, wide = int(value("cpu family") or 0), "avx512vl" in value("flags").split()
@@ -62,13 +62,13 @@ def cpu_that_llvm_14_lacks(cpuinfo):
 
 
 def name_cpu(library, cpu):
-    """PoCL 3.0 asks LLVM for the CPU's name and has no variable for it, so our copy gets the answer: where pocl_get_llvm_cpu_name() calls LLVM
-    and looks whether there is a name, it takes this one. Addresses of code and constants are offsets in this file."""
+    """Patches our copy of PoCL 3.0 to use this CPU name, as PoCL 3.0 has no setting for it: replaces pocl_get_llvm_cpu_name()'s call of LLVM,
+    and the check of its result, by a constant. Addresses of code and constants are file offsets."""
     content = bytearray(library.read_bytes())
     calls = [match.start(1) for match in re.finditer(rb"\x55\x53\x48\x83\xec\x08(\xe8....\x48\x85\xd2\x74\x30)\x48\x89\xc5", content, re.DOTALL)]
     text = content.find(b"\0" + cpu.encode() + b"\0") + 1
     if len(calls) != 1 or text == 0:
-        raise SetupError(f"{library.name} is not PoCL 3.0 as PyPI had it: its LLVM does not know this CPU, and the place to name it was not found")
+        raise SetupError(f"{library.name}: cannot patch the name of this CPU, which its LLVM does not know: the library differs from PyPI's PoCL 3.0")
     lea, after = calls[0], calls[0] + 7
     content[lea:lea + 10] = b"\x48\x8d\x05" + (text - after).to_bytes(4, "little", signed=True) + bytes([0x6a, len(cpu), 0x5a])  # lea rax; push, pop rdx
     library.write_bytes(content)
@@ -80,7 +80,7 @@ def size_text(folder):
 
 
 def set_up_one(packages, target, cpuinfo):
-    """`target`: the folder to be. It appears whole or not at all, and the .icd file last."""
+    """Sets up one implementation in the folder `target`: atomically, with the .icd file last."""
     name, driver_file = packages.stem, target.with_name(packages.stem + ".icd")
     asked = packages.read_text()
     stamp = target / "packages.txt"
@@ -108,12 +108,12 @@ def set_up_one(packages, target, cpuinfo):
         unpacked.rename(target)
         target.chmod(0o755)
     driver_file.write_text(f"{driver}\n")
-    named = f"; its LLVM 14 does not know this CPU and is told that it is {cpu}" if cpu else ""
+    named = f"; its LLVM 14 does not know this CPU and uses the settings of {cpu}" if cpu else ""
     print(f"{name}: {fetched:.0f} MB fetched, {size_text(target)} in {target}{named}")
 
 
 def set_up(build, folder):
-    """All files of `folder`; exit code 0, or 3 where one could not be had."""
+    """Sets up all files of `folder`. Returns the exit code: 0, or 3 if one failed."""
     target = (build / FETCHED).absolute()
     target.mkdir(parents=True, exist_ok=True)
     cpuinfo = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""

@@ -1,34 +1,34 @@
 #!/usr/bin/env python3
-"""Writes an NFF file (host/scene/nff.hpp) as a scene of POV-Ray 3.7 that makes the same picture.
+"""Converts an NFF file (host/scene/nff.hpp) to a POV-Ray 3.7 scene with the same picture.
 
-    tools/povray_scene.py SCENE.nff BOUNCES WxH     the scene on stdout, for a picture of W x H pixels
+    tools/povray_scene.py SCENE.nff BOUNCES WxH     writes the scene to stdout, for a picture of W x H pixels
 
-What POV-Ray understands otherwise than kernels/README.md, and what is done about it:
+Differences between POV-Ray and the shading of kernels/README.md, and how the scene works around them:
 
-- a surface that transmits T keeps 1 - T of its own colour: Kd is divided by that (all of it is lost where T is 1);
-- light passes through what transmits: it throws no shadow, an opaque twin does that no ray but a shadow ray sees;
-- which side of a surface is glass follows from the way of the ray, through objects within objects, not from normals;
-- an object is seen from both sides: one of a negative radius is clear outside, where a ray goes through and loses a level;
-- polygons are cut into triangles, those of one surface make one mesh: POV-Ray finds its way in meshes fastest;
-- checkers are cubes: they are stretched along the axis that does not count.
+- A surface with transmittance T keeps only 1 - T of its own colour, so Kd is divided by that (at T = 1 all colour is lost).
+- Light passes through transmitting objects. Their shadow comes from an opaque twin that only shadow rays see.
+- Which side of a surface is glass depends on the objects that the ray has entered, not on normals.
+- Objects are visible from both sides. One of negative radius is clear outside; a ray that passes there loses a level.
+- Polygons become triangles, and the triangles of one surface a mesh, which POV-Ray intersects fastest.
+- Checkers are cubes. They are stretched along the axis that the checker ignores.
 
-Entities of other dialects are refused, with their line.
+Entities of other dialects are refused, with their line. Exit code 1 if the file cannot be converted.
 """
 import math
 import sys
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-LONG = 1e9  # a cube of a checker along the axis that does not count; NFF's numbers end here
+LONG = 1e9  # length of a checker's cubes along the ignored axis: the largest number in NFF
 
 
 class SceneError(Exception):
-    """What is wrong with a file, in words."""
+    """An error in a file, as FILE:LINE: reason."""
 
 
 @dataclass(frozen=True)
 class Surface:
-    """`f` of NFF, and the checker in place of its colour."""
+    """NFF's `f`, with the checker that replaces its colour, if any."""
 
     colour: tuple = (1.0, 1.0, 1.0)
     diffuse: float = 1.0
@@ -37,23 +37,23 @@ class Surface:
     transmittance: float = 0.0
     refraction: float = 1.0
     checker: tuple = None  # even r g b, odd r g b, size
-    axis: int = None  # that does not count for the checker
+    axis: int = None  # the axis that the checker ignores
 
 
 @dataclass
 class Scene:
-    """Objects by kind, each with its surface in the end."""
+    """Objects by kind; the surface is the last item of each."""
 
     view: dict = field(default_factory=dict)
     background: tuple = (0.0, 0.0, 0.0)
-    lights: list = field(default_factory=list)  # (position, colour or nothing)
+    lights: list = field(default_factory=list)  # (position, colour or None)
     spheres: list = field(default_factory=list)  # (centre, radius, surface)
     planes: list = field(default_factory=list)  # (normal, distance, surface)
-    polygons: list = field(default_factory=list)  # (vertices, normals or nothing, surface)
+    polygons: list = field(default_factory=list)  # (vertices, normals or None, surface)
     cones: list = field(default_factory=list)  # (base, radius, apex, radius, surface)
 
 
-# Vectors, as tuples of three.
+# Vectors are tuples of three numbers.
 def minus(a, b):
     return tuple(x - y for x, y in zip(a, b))
 
@@ -72,7 +72,7 @@ def normalized(a):
 
 
 def newell_normal(vertices):
-    """Not of length 1: that is twice the area."""
+    """Newell's normal of a polygon; its length is twice the area."""
     total = (0.0, 0.0, 0.0)
     for a, b in zip(vertices, vertices[1:] + vertices[:1]):
         total = tuple(t + c for t, c in zip(total, cross(a, b)))
@@ -80,109 +80,109 @@ def newell_normal(vertices):
 
 
 def largest_axis(normal):
-    """The axis of the largest component, of equals the first."""
+    """Axis of the component with the largest magnitude; the first of equal ones."""
     return max(range(3), key=lambda axis: abs(normal[axis]))
 
 
-class Words:
-    """The words of a file, without comments, each with its line."""
+class Tokens:
+    """The tokens of a file, without comments, each with its line."""
 
     def __init__(self, text, name):
-        self.name, self.at, self.words = name, 0, []
+        self.name, self.at, self.tokens = name, 0, []
         for number, line in enumerate(text.splitlines(), 1):
             plain = line if line.split()[:1] == ["#raya"] else line.partition("#")[0]
-            self.words += [(word, number) for word in plain.split()]
+            self.tokens += [(token, number) for token in plain.split()]
 
     def refuse(self, reason):
-        line = self.words[max(0, self.at - 1)][1] if self.words else 1
+        line = self.tokens[max(0, self.at - 1)][1] if self.tokens else 1
         raise SceneError(f"{self.name}:{line}: {reason}")
 
     def left(self):
-        return self.at < len(self.words)
+        return self.at < len(self.tokens)
 
     def take(self):
         if not self.left():
             self.refuse("the file ends within an entity")
         self.at += 1
-        return self.words[self.at - 1][0]
+        return self.tokens[self.at - 1][0]
 
     def number(self):
-        word = self.take()
+        token = self.take()
         try:
-            return float(word)
+            return float(token)
         except ValueError:
-            self.refuse(f"'{word}' where a number should be")
+            self.refuse(f"expected a number, found '{token}'")
 
     def numbers(self, count):
         return tuple(self.number() for _ in range(count))
 
     def number_follows(self):
-        return self.left() and self.words[self.at][0].lstrip("+-").lstrip(".")[:1].isdigit()
+        return self.left() and self.tokens[self.at][0].lstrip("+-").lstrip(".")[:1].isdigit()
 
 
-def take_view(words):
+def take_view(tokens):
     parts = {"from": 3, "at": 3, "up": 3, "angle": 1, "hither": 1, "resolution": 2}
     view = {}
     while len(view) < len(parts):
-        part = words.take()
+        part = tokens.take()
         if part not in parts or part in view:
-            words.refuse(f"'{part}' in 'v'")
-        view[part] = words.numbers(parts[part])
+            tokens.refuse(f"'v': unknown or repeated part '{part}'")
+        view[part] = tokens.numbers(parts[part])
     return view
 
 
-def take_polygon(words, patch):
-    """(vertices, normals or nothing)."""
-    corners = [words.numbers(6 if patch else 3) for _ in range(int(words.number()))]
+def take_polygon(tokens, patch):
+    """(vertices, normals or None)"""
+    corners = [tokens.numbers(6 if patch else 3) for _ in range(int(tokens.number()))]
     normals = [normalized(corner[3:]) for corner in corners] if patch else None
     return [corner[:3] for corner in corners], normals
 
 
 def parse_nff(text, name="scene"):
-    """The scene that an NFF file describes."""
-    words, scene, surface, checker = Words(text, name), Scene(), Surface(), None
+    """Scene of an NFF file. Raises SceneError."""
+    tokens, scene, surface, checker = Tokens(text, name), Scene(), Surface(), None
 
     def flat_surface(normal):
-        """That of a plane or polygon: the checker that waits is its own."""
+        """Surface of a plane or polygon, with the checker that precedes it, if any."""
         nonlocal checker
         squares, checker = checker, None
         return replace(surface, checker=squares, axis=largest_axis(normal)) if squares else surface
 
-    while words.left():
-        entity = words.take()
-        entity += " " + words.take() if entity == "#raya" else ""
+    while tokens.left():
+        entity = tokens.take()
+        entity += " " + tokens.take() if entity == "#raya" else ""
         if entity == "v":
-            scene.view = take_view(words)
+            scene.view = take_view(tokens)
         elif entity == "b":
-            scene.background = words.numbers(3)
+            scene.background = tokens.numbers(3)
         elif entity == "l":
-            scene.lights.append((words.numbers(3), words.numbers(3) if words.number_follows() else None))
+            scene.lights.append((tokens.numbers(3), tokens.numbers(3) if tokens.number_follows() else None))
         elif entity == "f":
-            surface = Surface(words.numbers(3), *words.numbers(5))
+            surface = Surface(tokens.numbers(3), *tokens.numbers(5))
         elif entity == "s":
-            scene.spheres.append((words.numbers(3), words.number(), surface))
+            scene.spheres.append((tokens.numbers(3), tokens.number(), surface))
         elif entity in ("p", "pp"):
-            vertices, normals = take_polygon(words, entity == "pp")
+            vertices, normals = take_polygon(tokens, entity == "pp")
             normal = newell_normal(vertices)
             own = flat_surface(normal)
-            if any(normal):  # else nothing of it is seen
+            if any(normal):  # a polygon without area is invisible
                 scene.polygons.append((vertices, normals, own))
         elif entity == "c":
-            scene.cones.append((words.numbers(3), words.number(), words.numbers(3), words.number(), surface))
+            scene.cones.append((tokens.numbers(3), tokens.number(), tokens.numbers(3), tokens.number(), surface))
         elif entity == "#raya plane":
-            normal, distance = words.numbers(3), words.number()
+            normal, distance = tokens.numbers(3), tokens.number()
             scene.planes.append((normalized(normal), distance / math.hypot(*normal), flat_surface(normal)))
         elif entity == "#raya checker":
-            checker = words.numbers(7)
+            checker = tokens.numbers(7)
         else:
-            words.refuse(f"unknown entity '{entity}'")
+            tokens.refuse(f"unknown entity '{entity}'")
     if not scene.view:
-        words.refuse("no 'v'")
+        tokens.refuse("no 'v'")
     return scene
 
 
 def triangles(vertices):
-    """Triples of corners' numbers, also of an outline that is not convex: ears are cut off until three corners remain."""
+    """Triangulates a polygon, also a concave one, by ear clipping. Returns triples of vertex indices."""
     normal = newell_normal(vertices)
     axis = largest_axis(normal)
     turn = math.copysign(1, normal[axis])
@@ -199,7 +199,7 @@ def triangles(vertices):
     rest, found = list(range(len(vertices))), []
     while len(rest) > 3:
         corners = [(rest[i - 1], rest[i], rest[(i + 1) % len(rest)]) for i in range(len(rest))]
-        ear = next((corner for corner in corners if is_ear(corner, rest)), corners[1])  # some outlines are not simple
+        ear = next((corner for corner in corners if is_ear(corner, rest)), corners[1])  # a polygon that is not simple may have no ear
         found.append(ear)
         rest.remove(ear[1])
     return found + [tuple(rest)]
@@ -210,7 +210,7 @@ def vector(v):
 
 
 class Surfaces:
-    """Textures and interiors, each declared once."""
+    """Textures; each surface is declared once."""
 
     def __init__(self, ambient):
         self.ambient, self.numbers = ambient, {}
@@ -238,7 +238,7 @@ class Surfaces:
             yield f"#declare Surface{number} = texture {{ pigment {{ {self.pigment(surface)} }} finish {{ {self.finish(surface)} }} }}"
 
     def solid(self, shape, surface, inside_only=False):
-        """The text of an object, or of two: the second throws the shadow of one that transmits."""
+        """Texts of an object; a transmitting object has a second one, which casts its shadow."""
         texture = f"texture {{ Surface{self.number(surface)} }}"
         if inside_only:
             texture = "texture { Clear } interior_" + texture
@@ -249,7 +249,7 @@ class Surfaces:
 
 
 def camera(view, width, height):
-    """Right and up span the whole picture, at the distance 1 along the gaze; as NFF is, without a change of hands."""
+    """POV-Ray's camera: right and up span the picture at distance 1 along the gaze, in NFF's handedness."""
     gaze = normalized(minus(view["at"], view["from"]))
     right = normalized(cross(gaze, view["up"]))
     tall = 2 * math.tan(math.radians(view["angle"][0]) / 2)
@@ -285,12 +285,12 @@ def objects(scene, surfaces):
 
 
 def povray_scene(scene, bounces, width, height):
-    """The text of a scene for POV-Ray."""
+    """Text of the POV-Ray scene."""
     count = len(scene.lights)
-    usual = math.sqrt(count) / (2 * count) if count else 1.0  # SPD's
-    surfaces = Surfaces(usual)
+    intensity = math.sqrt(count) / (2 * count) if count else 1.0  # SPD's default for lights and ambient light
+    surfaces = Surfaces(intensity)
     solids = list(objects(scene, surfaces))
-    lights = [f"light_source {{ {vector(position)} color rgb {vector(colour or 3 * (usual,))} }}" for position, colour in scene.lights]
+    lights = [f"light_source {{ {vector(position)} color rgb {vector(colour or 3 * (intensity,))} }}" for position, colour in scene.lights]
     head = ["#version 3.7;",
             f"global_settings {{ assumed_gamma 1 max_trace_level {bounces + 1} adc_bailout 0 ambient_light rgb 1 }}",
             f"background {{ color rgb {vector(scene.background)} }}",

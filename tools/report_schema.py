@@ -1,4 +1,4 @@
-"""The schemas of docs/schema: reading them, and following their references. For tools/report_doc and tests/tools/test_reports.py."""
+"""Reads the schemas of docs/schema and resolves their references. Used by tools/report_doc and tests/tools/test_reports.py."""
 import json
 from pathlib import Path
 
@@ -6,7 +6,7 @@ FOLDER = Path(__file__).resolve().parents[1] / "docs" / "schema"
 
 
 class Node:
-    """A schema within a file: {"type": "integer"} of render.json at /properties/walks."""
+    """A schema in a file: {"type": "integer"} of render.json at the JSON pointer /properties/walks."""
 
     def __init__(self, schemas, file, value, pointer=""):
         self.schemas, self.file, self.value, self.pointer = schemas, file, value, pointer
@@ -21,12 +21,12 @@ class Node:
         return isinstance(self.value, dict) and key in self.value
 
     def members(self):
-        """(name, node) of what an object may have, whatever else it has."""
+        """Returns [(name, node)] of an object's members."""
         nodes = [(name, self["properties"][name]) for name in self.get("properties", {})]
-        return [(name, node) for name, node in nodes if set(node.value) != {"required"}]  # which says more of one
+        return [(name, node) for name, node in nodes if set(node.value) != {"required"}]  # only {"required": ...}: a condition, no definition
 
     def target(self):
-        """What a reference leads to; None where there is none."""
+        """Returns the node that $ref references; None without $ref."""
         if not self.has("$ref"):
             return None
         file, pointer = self.value["$ref"].split("#")
@@ -36,7 +36,7 @@ class Node:
         return node
 
     def walk(self):
-        """This node and all below it, not through references."""
+        """Yields this node and all nodes below it; does not follow references."""
         yield self
         keys = self.value if isinstance(self.value, dict) else range(len(self.value))
         for key in keys:
@@ -45,7 +45,7 @@ class Node:
 
 
 def read_schemas(folder=FOLDER):
-    """File name: its root node."""
+    """Returns {file name: root node}."""
     schemas = {}
     for path in sorted(Path(folder).glob("*.json")):
         schemas[path.name] = Node(schemas, path.name, json.loads(path.read_text()))

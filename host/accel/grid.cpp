@@ -12,13 +12,13 @@
 namespace raya {
 namespace {
 
-// Measured on SPD's balls, lattice and tetra and on 8,320 even spheres (fp32, 16 lanes): 2, 4 and 8 differ by little
-// and in no one direction, 1 takes up to 1.5 times as long, 16 up to 1.4 times and twice the memory.
+// Measured on SPD's balls, lattice and tetra and on 8,320 uniform spheres (fp32, 16 lanes): 2, 4 and 8 differ little,
+// with no clear best; 1 takes up to 1.5 times as long, 16 up to 1.4 times and twice the memory.
 constexpr double kVoxelsPerObject = 4;
 
-constexpr double kLeastReach = 2;       // of rays, in extents of the scene: sizes of objects hardly depend on it
-constexpr double kLargeSide = 0.75;     // of the whole box's longest side
-constexpr std::size_t kMostLarge = 16;  // more of them are no exception: they belong into the lists
+constexpr double kMinReach = 2;        // of rays, in extents of the scene; the sizes of regions hardly depend on it
+constexpr double kLargeSide = 0.75;    // relative to the longest side of the whole box
+constexpr std::size_t kMaxLarge = 16;  // if more objects are large, all of them go into the lists
 
 double longest_side(const Box& box) {
     const Vec3 sides = box.max - box.min;
@@ -27,8 +27,7 @@ double longest_side(const Box& box) {
 
 std::uint32_t word_number(std::size_t at) { return static_cast<std::uint32_t>(at); }
 
-// The next word at which a row of four may start: aligned rows need fewer memory accesses.
-// The sections of a grid's words behind its header.
+// The sections of a grid's words after its header.
 struct GridLists {
     std::vector<std::uint32_t> voxels, rows, numbers;
 };
@@ -45,12 +44,12 @@ void put_link(GridLists& lists, std::uint32_t next, std::uint32_t number) {
     lists.numbers.push_back(number);
 }
 
-// The voxel word for rows that are still to be put: so many spheres, and a link behind them.
+// The voxel word of a list that starts at `row`: `spheres` rows, followed by a link if `linked`.
 std::uint32_t voxel_word(std::size_t row, std::size_t spheres, bool linked) {
     return word_number(row) | word_number(spheres) * RAYA_ONE_ROW | (linked ? RAYA_LINKED : 0);
 }
 
-// The list from `first` on, not empty; returns its voxel word. Spheres come first, as their numbers do.
+// Appends a non-empty list and returns its voxel word. Spheres come first because their numbers are the lowest.
 std::uint32_t put_list(GridLists& lists, const std::vector<std::uint32_t>& words, const raya_objects& objects,
                        std::span<const std::uint32_t> list) {
     const auto end_of_spheres = std::lower_bound(list.begin(), list.end(), objects.spheres);
@@ -85,7 +84,7 @@ GridLists grid_lists(const std::vector<std::uint32_t>& words, const raya_objects
 std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberFormat& format) {
     std::vector<std::uint32_t> large;
     for (;;) {
-        const HitRegions regions(job, format, kLeastReach, large);
+        const HitRegions regions(job, format, kMinReach, large);
         if (!regions.known()) return {};
         std::vector<double> lengths;
         Box whole;
@@ -97,7 +96,7 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
         std::vector<std::uint32_t> found;
         for (std::size_t i = 0; i < regions.size(); ++i)
             if (lengths[i] > kLargeSide * longest_side(whole)) found.push_back(regions.number(i));
-        if (found.empty() || large.size() + found.size() > kMostLarge) return large;
+        if (found.empty() || large.size() + found.size() > kMaxLarge) return large;
         large.insert(large.end(), found.begin(), found.end());
         std::sort(large.begin(), large.end());
     }
@@ -106,15 +105,15 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
 Partition accel_partition(const PackedJob& job, const NumberFormat& format, const Accel& accel) {
     if (accel.divisions) return partition(job, format, *accel.divisions);
     const std::vector<std::uint32_t> apart = large_objects(job, format);
-    const HitRegions rest(job, format, kLeastReach, apart);
-    // Where every object is in every list, more voxels are of no use.
+    const HitRegions rest(job, format, kMinReach, apart);
+    // If every object is in every list, more voxels do not help.
     const double voxels = rest.known() ? std::max(1.0, kVoxelsPerObject * static_cast<double>(rest.size())) : 1;
     return partition(job, format, divisions_for(job, format, static_cast<std::uint64_t>(voxels), apart), apart);
 }
 
 AccelSummary append_grid(PackedJob& job, const Partition& p) {
     const GridLists lists = grid_lists(job.words(), job.header().objects, p);
-    const std::size_t end = job.words().size(), at = whole_rows(end);
+    const std::size_t end = job.words().size(), at = padded_to_rows(end);
     raya_grid_words header{};
     std::size_t next = at + kWordsOf<raya_grid_words>;
     const auto place = [&](std::size_t count) { return word_number(std::exchange(next, next + count)); };
@@ -122,12 +121,12 @@ AccelSummary append_grid(PackedJob& job, const Partition& p) {
     header.apart = word_number(p.apart.size());
     header.apart_at = place(p.apart.size());
     header.voxels_at = place(lists.voxels.size());
-    next = whole_rows(next);
+    next = padded_to_rows(next);  // aligned rows need fewer memory accesses
     header.rows_at = place(lists.rows.size());
     header.numbers_at = place(lists.numbers.size());
-    if (next > kMostWords || lists.numbers.size() > RAYA_ROW_NUMBER)
+    if (next > kMaxWords || lists.numbers.size() > RAYA_ROW_NUMBER)
         throw UserError(
-            fmt::format("--accel grid packs to {} words, more than 32-bit numbers reach; take fewer voxels", next));
+            fmt::format("--accel grid packs to {} words, more than 32-bit indices address; use fewer voxels", next));
     std::vector<std::uint32_t> words(next - end);
     put_record(words, at - end, header);
     const auto put = [&](const std::vector<std::uint32_t>& from, std::uint32_t to) {

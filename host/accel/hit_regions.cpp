@@ -1,28 +1,29 @@
-// Bounds of the kernels' rounding (kernels/geometry/), operation by operation, to first order in u; constants are
-// rounded up so far that they cover the rest for Y >= 10.
+// Bounds of the kernels' rounding errors (kernels/geometry/), operation by operation, to first order in u. The
+// constants are rounded up enough to cover the higher orders for Y >= 10.
 //
-//   u  relative error of one operation        f  what is smaller is flushed to 0        s  | |D|^2 - 1 |
-//   n  largest distance from a ray's origin O to the object, O within reach             a' a as computed
+//   u  relative error of one operation        f  smaller results are flushed to 0        s  | |D|^2 - 1 |
+//   n  largest distance from a ray's origin O within reach to the object                 a' computed value of a
 //
-// A region is where the exact point X = O + t'D of a computed hit t' can lie.
+// A region contains the exact point X = O + t'D of every computed hit t'. "a = b up to e" means |a - b| <= e.
 //
-// Sphere (C, r), c = C - O. b' is off by 4un, l' = c' - b'D by 6un, and a discriminant >= 0 tells that
-// |l'|^2 <= r^2 (1 + 3u) + 3f. X - C = -l' +- root' D but for u (2n + r), and l'.D = b (1 - |D|^2) but for 6un, so
-// |X - C|^2 = r^2 but for 2r (s + 6u) n + r^2 (s + 5u) + 3f.
+// Sphere (C, r), c = C - O. b' has an error of 4un, l' = c' - b'D of 6un, and a discriminant >= 0 implies
+// |l'|^2 <= r^2 (1 + 3u) + 3f. X - C = -l' +- root' D up to u (2n + r), and l'.D = b (1 - |D|^2) up to 6un, so
+// |X - C|^2 = r^2 up to 2r (s + 6u) n + r^2 (s + 5u) + 3f.
 //
-// Polygon N.x = d. A corner as the ray sees it (kernels/geometry/polygon.clh) is off by 4un along each of the two axes,
-// an edge by un more, so the ray passes a point Q of the polygon within 8un. Where O + t'D is in the box of the corners
-// but for the kernel's margin, and the rounding of both, it is so here; else t' is where the ray enters or leaves that
-// box, between Q and the plane's t. Numerator and denominator of that are off by 3u (|d| + |O|) and 3u, so it lies off
-// the plane by 4u (|d| + |O|) + 4ut, and O + t'D by no more than that or Q.
+// Polygon N.x = d. The sheared coordinates of a corner (kernels/geometry/polygon.clh) have an error of 4un along each
+// of the two axes, an edge of un more, so the distance of the ray to some point Q of the polygon is at most 8un. If
+// O + t'D is in the box of corners, widened by the kernel's margin and the rounding of both, the region contains it;
+// otherwise t' is where the ray enters or leaves that box, between Q and the plane's t. The numerator and denominator
+// of the plane's t have errors of 3u (|d| + |O|) and 3u, so its point is off the plane by 4u (|d| + |O|) + 4ut, and
+// O + t'D by no more than that or Q.
 //
-// Cone, p = O - base. The ray's point nearest to the base, p' + m'D, is off by 3un along the ray and by 2un across it:
-// X shifts. From there on all is of size S, |start| + |t|. The coefficients' errors are errors of the quadratic's value
-// Q(t) = |side + t dside|^2 - (r0 + k z)^2, together no more than e = 32u (S^2 + (r0 + |k| S)^2). What is flushed
-// changes the discriminant by d <= 2f, and Q by d / a at q / a, by d c / q^2 at c / q, where q = -(b +- root); as the
-// discriminant is > 0, |q| >= root >= sqrt(f), and that is at most 2 sqrt(f) S. So the distance from the axis is at
-// most sqrt((r0 + k z)^2 + e), with 0 <= z <= h but for 8uS. S follows from that, as start and D are perpendicular but
-// for (s + 6u) n; a steep cone in a coarse format has none.
+// Cone, p = O - base. The ray's point closest to the base, p' + m'D, has an error of 3un along the ray and of 2un
+// across it, which shifts X. All later quantities are of size S = |start| + |t|. Errors of the coefficients are errors
+// of the quadratic's value Q(t) = |side + t dside|^2 - (r0 + k z)^2, at most e = 32u (S^2 + (r0 + |k| S)^2) in total.
+// Flushing changes the discriminant by d <= 2f, and Q by d / a at q / a and by d c / q^2 at c / q, where
+// q = -(b +- root). As the discriminant is > 0, |q| >= root >= sqrt(f), so the change is at most 2 sqrt(f) S. Hence the
+// distance from the axis is at most sqrt((r0 + k z)^2 + e), with 0 <= z <= h up to 8uS. S follows from that, because
+// start and D are perpendicular up to (s + 6u) n. A steep cone in a coarse format has no finite S.
 #include "host/accel/hit_regions.hpp"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ void widen(Box& box, double by) {
     box.max += Vec3(by);
 }
 
-// Square of the distance from a point to the nearest, to the farthest point of a box.
+// Squared distances from a point to the nearest and to the farthest point of a box.
 double nearest_square(const Vec3& p, const Box& box) {
     Vec3 apart;
     for (int axis = 0; axis < 3; ++axis)
@@ -58,7 +59,7 @@ double segment_distance(const Vec3& p, const Vec3& from, const Vec3& along) {
     return (p - from - share * along).length();
 }
 
-constexpr int kFewestBits = 10;  // Y from which on the constants cover what is beyond first order
+constexpr int kMinFractionBits = 10;  // Y from which on the constants cover the higher orders
 
 }  // namespace
 
@@ -85,10 +86,10 @@ HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double 
     stretch_ = std::ldexp(format.is_fp32() ? 32.0 : 16.0, -format.fraction_bits) +
                0x1p-21;  // RAYA_STRETCH, and its own rounding
     far_ = farthest_hit(format);
-    square_room_ = std::ldexp(1.0, quarter - 1);
+    square_limit_ = std::ldexp(1.0, quarter - 1);
     extent_ = job.header().extent;
     reach_ = reach * extent_;
-    known_ = format.fraction_bits >= kFewestBits && reach_ <= square_room_ && cones_known();
+    known_ = format.fraction_bits >= kMinFractionBits && reach_ <= square_limit_ && cones_known();
     if (!known_) reach_ = far_;
 }
 
@@ -125,7 +126,7 @@ HitRegion HitRegions::polygon(std::size_t at) const {
     HitRegion region;
     region.normal = vector(at + RAYA_PLANE_NORMAL);
     region.middle = real(at + RAYA_PLANE_DISTANCE);
-    double bent = 0, away = 0;  // of the corners: farthest from the plane, largest distance from a ray's origin
+    double bent = 0, away = 0;  // of the corners: largest distance from the plane; from a ray's origin
     std::size_t corner = (*words_)[at + RAYA_POLYGON_CORNERS_AT];
     for (std::size_t i = (*words_)[at + RAYA_POLYGON_CORNERS]; i > 0; --i, corner += RAYA_CORNER_WORDS) {
         const Vec3 place = vector(corner);
@@ -133,7 +134,7 @@ HitRegion HitRegions::polygon(std::size_t at) const {
         bent = std::max(bent, std::abs(region.normal.dot(place) - region.middle));
         away = std::max(away, farthest(place));
     }
-    const double margin = 32 * unit_ * away;  // of the kernel; RAYA_MARGIN is 16 units or 8
+    const double margin = 32 * unit_ * away;  // of the kernel: RAYA_MARGIN is 16 or 8 units
     const double aside = 16 * unit_ * away + 8 * std::sqrt(smallest_);
     const double to_plane = std::abs(region.middle) + std::sqrt(3.0) * reach_;
     widen(region.box, margin + aside);
@@ -141,7 +142,7 @@ HitRegion HitRegions::polygon(std::size_t at) const {
     return region;
 }
 
-// e above, for a cone on which all is of the given size.
+// e above, for a cone with S = `size`.
 double HitRegions::cone_error(std::size_t at, double size) const {
     const double radius = real(at + RAYA_CONE_RADIUS), slope = std::abs(real(at + RAYA_CONE_SLOPE));
     const double square = size * size, wide = radius + slope * size;
@@ -149,15 +150,15 @@ double HitRegions::cone_error(std::size_t at, double size) const {
            16 * smallest_ * (1 + square) * (1 + slope * slope);
 }
 
-// S above; infinite where errors of that size make it grow without end.
+// S above, by fixed-point iteration; infinite if that diverges.
 double HitRegions::cone_size(std::size_t at) const {
     const double r0 = real(at + RAYA_CONE_RADIUS), height = real(at + RAYA_CONE_HEIGHT);
     const double slope = real(at + RAYA_CONE_SLOPE), r1 = std::abs(r0 + slope * height);
     const double within = height * height + std::max(r0, r1) * std::max(r0, r1);
     const double skew = 2 * (6 * unit_ + stretch_) * farthest(vector(at + RAYA_CONE_BASE));
     double size = 0;
-    constexpr int kMostTurns = 60;
-    for (int turn = 0; turn < kMostTurns; ++turn) {
+    constexpr int kMaxIterations = 60;
+    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
         const double next = std::sqrt(2.1 * (within + cone_error(at, size))) + skew;
         if (next <= size * 1.001) return next * 1.01;
         size = next;
@@ -169,9 +170,9 @@ bool HitRegions::cones_known() const {
     for (std::size_t i = 0; i < objects_.cones; ++i) {
         const std::size_t at = objects_.cones_at + i * RAYA_CONE_WORDS;
         const double steep = 1 + std::abs(real(at + RAYA_CONE_SLOPE));
-        // Nothing that the kernel squares may saturate.
-        const double most = (farthest(vector(at + RAYA_CONE_BASE)) * steep + real(at + RAYA_CONE_RADIUS)) * steep;
-        if (most > square_room_ || cone_size(at) == HitRegion::kAll) return false;
+        // No square in the kernel may saturate.
+        const double largest = (farthest(vector(at + RAYA_CONE_BASE)) * steep + real(at + RAYA_CONE_RADIUS)) * steep;
+        if (largest > square_limit_ || cone_size(at) == HitRegion::kAll) return false;
     }
     return true;
 }
@@ -181,7 +182,7 @@ HitRegion HitRegions::cone(std::size_t at) const {
     const double height = real(at + RAYA_CONE_HEIGHT), slope = real(at + RAYA_CONE_SLOPE);
     const double r0 = real(at + RAYA_CONE_RADIUS), r1 = std::abs(r0 + slope * height);
     const double size = cone_size(at), error = cone_error(at, size);
-    const double beyond = 8 * unit_ * size;  // of z below 0 or above h
+    const double beyond = 8 * unit_ * size;  // error of z at 0 and h
     const double shift = 6 * unit_ * farthest(vector(at + RAYA_CONE_BASE)) + 12 * unit_ * size + 8 * smallest_;
     const Vec3 axis = vector(at + RAYA_CONE_AXIS).normalized();
     region.centre = vector(at + RAYA_CONE_BASE);

@@ -1,4 +1,4 @@
-// Where in space the kernels can find hits of each finite object, the rounding of the number format included.
+// The regions in which kernels can find hits of each finite object, including the rounding of the number format.
 #pragma once
 #include <Imath/ImathBox.h>
 
@@ -14,44 +14,43 @@ namespace raya {
 
 using Box = Imath::Box3d;
 
-/// The points of a box that also lie in a ball, but not in a hollow about its centre, between two planes, and about a
-/// segment.
+/// The intersection of a box, a spherical shell, a slab between two planes and a capsule around a segment.
 struct HitRegion {
     static constexpr double kAll = std::numeric_limits<double>::infinity();
     Box box;
-    Vec3 centre{0};                 // of the ball; where the segment starts
-    double ball = kAll, inner = 0;  // radii of the ball and of its hollow
-    Vec3 normal{0};                 // of the planes: |normal.x - middle| <= half
+    Vec3 centre{0};                 // of the shell; start of the segment
+    double ball = kAll, inner = 0;  // outer and inner radius of the shell
+    Vec3 normal{0};                 // of the slab: |normal.x - middle| <= half
     double middle = 0, half = kAll;
     Vec3 along{0};         // from the segment's start to its end
-    double around = kAll;  // distance from the segment
+    double around = kAll;  // radius of the capsule
 
-    /// Has `part` points of the region? In doubt it has.
+    /// Returns true if `part` may contain points of the region (conservative).
     bool touches(const Box& part) const;
 };
 
-/// The finite objects of a job (which must outlive this) but for those held apart, in the order of their numbers.
-/// Everything is computed from the job's words, the numbers that the kernels see.
+/// The regions of the finite objects of a job, which must outlive this object, except `apart`, in the order of their
+/// numbers. Computed from the job's words, the same numbers that the kernels use.
 class HitRegions {
   public:
-    /// `reach` in units of the scene's extent, 2 or more. `apart`: numbers of objects, ascending.
+    /// `reach`: in extents of the scene, at least 2. `apart`: numbers of excluded objects, ascending.
     HitRegions(const PackedJob& job, const NumberFormat& format, double reach = 2,
                const std::vector<std::uint32_t>& apart = {});
 
-    /// Is there a region for every object? If not, hits may come out anywhere within far() of a ray's origin.
+    /// Returns true if every object has a region. Otherwise hits may be anywhere within far() of a ray's origin.
     bool known() const { return known_; }
-    /// Largest coordinate of the origins of the rays that the regions are good for; which are not wide
-    /// (kernels/grid/walk.clh).
+    /// The regions are valid for rays whose origins have coordinates up to reach() in magnitude and that are not wide
+    /// (is_wide() in kernels/grid/walk.clh).
     double reach() const { return reach_; }
-    /// By how much a sphere's region is larger than the sphere where rays reach so many extents.
+    /// The difference between the radii of a sphere's region and of the sphere if rays reach `reach` extents.
     double slack(double reach) const;
-    /// Farthest distance of a hit: RAYA_FAR of the format.
+    /// Maximum distance of a hit: RAYA_FAR of the format.
     double far() const { return far_; }
 
     std::size_t size() const { return numbers_.size(); }
-    /// The number that finite object i has in the job.
+    /// The number of finite object i in the job.
     std::uint32_t number(std::size_t i) const { return numbers_[i]; }
-    /// Of finite object i. Only where known().
+    /// The region of finite object i. Requires known().
     HitRegion region(std::size_t i) const;
 
   private:
@@ -68,8 +67,8 @@ class HitRegions {
     const std::vector<std::uint32_t>* words_;
     raya_objects objects_{};
     std::vector<std::uint32_t> numbers_;
-    double unit_, smallest_, stretch_;           // of the format: u, f and s of hit_regions.cpp
-    double extent_, reach_, far_, square_room_;  // square_room_: numbers below it have squares in the format
+    double unit_, smallest_, stretch_;           // u, f and s in hit_regions.cpp
+    double extent_, reach_, far_, square_limit_;  // square_limit_: squares of smaller numbers do not overflow
     bool known_;
 };
 

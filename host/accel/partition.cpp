@@ -12,8 +12,8 @@
 namespace raya {
 namespace {
 
-constexpr double kUsualShare = 16;  // entries for each object or voxel that default divisions make, at most
-constexpr std::uint64_t kMostEntries = std::uint64_t{1} << 30;  // of all lists: 4 GB of words
+constexpr double kMaxMeanEntries = 16;  // maximum entries per object or voxel with default divisions
+constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 30;  // of all lists: 4 GB of words
 
 double largest_coordinate(const Box& box) {
     double largest = 0;
@@ -22,11 +22,12 @@ double largest_coordinate(const Box& box) {
     return largest;
 }
 
-// How far from its voxel a ray can be by the walk's rounding: the t of a plane is off by 3 2^-24, so the point there by
-// 3 2^-24 |plane - O|; the voxel that a ray enters the box by comes out of five operations on such numbers.
+// The maximum distance of a ray from its voxel due to rounding in the walk. The t of a plane has a relative error of
+// 3 2^-24, so its point has an error of 3 2^-24 |plane - O|; the first voxel results from five operations on such
+// numbers.
 double walk_error(const Box& box, double reach) { return 16 * 0x1p-24 * (reach + largest_coordinate(box)); }
 
-// The box to be cut: all regions, and room for a ray at their borders to be found in the box.
+// The box of the partition: all regions, with a margin so that rays at their borders are found inside.
 Box box_around(const HitRegions& regions) {
     Box box;
     if (regions.size() == 0) return Box(Vec3(-0.5), Vec3(0.5));
@@ -36,7 +37,7 @@ Box box_around(const HitRegions& regions) {
     return Box(box.min - margin, box.max + margin);
 }
 
-// Voxels whose planes, as kernels compute them, enclose the box.
+// A grid whose outer planes, as the kernels compute them, enclose the box.
 raya_grid grid_over(const Box& box, const Divisions& divisions, double reach) {
     constexpr float kUp = std::numeric_limits<float>::infinity();
     raya_grid grid{};
@@ -57,7 +58,7 @@ struct VoxelRange {
     std::uint32_t first, last;
 };
 
-// The planes between the voxels, and what lies between which of them.
+// The planes between the voxels, to find the voxels of a region.
 class Voxels {
   public:
     Voxels(const raya_grid& grid, double slack) : grid_(grid), slack_(slack) {
@@ -66,7 +67,7 @@ class Voxels {
                 planes_[axis].push_back(raya_voxel_plane(grid, axis, k));
     }
 
-    /// Calls visit(voxel) for each voxel that comes within the slack of the region.
+    /// Calls visit(voxel) for each voxel within the slack of the region.
     template <class Visit>
     void visit(const HitRegion& region, const Visit& visit) const {
         const VoxelRange x = range(region.box, 0), y = range(region.box, 1), z = range(region.box, 2);
@@ -95,11 +96,11 @@ class Voxels {
 };
 
 [[noreturn]] void refuse_entries(const Divisions& d) {
-    throw TooManyEntries(fmt::format("{}x{}x{} voxels register objects more than {} times; take fewer voxels", d[0],
-                                     d[1], d[2], kMostEntries));
+    throw TooManyEntries(fmt::format("the lists of {}x{}x{} voxels have more than {} entries; use fewer voxels", d[0],
+                                     d[1], d[2], kMaxEntries));
 }
 
-// Counts each voxel's objects, then puts them there.
+// Counts the objects of each voxel, then fills the lists.
 void fill_lists(Partition& p, const HitRegions& regions, const Voxels& voxels, const Divisions& divisions) {
     std::uint64_t entries = 0;
     for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -107,7 +108,7 @@ void fill_lists(Partition& p, const HitRegions& regions, const Voxels& voxels, c
             ++p.starts[voxel + 1];
             ++entries;
         });
-        if (entries > kMostEntries) refuse_entries(divisions);
+        if (entries > kMaxEntries) refuse_entries(divisions);
     }
     for (std::size_t v = 1; v < p.starts.size(); ++v) p.starts[v] += p.starts[v - 1];
     p.objects.resize(entries);
@@ -118,10 +119,10 @@ void fill_lists(Partition& p, const HitRegions& regions, const Voxels& voxels, c
     }
 }
 
-// Every object in every voxel.
-void fill_alike(Partition& p, const HitRegions& regions, const Divisions& divisions) {
+// Registers every object in every voxel.
+void register_everywhere(Partition& p, const HitRegions& regions, const Divisions& divisions) {
     const std::size_t voxels = p.starts.size() - 1;
-    if (voxels * regions.size() > kMostEntries) refuse_entries(divisions);
+    if (voxels * regions.size() > kMaxEntries) refuse_entries(divisions);
     for (std::size_t v = 0; v < voxels; ++v) {
         for (std::size_t i = 0; i < regions.size(); ++i) p.objects.push_back(regions.number(i));
         p.starts[v + 1] = static_cast<std::uint32_t>(p.objects.size());
@@ -130,31 +131,32 @@ void fill_alike(Partition& p, const HitRegions& regions, const Divisions& divisi
 
 void check_divisions(const Divisions& d) {
     for (const std::uint64_t along : d)
-        if (along == 0 || along > kMostCutVoxels || std::uint64_t{d[0]} * d[1] > kMostCutVoxels ||
-            std::uint64_t{d[0]} * d[1] * d[2] > kMostCutVoxels)
+        if (along == 0 || along > kMaxPartitionVoxels || std::uint64_t{d[0]} * d[1] > kMaxPartitionVoxels ||
+            std::uint64_t{d[0]} * d[1] * d[2] > kMaxPartitionVoxels)
             throw UserError(fmt::format("{}x{}x{} voxels: each number must be at least 1, their product at most {}",
-                                        d[0], d[1], d[2], kMostCutVoxels));
+                                        d[0], d[1], d[2], kMaxPartitionVoxels));
 }
 
-// How far rays may come from, in units of the scene's extent: with infinite planes, on which rays start anywhere,
-// farther as long as objects grow by little beside a voxel. A ray from beyond has to be tested against all objects.
+// The reach of rays, in extents of the scene. Rays start anywhere on infinite planes, so a scene with planes gets a
+// larger reach as long as regions grow little compared with a voxel. A ray from farther away is tested against all
+// objects.
 double reach_for(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
                  const std::vector<std::uint32_t>& apart) {
-    constexpr double kLeast = 2, kMost = 1024, kShareOfVoxel = 1.0 / 16;
-    const HitRegions regions(job, format, kLeast, apart);
-    if (!regions.known() || job.header().objects.planes == 0) return kLeast;
+    constexpr double kMin = 2, kMax = 1024, kShareOfVoxel = 1.0 / 16;
+    const HitRegions regions(job, format, kMin, apart);
+    if (!regions.known() || job.header().objects.planes == 0) return kMin;
     const Box box = box_around(regions);
     double side = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
         side = std::min(side, (box.max[axis] - box.min[axis]) / divisions[static_cast<std::size_t>(axis)]);
-    double reach = kLeast;
-    while (reach < kMost && regions.slack(2 * reach) <= kShareOfVoxel * side &&
+    double reach = kMin;
+    while (reach < kMax && regions.slack(2 * reach) <= kShareOfVoxel * side &&
            HitRegions(job, format, 2 * reach, apart).known())
         reach *= 2;
     return reach;
 }
 
-// Of the boxes of all regions: what tells how many voxels they meet, whatever the voxels' size.
+// Sums over the boxes of all regions, from which the number of voxels that they overlap follows for any voxel size.
 class RegionSizes {
   public:
     explicit RegionSizes(const HitRegions& regions) {
@@ -165,7 +167,7 @@ class RegionSizes {
         }
     }
     double objects() const { return sums_[0]; }
-    /// A box of sides e meets about (e_x / c_x + 1) (e_y / c_y + 1) (e_z / c_z + 1) voxels of sides c.
+    /// A box of sides e overlaps about (e_x / c_x + 1) (e_y / c_y + 1) (e_z / c_z + 1) voxels of sides c.
     double entries(const Box& box, const Divisions& d) const {
         double sum = 0;
         for (std::size_t axes = 0; axes < sums_.size(); ++axes)
@@ -175,7 +177,7 @@ class RegionSizes {
     }
 
   private:
-    // Over the axes whose bits are set.
+    // Product over the axes whose bits are set.
     template <class Factor>
     static double product(std::size_t axes, const Factor& factor) {
         double all = 1;
@@ -183,11 +185,11 @@ class RegionSizes {
             if (axes >> a & 1) all *= factor(a);
         return all;
     }
-    std::array<double, 8> sums_{};  // over all boxes, of the product of the sides along each set of axes
+    std::array<double, 8> sums_{};  // over all boxes, of the product of the sides, for each set of axes
 };
 
-// About `voxels` near-cubes in a box of the given sides. The shortest side first: where it is shorter than a cube's,
-// the others share what is left.
+// Divides a box of the given sides into about `voxels` approximate cubes. Starts with the shortest side: if it is
+// shorter than a cube's, the other two share the remaining factor.
 Divisions cubes(const Vec3& sides, double voxels) {
     std::array<int, 3> axes = {0, 1, 2};
     std::sort(axes.begin(), axes.end(), [&](int a, int b) { return sides[a] < sides[b]; });
@@ -218,21 +220,20 @@ Partition partition(const PackedJob& job, const NumberFormat& format, const Divi
     if (regions.known())
         fill_lists(p, regions, Voxels(p.grid, walk_error(box, regions.reach())), divisions);
     else
-        fill_alike(p, regions, divisions);
+        register_everywhere(p, regions, divisions);
     return p;
 }
 
 Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::uint64_t voxels,
                         const std::vector<std::uint32_t>& apart) {
-    constexpr double kLeastReach = 2;
-    const HitRegions regions(job, format, kLeastReach, apart);
+    const HitRegions regions(job, format, 2, apart);
     if (!regions.known()) return {1, 1, 1};
     const Box box = box_around(regions);
     const RegionSizes sizes(regions);
-    auto wanted = static_cast<double>(std::clamp<std::uint64_t>(voxels, 1, kMostCutVoxels));
+    auto wanted = static_cast<double>(std::clamp<std::uint64_t>(voxels, 1, kMaxPartitionVoxels));
     for (;; wanted /= 2) {
         const Divisions divisions = cubes(box.max - box.min, wanted);
-        if (wanted <= 1 || sizes.entries(box, divisions) <= kUsualShare * std::max(wanted, sizes.objects()))
+        if (wanted <= 1 || sizes.entries(box, divisions) <= kMaxMeanEntries * std::max(wanted, sizes.objects()))
             return divisions;
     }
 }

@@ -1,4 +1,4 @@
-// The time of day, and the time that something takes.
+// Wall-clock time as text, and elapsed time.
 #pragma once
 #include <chrono>
 #include <ctime>
@@ -12,7 +12,7 @@ inline double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Now, by Coordinated Universal Time; `format` as std::strftime has it, 63 characters at most.
+/// The current time in UTC, formatted by std::strftime(`format`); at most 63 characters.
 inline std::string utc_text(const char* format) {
     const std::time_t now = std::time(nullptr);
     std::tm parts{};

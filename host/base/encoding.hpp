@@ -1,4 +1,4 @@
-// Text and bytes in other forms: replaced, base64, hexadecimal digits, a hash, gzip.
+// Encodings of text and bytes: replacement, base64, hexadecimal, XXH3, gzip.
 #pragma once
 #include <memory>
 #include <span>
@@ -7,19 +7,19 @@
 
 namespace raya {
 
-/// `text` with every `what` in it replaced by `by`.
+/// Returns `text` with every occurrence of `what` replaced by `by`.
 std::string replaced(std::string text, const std::string& what, const std::string& by);
 
 std::string base64(std::string_view bytes);
 
-/// Two lower-case hexadecimal digits a byte.
+/// Two lower-case hexadecimal digits per byte.
 std::string hex_digits(std::span<const unsigned char> bytes);
 
-/// XXH3 of 128 bits, as 32 lower-case hexadecimal digits.
+/// The 128-bit XXH3 hash as 32 lower-case hexadecimal digits.
 std::string bytes_hash(std::string_view bytes);
 
-/// The same text gives the same bytes: the file's header has no date and no name. Takes the memory of the compressed
-/// bytes, and about 300 KB.
+/// Incremental gzip compression. The same text always gives the same bytes: the gzip header contains no date and no
+/// name. Memory: the compressed bytes and about 300 KB.
 class GzipText {
   public:
     GzipText();
@@ -29,7 +29,7 @@ class GzipText {
 
     void append(std::string_view text);
 
-    /// The whole file. Nothing can be appended afterwards: std::logic_error.
+    /// Returns the whole file. Later calls of append() or finish() throw std::logic_error.
     std::string finish();
 
   private:

@@ -14,34 +14,34 @@
 namespace raya {
 namespace {
 
-// A handler may neither allocate nor lock: names stand in a fixed table, an empty one is no file.
+// A signal handler may neither allocate nor lock, so the names are in a fixed table. An empty name means no file.
 struct Slot {
     std::atomic<bool> taken{false};
     std::array<char, PATH_MAX> name{};
 };
 std::array<Slot, 16> slots;
 static_assert(std::atomic<bool>::is_always_lock_free);
-std::atomic<bool> silent{false};
+std::atomic<bool> message_suppressed{false};
 
 using Handler = void (*)(int, siginfo_t*, void*);
-std::array<std::atomic<bool>, 32> kept;          // by signal
-std::array<std::atomic<Handler>, 32> displaced;  // what a library wanted instead of a kept handler
+std::array<std::atomic<bool>, 32> is_protected;  // by signal
+std::array<std::atomic<Handler>, 32> displaced;  // the handler that a library tried to install over a protected one
 static_assert(std::atomic<Handler>::is_always_lock_free);
 
-/// Runs in whatever thread the signal finds; calls nothing but what a handler may call.
+/// Runs in any thread; calls only async-signal-safe functions.
 extern "C" void remove_and_end(int signal, siginfo_t* info, void* context) {
     static std::atomic<bool> ending{false};
-    if (ending.exchange(true)) return;  // timeout(1), for one, sends a signal twice; the first must not be cut short
+    if (ending.exchange(true)) return;  // timeout(1), for example, sends its signal twice; the first call must finish
     remove_files_in_progress();
     static constexpr char kMessage[] = "\r\033[Kraya: interrupted\n";
-    constexpr std::size_t kClear = 4;  // wipes a progress bar off the line, on a terminal
+    constexpr std::size_t kClear = 4;  // length of "\r\033[K", which erases a progress bar from a terminal
     const std::size_t skipped = ::isatty(STDERR_FILENO) != 0 ? 0 : kClear;
-    pollfd out{STDERR_FILENO, POLLOUT, 0};  // a pipe may be full
-    if (!silent && ::poll(&out, 1, 0) == 1 && out.revents == POLLOUT)
-        if (::write(STDERR_FILENO, kMessage + skipped, sizeof kMessage - 1 - skipped) < 0) silent = true;
+    pollfd out{STDERR_FILENO, POLLOUT, 0};  // a full pipe would block write()
+    if (!message_suppressed && ::poll(&out, 1, 0) == 1 && out.revents == POLLOUT)
+        if (::write(STDERR_FILENO, kMessage + skipped, sizeof kMessage - 1 - skipped) < 0) message_suppressed = true;
     if (const Handler driver = displaced[static_cast<std::size_t>(signal)]) driver(signal, info, context);
     std::signal(signal, SIG_DFL);
-    ::raise(signal);  // so that the caller sees why the program ended
+    ::raise(signal);  // the parent sees the signal in the exit status
 }
 
 void handle(int signal) {
@@ -52,7 +52,7 @@ void handle(int signal) {
         action.sa_flags = SA_NODEFER | SA_SIGINFO;
         ::sigaction(signal, &action, nullptr);
     }
-    keep_handler(signal);
+    protect_handler(signal);
 }
 
 }  // namespace
@@ -62,23 +62,23 @@ void remove_files_in_progress() {
         if (slot.taken.load() && slot.name[0] != '\0') ::unlink(slot.name.data());
 }
 
-void end_cleanly_when_interrupted() {
+void install_interrupt_handlers() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) handle(signal);
 }
 
-void keep_handler(int signal, bool keep) { kept.at(static_cast<std::size_t>(signal)) = keep; }
+void protect_handler(int signal, bool on) { is_protected.at(static_cast<std::size_t>(signal)) = on; }
 
-void end_silently() { silent = true; }
+void suppress_interrupt_message() { message_suppressed = true; }
 
 FileInProgress::FileInProgress(const std::filesystem::path& path) {
-    // Where the handler runs the working folder is the same: raya never changes it.
+    // A relative path stays valid in the handler: raya never changes its working directory.
     if (path.native().size() >= PATH_MAX) return;
     for (Slot& slot : slots) {
         if (slot.taken.exchange(true)) continue;
-        name_ = slot.name.data();  // empty, as every free slot's
+        name_ = slot.name.data();  // empty in a free slot
         std::strcpy(name_ + 1, path.c_str() + 1);
         std::atomic_signal_fence(std::memory_order_release);
-        name_[0] = path.c_str()[0];  // last: a name is there whole or not at all
+        name_[0] = path.c_str()[0];  // written last: the handler sees the whole name or an empty one
         return;
     }
 }
@@ -93,16 +93,17 @@ FileInProgress::~FileInProgress() {
 
 }  // namespace raya
 
-// Replaces the C library's in the program and, as the program exports it, in all libraries. LLVM, in PoCL, installs
-// handlers for HUP, INT, TERM, QUIT and all crashes (lib/Support/Unix/Signals.inc), which remove its temporary files
-// and reinstall the handlers before. But after SIGQUIT they just return, and after any handler abort() calls no other.
+// Replaces the C library's sigaction() in the program and, because the program exports it, in all libraries. LLVM,
+// which PoCL uses, installs handlers for HUP, INT, TERM, QUIT and all crash signals (lib/Support/Unix/Signals.inc).
+// They remove LLVM's temporary files and reinstall the previous handlers. But after SIGQUIT they only return, and
+// abort() does not call a second handler.
 extern "C" __attribute__((visibility("default"))) int sigaction(int signal, const struct sigaction* action,
                                                                 struct sigaction* before) noexcept {
     using namespace raya;
     static auto* const next = reinterpret_cast<decltype(&::sigaction)>(::dlsym(RTLD_NEXT, "sigaction"));
     const auto index = static_cast<std::size_t>(signal);
-    if (action == nullptr || index >= kept.size() || !kept[index]) return next(signal, action, before);
-    // A handler that takes the number alone may be called with more: both share their place in the struct.
+    if (action == nullptr || index >= is_protected.size() || !is_protected[index]) return next(signal, action, before);
+    // sa_handler and sa_sigaction share storage. A handler with one parameter ignores the other two arguments.
     const bool handles = action->sa_handler != SIG_DFL && action->sa_handler != SIG_IGN;
     if (handles && action->sa_sigaction != remove_and_end) displaced[index] = action->sa_sigaction;
     return next(signal, nullptr, before);

@@ -1,25 +1,27 @@
-// Ctrl-C and its kin: the program ends at once, says so, and leaves no half-written file.
+// Interruption by a signal (Ctrl-C): the program ends at once, prints a message and leaves no half-written file.
 #pragma once
 #include <filesystem>
 
 namespace raya {
 
-/// Removes all files in progress. May be called by a handler of signals.
+/// Removes all files in progress. Async-signal-safe.
 void remove_files_in_progress();
 
-/// From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT remove files in progress, print "raya: interrupted" on stderr and
-/// end the process by that same signal, which a shell shows as exit code 130, 143, 129 or 131. Signals that are ignored
-/// (nohup) stay so. No library replaces the handlers; theirs are called before the process ends.
-void end_cleanly_when_interrupted();
+/// From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT remove the files in progress, print "raya: interrupted" on stderr
+/// and end the process by the same signal, which a shell reports as exit code 130, 143, 129 or 131. Ignored signals
+/// (nohup) stay ignored. Libraries cannot replace the handlers; a handler that a library tried to install is called
+/// before the process ends.
+void install_interrupt_handlers();
 
-/// Until `keep` is false no library replaces what the program has installed for that signal.
-void keep_handler(int signal, bool keep = true);
+/// Prevents libraries from replacing the installed handler of `signal`, or allows it again (`on` = false).
+void protect_handler(int signal, bool on = true);
 
-/// From now on an interruption prints nothing: another process reports it, or this one has reported why it ends.
-void end_silently();
+/// From now on an interruption prints nothing, because another process reports it or this one already reported why it
+/// ends.
+void suppress_interrupt_message();
 
-/// A file that must not outlive the process unless it is finished: known to the handler while this object lives. Does
-/// not remove the file itself. A process has few at a time; one beyond the 16th is left to itself.
+/// Registers an unfinished file, which the signal handler removes while this object exists. The destructor does not
+/// remove the file. A process has at most 16 of them at a time; further ones are not registered.
 class FileInProgress {
   public:
     explicit FileInProgress(const std::filesystem::path& path);

@@ -10,14 +10,14 @@ namespace raya {
 
 using Library = nlohmann::ordered_json;
 
-// From a text: fills the document with what the library reads, so that no second one is in memory. The text is a
-// stream's buffer because the library does not say where in it a value is.
+// SAX handler that builds a Json document while nlohmann's parser reads, so that only one document is in memory. The
+// text is the buffer of a stream because the library does not report the positions of values.
 class JsonText : public std::streambuf {
   public:
     JsonText(const std::string& text, Json& root) : root_(root) {
-        char* const begin = const_cast<char*>(text.data());  // a stream's buffer may be written; this one is not
+        char* const begin = const_cast<char*>(text.data());  // setg() takes a mutable buffer; nothing writes to it
         setg(begin, begin, begin + text.size());
-        // The library takes a zero byte for the end of the text.
+        // The library treats a zero byte as the end of the text.
         if (const auto zero = text.find('\0'); zero != text.npos) refuse_byte(zero + 1);
         std::istream stream(this);
         Library::sax_parse(stream, this);
@@ -48,7 +48,7 @@ class JsonText : public std::streambuf {
     static std::string path_of(const Json* json, std::uint32_t position);
 
   private:
-    static constexpr std::size_t kMostLevels = 100;  // readers recurse, and the stack is finite
+    static constexpr std::size_t kMaxDepth = 100;  // readers recurse: bounds their stack
 
     std::uint32_t position() const { return static_cast<std::uint32_t>(gptr() - eback()); }
     [[noreturn]] static void refuse_byte(std::size_t byte) {
@@ -64,8 +64,8 @@ class JsonText : public std::streambuf {
         return true;
     }
     bool open(Json value) {
-        if (open_.size() == kMostLevels)
-            throw JsonError(fmt::format("nested more than {} levels deep", kMostLevels), position());
+        if (open_.size() == kMaxDepth)
+            throw JsonError(fmt::format("nested more than {} levels deep", kMaxDepth), position());
         open_.push_back(&*std::get<Json::Box<Json::Tree>>(added(std::move(value)).value_));
         return true;
     }
@@ -105,7 +105,7 @@ Library JsonText::library_of(const Json& json) {
     return std::visit(each, json.value_);
 }
 
-// "rows[3].ms: " for the value at that position, empty where there is none. Positions ascend.
+// Returns "rows[3].ms: " for the value at that position, or an empty string. Positions ascend.
 std::string JsonText::path_of(const Json* json, std::uint32_t position) {
     std::string path;
     while (json->position_ != position) {
@@ -205,13 +205,13 @@ double Json::number() const {
     refuse(" is not a number");
 }
 
-std::uint64_t Json::whole(std::uint64_t most) const {
+std::uint64_t Json::whole(std::uint64_t max) const {
     const auto* const given = std::get_if<std::int64_t>(&value_);
     if (given != nullptr && *given < 0) refuse(" is negative");
     const auto* const whole = std::get_if<std::uint64_t>(&value_);
     if (given == nullptr && whole == nullptr) refuse(" is not a whole number");
     const std::uint64_t value = whole != nullptr ? *whole : static_cast<std::uint64_t>(*given);
-    if (value > most) refuse(fmt::format(" is more than {}", most));
+    if (value > max) refuse(fmt::format(" is more than {}", max));
     return value;
 }
 
@@ -240,8 +240,9 @@ Json Json::parse(const std::string& text, const JsonSource& from) {
     return json;
 }
 
-std::string json_text(const std::filesystem::path& file, const JsonSource& from, Pipes pipes, std::uint64_t most) try {
-    return read_file(file, pipes, most);
+std::string json_text(const std::filesystem::path& file, const JsonSource& from, Pipes pipes,
+                      std::uint64_t max_bytes) try {
+    return read_file(file, pipes, max_bytes);
 } catch (const UnreadableFile& error) {
     from.refuse(fmt::format("cannot be read: {}", error.what()));
 }

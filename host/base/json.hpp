@@ -1,7 +1,7 @@
-// A JSON document as a value: what reports, traces and studies write, and what baselines and checks are read from.
+// A JSON document as a value. Reports, traces and studies are written with it; baselines and checks are read with it.
 //
-// The text is made and read by nlohmann's library, which stays out of this header: to see its templates and to fill a
-// document by them costs a file two to three seconds of compilation, and fifty files do.
+// nlohmann's library writes and parses the text. This header does not include it: its templates would add two to three
+// seconds of compilation to each of fifty files.
 #pragma once
 #include <array>
 #include <concepts>
@@ -22,26 +22,25 @@
 
 namespace raya {
 
-/// A document that lacks a member, or has one of another kind than is asked for. read_json() adds file, line and
-/// member.
+/// A member is missing or has another type than requested. read_json() adds the file, the line and the member's path.
 struct JsonError : UserError {
     explicit JsonError(const std::string& reason, std::uint32_t at = 0) : UserError(reason), position(at) {}
-    std::uint32_t position;  // of the value in its text: bytes up to its first token's end; 0: not known
+    std::uint32_t position;  // of the value in the text: offset of the end of its first token, in bytes; 0: unknown
 };
 
 class Json;
 
-/// Where a document comes from, for messages; `remedy` may be empty.
+/// The source of a document, for messages; `remedy` may be empty.
 struct JsonSource {
     std::string name, remedy{};
 
-    /// UserError "NAME: reason; remedy: REMEDY".
+    /// Throws UserError "NAME: reason; remedy: REMEDY".
     [[noreturn]] void refuse(const std::string& reason) const;
-    /// The same with line and member, of a document that is parsed from `text`.
+    /// Throws the same with the line and the member's path; `json` was parsed from `text`.
     [[noreturn]] void refuse(const JsonError& error, const Json& json, const std::string& text) const;
 };
 
-/// Null, a truth value, a number, a text, a list or an object, whose members keep the order in which they were added.
+/// Null, a Boolean, a number, a string, an array or an object. Members keep the order in which they were added.
 class Json {
   public:
     struct Member;
@@ -72,39 +71,40 @@ class Json {
     bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
     bool is_text() const { return std::holds_alternative<Box<std::string>>(value_); }
 
-    /// The member of an object, added where it is missing; null becomes an object.
+    /// The member of an object, added if it is missing. A null value becomes an object first.
     Json& operator[](std::string_view key);
-    Json& operator[](int) = delete;  // 0 would be a null pointer to a name
-    /// Appends to a list; null becomes one.
+    Json& operator[](int) = delete;  // 0 would convert to a null pointer
+    /// Appends to an array. A null value becomes an array first.
     void push_back(Json element);
     Json& back();
 
-    /// The member of that name; null pointer where there is none, or no object.
+    /// The member of that name; a null pointer if it is missing or this is not an object.
     const Json* find(std::string_view key) const;
-    /// The same, JsonError where there is none.
+    /// The member of that name. JsonError if it is missing.
     const Json& at(std::string_view key) const;
 
-    /// What the value is; JsonError where it is something else, or for `whole` no whole number from 0 to `most`.
+    /// The value as the given type. JsonError if it has another type, or for whole() is not an integer in 0..`max`.
     const std::string& text() const;
     double number() const;
-    std::uint64_t whole(std::uint64_t most = UINT64_MAX) const;
+    std::uint64_t whole(std::uint64_t max = UINT64_MAX) const;
     const std::vector<Json>& elements() const;
-    /// The names of an object's members, in the order in which they were added; empty for anything else.
+    /// The names of an object's members in the order in which they were added; empty for other types.
     const std::vector<std::string>& keys() const;
     std::vector<std::string> texts() const;
 
-    /// As text, in one line or with so many blanks a level. What is not UTF-8, as a path or a driver's name may be, is
-    /// replaced by U+FFFD.
+    /// Serialises the value, in one line or with `indent` blanks per level. Bytes that are not UTF-8, as a path or a
+    /// driver's name may contain, become U+FFFD.
     std::string dump(int indent = -1) const;
 
-    /// Refuses what is not JSON, has a number beyond double precision, a member twice in an object, or over 100 levels.
+    /// Parses `text`. UserError for invalid JSON, a number outside double precision, a duplicate member in an object or
+    /// more than 100 levels of nesting.
     static Json parse(const std::string& text, const JsonSource& from);
 
   private:
     friend class JsonText;
     struct Tree;
 
-    // On the heap, so that a number takes 24 bytes: a document may be one list of millions.
+    // Strings and trees are on the heap, so that a number takes 24 bytes: a document may be an array of millions.
     template <class T>
     class Box {
       public:
@@ -120,7 +120,7 @@ class Json {
     };
 
     explicit Json(Tree tree);
-    Tree* tree(bool object) const;  // of a list or an object; a null pointer for anything else
+    Tree* tree(bool object) const;  // of an array or an object; a null pointer for other types
     [[noreturn]] void refuse(const std::string& reason) const;
 
     std::variant<std::monostate, bool, std::uint64_t, std::int64_t, double, Box<std::string>, Box<Tree>> value_;
@@ -138,8 +138,8 @@ struct Json::Member {
     Json value;
 };
 
-/// Gives the document to `read`, whose result it returns. Whatever is wrong with the text or, by JsonError or UserError
-/// of `read`, with what it says, is a UserError that names the source; the line and the member where they are known.
+/// Parses `text` and returns `read`(document). Parse errors and every JsonError or UserError of `read` become a
+/// UserError that names the source and, if known, the line and the member.
 template <class Read>
 auto read_json(const std::string& text, const JsonSource& from, Read&& read) {
     const Json json = Json::parse(text, from);
@@ -154,8 +154,8 @@ auto read_json(const std::string& text, const JsonSource& from, Read&& read) {
 
 inline constexpr std::uint64_t kLargestJson = 64'000'000;  // bytes of a file
 
-/// The text of a JSON file, for read_json(); UserError as there.
+/// Reads a JSON file into a string for read_json(). UserError if it cannot be read.
 std::string json_text(const std::filesystem::path& file, const JsonSource& from, Pipes pipes = Pipes::kRefused,
-                      std::uint64_t most = kLargestJson);
+                      std::uint64_t max_bytes = kLargestJson);
 
 }  // namespace raya

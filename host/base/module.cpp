@@ -17,7 +17,7 @@ namespace raya {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path own_file;  // empty: the program
+fs::path own_file;  // empty: /proc/self/exe
 
 std::string user_name(uid_t user) {
     const passwd* const entry = ::getpwuid(user);
@@ -42,12 +42,12 @@ std::string other_writers_of_one(const fs::path& path, const std::vector<uid_t>&
     }, root{};
     if (::lstat(path.c_str(), &is) != 0 || ::stat("/", &root) != 0)
         return fmt::format("'{}': {}", path.string(), std::generic_category().message(errno));
-    // In a user namespace root has another number; who owns the root folder owns everything.
+    // In a user namespace root may have another uid; the owner of "/" owns everything.
     const bool by_root = is.st_uid == 0 || is.st_uid == root.st_uid;
     if (!by_root && std::find(owners.begin(), owners.end(), is.st_uid) == owners.end())
         return fmt::format("'{}' belongs to user {}", path.string(), user_name(is.st_uid));
     if (sticky == Sticky::kAllowed && (is.st_mode & S_ISVTX) != 0) return {};
-    // With an access control list the group's bits stand for all that it names.
+    // With an access control list the group bits are the mask of all its entries.
     const bool listed = ::lgetxattr(path.c_str(), "system.posix_acl_access", nullptr, 0) > 0;
     const bool by_group = (is.st_mode & S_IWGRP) != 0 && (listed || has_other_members(is.st_gid, is.st_uid));
     if (!by_group && (is.st_mode & S_IWOTH) == 0) return {};
@@ -72,13 +72,13 @@ OwnFile own_file_now() {
     return {folder, is.st_uid};
 }
 
-/// Nobody else may change what lies at this path, so the loader gets the path, which debuggers and messages show.
+/// The path is safe to pass to the loader: no other user may change the file. Debuggers and messages show this path.
 fs::path checked_module(const std::string& name) {
     const fs::path file = module_folder() / name;
     std::error_code failure;
     if (!fs::is_regular_file(fs::symlink_status(file, failure)))
         throw ModuleError(fmt::format("there is no file '{}'", file.string()));
-    const std::string why = writers_besides_owner(file);
+    const std::string why = other_writers_reason(file);
     if (why.empty()) return file;
     throw UserError(
         fmt::format("refused to load '{}': {}; remedy: chmod go-w, or install raya as root", file.string(), why));
@@ -86,17 +86,17 @@ fs::path checked_module(const std::string& name) {
 
 std::string loader_error() {
     const char* text = ::dlerror();
-    return text != nullptr ? text : "the loader gives no reason";
+    return text != nullptr ? text : "dlerror() gives no reason";
 }
 
 [[noreturn]] void refuse_to_load(const std::string& name) {
     const std::string reason = loader_error(), limit = memory_limit();
     const auto reason_has = [&](const char* part) { return reason.find(part) != reason.npos; };
-    // The loader's words, which have no error code, are the same for a file system that is mounted with noexec.
+    // dlerror() gives no error code, and its text is the same for a file system that is mounted noexec.
     if (!limit.empty() && reason_has("failed to map segment"))
         throw UserError(fmt::format("out of memory while loading {}.so: {}; remedy: raise {}", name, reason, limit));
     if (reason_has("failed to map segment")) throw ModuleError(reason);
-    throw ModuleNeeds(reason);
+    throw MissingLibrary(reason);
 }
 
 }  // namespace
@@ -106,6 +106,7 @@ std::string memory_limit() {
     if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
     return fmt::format("the limit of {} MB on memory (ulimit -v)", limit.rlim_cur >> 20);
 }
+
 void set_own_file(const fs::path& file) { own_file = file; }
 
 fs::path module_folder() {
@@ -114,9 +115,9 @@ fs::path module_folder() {
     return fs::weakly_canonical(program.filename() == "bin" ? program.parent_path() / "lib/raya" : program, failure);
 }
 
-std::string writers_besides_owner(const fs::path& file) {
+std::string other_writers_reason(const fs::path& file) {
     const OwnFile own = own_file_now();
-    // Who may change the folders above the program may replace the program itself.
+    // Folders above the program are not checked: a user who may change them could replace the program itself.
     std::string why = other_writers(file.parent_path(), {::geteuid(), own.owner}, Sticky::kRefused, own.folder);
     if (why.empty()) why = other_writers_of_one(file, {::geteuid(), own.owner}, Sticky::kRefused);
     return why;
@@ -124,7 +125,7 @@ std::string writers_besides_owner(const fs::path& file) {
 
 void* module_function(const std::string& name, const char* symbol) {
     const fs::path file = checked_module(name + ".so");
-    // Lazily: a module's libraries have far more functions than are called.
+    // RTLD_LAZY: a module's libraries have far more functions than are called.
     void* const module = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (module == nullptr) refuse_to_load(name);
     void* const function = ::dlsym(module, symbol);

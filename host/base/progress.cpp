@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "host/base/clock.hpp"
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 
 namespace raya {
 
 std::string progress_line(const std::string& what, const std::optional<Done>& done, double seconds) {
     constexpr int kWidth = 40;
-    constexpr double kEnough = 0.001;  // of the work: from less nothing can be said of the rest
+    constexpr double kEnough = 0.001;  // share of the work below which no remaining time is estimated
     const double share = done ? done->share : 0;
     if (share < kEnough) return fmt::format("{} ... {:.0f} s", what, seconds);
     const int filled = static_cast<int>(share * kWidth);
@@ -33,15 +33,15 @@ std::jthread announce_compiling(const std::string& device, std::chrono::millisec
         const auto never = [] { return false; };
         ended.wait_for(lock, end, 1s, never);
         if (end.stop_requested()) return;
-        say(fmt::format("raya: compiling kernels for {} (first run only) ...\n", device));
+        print_log(fmt::format("raya: compiling kernels for {} (first run only) ...\n", device));
         if (ended.wait_for(lock, end, patience, never); !end.stop_requested())
-            say(fmt::format("raya: still compiling after {:.0f} s; what may help: fewer --lanes; with PoCL the variable "
-                            "POCL_WORK_GROUP_METHOD=loops; raya bench --build shows which kernel it is, "
-                            "docs/porting.md why\n",
-                            duration<double>(steady_clock::now() - began).count()));
+            print_log(fmt::format(
+                "raya: still compiling after {:.0f} s; remedy: fewer --lanes, or POCL_WORK_GROUP_METHOD=loops with "
+                "PoCL; raya bench --build shows which kernel is slow, docs/porting.md explains why\n",
+                duration<double>(steady_clock::now() - began).count()));
         ended.wait(lock, end, never);
-        say(fmt::format("raya: compiling kernels took {:.1f} s\n",
-                        duration<double>(steady_clock::now() - began).count()));
+        print_log(fmt::format("raya: compiling kernels took {:.1f} s\n",
+                              duration<double>(steady_clock::now() - began).count()));
     });
 }
 

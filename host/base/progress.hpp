@@ -1,4 +1,4 @@
-// How far a command has come, for a person at a terminal.
+// Progress of a command on a terminal.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -11,26 +11,27 @@
 
 namespace raya {
 
-/// Called now and then with the share of the work that is done, 0..1.
+/// Called from time to time with the completed share of the work, 0..1.
 using ProgressCallback = std::function<void(double)>;
 
-/// What of the work was done, and in how many seconds.
+/// The completed share of the work, 0..1, and the seconds that it took.
 struct Done {
     double share = 0, seconds = 0;
 };
 
-/// What is drawn of `what` that began `seconds` ago, of which something is done where that is known.
+/// The progress line of the stage `what`, which began `seconds` ago: with a bar and the remaining time if `done` is
+/// known.
 std::string progress_line(const std::string& what, const std::optional<Done>& done, double seconds);
 
-/// Says on stderr, unless --quiet is given, that kernels are compiled for the device once this has lasted longer than
-/// to load compiled ones takes, and at the end, when what is returned goes out of scope, for how long it lasted.
-/// `patience` later it says what may help.
+/// Prints on stderr, unless --quiet is given, that kernels are being compiled for the device, once this takes longer
+/// than loading cached kernels. `patience` later it prints remedies. When the returned thread goes out of scope, it
+/// prints the time that compilation took.
 [[nodiscard]] std::jthread announce_compiling(const std::string& device,
                                               std::chrono::milliseconds patience = std::chrono::seconds(59));
 
-/// Draws on stderr, only if that is a terminal: within a second, five times a second, whatever the command is about.
-/// What runs and for how long; where a share is known, a bar and the time that is left. Erased when it goes out of
-/// scope; who prints before that clears it (say.hpp).
+/// Draws the current stage and its elapsed time on stderr if that is a terminal; if the completed share is known, a bar
+/// and the remaining time. Starts after 0.7 s and draws five times a second. The destructor erases it; print_log()
+/// (log.hpp) clears it before printing.
 class ProgressBar {
   public:
     ProgressBar(bool wanted, const std::string& what);
@@ -38,20 +39,20 @@ class ProgressBar {
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
-    /// Whether there is anybody to show it to.
+    /// Returns true if the bar is drawn.
     bool active() const { return drawer_.joinable(); }
 
-    /// What runs from now on, of which no share is known yet.
+    /// Starts a stage, whose completed share is unknown.
     void stage(const std::string& what);
 
-    /// `done`: share of the stage, 0..1; less than before changes nothing.
+    /// Sets the completed share of the stage, 0..1. Smaller values than before are ignored.
     void update(double done);
 
   private:
     void draw_until_ended();
     double stage_seconds() const;
 
-    std::mutex mutex_;  // of all below
+    std::mutex mutex_;  // guards all members below
     std::condition_variable end_;
     bool ended_ = false;
     std::string what_;

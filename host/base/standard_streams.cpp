@@ -8,17 +8,17 @@
 #include <system_error>
 #include <utility>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 
 namespace raya {
 namespace {
 
-constexpr int kNone = -1;
-constexpr int kGiven = -2;  // to who writes the file
+constexpr int kNotReserved = -1;
+constexpr int kTaken = -2;  // by the writer of the file
 
-int kept_stdout = kNone;  // a duplicate, since stdout itself has become stderr
+int reserved_stdout = kNotReserved;  // a duplicate of stdout; descriptor 1 itself now refers to stderr
 
 }  // namespace
 
@@ -33,33 +33,33 @@ std::string output_name(const std::filesystem::path& path) {
 int take_stdin() {
     static bool taken = false;
     if (std::exchange(taken, true))
-        throw UnreadableFile("stdin can be read once, and was; give - once and name files for the rest");
-    if (::isatty(STDIN_FILENO) != 0) say("raya: reads stdin, a terminal; Ctrl-D on a line of its own ends it\n");
+        throw UnreadableFile("stdin can be read only once; give - once and name files for the others");
+    if (::isatty(STDIN_FILENO) != 0)
+        print_log("raya: reading stdin from the terminal; end with Ctrl-D on a line of its own\n");
     return STDIN_FILENO;
 }
 
-void keep_stdout_for_file() {
-    if (kept_stdout != kNone) return;
+void reserve_stdout() {
+    if (reserved_stdout != kNotReserved) return;
     std::fflush(stdout);
-    kept_stdout = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-    if (kept_stdout < 0 || TEMP_FAILURE_RETRY(::dup2(STDERR_FILENO, STDOUT_FILENO)) < 0)
-        throw UserError("cannot keep stdout for a file: " + std::generic_category().message(errno));
+    reserved_stdout = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    if (reserved_stdout < 0 || TEMP_FAILURE_RETRY(::dup2(STDERR_FILENO, STDOUT_FILENO)) < 0)
+        throw UserError("cannot reserve stdout for a file: " + std::generic_category().message(errno));
 }
 
-bool stdout_is_for_file() { return kept_stdout != kNone; }
+bool stdout_is_reserved() { return reserved_stdout != kNotReserved; }
 
 int take_stdout() {
-    keep_stdout_for_file();
-    const int given = std::exchange(kept_stdout, kGiven);
-    if (given == kGiven) throw UserError("only one file can go to stdout; name files for the others");
-    return given;
+    reserve_stdout();
+    const int descriptor = std::exchange(reserved_stdout, kTaken);
+    if (descriptor == kTaken) throw UserError("only one file can go to stdout; name files for the others");
+    return descriptor;
 }
 
 void refuse_bytes_on_terminal(const std::filesystem::path& path) {
-    if (!is_standard_stream(path) || ::isatty(stdout_is_for_file() ? kept_stdout : STDOUT_FILENO) == 0) return;
+    if (!is_standard_stream(path) || ::isatty(stdout_is_reserved() ? reserved_stdout : STDOUT_FILENO) == 0) return;
     throw UserError(
-        "-: stdout is a terminal, and what would be written there is no text; send it into a file or a program (raya "
-        "... | program)");
+        "-: stdout is a terminal and the output is binary; redirect it to a file or a program (raya ... | program)");
 }
 
 }  // namespace raya

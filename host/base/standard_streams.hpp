@@ -1,4 +1,4 @@
-// stdin and stdout wherever a file is asked for.
+// "-" as a file name: stdin or stdout.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -6,28 +6,28 @@
 
 namespace raya {
 
-/// Whether a name stands for stdin, where a file is read, or for stdout, where one is written: "-". A file of that name
-/// is "./-".
+/// Returns true for "-", which means stdin for an input file and stdout for an output file. A file of that name is
+/// "./-".
 bool is_standard_stream(const std::filesystem::path& path);
 
-/// How messages and reports name what is read or written: "stdin", "stdout", else the path.
+/// The name in messages and reports: "stdin" or "stdout" for "-", else the path.
 std::string input_name(const std::filesystem::path& path);
 std::string output_name(const std::filesystem::path& path);
 
-/// The descriptor to read stdin from, once. A terminal's user is told that it is waited for. UnreadableFile
-/// (whole_file.hpp) at the second call: what was read is gone.
+/// Returns the descriptor of stdin. Prints a hint if it is a terminal. A second call throws UnreadableFile
+/// (whole_file.hpp), because the input has been consumed.
 int take_stdin();
 
-/// Keeps stdout for a file: what this process prints, and those that it starts, goes to stderr from now on. Again: does
-/// nothing. Throws std::runtime_error where the system has no descriptor left.
-void keep_stdout_for_file();
-bool stdout_is_for_file();
+/// Reserves stdout for a file: from now on everything that this process and its children print to stdout goes to
+/// stderr. Further calls do nothing. UserError if the system has no descriptor left.
+void reserve_stdout();
+bool stdout_is_reserved();
 
-/// The descriptor of stdout, to be closed by who writes the file. UserError at the second call: two files would run
-/// into one another there.
+/// Returns the descriptor of the reserved stdout, which the caller closes. A second call throws UserError, because two
+/// files would be mixed.
 int take_stdout();
 
-/// UserError where "-" stands for a terminal, which binary bytes would garble.
+/// Throws UserError if `path` is "-" and stdout is a terminal, which binary output would garble.
 void refuse_bytes_on_terminal(const std::filesystem::path& path);
 
 }  // namespace raya

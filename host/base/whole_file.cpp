@@ -35,12 +35,13 @@ void check_kind(const struct stat& status, Pipes pipes) {
     if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) throw UnreadableFile("not a regular file");
 }
 
-// `expected` bytes may be wrong.
-std::string read_all(int descriptor, std::uint64_t expected, std::uint64_t most) {
+// `expected_bytes` is a hint: a file may grow or shrink.
+std::string read_all(int descriptor, std::uint64_t expected_bytes, std::uint64_t max_bytes) {
     constexpr std::size_t kBlock = 1 << 16;
-    std::string bytes(static_cast<std::size_t>(std::min(expected, most)) + 1, '\0');  // the last finds the end
+    // One byte more, to find the end.
+    std::string bytes(static_cast<std::size_t>(std::min(expected_bytes, max_bytes)) + 1, '\0');
     for (std::size_t end = 0;;) {
-        if (end > most) throw UnreadableFile(fmt::format("larger than {} bytes", most));
+        if (end > max_bytes) throw UnreadableFile(fmt::format("larger than {} bytes", max_bytes));
         if (end == bytes.size()) bytes.resize(end + std::max(end, kBlock));
         const ssize_t got = ::read(descriptor, bytes.data() + end, bytes.size() - end);
         if (got < 0 && errno != EINTR) refuse(errno);
@@ -51,7 +52,7 @@ std::string read_all(int descriptor, std::uint64_t expected, std::uint64_t most)
     }
 }
 
-constexpr mode_t kFileMode = 0666;  // what open() gives to any new file; the user's umask takes its share
+constexpr mode_t kFileMode = 0666;  // of a new file, before the user's umask
 
 [[noreturn]] void refuse(const fs::path& path, std::string_view reason, std::string_view remedy) {
     throw UserError(fmt::format("cannot write '{}': {}; {}", output_name(path), reason, remedy));
@@ -61,7 +62,7 @@ std::string_view remedy_for(int error) {
     switch (error) {
         case ENOSPC:
         case EDQUOT:
-            return "make room there or name a file on another disk";
+            return "free some space there or name a file on another disk";
         case EFBIG:
             return "raise the limit on the size of files (ulimit -f) or ask for a smaller file";
         case EACCES:
@@ -95,19 +96,19 @@ void check_folder(const fs::path& path, const fs::path& folder) {
                "change its permissions or name a file in another folder");
 }
 
-/// Where the bytes go once `path` has been found writable.
+/// The destination of a writable `path`.
 struct Target {
     fs::path file;        // symbolic links resolved
-    bool direct = false;  // a device, a pipe or stdout: written as it is
+    bool direct = false;  // a device, a pipe or stdout: written without a temporary file
 };
 
-/// `path`, or what it names as a link, and so on.
+/// Resolves `path` while it is a symbolic link.
 fs::path followed(const fs::path& path) {
-    constexpr int kMostLinks = 40;  // the kernel's own limit
+    constexpr int kMaxLinks = 40;  // Linux's own limit
     fs::path file = path;
     std::error_code error;
     for (int links = 0; fs::is_symlink(fs::symlink_status(file, error)); ++links) {
-        if (links == kMostLinks) refuse(path, ELOOP);
+        if (links == kMaxLinks) refuse(path, ELOOP);
         const fs::path named = fs::read_symlink(file, error);
         if (error) refuse(path, error.value());
         file = named.is_absolute() ? named : folder_of(file) / named;
@@ -135,7 +136,7 @@ Target checked_target(const fs::path& path) {
 
 using Next = std::function<std::string_view()>;
 
-/// Writes all pieces to the descriptor and closes it. Returns 0 or the errno of what failed.
+/// Writes all pieces to the descriptor and closes it. Returns 0 or the errno of the failed call.
 int write_and_close(int descriptor, const Next& next) {
     int error = 0;
     for (std::string_view bytes = next(); !bytes.empty() && error == 0;) {
@@ -146,16 +147,16 @@ int write_and_close(int descriptor, const Next& next) {
             error = errno;
         if (bytes.empty()) bytes = next();
     }
-    // Network file systems report a full disk only here. EINTR: Linux has closed it all the same.
+    // Network file systems report a full disk only here. On EINTR Linux has closed the descriptor anyway.
     if (::close(descriptor) != 0 && error == 0 && errno != EINTR) error = errno;
     return error;
 }
 
-/// A new file in the folder of `target`; unless it is renamed it goes with this object, or by an interruption. The name
-/// is short, so that it fits wherever the target's own name does.
+/// A new file in the folder of the target. Unless it is renamed, the destructor or an interruption removes it. Its name
+/// is short, so that it is valid wherever the target's own name is.
 struct TemporaryFile {
     fs::path path;
-    FileInProgress in_progress;  // before the file exists: an interruption may come at any time
+    FileInProgress in_progress;  // registered before the file exists: an interruption may come at any time
     int descriptor;
     bool renamed = false;
 
@@ -180,26 +181,26 @@ std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::
 
 void write_direct(const fs::path& path, const Next& next) {
     const int descriptor = is_standard_stream(path) ? take_stdout() : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor < 0 && errno == EINTR) return write_direct(path, next);  // of a pipe that waited for its reader
+    if (descriptor < 0 && errno == EINTR) return write_direct(path, next);  // a pipe was waiting for its reader
     if (descriptor < 0) refuse(path, errno);
     if (const int error = write_and_close(descriptor, next)) refuse(path, error);
 }
 
 }  // namespace
 
-std::string read_file(const std::filesystem::path& path, Pipes pipes, std::uint64_t most) {
-    if (is_standard_stream(path)) return read_all(take_stdin(), 0, most);
+std::string read_file(const std::filesystem::path& path, Pipes pipes, std::uint64_t max_bytes) {
+    if (is_standard_stream(path)) return read_all(take_stdin(), 0, max_bytes);
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) refuse(errno);
-    check_kind(status, pipes);  // before it is opened, which waits for a pipe's other end
+    check_kind(status, pipes);  // before open(), which would wait for the other end of a pipe
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
     if (file.number < 0) refuse(errno);
-    return read_all(file.number, static_cast<std::uint64_t>(status.st_size), most);
+    return read_all(file.number, static_cast<std::uint64_t>(status.st_size), max_bytes);
 }
 
 void check_writable(const fs::path& path) {
     checked_target(path);
-    if (is_standard_stream(path)) keep_stdout_for_file();
+    if (is_standard_stream(path)) reserve_stdout();
 }
 
 std::string file_identity(const fs::path& path) {

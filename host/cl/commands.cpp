@@ -12,19 +12,19 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/base/log.hpp"
 #include "host/base/progress.hpp"
-#include "host/base/say.hpp"
 #include "host/cl/error_names.hpp"
 
 namespace raya {
 namespace {
 
-// Events hold driver memory until their times are read, so a long run stops for a moment every so many commands.
+// Events hold driver memory until their times are read, so a session waits for the device after this many commands.
 constexpr std::size_t kMaxPending = 4096;
 
 HostMemory::Kind memory_kind(bool pinned) { return pinned ? HostMemory::Kind::kPinned : HostMemory::Kind::kPlain; }
 
-/// What all sessions of a device share. Never taken down: drivers outlive no static object.
+/// State shared by all sessions of a device. Never destroyed: the driver may be unloaded before static objects are.
 struct SharedContext {
     cl::Context context;
     std::mutex building;
@@ -55,30 +55,30 @@ Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
         context_ = shared_context(device_).context;
         queue_ =
             std::make_unique<cl::CommandQueue>(context_, device_, profile_.timed() ? CL_QUEUE_PROFILING_ENABLE : 0);
-        pinned_ = transfers == Transfers::kStaged || (transfers == Transfers::kOfDevice && info_.own_memory);
+        pinned_ = transfers == Transfers::kStaged || (transfers == Transfers::kAutomatic && info_.own_memory);
         staging_ =
             std::make_unique<Staging>(context_, *queue_, memory_kind(pinned_), pinned_ ? kPinnedHalf : kPlainHalf);
     });
 }
 
 Session::~Session() {
-    if (!queue_) return;  // it has moved
-    // Whatever ends the program next must not find the device at work: PoCL's threads, which may still be compiling a
-    // kernel, end in SIGSEGV when its library is taken down under them. By the call that does not throw.
+    if (!queue_) return;  // moved from
+    // The device must be idle when the program ends: PoCL's threads, which may still be compiling a kernel, crash with
+    // SIGSEGV if its library is unloaded under them. clFinish() does not throw.
     clFinish((*queue_)());
     if (!profile_.timed() || verbosity() < kDetailed || std::uncaught_exceptions() > 0) return;
     try {
         for (const LabelSummary& label : profile().summary())
-            tell(kDetailed, fmt::format("on the device: {} ({}) x {}: {:.3f} ms", label.label, label.kind,
-                                        label.launches, 1e-6 * static_cast<double>(label.total_ns)));
-    } catch (const std::exception&) {  // the render's own end has said what matters
+            log_message(kDetailed, fmt::format("on the device: {} ({}) x {}: {:.3f} ms", label.label, label.kind,
+                                               label.launches, 1e-6 * static_cast<double>(label.total_ns)));
+    } catch (const std::exception&) {  // already reported by the render
     }
 }
 
 Program Session::build(const std::string& name, const std::string& source,
                        const std::vector<std::string>& options) const {
     std::vector<std::string> all = options;
-    if (noted_arguments_ > 0) all.emplace_back("-cl-kernel-arg-info");  // names of arguments; the code stays the same
+    if (recorded_launches_ > 0) all.emplace_back("-cl-kernel-arg-info");  // keeps the names of arguments
     if (const std::string more = user_build_options(); !more.empty()) all.push_back(more);
     SharedContext& shared = shared_context(device_);
     const std::scoped_lock lock(shared.building);
@@ -89,23 +89,23 @@ Program Session::build(const std::string& name, const std::string& source,
     Program program(context_, device_, name, source, all);
     if (logs_builds_) log_kernel_build("build", name, program.options(), start);
     if (builds_ != nullptr) builds_->push_back({program.handle(), name, program.options(), seconds_since(start)});
-    tell(kDetailed, fmt::format("build {}: options {}", name, program.options()));
-    tell(kDetailed, program.log());
+    log_message(kDetailed, fmt::format("build {}: options {}", name, program.options()));
+    log_message(kDetailed, program.log());
     return shared.programs.emplace(std::pair(all, source), program).first->second;
 }
 
-void Session::keep_binaries() const {
-    for (const auto& [what, program] : shared_context(device_).programs) program.keep_binary();
+void Session::save_binaries() const {
+    for (const auto& [what, program] : shared_context(device_).programs) program.save_binary();
 }
 
 std::jthread Session::compiling() const { return announces_ ? raya::announce_compiling(info_.name) : std::jthread(); }
 
 cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const {
-    if (count == 0) throw std::invalid_argument(fmt::format("buffer '{}': OpenCL has no buffers of no elements", name));
+    if (count == 0) throw std::invalid_argument(fmt::format("buffer '{}': OpenCL has no empty buffers", name));
     if (count > info_.max_allocation_bytes / element_bytes) {
         throw DeviceError(fmt::format(
-            "buffer '{}' needs {} elements of {} bytes = {:.0f} bytes; {} allows {} bytes for one "
-            "buffer; remedy: fewer pixels, a smaller scene, or another device",
+            "buffer '{}' needs {} elements of {} bytes = {:.0f} bytes; {} allows {} bytes for one buffer; remedy: "
+            "fewer pixels, a smaller scene, or another device",
             name, count, element_bytes, double(count) * double(element_bytes), info_.name, info_.max_allocation_bytes));
     }
     bytes_taken_ += count * element_bytes;
@@ -116,8 +116,8 @@ cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::si
 void Session::check_range(const std::string& label, const std::string& buffer, std::size_t size, std::size_t offset,
                           std::size_t count) {
     if (offset > size || count > size - offset) {
-        throw std::out_of_range(fmt::format("'{}': {} elements from element {} on do not lie in buffer '{}' of {}",
-                                            label, count, offset, buffer, size));
+        throw std::out_of_range(fmt::format("'{}': {} elements from element {} on exceed buffer '{}' of {}", label,
+                                            count, offset, buffer, size));
     }
 }
 
@@ -125,8 +125,8 @@ void Session::check_blocks(const std::string& label, const std::string& buffer, 
                            std::size_t count, std::size_t blocks) {
     check_range(label, buffer, at.pitch, at.offset, count);
     if (at.first > size || (at.pitch > 0 && blocks > (size - at.first) / at.pitch)) {
-        throw std::out_of_range(fmt::format("'{}': {} blocks of {} elements from {} on do not lie in buffer '{}' of {}",
-                                            label, blocks, at.pitch, at.first, buffer, size));
+        throw std::out_of_range(fmt::format("'{}': {} blocks of {} elements from {} on exceed buffer '{}' of {}", label,
+                                            blocks, at.pitch, at.first, buffer, size));
     }
 }
 
@@ -142,32 +142,32 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
     const std::size_t groups = record.groups, group_size = record.group_size;
     const std::string what = fmt::format("'{}': launching kernel '{}' ({} groups of {} work-items)", record.label,
                                          record.object, groups, group_size);
-    if (groups == 0 || group_size == 0) throw std::invalid_argument(what + ": there is nothing to run");
+    if (groups == 0 || group_size == 0) throw std::invalid_argument(what + ": no work-items");
     if (local_bytes > info_.local_memory_bytes) {
         throw DeviceError(
-            fmt::format("{}: needs {} bytes of local memory, {} has {} for a work-group; remedy: keep "
-                        "these words in global memory, or choose another device",
+            fmt::format("{}: needs {} bytes of local memory, {} has {} per work-group; remedy: keep these words in "
+                        "global memory, or choose another device",
                         what, local_bytes, info_.name, info_.local_memory_bytes));
     }
-    const std::size_t most = guarded(what, [&] { return kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_); });
-    if (group_size > most) {
+    const std::size_t max_size =
+        guarded(what, [&] { return kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_); });
+    if (group_size > max_size) {
         throw DeviceError(
             fmt::format("{}: {} allows groups of 1..{} for this kernel; remedy: --group {}, or fewer lanes (--lanes)",
-                        what, info_.name, most, most));
+                        what, info_.name, max_size, max_size));
     }
-    const bool noted = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
-    const std::string name = noted ? fmt::format("{}, groups of {}", record.object, group_size) : "";
-    if (noted) finish();
+    const bool timed = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
+    const std::string name = timed ? fmt::format("{}, groups of {}", record.object, group_size) : "";
+    if (timed) finish();
     const Clock::time_point start = Clock::now();
     submit(what, std::move(record), [&](cl::Event* event) {
         queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                      nullptr, event);
     });
-    if (!noted) return;
+    if (!timed) return;
     finish();
     const cl::Program program = kernel.getInfo<CL_KERNEL_PROGRAM>();
-    if (logs_builds_)
-        log_kernel_build("launch", name, program.getBuildInfo<CL_PROGRAM_BUILD_OPTIONS>(device_), start);
+    if (logs_builds_) log_kernel_build("launch", name, program.getBuildInfo<CL_PROGRAM_BUILD_OPTIONS>(device_), start);
     if (builds_ == nullptr) return;
     for (KernelBuild& build : *builds_)
         if (build.program() == program()) build.launch_s += seconds_since(start);
@@ -208,7 +208,7 @@ void Session::write_staged(const std::string& label, const cl::Buffer& to, const
 
 void Session::read_staged(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                           std::size_t bytes, std::byte* to) {
-    std::optional<Staging::Place> before;  // that the part from `taken` on is being read into
+    std::optional<Staging::Place> before;  // the place into which the part from `taken` on is being read
     std::size_t taken = 0;
     const std::string what = fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name);
     const auto take = [&](std::size_t part) {
@@ -231,11 +231,11 @@ void Session::read_staged(const std::string& label, const cl::Buffer& from, cons
 }
 
 std::unique_ptr<HostMemory> Session::host_memory(const std::string& name, std::size_t bytes) const {
-    return guarded(fmt::format("taking {} bytes of the host's memory for '{}'", bytes, name),
+    return guarded(fmt::format("allocating {} bytes of host memory for '{}'", bytes, name),
                    [&] { return std::make_unique<HostMemory>(context_, *queue_, memory_kind(pinned_), bytes); });
 }
 
-void Session::read_later(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
+void Session::read_async(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                          std::size_t bytes, HostMemory& to, std::size_t to_offset) {
     if (bytes == 0) return;
     submit(fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name),
@@ -246,7 +246,7 @@ void Session::read_later(const std::string& label, const cl::Buffer& from, const
 }
 
 void Session::wait_for(const std::string& label, HostMemory& memory) {
-    guarded(fmt::format("'{}': waiting for what is read", label), [&] { memory.wait(); });
+    guarded(fmt::format("'{}': waiting for a read", label), [&] { memory.wait(); });
 }
 
 void Session::copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes) {
@@ -297,11 +297,11 @@ CommandRecord Session::finished(const Pending& pending) const {
 }
 
 void Session::flush() {
-    guarded("handing commands to the device", [this] { queue_->flush(); });
+    guarded("flushing the command queue", [this] { queue_->flush(); });
 }
 
 void Session::finish() {
-    const std::vector<Pending> done = std::exchange(pending_, {});  // also gone if one of them has failed
+    const std::vector<Pending> done = std::exchange(pending_, {});  // cleared even if one of them failed
     guarded("waiting for the device", [this] { queue_->finish(); });
     for (const Pending& command : done) profile_.add(finished(command));
 }

@@ -1,4 +1,4 @@
-// A session on one device: every buffer, program and command is made here; every command has a label and is profiled.
+// A session on one device creates all its buffers, programs and commands. Every command has a label and is profiled.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -20,42 +20,43 @@
 
 namespace raya {
 
-/// Whether the device is asked to measure its commands (a device that cannot is not asked).
+/// Profiling of commands by the device. Ignored on a device that does not support it.
 enum class Timing { kOn, kOff };
 
-/// Whether all transfers go through pinned memory (host/cl/memory.hpp), or small writes alone, through plain memory;
-/// of the device: the former where its memory is its own.
-enum class Transfers { kOfDevice, kDirect, kStaged };
+/// kStaged: all transfers go through pinned memory (host/cl/memory.hpp). kDirect: only small writes are staged, through
+/// plain memory. kAutomatic: kStaged on a device with memory of its own, else kDirect.
+enum class Transfers { kAutomatic, kDirect, kStaged };
 
-/// A context and an in-order queue: commands run one after another, in the order in which they were given.
+/// A context and an in-order queue: commands run one after another, in the order in which they were enqueued.
 ///
-/// All offsets and counts are elements. A range beyond a buffer's end throws std::out_of_range, an empty launch or
-/// buffer std::invalid_argument: both are mistakes in the host program. What the driver refuses throws DeviceError with
-/// call, label, buffers or kernel, error name and remedy. A transfer of no elements does nothing and leaves no record.
+/// All offsets and counts are in elements. A range beyond a buffer's end throws std::out_of_range, an empty launch or
+/// buffer std::invalid_argument: both are errors in the host program. An error of the driver throws DeviceError with
+/// call, label, buffers or kernel, error name and remedy. A transfer of no elements does nothing and is not recorded.
 class Session {
   public:
-    explicit Session(const cl::Device& device, Timing timing = Timing::kOn, Transfers transfers = Transfers::kOfDevice);
-    Session(Session&&) = default;  // not copied: a copy would report the same commands twice
-    /// Waits for all commands, those that an exception has overtaken too; tells their times to who wants to know
-    /// (host/base/say.hpp).
+    explicit Session(const cl::Device& device, Timing timing = Timing::kOn,
+                     Transfers transfers = Transfers::kAutomatic);
+    Session(Session&&) = default;  // not copyable: a copy would report the same commands twice
+    /// Waits for all commands, also during stack unwinding. Logs their times at kDetailed (host/base/log.hpp).
     ~Session();
 
     const DeviceInfo& device() const { return info_; }
 
-    /// Of all buffers that were made so far, those that are gone among them.
+    /// Total bytes of all buffers allocated so far, freed ones included.
     std::uint64_t bytes_taken() const { return bytes_taken_; }
 
-    /// `count` > 0 elements; `name` is for messages. DeviceError if larger than the device allows for one buffer.
+    /// Allocates `count` > 0 elements; `name` is for messages. DeviceError if the device does not allow such a size.
     template <class T>
     Buffer<T> buffer(const std::string& name, std::size_t count) const {
         return Buffer<T>(allocate(name, count, sizeof(T)), name, count);
     }
 
-    /// See Program. A device's sessions share what they have built: the same source with the same options is built once
-    /// in a process.
+    /// Builds a program, see Program. All sessions of a device share their programs: the same source with the same
+    /// options is built once per process.
     Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
 
-    /// The most work of a launch labelled so, in its kernel's units: no limit until the device has cut loops.
+    /// The maximum work of a launch with this label, in its kernel's units. UINT32_MAX until the device truncates
+    /// loops.
     std::uint32_t& launch_limit(const std::string& label) {
         return launch_limits_.try_emplace(label, UINT32_MAX).first->second;
     }
@@ -66,8 +67,8 @@ class Session {
                 std::type_identity_t<Params>... args) {
         kernel.set_arguments(args...);
         const std::size_t local_bytes = (local_bytes_of(args) + ... + 0);
-        const bool texts = noted_arguments_ > 0;
-        noted_arguments_ -= texts;
+        const bool texts = recorded_launches_ > 0;
+        recorded_launches_ -= texts;
         launch_kernel({.label = label,
                        .kind = "kernel",
                        .object = kernel.name(),
@@ -77,8 +78,8 @@ class Session {
                       kernel.handle(), local_bytes);
     }
 
-    /// Host to device: `from` into `to` from element `offset` on. `from` may change afterwards: either this waits, or
-    /// its bytes are on their way from memory of the session's.
+    /// Host to device: writes `from` into `to` from element `offset` on. The caller may change `from` afterwards: the
+    /// call either waits or copies the bytes into staging memory.
     template <class T>
     void write(const std::string& label, Buffer<T>& to, std::span<const std::type_identity_t<T>> from,
                std::size_t offset = 0) {
@@ -86,7 +87,7 @@ class Session {
         write_bytes(label, to.memory(), to.name(), offset * sizeof(T), from.size_bytes(), from.data());
     }
 
-    /// Device to host: `from` from element `offset` on, as many as `to` holds. Waits.
+    /// Device to host: reads `to.size()` elements of `from` from element `offset` on. Waits.
     template <class T>
     void read(const std::string& label, const Buffer<T>& from, std::span<std::type_identity_t<T>> to,
               std::size_t offset = 0) {
@@ -94,30 +95,30 @@ class Session {
         read_bytes(label, from.memory(), from.name(), offset * sizeof(T), to.size_bytes(), to.data());
     }
 
-    /// Memory for `count` > 0 elements that are read while the host goes on. DeviceError where there is none.
+    /// Allocates host memory for asynchronous reads of `count` > 0 elements. DeviceError if that fails.
     template <class T>
-    Landing<T> landing(const std::string& name, std::size_t count) const {
+    Readback<T> readback(const std::string& name, std::size_t count) const {
         return {host_memory(name, count * sizeof(T)), count};
     }
 
-    /// Device to host: `count` elements of `from` from element `offset` on, into `to` from element `to_offset` on. Does
-    /// not wait; they are there after wait(), and later reads into `to` come after this one.
+    /// Device to host: reads `count` elements of `from` from element `offset` on into `to` from element `to_offset` on.
+    /// Does not wait; the elements are valid after wait(). Later reads into `to` complete after this one.
     template <class T>
-    void read(const std::string& label, const Buffer<T>& from, std::size_t offset, Landing<T>& to,
+    void read(const std::string& label, const Buffer<T>& from, std::size_t offset, Readback<T>& to,
               std::size_t to_offset, std::size_t count) {
         check_range(label, from.name(), from.size(), offset, count);
-        check_range(label, "landing of " + from.name(), to.size(), to_offset, count);
-        read_later(label, from.memory(), from.name(), offset * sizeof(T), count * sizeof(T), to.memory(),
+        check_range(label, "readback of " + from.name(), to.size(), to_offset, count);
+        read_async(label, from.memory(), from.name(), offset * sizeof(T), count * sizeof(T), to.memory(),
                    to_offset * sizeof(T));
     }
 
-    /// Waits for what is to land there. DeviceError with the label where that has failed.
+    /// Waits for all reads into `readback`. DeviceError with the label if one failed.
     template <class T>
-    void wait(const std::string& label, Landing<T>& landing) {
-        wait_for(label, landing.memory());
+    void wait(const std::string& label, Readback<T>& readback) {
+        wait_for(label, readback.memory());
     }
 
-    /// Device to device: `count` elements; within one buffer the two ranges must not overlap. Does not wait.
+    /// Device to device: copies `count` elements. Within one buffer the two ranges must not overlap. Does not wait.
     template <class T>
     void copy(const std::string& label, const Buffer<T>& from, std::size_t from_offset, Buffer<T>& to,
               std::size_t to_offset, std::size_t count) {
@@ -127,13 +128,13 @@ class Session {
                    {to.memory(), to.name(), to_offset * sizeof(T)}, count * sizeof(T));
     }
 
-    /// Where the blocks of a buffer lie: the first at element `first`, `pitch` elements from one to the next; a range
-    /// starts at element `offset` of each.
+    /// Equidistant blocks of a buffer: the first starts at element `first`, the next ones every `pitch` elements. A
+    /// copied range starts at element `offset` of each block.
     struct Blocks {
         std::size_t offset = 0, pitch = 0, first = 0;
     };
 
-    /// Device to device, between different buffers: `count` elements of each of `blocks` blocks. Does not wait.
+    /// Device to device, between different buffers: copies `count` elements of each of `blocks` blocks. Does not wait.
     template <class T>
     void copy_blocks(const std::string& label, const Buffer<T>& from, Blocks from_at, Buffer<T>& to, Blocks to_at,
                      std::size_t count, std::size_t blocks) {
@@ -152,30 +153,30 @@ class Session {
         fill_bytes(label, to.memory(), to.name(), to.bytes(), &value, sizeof(T));
     }
 
-    /// For traces: from now on `steps`, which outlives the session, is told of step()s and builds, and the profile
-    /// keeps the arguments of the next `launches` launches, with their names in programs built from now on.
+    /// For traces: from now on `steps`, which must outlive the session, records step()s and builds, and the profile
+    /// records the arguments of the next `launches` launches, with their names in programs built from now on.
     void observe(StepLog& steps, std::size_t launches) {
         steps_ = &steps;
-        noted_arguments_ = launches;
+        recorded_launches_ = launches;
     }
 
-    /// From now on compiling() says what it does.
+    /// From now on compiling() prints messages.
     void announce_compiling() { announces_ = true; }
 
-    /// From now on `builds` gets an entry for each program that is built, with its kernels' first launches;
-    /// null: no longer.
-    void note_builds(std::vector<KernelBuild>* builds) { builds_ = builds; }
+    /// From now on each program that is built adds an entry to `builds`, with the first launches of its kernels. A null
+    /// pointer ends the recording.
+    void record_builds(std::vector<KernelBuild>* builds) { builds_ = builds; }
 
-    /// Keeps the binaries of all programs that were built for the device, see Program::keep_binary().
-    void keep_binaries() const;
+    /// Saves the binaries of all programs that were built for the device, see Program::save_binary().
+    void save_binaries() const;
 
-    /// To be kept while kernels are compiled and first launched, see announce_compiling() of host/base/progress.hpp.
+    /// Keep the returned thread while kernels are compiled and first launched: announce_compiling(), base/progress.hpp.
     [[nodiscard]] std::jthread compiling() const;
 
-    /// A step of the host, from now to the end of the scope that it is kept in; for the log of observe(), else nothing.
+    /// Starts a step of the host, which ends with the scope of the returned object. Recorded in the log of observe().
     [[nodiscard]] StepLog::Step step(const std::string& name) const { return StepLog::Step(steps_, name); }
 
-    /// Has the device begin with all commands so far, which a driver may put off. Does not wait.
+    /// Submits all commands to the device, which a driver may otherwise defer. Does not wait.
     void flush();
 
     /// Waits for all commands. DeviceError names the label of a command that failed on the device.
@@ -184,7 +185,7 @@ class Session {
     /// All commands so far; waits for them.
     const Profile& profile();
 
-    /// Forgets all commands so far, after they have finished: what follows is a measurement of its own.
+    /// Waits for all commands and clears the profile, to start a new measurement.
     void clear_profile();
 
   private:
@@ -193,7 +194,7 @@ class Session {
         const std::string& name;
         std::size_t offset;  // bytes
     };
-    struct Pending {  // a command whose times are not known yet
+    struct Pending {  // a command whose times have not been read yet
         CommandRecord record;
         cl::Event event;
     };
@@ -209,7 +210,7 @@ class Session {
                      std::size_t bytes, const void* from);
     void read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                     std::size_t bytes, void* to);
-    void read_later(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
+    void read_async(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                     std::size_t bytes, HostMemory& to, std::size_t to_offset);
     static void wait_for(const std::string& label, HostMemory& memory);
     void write_staged(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
@@ -217,13 +218,13 @@ class Session {
     void read_staged(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                      std::size_t bytes, std::byte* to);
     void copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes);
-    /// `rows` of so many bytes; pitches in bytes too.
+    /// Copies `rows` rows of `bytes` bytes. Pitches are in bytes too.
     void copy_rows(const std::string& label, const Place& from, std::size_t from_pitch, const Place& to,
                    std::size_t to_pitch, std::size_t bytes, std::size_t rows);
     void fill_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t bytes,
                     const void* value, std::size_t value_bytes);
 
-    /// Puts one command into the queue by `enqueue(cl::Event*)` and notes it; `what` is for the message of a failure.
+    /// Enqueues one command by `enqueue(cl::Event*)` and records it; `what` is for error messages.
     template <class Enqueue>
     void submit(const std::string& what, CommandRecord record, Enqueue&& enqueue);
     CommandRecord finished(const Pending& pending) const;
@@ -232,18 +233,18 @@ class Session {
     DeviceInfo info_;
     mutable std::uint64_t bytes_taken_ = 0;
     cl::Context context_;
-    std::unique_ptr<cl::CommandQueue> queue_;  // at an address that stays, when a session moves
-    bool pinned_ = false;                      // all transfers go through pinned memory; else small writes, plain
+    std::unique_ptr<cl::CommandQueue> queue_;  // its address is stable when the session moves
+    bool pinned_ = false;                      // all transfers are staged in pinned memory; else only small writes
     std::unique_ptr<Staging> staging_;
     std::vector<Pending> pending_;
     Profile profile_;
     std::map<std::string, std::uint32_t> launch_limits_;
     bool logs_builds_ = logs_kernel_builds();
     std::vector<KernelBuild>* builds_ = nullptr;
-    std::set<std::pair<cl_kernel, std::size_t>> launched_;  // with which group size, where builds are noted
+    std::set<std::pair<cl_kernel, std::size_t>> launched_;  // kernel and group size, if builds are recorded or logged
     bool announces_ = false;
     StepLog* steps_ = nullptr;
-    std::size_t noted_arguments_ = 0;  // launches whose arguments are still to be kept
+    std::size_t recorded_launches_ = 0;  // number of further launches whose arguments are recorded
 };
 
 }  // namespace raya

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <optional>
 
+#include "host/base/log.hpp"
 #include "host/base/module.hpp"
-#include "host/base/say.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
 
@@ -27,9 +27,10 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-/// Mesa's llvmpipe ends a work-item's loops after so many turns of all of them (tests/portability/nested_loops.cl). No
-/// query tells; what else does so is found by kernels' canaries (kernels/shared/loop_canary.clh).
-std::uint32_t loop_turns_of(const std::string& device_name) {
+/// Mesa's llvmpipe ends all loops of a work-item after this many iterations in total
+/// (tests/portability/nested_loops.cl). No query reports it; on other devices the kernels' canaries detect it
+/// (kernels/shared/loop_canary.clh).
+std::uint32_t loop_iterations_of(const std::string& device_name) {
     constexpr std::uint32_t kLlvmpipe = 65535;
     return device_name.find("llvmpipe") != std::string::npos ? kLlvmpipe : 0;
 }
@@ -47,7 +48,7 @@ std::string list_of(const std::vector<DeviceInfo>& devices) {
     return list;
 }
 
-/// The number that `text` consists of, if it is one.
+/// Parses `text` as a decimal number.
 std::optional<std::size_t> as_index(const std::string& text) {
     std::size_t value = 0;
     const char* end = text.data() + text.size();
@@ -55,7 +56,7 @@ std::optional<std::size_t> as_index(const std::string& text) {
     return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 
-/// Those of one type that can be used, in order.
+/// The indices of the usable devices of a type, in order.
 std::vector<std::size_t> usable_of(const std::string& type, const std::vector<DeviceInfo>& devices) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < devices.size(); ++i)
@@ -68,10 +69,10 @@ std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t tu
         const std::vector<std::size_t> found = usable_of(type, devices);
         if (!found.empty()) return found[turn % found.size()];
     }
-    throw DeviceError("no OpenCL device is available with a compiler; see clinfo; there are:" + list_of(devices));
+    throw DeviceError("no available OpenCL device has a compiler; see clinfo; devices:" + list_of(devices));
 }
 
-/// Entry `turn` of a list with commas, which starts anew at its end.
+/// Entry `turn` modulo the length of a comma-separated list.
 std::string entry_of(const std::string& list, std::size_t turn) {
     const auto entries = static_cast<std::size_t>(1 + std::count(list.begin(), list.end(), ','));
     std::size_t begin = 0;
@@ -79,8 +80,8 @@ std::string entry_of(const std::string& list, std::size_t turn) {
     return list.substr(begin, list.find(',', begin) - begin);
 }
 
-/// The device of that number, the first usable one of that type, or the first with that text in platform, name,
-/// version or driver; the end where there is none.
+/// The index of the device with that number, of the first usable one of that type, or of the first with that text in
+/// its platform, name, version or driver; devices.size() if there is none.
 std::size_t named_index(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
     const std::optional<std::size_t> number = as_index(wanted);
     if (number && *number < devices.size()) return *number;
@@ -95,7 +96,7 @@ std::size_t named_index(const std::string& wanted, const std::vector<DeviceInfo>
 }
 
 std::vector<cl::Platform> all_platforms() {
-    provide_driver_cache();
+    set_driver_cache_folder();
     const DriverCall call("looking for platforms");
     std::vector<cl::Platform> platforms;
     try {
@@ -131,7 +132,7 @@ std::vector<cl::Device> all_devices() {
 }
 
 DeviceInfo device_info(const cl::Device& device) {
-    return guarded("asking a device for its properties", [&device] {
+    return guarded("querying the properties of a device", [&device] {
         const cl_device_fp_config floats = device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>();
         DeviceInfo info;
         info.name = device.getInfo<CL_DEVICE_NAME>();
@@ -146,7 +147,7 @@ DeviceInfo device_info(const cl::Device& device) {
         info.own_memory = info.type != "cpu" && device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_FALSE;
         info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
         info.max_group_size = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
-        info.loop_turns = loop_turns_of(info.name);
+        info.max_loop_iterations = loop_iterations_of(info.name);
         info.native_float_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
         info.preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>();
         info.correctly_rounded_divide_sqrt = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
@@ -165,9 +166,9 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
     if (devices.empty()) {
         const std::string limit = memory_limit();
         throw DeviceError(fmt::format(
-            "no OpenCL device found; remedy: {}install a driver (Debian: apt install pocl-opencl-icd), look at the "
-            "environment variable OCL_ICD_VENDORS, which may hide it, and at what clinfo lists",
-            limit.empty() ? "" : fmt::format("raise {}, in which a driver may not fit, ", limit)));
+            "no OpenCL device found; remedy: {}install a driver (Debian: apt install pocl-opencl-icd), check the "
+            "environment variable OCL_ICD_VENDORS, which may hide it, and the output of clinfo",
+            limit.empty() ? "" : fmt::format("raise {}, which may be too low for a driver, ", limit)));
     }
     const std::string one = entry_of(wanted, turn);
     if (one.empty()) return default_index(devices, turn);
@@ -188,14 +189,14 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
 cl::Device choose_device(const std::string& name_part, std::size_t turn) {
     const std::vector<cl::Device> devices = all_devices();
     if (devices.empty())
-        if (const std::string trouble = driver_cache_trouble(); !trouble.empty()) throw DeviceError(trouble);
+        if (const std::string problem = driver_cache_problem(); !problem.empty()) throw DeviceError(problem);
     std::vector<DeviceInfo> infos;
     for (const cl::Device& device : devices) infos.push_back(device_info(device));
     const char* fallback = std::getenv("RAYA_DEVICE");
     const std::string wanted = name_part.empty() && fallback != nullptr ? fallback : name_part;
     const std::size_t index = device_index(wanted, infos, turn);
-    tell(kVerbose, fmt::format("device {}: {} ({}, {}, driver {})", index, infos[index].name, infos[index].platform,
-                               infos[index].version, infos[index].driver));
+    log_message(kVerbose, fmt::format("device {}: {} ({}, {}, driver {})", index, infos[index].name,
+                                      infos[index].platform, infos[index].version, infos[index].driver));
     return devices[index];
 }
 

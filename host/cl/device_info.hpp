@@ -1,4 +1,4 @@
-// What a device is and can do: the record.
+// Properties of a device, as a plain record.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -6,21 +6,22 @@
 
 namespace raya {
 
-/// What a device says of itself. Sizes are bytes, widths are floats in a vector.
+/// The properties that a device reports. Sizes are in bytes, widths in floats per vector.
 struct DeviceInfo {
     std::string name, platform, version, driver;
     std::string type;  // "cpu", "gpu" or "other"
     std::uint32_t compute_units = 0;
     std::uint64_t local_memory_bytes = 0;    // of one work-group
-    bool local_memory_is_dedicated = false;  // false: it lies in global memory, as on CPUs
+    bool local_memory_is_dedicated = false;  // false: part of global memory, as on CPUs
     std::uint64_t global_memory_bytes = 0;
-    bool own_memory = false;                 // global memory is not the host's
+    bool own_memory = false;                 // global memory is separate from the host's
     std::uint64_t max_allocation_bytes = 0;  // of one buffer
     std::size_t max_group_size = 0;          // work-items
-    std::uint32_t loop_turns = 0;  // of all loops of a work-item, after which they end in silence; 0: no limit
+    // Iterations of all loops of a work-item, after which they end without an error; 0: no limit.
+    std::uint32_t max_loop_iterations = 0;
     std::uint32_t native_float_width = 0, preferred_float_width = 0;
     bool correctly_rounded_divide_sqrt = false;  // the build option for it is accepted
-    bool fused_multiply_add = false;             // CL_FP_FMA; whether it is fast only the kernel can see (FP_FAST_FMAF)
+    bool fused_multiply_add = false;             // CL_FP_FMA; only a kernel can see if it is fast (FP_FAST_FMAF)
     bool denormals = false, round_to_nearest = false, inf_nan = false;
     bool profiling = false;
     bool available = false, compiler_available = false;

@@ -22,8 +22,8 @@
 #include <utility>
 
 #include "host/base/interruption.hpp"
+#include "host/base/log.hpp"
 #include "host/base/module.hpp"
-#include "host/base/say.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 
@@ -31,61 +31,61 @@ namespace raya {
 namespace fs = std::filesystem;
 namespace {
 
-std::atomic<const char*> doing{nullptr};
-std::atomic<bool> prepares_threads{false};
+std::atomic<const char*> current_call{nullptr};
+std::atomic<bool> enlarges_stacks{false};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-std::array<char, 300> process{};  // "rank 1 on node7: ", or empty
-unsigned int turn_us = 0;
+std::array<char, 300> crash_prefix{};  // "rank 1 on node7: ", or empty
+unsigned int crash_delay_us = 0;
 
-// The largest frame measured for a group is 88 MB: 1,024 work-items of 16 lanes with a grid and 31 bounces.
+// The largest measured stack frame of a work-group is 88 MB: 1,024 work-items of 16 lanes with a grid and 31 bounces.
 constexpr std::size_t kStack = std::size_t{128} << 20;
-using AlternateStack = std::array<std::byte, 80 << 10>;  // with less LLVM would allocate its own
+using AlternateStack = std::array<std::byte, 80 << 10>;  // if it is smaller, LLVM allocates its own
 
 constexpr std::array<int, 5> kCrashes = {SIGABRT, SIGSEGV, SIGBUS, SIGILL, SIGFPE};
 
-/// Calls nothing but what a handler may call.
-void tell(const char* text) {
-    if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // nobody listens
+/// Async-signal-safe.
+void write_message(const char* text) {
+    if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // stderr is closed: nothing to do
 }
 
-extern "C" void explain(int signal) {
+extern "C" void report_driver_crash(int signal) {
     static std::atomic<pid_t> crashed{0};
     const pid_t thread = ::gettid();
     pid_t first = 0;
     if (!crashed.compare_exchange_strong(first, thread) && first != thread)
-        for (;;) ::pause();  // of threads that crash alike the first ends the process
+        for (;;) ::pause();  // if several threads crash, the first one ends the process
     remove_files_in_progress();
-    const char* what = doing.load();
-    if (what == nullptr && thread != ::getpid()) what = "running a kernel";  // raya's own work is elsewhere
+    const char* what = current_call.load();
+    if (what == nullptr && thread != ::getpid()) what = "running a kernel";  // raya's own code runs in the main thread
     if (what == nullptr || first != 0) {
         std::signal(signal, SIG_DFL);
         ::raise(signal);
         return;
     }
-    if (turn_us > 0) ::usleep(turn_us);
-    tell("\nraya: ");
-    tell(process.data());
-    tell("the OpenCL driver crashed (SIG");
-    tell(::sigabbrev_np(signal));
-    tell(") while ");
-    tell(what);
-    tell(
+    if (crash_delay_us > 0) ::usleep(crash_delay_us);
+    write_message("\nraya: ");
+    write_message(crash_prefix.data());
+    write_message("the OpenCL driver crashed (SIG");
+    write_message(::sigabbrev_np(signal));
+    write_message(") while ");
+    write_message(what);
+    write_message(
         "; remedy: smaller work-groups (--group) or fewer lanes (--lanes), an empty folder as POCL_CACHE_DIR in case "
         "the cache is damaged, more memory (ulimit -v), a mounted /sys, or another driver (raya devices); raya verify "
-        "shows what a driver does wrong\n");
+        "shows the driver's errors\n");
     ::_exit(kExitDeviceError);
 }
 
-/// LLVM, in PoCL, calls exit() where the disk with the kernel cache is full.
-void explain_exit() {
-    const char* const what = doing.load();
+/// LLVM, which PoCL uses, calls exit() if the disk with the kernel cache is full.
+void report_driver_exit() {
+    const char* const what = current_call.load();
     if (what == nullptr) return;
     remove_files_in_progress();
     for (const char* text :
-         {"\nraya: ", static_cast<const char*>(process.data()), "the OpenCL driver ended the program while ", what,
-          "; remedy: make room for PoCL's kernels, or name another folder in POCL_CACHE_DIR\n"})
-        tell(text);
+         {"\nraya: ", static_cast<const char*>(crash_prefix.data()), "the OpenCL driver ended the program while ", what,
+          "; remedy: free some space for PoCL's kernels, or name another folder in POCL_CACHE_DIR\n"})
+        write_message(text);
     ::_exit(kExitDeviceError);
 }
 
@@ -97,7 +97,8 @@ void set_handler(int signal, void (*from)(int), void (*to)(int)) {
     ::sigaction(signal, &action, nullptr);
 }
 
-/// Bytes for a thread's stack, and as many for its guard: of limited address space an eighth for one thread per core.
+/// Bytes of a thread's stack; its guard has the same size. If address space is limited, the stacks and guards of one
+/// thread per core take an eighth of it.
 std::size_t thread_stack() {
     rlimit memory{RLIM_INFINITY, RLIM_INFINITY};
     ::getrlimit(RLIMIT_AS, &memory);
@@ -125,112 +126,115 @@ std::string variable(const char* name) {
     return value != nullptr ? value : "";
 }
 
-/// What PoCL takes unless POCL_CACHE_DIR names another one.
-fs::path usual_folder() {
+/// The folder that PoCL uses unless POCL_CACHE_DIR names another one.
+fs::path default_cache_folder() {
     const std::string home = variable("HOME"), cache = variable("XDG_CACHE_HOME");
     if (!cache.empty()) return fs::path(cache) / "pocl/kcache";
     return home.empty() ? "/tmp/pocl/kcache" : fs::path(home) / ".cache/pocl/kcache";
 }
 
-/// Why PoCL's cache must not be this folder, or be made below what there is of its path; empty if it may.
-std::string unsafe(fs::path folder) {
+/// Returns why PoCL must not use this folder as its cache, or create it below the existing part of its path; empty if
+/// it may.
+std::string unsafe_reason(fs::path folder) {
     std::error_code error;
     while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
     if (::access(folder.c_str(), W_OK | X_OK) != 0) return fmt::format("'{}' is not writable", folder.string());
     return other_writers(folder, {::geteuid()}, Sticky::kRefused);
 }
 
-/// Makes a folder for this user alone, unless it is there and is such a one. Others may have made it.
-bool is_own(const fs::path& folder) {
+/// Creates a folder that only this user may access. Returns true if it was created or exists with these permissions:
+/// another user may have created it.
+bool make_private_folder(const fs::path& folder) {
     struct stat is {};
     ::mkdir(folder.c_str(), S_IRWXU);
     return ::lstat(folder.c_str(), &is) == 0 && S_ISDIR(is.st_mode) && is.st_uid == ::geteuid() &&
            (is.st_mode & ACCESSPERMS) == S_IRWXU;
 }
 
-fs::path own_folder(const std::string& why) {
+fs::path private_cache_folder(const std::string& why) {
     std::error_code error;
     fs::path temporary = fs::canonical(fs::temp_directory_path(error), error);
     if (error) temporary = "/tmp";
     const std::string first = temporary / fmt::format("raya-pocl-cache-{}", ::geteuid());
     if (other_writers(temporary, {::geteuid()}, Sticky::kAllowed).empty())
         for (const char* end : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
-            if (is_own(first + end)) return first + end;
+            if (make_private_folder(first + end)) return first + end;
     throw DeviceError(
-        fmt::format("no folder for PoCL's kernels: {}, and neither '{}' nor one with -1 to -9 behind that is a folder "
-                    "of this user alone; name one in POCL_CACHE_DIR",
-                    why, first));
+        fmt::format("no safe folder for PoCL's kernels: {}; neither '{}' nor one of '{}-1' to '-9' belongs to this "
+                    "user alone; name another folder in POCL_CACHE_DIR",
+                    why, first, first));
 }
 
 }  // namespace
 
-// Replaces the C library's in the program and, as the program exports it, in all libraries: PoCL runs kernels in
-// threads that it creates with default attributes, and has the private memory of a whole work-group on the stack.
-// Frames may be larger than the guard page: they would write into the next thread's stack.
+// Replaces the C library's pthread_create() in the program and, because the program exports it, in all libraries. PoCL
+// runs kernels in threads that it creates with default attributes, and puts the private memory of a whole work-group on
+// the stack. Such a frame may be larger than the default guard page and would write into the next thread's stack.
 extern "C" __attribute__((visibility("default"))) int pthread_create(pthread_t* thread,
                                                                      const pthread_attr_t* attributes,
                                                                      void* (*routine)(void*), void* argument) noexcept {
     static auto* const next = reinterpret_cast<decltype(&::pthread_create)>(::dlsym(RTLD_NEXT, "pthread_create"));
-    if (attributes != nullptr || !prepares_threads) return next(thread, attributes, routine, argument);
+    if (attributes != nullptr || !enlarges_stacks) return next(thread, attributes, routine, argument);
     auto start = std::make_unique<Start>(routine, argument);
     pthread_attr_t large;
     ::pthread_attr_init(&large);
     ::pthread_attr_setstacksize(&large, thread_stack());
     ::pthread_attr_setguardsize(&large, thread_stack());
     int error = next(thread, &large, run_thread, start.get());
-    if (error != 0) error = next(thread, nullptr, run_thread, start.get());  // there is less address space
+    if (error != 0) error = next(thread, nullptr, run_thread, start.get());  // not enough address space
     ::pthread_attr_destroy(&large);
     if (error == 0) start.release();
     return error;
 }
 
-DriverCall::DriverCall(const char* what) : before_(doing.exchange(what)) {}
-DriverCall::~DriverCall() { doing.store(before_); }
+DriverCall::DriverCall(const char* what) : before_(current_call.exchange(what)) {}
+DriverCall::~DriverCall() { current_call.store(before_); }
 
-void name_process_in_crashes(const std::string& name, double turn_s) {
-    process = {};
-    name.copy(process.data(), process.size() - 1);
-    turn_us = static_cast<unsigned int>(turn_s * 1e6);
+void set_crash_prefix(const std::string& prefix, double delay_s) {
+    crash_prefix = {};
+    prefix.copy(crash_prefix.data(), crash_prefix.size() - 1);
+    crash_delay_us = static_cast<unsigned int>(delay_s * 1e6);
 }
 
-void explain_driver_crashes() {
-    std::atexit(explain_exit);
+void install_crash_handlers() {
+    std::atexit(report_driver_exit);
     for (const int signal : kCrashes) {
-        set_handler(signal, SIG_DFL, explain);
-        if (signal != SIGFPE) keep_handler(signal);  // PoCL's makes a division by 0 go on
+        set_handler(signal, SIG_DFL, report_driver_crash);
+        if (signal != SIGFPE) protect_handler(signal);  // PoCL's SIGFPE handler continues after a division by 0
     }
     static AlternateStack memory;
     const stack_t own{memory.data(), 0, memory.size()};
     ::sigaltstack(&own, nullptr);
-    rlimit stack{};  // of this thread, which runs kernels on PoCL's basic device
+    rlimit stack{};  // of this thread, which runs the kernels of PoCL's basic device
     ::getrlimit(RLIMIT_STACK, &stack);
     stack.rlim_cur = std::min<rlim_t>(stack.rlim_max, thread_stack());
     ::setrlimit(RLIMIT_STACK, &stack);
-    prepares_threads = true;
+    enlarges_stacks = true;
 }
 
-void leave_driver_crashes() {
+void restore_crash_signals() {
     for (const int signal : kCrashes) {
-        keep_handler(signal, false);
-        set_handler(signal, explain, SIG_DFL);
+        protect_handler(signal, false);
+        set_handler(signal, report_driver_crash, SIG_DFL);
     }
 }
 
-void provide_driver_cache() {
+void set_driver_cache_folder() {
     if (!variable(kVariable).empty()) return;
     std::error_code error;
-    const fs::path usual = fs::weakly_canonical(fs::absolute(usual_folder(), error), error);
-    const std::string why = error ? fmt::format("'{}': {}", usual_folder().string(), error.message()) : unsafe(usual);
-    // PoCL gets the path that was checked: what links lead to may change.
-    const fs::path chosen = why.empty() ? usual : own_folder(why);
+    const fs::path preferred = fs::weakly_canonical(fs::absolute(default_cache_folder(), error), error);
+    const std::string why =
+        error ? fmt::format("'{}': {}", default_cache_folder().string(), error.message()) : unsafe_reason(preferred);
+    // PoCL gets the resolved path that was checked: the target of a link may change.
+    const fs::path chosen = why.empty() ? preferred : private_cache_folder(why);
     ::setenv(kVariable, chosen.c_str(), 1);
     if (!why.empty())
-        warn(fmt::format("warning: {}: PoCL keeps its kernels in {}; POCL_CACHE_DIR names another folder", why,
+        warn(fmt::format("warning: {}: PoCL keeps its kernels in {}; set POCL_CACHE_DIR to use another folder", why,
                          chosen.string()));
 }
 
-std::string driver_cache_trouble() {
-    constexpr std::size_t kEnough = 1 << 20;  // bytes: a kernel takes less
+std::string driver_cache_problem() {
+    constexpr std::size_t kEnough = 1 << 20;  // bytes; a kernel takes fewer
     const fs::path folder = variable(kVariable), probe = folder / fmt::format("raya-{}", ::getpid());
     try {
         std::error_code error;

@@ -1,12 +1,11 @@
-// What drivers need from outside: a word on what they were asked for where they end the program, and a folder where
-// PoCL keeps the kernels that it has built.
+// Error reports for drivers that crash or end the program, and the folder of PoCL's kernel cache.
 #pragma once
 #include <string>
 
 namespace raya {
 
-/// While it lives, `what` (which outlives it) is what the driver is doing. OpenCL's own threads work meanwhile, so a
-/// crash in any thread is the driver's, or a kernel's.
+/// Marks the scope of a driver call; crash messages contain `what`, which must outlive this object. Threads of OpenCL
+/// run meanwhile, so a crash in any thread is attributed to the driver or a kernel.
 class DriverCall {
   public:
     explicit DriverCall(const char* what);
@@ -18,25 +17,26 @@ class DriverCall {
     const char* before_;
 };
 
-/// From now on a driver that aborts or crashes, in any thread and by an overflow of its stack too, is named on stderr
-/// with what it was doing and with remedies, files in progress are removed, and the exit code is that of a DeviceError.
-/// Crashes elsewhere end the program by their signal; so do all where something else, such as a sanitizer, handles
-/// them. Threads that are created later get stacks for the largest work-groups.
-void explain_driver_crashes();
+/// From now on, if a driver aborts or crashes in any thread, also by a stack overflow, raya prints the driver call and
+/// remedies on stderr, removes files in progress and exits with the code of a DeviceError. Crashes outside of drivers
+/// end the program by their signal, and so do all crashes if something else, such as a sanitizer, handles them. Threads
+/// created later get stacks for the largest work-groups.
+void install_crash_handlers();
 
-/// Of several processes: what stands before a crash's message ("rank 1 on node7: "), and how many seconds this process
-/// waits before it says it, in case all crash alike and one that speaks ends the others.
-void name_process_in_crashes(const std::string& name, double turn_s);
+/// For one of several processes: sets the prefix of a crash message ("rank 1 on node7: ") and the seconds to wait
+/// before printing it. If all processes crash, the first one that prints ends the others.
+void set_crash_prefix(const std::string& prefix, double delay_s);
 
-/// Crashes end the program by their signal again: for a process whose parent wants to see it.
-void leave_driver_crashes();
+/// From now on crashes end the program by their signal again, so that the parent process sees the signal.
+void restore_crash_signals();
 
-/// Names in POCL_CACHE_DIR, unless it is set, a folder for PoCL's kernels that no other user but root may write: the
-/// one that PoCL would take, else one below the folder for temporary files, with a warning. PoCL runs what it finds
-/// there, and has no device where it cannot write it. To be called before OpenCL is.
-void provide_driver_cache();
+/// Sets POCL_CACHE_DIR, unless it is set, to a folder that only this user and root may write: PoCL's default, else one
+/// in the folder for temporary files, with a warning. PoCL executes the binaries that it finds there, and offers no
+/// device if it cannot write there. Call it before any OpenCL function. DeviceError if there is no such folder.
+void set_driver_cache_folder();
 
-/// Why PoCL cannot keep kernels in that folder, and the remedy; empty where it can. Writes a file there for a moment.
-std::string driver_cache_trouble();
+/// Returns why PoCL cannot store kernels in that folder, with the remedy; empty if it can. Writes and removes a file
+/// there.
+std::string driver_cache_problem();
 
 }  // namespace raya

@@ -13,8 +13,7 @@ struct ErrorName {
     const char* name;
 };
 
-// Numbers, not the macros: a header for OpenCL 1.2 hides the names of later versions, which drivers return all the
-// same.
+// Numbers instead of macros: a header for OpenCL 1.2 hides the codes of later versions, which drivers still return.
 constexpr ErrorName kErrorNames[] = {
     {0, "CL_SUCCESS"},
     {-1, "CL_DEVICE_NOT_FOUND"},
@@ -107,9 +106,10 @@ std::string error_remedy(cl_int code) {
             return "the driver cannot compile kernels: choose another device";
         case -4:
         case -5:
-            return "the device lacks memory or registers for it: fewer pixels, smaller work-groups, or another device";
+            return "the device has too little memory or too few registers: use fewer pixels, smaller work-groups, or "
+                   "another device";
         case -6:
-            return "the host lacks memory for it: raise a limit on it (ulimit -v), or render fewer pixels";
+            return "the host has too little memory: raise its limit (ulimit -v), or render fewer pixels";
         case -8:
             return "copy between two buffers, or between parts of one that do not overlap";
         case -11:
@@ -119,18 +119,18 @@ std::string error_remedy(cl_int code) {
         case -43:
             return "the driver does not know one of the build options";
         case -46:
-            return "the program holds no kernel of this name: compare the host's name with the .cl file";
+            return "the program has no kernel of this name: compare the host's name with the .cl file";
         case -50:
         case -51:
         case -52:
             return "compare the host's argument list with the kernel's parameters: order, types, sizes";
         case -54:
         case -55:
-            return "use a work-group size that device and kernel allow (the kernel may demand its own)";
+            return "use a work-group size that the device and the kernel allow (a kernel may require one)";
         case -61:
             return "use a smaller buffer: fewer pixels or a smaller scene";
         case -9999:
-            return "a kernel reached outside of its buffers: run under oclgrind";
+            return "a kernel accessed memory outside of its buffers: run under oclgrind";
         default:
             return "";
     }

@@ -1,4 +1,4 @@
-// OpenCL's error codes in words, and the one way in which an OpenCL error leaves this layer: as a DeviceError.
+// Names and remedies of OpenCL error codes; conversion of cl::Error to DeviceError, the only error type of this layer.
 #pragma once
 #include <string>
 
@@ -8,17 +8,17 @@
 
 namespace raya {
 
-/// The name of an OpenCL error code as the headers spell it, e.g. "CL_INVALID_KERNEL_ARGS"; "unknown OpenCL error
-/// -4711" for a code that no header or common driver defines. Codes: cl.h, cl_ext.h, and -9999 of NVIDIA's driver.
+/// The name of an OpenCL error code as in the headers, e.g. "CL_INVALID_KERNEL_ARGS", or "unknown OpenCL error -4711".
+/// Source of the codes: cl.h, cl_ext.h, and -9999 of NVIDIA's driver.
 std::string error_name(cl_int code);
 
-/// One line that says what to do about an error code; empty where nothing general can be said.
+/// The remedy for an error code, one line; empty if there is no general one.
 std::string error_remedy(cl_int code);
 
-/// The DeviceError for a failed `call` ("clEnqueueCopyBuffer") while doing `what` ("copy 'rotate' from ... to ...").
+/// The DeviceError for an OpenCL `call` ("clEnqueueCopyBuffer") that failed during `what` ("'rotate': copying ...").
 DeviceError device_error(const std::string& call, cl_int code, const std::string& what);
 
-/// Runs `action` and returns what it returns; a cl::Error in it becomes the DeviceError that also says `what` was done.
+/// Runs `action` and returns its result. Converts a cl::Error into a DeviceError with `what` in its message.
 template <class Action>
 decltype(auto) guarded(const std::string& what, Action&& action) {
     const DriverCall call(what.c_str());

@@ -42,11 +42,11 @@ fs::path kernel_binary_file(const cl::Device& device, const std::string& source,
 
 std::optional<KernelBinary> read_kernel_binary(const fs::path& file) {
     std::error_code none;
-    if (switched_off() || !fs::exists(file, none) || !writers_besides_owner(file).empty()) return {};
+    if (switched_off() || !fs::exists(file, none) || !other_writers_reason(file).empty()) return {};
     try {
         const std::string bytes = read_file(file);
         return KernelBinary(bytes.begin(), bytes.end());
-    } catch (const UserError&) {  // it cannot be read: compiled instead
+    } catch (const UserError&) {  // unreadable: the kernel is compiled instead
         return {};
     }
 }
@@ -55,7 +55,8 @@ void write_kernel_binary(const fs::path& file, const KernelBinary& binary) {
     std::error_code failure;
     fs::create_directories(file.parent_path(), failure);
     if (failure)
-        throw UserError(fmt::format("cannot create directory '{}': {}", file.parent_path().string(), failure.message()));
+        throw UserError(
+            fmt::format("cannot create directory '{}': {}", file.parent_path().string(), failure.message()));
     write_whole_file(file, std::string(binary.begin(), binary.end()));
 }
 

@@ -1,5 +1,6 @@
-// Binaries of kernels that came with the program, so that the first render needs no compiler: files in kernels/ beside
-// its modules, named after source, options, device and driver. `raya render --keep-kernels` makes them.
+// Kernel binaries installed with the program, so that the first render compiles nothing: files in the folder kernels/
+// next to the modules, named by a hash of source, options, device and driver. `raya render --cache-kernels` writes
+// them.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -12,15 +13,15 @@ namespace raya {
 
 using KernelBinary = std::vector<unsigned char>;
 
-/// The file of a program that is built with `options` as the compiler sees them; empty where there is no folder for it.
+/// The binary file of a program built with `options`, as passed to the compiler; empty if there is no folder for it.
 std::filesystem::path kernel_binary_file(const cl::Device& device, const std::string& source,
                                          const std::string& options);
 
-/// What the file holds; nothing where there is none, where users other than root, this one and the program's owner may
-/// change it, or where the environment variable RAYA_BINARIES is "off". UserError where it is anything else.
+/// Reads the file. Returns nothing if it does not exist, if users other than root, this user and the program's owner
+/// may change it, or if the environment variable RAYA_BINARIES is "off". UserError if RAYA_BINARIES has another value.
 std::optional<KernelBinary> read_kernel_binary(const std::filesystem::path& file);
 
-/// Writes the file whole, in a folder that is made. UserError where that cannot be.
+/// Writes the file atomically and creates its folder. UserError if that fails.
 void write_kernel_binary(const std::filesystem::path& file, const KernelBinary& binary);
 
 }  // namespace raya

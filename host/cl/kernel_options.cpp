@@ -13,13 +13,13 @@ namespace raya {
 namespace {
 
 constexpr std::array<std::uint32_t, 4> kLanes = {1, 4, 8, 16};
-constexpr std::uint32_t kMostGroup = 1024;
-constexpr std::uint32_t kMostBounces = 31;  // waiting rays are bits of a word
+constexpr std::uint32_t kMaxGroup = 1024;
+constexpr std::uint32_t kMaxBounces = 31;  // pending rays are bits of a word
 
 void check_tuning(const KernelTuning& more) {
-    const auto check = [](const char* what, std::uint32_t value, std::uint32_t least, std::uint32_t most) {
-        if (value != 0 && (value < least || value > most))
-            throw UserError(fmt::format("{} {}: must be {}..{}", what, value, least, most));
+    const auto check = [](const char* what, std::uint32_t value, std::uint32_t min, std::uint32_t max) {
+        if (value != 0 && (value < min || value > max))
+            throw UserError(fmt::format("{} {}: must be {}..{}", what, value, min, max));
     };
     check("sphere batch", more.sphere_batch, 1, 32);
     check("trees", more.trees, 1, 8);
@@ -32,20 +32,20 @@ void check_tuning(const KernelTuning& more) {
 void check_kernel_options(const KernelOptions& options, const DeviceInfo& device) {
     if (std::find(kLanes.begin(), kLanes.end(), options.lanes) == kLanes.end())
         throw UserError(fmt::format("--lanes {}: must be 1, 4, 8 or 16", options.lanes));
-    const std::uint32_t most = most_group_size(device);
-    if (options.group_size < 1 || options.group_size > most)
+    const std::uint32_t max_size = largest_group_size(device);
+    if (options.group_size < 1 || options.group_size > max_size)
         throw UserError(
-            fmt::format("--group {}: must be 1..{} work-items on {}", options.group_size, most, device.name));
-    if (options.bounces > kMostBounces)
-        throw UserError(fmt::format("--bounces {}: must be 0..{}", options.bounces, kMostBounces));
+            fmt::format("--group {}: must be 1..{} work-items on {}", options.group_size, max_size, device.name));
+    if (options.bounces > kMaxBounces)
+        throw UserError(fmt::format("--bounces {}: must be 0..{}", options.bounces, kMaxBounces));
     check_tuning(options.more);
 }
 
-std::uint32_t most_group_size(const DeviceInfo& device) {
-    return static_cast<std::uint32_t>(std::min<std::size_t>(kMostGroup, device.max_group_size));
+std::uint32_t largest_group_size(const DeviceInfo& device) {
+    return static_cast<std::uint32_t>(std::min<std::size_t>(kMaxGroup, device.max_group_size));
 }
 
-bool takes_register_limit(const DeviceInfo& device) { return device.platform.find("NVIDIA") != std::string::npos; }
+bool supports_register_limit(const DeviceInfo& device) { return device.platform.find("NVIDIA") != std::string::npos; }
 
 std::uint32_t trees_of(const KernelOptions& options) {
     const bool tuned = options.more.trees && options.accel == RAYA_ACCEL_GRID;
@@ -53,7 +53,7 @@ std::uint32_t trees_of(const KernelOptions& options) {
 }
 
 std::uint32_t default_lanes(const DeviceInfo& device) {
-    if (device.type != "cpu" || device.loop_turns > 0) return 1;
+    if (device.type != "cpu" || device.max_loop_iterations > 0) return 1;
     std::uint32_t lanes = 4;
     for (const std::uint32_t width : kLanes)
         if (width <= device.native_float_width) lanes = std::max(lanes, width);
@@ -63,15 +63,15 @@ std::uint32_t default_lanes(const DeviceInfo& device) {
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus) {
     constexpr std::size_t kOfGpu = 128, kOfVector = 8;
     const bool cpu = device.type == "cpu";
-    if (cpu && (torus || device.loop_turns == 0)) return 1;
+    if (cpu && (torus || device.max_loop_iterations == 0)) return 1;
     return static_cast<std::uint32_t>(std::min(cpu ? kOfVector : kOfGpu, device.max_group_size));
 }
 
-bool filters_hold(const NumberFormat& format, double extent) {
-    constexpr int kFewestBits = 10;
-    const double room =
-        std::ldexp(1.0, (1 << (format.exponent_bits - 2)) - 2);  // a quarter of the square root of the largest number
-    return !format.is_fp32() && format.fraction_bits >= kFewestBits && extent <= room;
+bool filters_are_valid(const NumberFormat& format, double extent) {
+    constexpr int kMinFractionBits = 10;
+    // A quarter of the square root of the largest number.
+    const double max_extent = std::ldexp(1.0, (1 << (format.exponent_bits - 2)) - 2);
+    return !format.is_fp32() && format.fraction_bits >= kMinFractionBits && extent <= max_extent;
 }
 
 std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device) {
@@ -104,7 +104,7 @@ std::vector<std::string> build_options(const KernelOptions& options, const Devic
     if (options.more.sphere_batch) define("SPHERE_BATCH", options.more.sphere_batch);
     if (options.more.trees && options.accel == RAYA_ACCEL_GRID) define("TREES", options.more.trees);
     if (options.more.beams && options.accel == RAYA_ACCEL_GRID) define("BEAMS", options.more.beams);
-    if (options.more.registers && takes_register_limit(device))
+    if (options.more.registers && supports_register_limit(device))
         all.push_back(fmt::format("-cl-nv-maxrregcount={}", options.more.registers));
     return all;
 }

@@ -1,4 +1,4 @@
-// How the kernels are built for a device: the one place that makes their -D values.
+// Build options of the kernels for a device. All -D values are made here.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,82 +11,82 @@
 
 namespace raya {
 
-/// What the kernels leave open beside lanes and group, and what changes a render's time only; 0: the kernels' own
-/// default, or the compiler's.
+/// Kernel parameters besides lanes and group size that change only the time of a render. 0: the default of the kernels
+/// or of the compiler.
 struct KernelTuning {
-    std::uint32_t sphere_batch = 0;  // RAYA_SPHERE_BATCH: spheres that are passed before hits are looked for, 1..32
-    std::uint32_t trees = 0;         // RAYA_TREES: that a lane walks at once, 1..8; with a grid alone
-    std::uint32_t beams = 0;         // RAYA_BEAMS: lights that a hit sends rays to at once, 1..8; with a grid alone
-    std::uint32_t registers = 0;     // that NVIDIA's compiler may give a work-item, 16..255; others are not told
+    std::uint32_t sphere_batch = 0;  // RAYA_SPHERE_BATCH: spheres tested before their hits are examined, 1..32
+    std::uint32_t trees = 0;         // RAYA_TREES: ray trees that a lane traces at once, 1..8; only with a grid
+    std::uint32_t beams = 0;         // RAYA_BEAMS: shadow rays that a hit traces at once, 1..8; only with a grid
+    std::uint32_t registers = 0;     // register limit per work-item for NVIDIA's compiler, 16..255; others ignore it
     bool operator==(const KernelTuning&) const = default;
 };
 
-/// The tunables of kernels/ (each RAYA_* macro is explained where the kernels define its default).
+/// The parameters of kernels/ (each RAYA_* macro is documented where the kernels define its default).
 struct KernelOptions {
     std::uint32_t lanes = 1;       // V
     std::uint32_t group_size = 1;  // L
     std::uint32_t bounces = 8;
     NumberFormat format{};
-    bool exact_divide = true;  // division and root are the device's own where it rounds them correctly; false: refined
-    bool exact_fma = true;     // so is a b + c; false: emulated
-    bool words_local = true;   // PEs take the broadcast words into local memory
-    std::uint32_t accel = RAYA_ACCEL_NONE;  // what the job has for rays to walk through
-    std::uint32_t stack = 0;                // RAYA_BVH_STACK: links that wait while a ray goes down the tree, at most
-    bool filter = false;  // spheres and polygons are filtered in fp32 before the exact test, see filters_hold
+    bool exact_divide = true;  // use the device's division and square root if correctly rounded; false: refine them
+    bool exact_fma = true;     // use the device's fused multiply-add; false: emulate it
+    bool words_local = true;   // PEs copy the broadcast words into local memory
+    std::uint32_t accel = RAYA_ACCEL_NONE;  // acceleration structure of the job
+    std::uint32_t stack = 0;                // RAYA_BVH_STACK: depth of the traversal stack
+    bool filter = false;  // filter spheres and polygons in fp32 before the exact test, see filters_are_valid()
     bool polygons = true, patches = true, cones = true;
-    bool costs = false;  // torus nodes tell what each packet cost them
+    bool costs = false;  // torus nodes record the cost of each packet
     KernelTuning more{};
 };
 
-/// How packets come over the links of a torus's device: as copies between buffers, as a kernel of their own, or as
-/// suits the device: the kernel on a CPU, elsewhere what takes less time, measured. The same packets arrive.
-enum class LinkMove : std::uint32_t { kOfDevice, kCopies, kKernel };
+/// How packets move over the links of a torus: kCopies by copies between buffers, kKernel by a kernel. kAutomatic: the
+/// kernel on a CPU, elsewhere the faster of the two as measured. The result is the same.
+enum class LinkMove : std::uint32_t { kAutomatic, kCopies, kKernel };
 
-/// How the kernels are built for a device and what else is run there, as far as the user or a check chooses.
+/// The choices of the user or of a check for the kernels of a device.
 struct KernelChoice {
     std::uint32_t lanes = 0;       // V: 1, 4, 8 or 16; 0: chosen from the device
     std::uint32_t group_size = 0;  // L: 1..1024 work-items; 0: chosen from the device
-    bool filter = true;            // the filters, where they hold: the same hits, sooner
-    // What a device has may be left alone, so that what kernels do without it is tested on any.
-    bool local_words = true;       // words in local memory, where they fit
-    bool exact_arithmetic = true;  // the device's own division, square root and a b + c, where it rounds them correctly
+    bool filter = true;            // use the filters if valid: the same hits in less time
+    // False disables a feature of the device, so that the alternative code in the kernels can be tested on any device.
+    bool local_words = true;       // words in local memory if they fit
+    bool exact_arithmetic = true;  // the device's division, square root and fused multiply-add if correctly rounded
     KernelSources sources{};
     KernelTuning more{};
-    LinkMove link_move = LinkMove::kOfDevice;
-    std::string origin{};       // where lanes and what follows from them come from, see chosen() in tuned.hpp
-    std::string link_origin{};  // likewise of link_move
+    LinkMove link_move = LinkMove::kAutomatic;
+    std::string origin{};       // source of lanes, group size and tuning, see chosen() in tuned.hpp
+    std::string link_origin{};  // source of link_move
 };
 
-/// V: as wide as the device's float vectors on a CPU, 1 elsewhere and on llvmpipe, which makes vectors of work-items
-/// itself and takes minutes and gigabytes to compile wider kernels.
+/// The default V: the width of the device's float vectors on a CPU, at least 4; 1 elsewhere and on llvmpipe, which
+/// vectorises over work-items itself and takes minutes and gigabytes to compile wider kernels.
 std::uint32_t default_lanes(const DeviceInfo& device);
 
-/// L: 1 on a CPU, where lanes do its work; 8 on llvmpipe, whose vectors of 256 bits are a group's work-items; 128
-/// elsewhere: 256 PEs of four warps are about what 132 multiprocessors hold at the 150 registers a work-item that trace
-/// takes (docs/gpu_resources.md). A torus node on any CPU is one work-item, which keeps packets in order
-/// (docs/packets.md).
+/// The default L: 1 on a CPU, where lanes are the vectors; 8 on llvmpipe, whose 256-bit vectors consist of the
+/// work-items of a group; 128 elsewhere: 132 multiprocessors hold about 256 PEs of four warps at the 150 registers per
+/// work-item of the kernel `trace` (docs/gpu_resources.md). A torus node on any CPU is one work-item, which keeps
+/// packets in order (docs/packets.md).
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false);
 
-/// Whether the bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh hold: a reduced format of 10
-/// fraction bits or more, and a scene whose extent (scene units) leaves room for squares. They change the time of a
-/// render only, no bit of it.
-bool filters_hold(const NumberFormat& format, double extent);
+/// Returns true if the error bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh are valid: a reduced
+/// format of at least 10 fraction bits, and an `extent` of the scene (scene units) whose squares do not overflow. The
+/// filters change the time of a render, not its result.
+bool filters_are_valid(const NumberFormat& format, double extent);
 
-/// The largest group that kernels are built for on this device.
-std::uint32_t most_group_size(const DeviceInfo& device);
+/// The maximum group size of the kernels on this device.
+std::uint32_t largest_group_size(const DeviceInfo& device);
 
-/// Whether the device's compiler has an option that limits registers: NVIDIA's has.
-bool takes_register_limit(const DeviceInfo& device);
+/// Returns true if the device's compiler has an option that limits registers (NVIDIA).
+bool supports_register_limit(const DeviceInfo& device);
 
-/// RAYA_TREES as the kernels have it.
+/// The value of RAYA_TREES in kernels built with these options.
 std::uint32_t trees_of(const KernelOptions& options);
 
 /// Throws UserError for lanes other than 1, 4, 8, 16, a group size outside 1..1024 or above the device's limit, more
 /// than 31 bounces, or a tuning outside its ranges.
 void check_kernel_options(const KernelOptions& options, const DeviceInfo& device);
 
-/// The build options of every kernel, correctly rounded division and square root among them where the device offers a
-/// choice. Checks `options` as above.
+/// The build options of all kernels, including correctly rounded division and square root if the device has the option.
+/// Checks `options` by check_kernel_options().
 std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device);
 
 }  // namespace raya

@@ -24,13 +24,13 @@ std::string read_kernel_file(const std::string& file, const std::filesystem::pat
         return read_file(folder / file);
     } catch (const UnreadableFile& error) {
         throw UserError(
-            fmt::format("cannot read kernel file '{}': {}; --kernel-dir must be a folder like the project's kernels/",
+            fmt::format("cannot read kernel file '{}': {}; --kernel-dir must be a folder like raya's own kernels/",
                         (folder / file).string(), error.what()));
     }
 }
 
-// The kernel file that a line of `file` includes, as a path below kernels/; empty for any other line. What has no
-// folder in its name lies beside `file`.
+// Returns the kernel file that a line of `file` includes, as a path below kernels/; empty for any other line. A name
+// without a folder is relative to the folder of `file`.
 std::string included_file(const std::string& line, const std::string& file) {
     constexpr std::string_view kInclude = "#include \"", kKernels = "kernels/";
     if (!line.starts_with(kInclude)) return {};

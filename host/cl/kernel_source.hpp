@@ -1,5 +1,5 @@
-// Kernel sources: embedded in the program, or read from a folder while they are being developed; and patches of them,
-// the one way to put a fault into kernels on purpose.
+// Kernel sources: embedded in the program, or read from a folder during development. Patches inject faults into
+// kernels.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -7,40 +7,39 @@
 
 namespace raya {
 
-/// In `file`, a path below kernels/ ("ring/trace.cl"), `replace` takes the place of `find`, which may span lines.
+/// Replaces the text `find`, which may span lines, in `file`, a path below kernels/ ("ring/trace.cl").
 struct SourcePatch {
     std::string file, find, replace;
 };
 
-/// The `text` of `file` with those of `patches` that name it, one after another. std::logic_error, with file and text,
-/// where a patch does not find its text exactly once: a fault that is not put in must not count as one that nobody
-/// sees.
+/// Applies the patches for `file` to its `text`, in order. std::logic_error, with file and text, if a patch does not
+/// find its text exactly once: a fault that was not injected must not count as undetected.
 std::string patched_text(std::string text, const std::string& file, const std::vector<SourcePatch>& patches);
 
-/// Where kernels come from, and how they are changed.
+/// The source of the kernels, and changes to it.
 struct KernelSources {
-    std::filesystem::path folder{};           // `--kernel-dir`: a folder like kernels/; empty: the program's own
-    std::vector<SourcePatch> patches{};       // of tests
-    std::vector<std::string> more_options{};  // behind the build options: of tests and checks
+    std::filesystem::path folder{};           // `--kernel-dir`: a folder like kernels/; empty: the embedded files
+    std::vector<SourcePatch> patches{};       // for tests
+    std::vector<std::string> more_options{};  // appended to the build options, for tests and checks
 };
 
-/// The text of `file` (a path below kernels/, "ring/trace.cl"), patched. Throws UserError for a file that does not
-/// exist, std::logic_error as patched_text() does.
+/// Returns the patched text of `file` (a path below kernels/, "ring/trace.cl"). UserError if the file does not exist,
+/// std::logic_error as in patched_text().
 std::string kernel_file(const std::string& file, const KernelSources& sources = {});
 
-/// The same with its includes put in, each once, and #line kept, so that a build log names file and line. Includes
-/// start at the project's root ("kernels/geometry/ray.clh"); what has no folder in its name lies beside the file that
-/// includes it.
+/// Returns the same with all includes expanded, each once. #line directives preserve files and lines in build logs.
+/// Include paths are relative to the project's root ("kernels/geometry/ray.clh"); a name without a folder is relative
+/// to the including file.
 std::string kernel_source(const std::string& file, const KernelSources& sources = {});
 
-/// The same for a `text` that is no file of kernels/; `name` stands for it in a build log, patches leave it alone.
+/// Expands a `text` that is not a file of kernels/. `name` appears in build logs. The text itself is not patched.
 std::string expand_kernel_source(const std::string& text, const std::string& name, const KernelSources& sources = {});
 
-/// UserError unless every kernel of the program is in the folder, with all that it includes.
+/// Throws UserError unless the folder contains all kernels of the program and all their includes.
 void check_folder(const KernelSources& sources);
 
-/// Throws as kernel_file() does unless every patch fits its file: before something that takes exceptions for a fault
-/// seen.
+/// Throws as kernel_file() does if a patch does not apply. Call it before code that counts any exception as a detected
+/// fault.
 void check_patches(const KernelSources& sources);
 
 }  // namespace raya

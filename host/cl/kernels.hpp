@@ -1,4 +1,4 @@
-// The one door to kernels: it knows sources, build options and the device; each kernel is described once, by its type.
+// Typed access to kernels: each kernel is declared once, as a type with its file, name and parameters.
 #pragma once
 #include <algorithm>
 #include <map>
@@ -15,8 +15,8 @@
 
 namespace raya {
 
-/// A kernel: its file below kernels/, its name in there, and its parameters as Kernel has them. Parameters of one kind
-/// that stand beside each other are named (Uint), so that they cannot change places.
+/// A kernel: its file below kernels/, its name in that file, and its parameters as in Kernel. Adjacent parameters of
+/// the same type are named (Uint), so that they cannot be swapped.
 template <FixedText File, FixedText Name, class... Params>
 struct DescribedKernel : Kernel<Params...> {
     static constexpr const char* kFile = File.text;
@@ -25,14 +25,14 @@ struct DescribedKernel : Kernel<Params...> {
         : Kernel<Params...>(program.kernel<Params...>(std::string(Name.text))) {}
 };
 
-/// Kernels of one build: a program of each file that is asked for, all with the same options.
+/// Kernels with common build options: one program for each requested file.
 class Kernels {
   public:
-    /// Kernels for the device of `session`, which outlives this. Throws UserError as build_options() does.
+    /// Kernels for the device of `session`, which must outlive this object. UserError as in build_options().
     Kernels(Session& session, const KernelOptions& options, const KernelSources& sources = {});
 
-    /// The kernel that `K`, a DescribedKernel, describes. Builds its file if no other kernel of it was asked for
-    /// before. Throws UserError (no such file), DeviceError (it does not build, it has another number of parameters).
+    /// Returns the kernel `K`, a DescribedKernel. Builds its file on the first request for one of its kernels. Throws
+    /// UserError (no such file), DeviceError (the build fails, or the number of parameters differs).
     template <class K>
     K get() {
         return K(program(K::kFile));
@@ -41,7 +41,7 @@ class Kernels {
     /// The program of a file below kernels/.
     const Program& program(const std::string& file);
 
-    /// The program of a text that is no file of kernels/ but may include some; `name` stands for it in messages.
+    /// Builds a text that is not a file of kernels/ but may include some; `name` is for messages.
     Program build(const std::string& name, const std::string& text) const;
 
     Session& session() const { return session_; }
@@ -55,37 +55,39 @@ class Kernels {
     std::map<std::string, Program> programs_;
 };
 
-/// `label`: of the step. `remedy`: what gives loops less to do.
-inline DeviceError loops_cut(const std::string& label, const std::string& device, const std::string& remedy) {
+/// `label`: the step; `remedy`: how to shorten its loops.
+inline DeviceError truncated_loops_error(const std::string& label, const std::string& device,
+                                         const std::string& remedy) {
     return DeviceError("'" + label + "': " + device +
-                       " has ended loops early and said nothing, so the image would be wrong; remedy: " + remedy +
+                       " has ended loops early without an error, so the image would be wrong; remedy: " + remedy +
                        ", or another device");
 }
 
-/// For devices that end a kernel's loops early (kernels/shared/loop_canary.clh): repeats launches whose loops were cut
-/// with half the work, a limit that the session keeps. `T`: element types of the buffers that a launch changes, the
-/// launch's state.
+/// For devices that end a kernel's loops early (kernels/shared/loop_canary.clh): halves the work of a launch whose
+/// loops were truncated, so that the caller can repeat it. The session keeps the limit. `T`: element types of the
+/// buffers that a launch changes, its state.
 template <class... T>
 class LaunchGuard {
   public:
-    /// Before a launch that is to do so much `work`: returns how much it may do. Copies the state where the device is
-    /// known to cut loops.
+    /// Call before a launch. Returns how much of `work` the launch may do. Saves the state if the device is known to
+    /// truncate loops.
     std::uint32_t begin(Session& session, const std::string& label, std::uint32_t work, Buffer<T>&... state) {
         const std::uint32_t limit = session.launch_limit(label);
-        if (session.device().loop_turns > 0 || limit < UINT32_MAX) {
+        if (session.device().max_loop_iterations > 0 || limit < UINT32_MAX) {
             if (!copies_) copies_.emplace(session.buffer<T>("copy of " + state.name(), state.size())...);
             std::apply([&](auto&... copy) { (session.copy("save", state, 0, copy, 0, copy.size()), ...); }, *copies_);
         }
         return work_ = std::min(work, limit);
     }
 
-    /// Whether a launch can be repeated.
+    /// Returns true if the state was saved, so that a launch can be repeated.
     bool has_copies() const { return copies_.has_value(); }
 
-    /// After a launch whose loops were cut: goes back to the state before it. Throws loops_cut() where there is no copy
-    /// or a launch cannot do less.
-    void go_back(Session& session, const std::string& label, const std::string& remedy, Buffer<T>&... state) const {
-        if (!copies_ || work_ == 1) throw loops_cut(label, session.device().name, remedy);
+    /// Call after a launch whose loops were truncated: restores the state before it and halves the limit. Throws
+    /// truncated_loops_error() if the state was not saved or the work cannot be halved.
+    void restore_state(Session& session, const std::string& label, const std::string& remedy,
+                       Buffer<T>&... state) const {
+        if (!copies_ || work_ == 1) throw truncated_loops_error(label, session.device().name, remedy);
         session.launch_limit(label) = work_ / 2;
         std::apply([&](auto&... copy) { (session.copy("restore", copy, 0, state, 0, copy.size()), ...); }, *copies_);
     }

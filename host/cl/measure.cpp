@@ -12,15 +12,15 @@
 namespace raya {
 namespace {
 
-// A few groups a unit on a CPU; enough to hide latencies elsewhere.
+// Two groups per compute unit on a CPU; enough to hide latencies elsewhere.
 std::size_t work_items(const DeviceInfo& device, std::uint32_t group) {
     return std::size_t{device.compute_units} * (device.type == "cpu" ? 2 * group : 2048);
 }
 
-constexpr int kReadings = 2;                                     // each of three times
-constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kRoot = 4;  // of kOperations
+constexpr int kReadings = 2;                                     // in each of three rounds
+constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kRoot = 4;  // indices of kOperations
 
-// Two buffers, an eighth of the memory at most.
+// Bytes of one of two buffers, which together take at most an eighth of the memory.
 std::uint64_t copied_bytes(const DeviceInfo& device) {
     constexpr std::uint64_t kEnough = 256u << 20;
     return std::min({kEnough, device.max_allocation_bytes, device.global_memory_bytes / 16});
@@ -29,15 +29,15 @@ std::uint64_t copied_bytes(const DeviceInfo& device) {
 double copy_bytes_per_s(Session& session, std::uint64_t bytes) {
     Buffer<std::uint8_t> from = session.buffer<std::uint8_t>("peak, from", bytes),
                          to = session.buffer<std::uint8_t>("peak, to", bytes);
-    session.fill("peak", from, 1);  // memory that nobody has written to may not be there yet
+    session.fill("peak", from, 1);  // pages that were never written may not be allocated yet
     session.fill("peak", to, 2);
     session.clear_profile();
     for (int i = 0; i < kReadings; ++i) session.copy("peak", from, 0, to, 0, bytes);
-    const std::uint64_t least_ns = session.profile().summary().front().min_ns;
-    return least_ns > 0 ? 2e9 * static_cast<double>(bytes) / static_cast<double>(least_ns) : 0;
+    const std::uint64_t min_ns = session.profile().summary().front().min_ns;
+    return min_ns > 0 ? 2e9 * static_cast<double>(bytes) / static_cast<double>(min_ns) : 0;
 }
 
-// The programs of a device, built once.
+// Measures all rates of a device; builds its programs once.
 class Peak {
   public:
     Peak(Session& session, const NumberFormat& format, std::uint32_t lanes)
@@ -61,7 +61,7 @@ class Peak {
   private:
     Session& session_;
     OperationRates of_render_;
-    std::optional<OperationRates> widest_;  // where that is another program
+    std::optional<OperationRates> widest_;  // fp32 with the default lanes, if of_render_ is not that
 };
 
 }  // namespace
@@ -86,7 +86,7 @@ double OperationRates::seconds(std::size_t kind) {
 
 void OperationRates::find_rounds(std::size_t kind) {
     rounds_[kind] = 1000;
-    seconds(kind);  // PoCL compiles here
+    seconds(kind);  // PoCL compiles in the first launch
     while (seconds(kind) < 0.01 && rounds_[kind] < 100'000'000) rounds_[kind] *= 4;
 }
 
@@ -107,17 +107,17 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
     DevicePeak best;
     if (session.profile().timed()) {
         Peak peaks(session, format, lanes);
-        double least = std::numeric_limits<double>::infinity();
+        double lowest = std::numeric_limits<double>::infinity();
         for (int i = 0; i < kTimes; ++i) {
             const DevicePeak peak = peaks.once();
-            least = std::min(least, peak.fp32_per_s);
+            lowest = std::min(lowest, peak.fp32_per_s);
             for (double DevicePeak::*rate :
                  {&DevicePeak::fp32_per_s, &DevicePeak::multiply_per_s, &DevicePeak::divide_per_s,
                   &DevicePeak::root_per_s, &DevicePeak::copy_bytes_per_s})
                 best.*rate = std::max(best.*rate, peak.*rate);
             best.copy_bytes = peak.copy_bytes;
         }
-        best.scatter = best.fp32_per_s > 0 ? 1 - least / best.fp32_per_s : 0;
+        best.scatter = best.fp32_per_s > 0 ? 1 - lowest / best.fp32_per_s : 0;
     }
     best.format = format_name(format);
     return best;

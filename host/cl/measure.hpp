@@ -1,5 +1,5 @@
-// What is measured of a device: what an operation of the number layer costs, its peak, and how its clock lies against
-// the host's.
+// Measurements of a device: rates of the number layer's operations, peak rates, and the offset of its clock from the
+// host's.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,14 +14,14 @@ namespace raya {
 
 inline constexpr std::array<const char*, 5> kOperations = {"add", "multiply", "mul-acc", "divide", "sqrt"};
 
-/// Chains of each kind of kOperations in one format, with all compute units busy; built once, measured as often as
-/// wanted. Clears the session's profile. Throws DeviceError.
+/// Measures dependent chains of each operation of kOperations in one format, on all compute units. Builds the kernel
+/// once. Clears the session's profile. Throws DeviceError.
 class OperationRates {
   public:
     OperationRates(Session& session, const NumberFormat& format, std::uint32_t lanes);
 
-    /// Operations per second of kOperations[kind]: the best of `samples`, each of which takes 10 ms or more on the
-    /// device. 0 where the device does not time its commands.
+    /// Operations per second of kOperations[kind]: the best of `samples` launches, each of at least 10 ms on the
+    /// device. 0 if the device does not time its commands.
     double measure(std::size_t kind, int samples);
 
   private:
@@ -37,22 +37,21 @@ class OperationRates {
     Kernels kernels_;
     Chains chains_;
     Buffer<float> results_;
-    std::array<std::uint32_t, kOperations.size()> rounds_{};  // that take long enough; 0: not known yet
+    std::array<std::uint32_t, kOperations.size()> rounds_{};  // of a launch of at least 10 ms; 0: not measured yet
 };
 
-/// Rates of operations in fp32 with the device's default lanes and in `format` with
-/// `lanes`, and of copies between two buffers of up to 256 MB, more than caches hold; measured three times over, the
-/// best of all, in some seconds. In a session of its own, so that no other profile sees it. All 0 where the device does
-/// not time its commands. Throws DeviceError.
+/// Measures operations in fp32 with the device's default lanes and in `format` with `lanes`, and copies between two
+/// buffers of up to 256 MB, which exceed the caches. Returns the best of three rounds; takes a few seconds. Uses a
+/// session of its own, so that other profiles do not contain it. All rates are 0 if the device does not time its
+/// commands. Throws DeviceError.
 DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes);
 
-/// Sends the device some tiny commands, and looks at the host's clock before and after each: the time at which a
-/// command was queued lies between the two. Of the tries the one that took least is taken. Two clocks may also drift
-/// apart afterwards, which is not seen. The session's profile is cleared. std::logic_error where the session does not
-/// time its commands.
+/// Enqueues a few tiny commands and reads the host's clock before and after each: the time at which a command was
+/// queued is between the two. Uses the try that took the least time. Does not detect a later drift of the clocks.
+/// Clears the session's profile. std::logic_error if the session does not time its commands.
 ClockAnchor clock_anchor(Session& session);
 
-/// The anchor of one command, queued at `queued` by the device, given between `before` and `after` by the host.
+/// The anchor from one command, queued at `queued` (device clock) between `before` and `after` (host clock).
 ClockAnchor anchor_between(std::uint64_t before, std::uint64_t queued, std::uint64_t after);
 
 }  // namespace raya

@@ -5,14 +5,14 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kAlignment = 64;  // bytes; a cache line, and what drivers copy fastest from
+constexpr std::size_t kAlignment = 64;  // bytes: a cache line; drivers copy fastest from it
 
 }  // namespace
 
 HostMemory::HostMemory(const cl::Context& context, const cl::CommandQueue& queue, Kind kind, std::size_t bytes)
     : queue_(queue), size_(bytes) {
     if (kind == Kind::kPlain) {
-        plain_.reset(new std::byte[bytes]);  // not cleared: pages are taken as they are used
+        plain_.reset(new std::byte[bytes]);  // not cleared: pages are allocated when they are used
         bytes_ = plain_.get();
         return;
     }
@@ -20,7 +20,7 @@ HostMemory::HostMemory(const cl::Context& context, const cl::CommandQueue& queue
     bytes_ = static_cast<std::byte*>(queue_.enqueueMapBuffer(pinned_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes));
 }
 
-// By the calls that do not throw.
+// Uses the C functions, which do not throw.
 HostMemory::~HostMemory() {
     if (last_() != nullptr) clWaitForEvents(1, &last_());
     if (plain_ || bytes_ == nullptr) return;

@@ -1,5 +1,4 @@
-// Device memory as arrays of T; memory of the host's that the device copies to and from while the host does something
-// else.
+// Device memory as arrays of T, and host memory for asynchronous transfers.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -13,8 +12,8 @@
 
 namespace raya {
 
-/// `size()` elements of T in the device's global memory. Made by Session::buffer; what it holds at first is undefined.
-/// A handle: copies of it name the same memory, which lives as long as one of them.
+/// `size()` elements of T in the device's global memory, allocated by Session::buffer; initially undefined. A handle:
+/// copies refer to the same memory, which is freed with the last one.
 template <class T>
 class Buffer {
     static_assert(std::is_trivially_copyable_v<T>, "buffers are copied byte by byte");
@@ -26,7 +25,7 @@ class Buffer {
     const cl::Buffer& memory() const { return memory_; }
     const std::string& name() const { return name_; }
     std::size_t size() const { return size_; }               // elements
-    std::size_t bytes() const { return size_ * sizeof(T); }  // cannot overflow: Session::buffer has checked it
+    std::size_t bytes() const { return size_ * sizeof(T); }  // cannot overflow: checked by Session::buffer
 
   private:
     cl::Buffer memory_;
@@ -41,8 +40,8 @@ struct LocalMemory {
     std::size_t bytes() const { return count * sizeof(T); }
 };
 
-/// Plain memory, or pinned memory of the driver's, to and from which a device with memory of its own copies at its
-/// bus's full speed and without making the host wait. It goes no sooner than the last command that uses it has ended.
+/// Plain memory, or pinned memory allocated by the driver, which a device with memory of its own copies to and from
+/// asynchronously at full bus speed. The destructor waits for the last command that uses it.
 class HostMemory {
   public:
     enum class Kind { kPlain, kPinned };
@@ -56,10 +55,10 @@ class HostMemory {
     std::byte* bytes() const { return bytes_; }
     std::size_t size() const { return size_; }
 
-    /// The command uses it, later than all others so far.
+    /// Registers a command that uses this memory, later than all commands registered before.
     void used_by(const cl::Event& command) { last_ = command; }
 
-    /// Waits for the last command that uses it. cl::Error where that has failed.
+    /// Waits for the last registered command. cl::Error if it failed.
     void wait();
 
   private:
@@ -71,11 +70,11 @@ class HostMemory {
     cl::Event last_;
 };
 
-/// Where Session::read() lets `size()` elements of T land while the host goes on.
+/// Host memory for asynchronous reads of up to `size()` elements of T by Session::read().
 template <class T>
-class Landing {
+class Readback {
   public:
-    Landing(std::unique_ptr<HostMemory> memory, std::size_t size) : memory_(std::move(memory)), size_(size) {}
+    Readback(std::unique_ptr<HostMemory> memory, std::size_t size) : memory_(std::move(memory)), size_(size) {}
 
     std::size_t size() const { return size_; }
     HostMemory& memory() const { return *memory_; }
@@ -90,31 +89,32 @@ class Landing {
     std::size_t size_;
 };
 
-/// Bytes of half a staging. Where the device's memory is the host's a transfer is a copy that the host waits for, by
-/// threads that wake each other: a small one takes longer to wait for than to copy twice.
+/// Bytes of one half of a Staging. On a device that shares the host's memory a transfer is a copy by another thread.
+/// For a small transfer, waking that thread and waiting for it takes longer than copying twice, hence the small plain
+/// half.
 inline constexpr std::size_t kPinnedHalf = 4u << 20, kPlainHalf = 64u << 10;
 
-/// Two halves that are used in turn, each for as many transfers as fit into it one after another: while the device
-/// copies those of one, the host fills or empties the other.
+/// Double buffering for transfers. Consecutive transfers fill one half; while the device copies it, the host fills or
+/// reads the other.
 class Staging {
   public:
-    /// Takes the memory. cl::Error.
+    /// Allocates both halves. Throws cl::Error.
     Staging(const cl::Context& context, const cl::CommandQueue& queue, HostMemory::Kind kind, std::size_t half_bytes);
 
     std::size_t half_bytes() const { return halves_[0].size(); }
 
     struct Place {
-        HostMemory& half;  // is told of the command that uses the place
+        HostMemory& half;  // register the command with half.used_by()
         std::byte* bytes;
     };
 
-    /// Room for a transfer of so many bytes, half_bytes() at most; where it lies in another half than the one before,
-    /// once the commands that used that one have ended. cl::Error where one has failed.
+    /// Reserves `bytes` bytes, at most half_bytes(). If that switches to the other half, waits for the commands that
+    /// use it. cl::Error if one failed.
     Place take(std::size_t bytes);
 
   private:
     std::array<HostMemory, 2> halves_;
-    std::size_t turn_ = 0, used_ = 0;  // bytes of the half whose turn it is
+    std::size_t turn_ = 0, used_ = 0;  // index of the current half; its reserved bytes
 };
 
 }  // namespace raya

@@ -1,7 +1,7 @@
-// The one place that includes the OpenCL C++ bindings, so that every file sees them with the same macros.
+// The only file that includes the OpenCL C++ bindings, so that all files use the same macros.
 //
-// 1.2 is asked for on both sides: the layer needs nothing newer, and so the program also runs on drivers that never
-// went further. Errors are exceptions (cl::Error), which guarded() in error_names.hpp turns into DeviceError.
+// Target and minimum version are 1.2: the host needs nothing newer, and some drivers support nothing newer. Errors are
+// exceptions (cl::Error), which guarded() in error_names.hpp converts to DeviceError.
 #pragma once
 
 #define CL_HPP_ENABLE_EXCEPTIONS

@@ -7,12 +7,12 @@
 #include <map>
 #include <utility>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 
 namespace raya {
 namespace {
 
-// Some drivers' clocks have a command end before it started.
+// Some drivers report an end time before the start time.
 std::uint64_t span(std::uint64_t from, std::uint64_t to) { return to > from ? to - from : 0; }
 
 }  // namespace
@@ -46,7 +46,7 @@ std::uint64_t host_clock_ns() {
 
 StepLog::Step::Step(StepLog* log, const std::string& name) : log_(log) {
     if (verbosity() >= kVerbose) {
-        told_ = name;
+        logged_name_ = name;
         started_ = host_clock_ns();
     }
     if (log_ == nullptr) return;
@@ -55,8 +55,9 @@ StepLog::Step::Step(StepLog* log, const std::string& name) : log_(log) {
 }
 
 StepLog::Step::~Step() {
-    if (!told_.empty())
-        tell(kVerbose, fmt::format("{}: {:.3f} s", told_, 1e-9 * static_cast<double>(host_clock_ns() - started_)));
+    if (!logged_name_.empty())
+        log_message(kVerbose,
+                    fmt::format("{}: {:.3f} s", logged_name_, 1e-9 * static_cast<double>(host_clock_ns() - started_)));
     if (log_ == nullptr) return;
     log_->steps_[number_].ended = host_clock_ns();
     --log_->depth_;

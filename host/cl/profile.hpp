@@ -1,5 +1,4 @@
-// What was done on the device and by the host, when, and how long it took; and what a device can do at most: plain
-// records.
+// Plain records of the device's commands and the host's steps with their times, and of a device's peak rates.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,18 +8,18 @@
 
 namespace raya {
 
-/// An argument of a kernel, to be read.
+/// An argument of a kernel, as text.
 struct ArgumentText {
     std::string name, value;
 };
 
-/// One command. Times are nanoseconds of the device's own clock (CL_PROFILING_COMMAND_*), all 0 where it has none.
+/// One command. Times are nanoseconds of the device's clock (CL_PROFILING_COMMAND_*), all 0 without profiling.
 struct CommandRecord {
     std::string label;
     std::string kind;  // "kernel", "write", "read", "copy" or "fill"
     std::uint64_t queued = 0, submitted = 0, started = 0, ended = 0;
     std::uint64_t bytes = 0;                   // moved or filled; 0 for a kernel
-    std::string object{};                      // the kernel; of a transfer its buffer, of a copy both
+    std::string object{};                      // the kernel, the buffer of a transfer, or both buffers of a copy
     std::uint64_t groups = 0, group_size = 0;  // of a kernel
     std::vector<ArgumentText> arguments{};     // of a kernel, only if Session::observe() asks for them
 };
@@ -32,14 +31,14 @@ struct LabelSummary {
     std::uint64_t total_ns = 0, min_ns = 0;
     double mean_ns = 0;
     std::uint64_t max_ns = 0;
-    std::uint64_t submit_ns = 0, start_ns = 0;  // in all, from queued to submitted, from there to start
-    std::uint64_t bytes = 0;                    // moved or filled, in all
+    std::uint64_t submit_ns = 0, start_ns = 0;  // totals from queued to submitted, from submitted to started
+    std::uint64_t bytes = 0;                    // moved or filled, total
 };
 
-/// The commands of a session in the order in which they were given.
+/// The commands of a session in the order in which they were enqueued.
 class Profile {
   public:
-    /// `timed`: whether the device measures its commands; if not, only counts and bytes mean anything.
+    /// `timed`: the device measures its commands; if false, only counts and bytes are meaningful.
     explicit Profile(bool timed) : timed_(timed) {}
 
     void add(CommandRecord command) { commands_.push_back(std::move(command)); }
@@ -56,27 +55,27 @@ class Profile {
     std::vector<CommandRecord> commands_;
 };
 
-/// Nanoseconds of CLOCK_MONOTONIC_RAW, the clock from which PoCL takes its event times.
+/// Nanoseconds of CLOCK_MONOTONIC_RAW, the clock of PoCL's event times.
 std::uint64_t host_clock_ns();
 
-/// How the clock of a device lies against the host's: adding `offset_ns` to a time of the device gives host_clock_ns().
+/// The offset of a device's clock: a time of the device plus `offset_ns` is a time of host_clock_ns().
 struct ClockAnchor {
-    bool same_clock = true;  // what the device says lies between the host's times around it: nothing is added
+    bool same_clock = true;  // device times lie between the host times around them: the offset is 0
     std::int64_t offset_ns = 0;
-    std::uint64_t uncertainty_ns = 0;  // either way; 0 where the clock is the same
+    std::uint64_t uncertainty_ns = 0;  // plus or minus; 0 if the clock is the same
 };
 
-/// One step of the host. Steps lie within each other, or one after another.
+/// One step of the host. Steps are nested or consecutive.
 struct HostStep {
     std::string name;
     std::uint64_t started = 0, ended = 0;  // host_clock_ns()
-    std::size_t depth = 0;                 // steps around it
+    std::size_t depth = 0;                 // number of enclosing steps
 };
 
 class StepLog {
   public:
-    /// A step: from its making to the end of its scope, and told then to who wants to know (host/base/say.hpp).
-    /// Without a log it does nothing else.
+    /// A step, which lasts as long as this object. Logged at its end at kVerbose (host/base/log.hpp), and recorded in
+    /// the StepLog unless that is a null pointer.
     class Step {
       public:
         Step(StepLog* log, const std::string& name);
@@ -87,18 +86,18 @@ class StepLog {
       private:
         StepLog* log_;
         std::size_t number_ = 0;
-        std::string told_{};  // its name, where it will be told
+        std::string logged_name_{};  // empty: the step is not logged
         std::uint64_t started_ = 0;
     };
 
-    /// What `action` returns; the step is all that it does.
+    /// Runs `action` as a step and returns its result.
     template <class Action>
     decltype(auto) during(const std::string& name, Action&& action) {
         const Step step(this, name);
         return std::forward<Action>(action)();
     }
 
-    /// In the order in which they began; those that have not ended yet end now.
+    /// All steps in the order in which they began; running ones end now.
     std::vector<HostStep> steps() const;
 
   private:
@@ -106,15 +105,15 @@ class StepLog {
     std::size_t depth_ = 0;
 };
 
-/// What a small program reached on this device; 0 where the device does not time its commands.
+/// Peak rates measured on a device (measure.hpp); 0 if the device does not time its commands.
 struct DevicePeak {
-    double fp32_per_s = 0;      // multiply-adds of the widest lanes, one operation each
+    double fp32_per_s = 0;      // multiply-adds with the default lanes, each counted as one operation
     std::string format;         // of the render
     double multiply_per_s = 0;  // multiply-adds in that format, with the lanes of the render
     double divide_per_s = 0, root_per_s = 0;
     double copy_bytes_per_s = 0;   // read and written by copies from buffer to buffer
     std::uint64_t copy_bytes = 0;  // of each of these buffers
-    double scatter = 0;            // share by which the least of three measurements of fp32_per_s lies below the best
+    double scatter = 0;            // (best - worst) / best of three measurements of fp32_per_s
 };
 
 }  // namespace raya

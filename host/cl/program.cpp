@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
 #include "host/cl/kernel_binaries.hpp"
@@ -20,8 +20,8 @@ std::string joined(const std::vector<std::string>& options) { return fmt::format
 std::string log_of(const cl::Program& program, const cl::Device& device) {
     try {
         return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
-    } catch (const cl::Error& error) {  // the build's own error matters more than a missing log
-        return fmt::format("(the driver gave no log: {})", error_name(error.err()));
+    } catch (const cl::Error& error) {  // the caller reports the build's own error
+        return fmt::format("(no log from the driver: {})", error_name(error.err()));
     }
 }
 
@@ -33,9 +33,9 @@ std::string name_of(const cl::Device& device) {
 std::string failure_text(const cl::Error& error, const std::string& what, const std::string& log) {
     const std::string text = device_error(error.what(), error.err(), what).what();
     if (log.find("error") != log.npos) return text;
-    const std::string trouble = driver_cache_trouble();
-    if (!trouble.empty()) return what + ": " + trouble;
-    return text + "; where it gives no reason, name an empty folder in POCL_CACHE_DIR: PoCL's cache may be damaged";
+    const std::string problem = driver_cache_problem();
+    if (!problem.empty()) return what + ": " + problem;
+    return text + "; if the log gives no reason, name an empty folder in POCL_CACHE_DIR: PoCL's cache may be damaged";
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ std::size_t KernelBuild::binary_bytes() const {
 Program::Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,
                  const std::vector<std::string>& options)
     : name_(std::move(name)), options_(joined(options)) {
-    if (takes_binary(context, device, source)) return;
+    if (load_binary(context, device, source)) return;
     const std::string what = fmt::format("building program '{}'", name_);
     const std::string device_name = guarded(what, [&] {
         program_ = cl::Program(context, source);
@@ -89,14 +89,14 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
         const std::string log = log_of(program_, device);
         throw DeviceError(fmt::format("{}\n  device: {}\n  options: {}\n  build log:\n{}",
                                       failure_text(error, what, log), device_name, options_, log));
-    } catch (...) {            // out of memory, in the middle of the driver's work
-        program_() = nullptr;  // which has left it locked: to release it would wait for ever
+    } catch (...) {            // out of memory inside the driver
+        program_() = nullptr;  // the program is still locked: releasing it would deadlock
         throw;
     }
     log_ = log_of(program_, device);
 }
 
-bool Program::takes_binary(const cl::Context& context, const cl::Device& device, const std::string& source) {
+bool Program::load_binary(const cl::Context& context, const cl::Device& device, const std::string& source) {
     try {
         binary_file_ = kernel_binary_file(device, source, options_);
         const std::optional<KernelBinary> binary = read_kernel_binary(binary_file_);
@@ -105,18 +105,19 @@ bool Program::takes_binary(const cl::Context& context, const cl::Device& device,
         const DriverCall call("loading a kernel's binary");
         program_.build(device, options_.c_str());
         binary_file_.clear();
-        tell(kDetailed, fmt::format("build {}: from the binary that came with raya\n", name_));
+        log_message(kDetailed, fmt::format("build {}: from the binary installed with raya\n", name_));
         return true;
     } catch (const cl::Error& error) {
-        tell(kDetailed, fmt::format("binary of {}: refused by the driver: {}\n", name_, error_name(error.err())));
+        log_message(kDetailed,
+                    fmt::format("binary of {}: refused by the driver: {}\n", name_, error_name(error.err())));
         return false;
-    } catch (...) {  // as in the constructor
+    } catch (...) {  // see the constructor
         program_() = nullptr;
         throw;
     }
 }
 
-void Program::keep_binary() const {
+void Program::save_binary() const {
     if (binary_file_.empty()) return;
     const auto binaries = guarded(fmt::format("reading the binary of program '{}'", name_),
                                   [this] { return program_.getInfo<CL_PROGRAM_BINARIES>(); });
@@ -132,8 +133,8 @@ cl::Kernel Program::checked_kernel(const std::string& kernel_name, std::size_t a
         const std::size_t expected = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
         if (expected != argument_count) {
             throw DeviceError(
-                fmt::format("kernel '{}' of program '{}' has {} parameters, but the host passes {}; remedy: make "
-                            "the list of types on the host and the kernel's parameters agree",
+                fmt::format("kernel '{}' of program '{}' has {} parameters, but the host passes {}; remedy: make the "
+                            "list of types on the host and the kernel's parameters agree",
                             kernel_name, name_, expected, argument_count));
         }
         return kernel;

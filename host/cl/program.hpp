@@ -1,5 +1,5 @@
-// Kernel source, built for one device; and kernels with their argument types: a call with other types does not
-// compile, a kernel with another number of parameters is refused when it is looked up (Program::kernel).
+// Programs built for one device, and kernels with typed arguments: a call with other types does not compile, and
+// Program::kernel() throws if the number of parameters differs.
 #pragma once
 #include <fmt/core.h>
 
@@ -19,25 +19,25 @@
 
 namespace raya {
 
-/// A text as a template's argument.
+/// A string as a template argument.
 template <std::size_t Size>
 struct FixedText {
-    // NOLINTNEXTLINE(google-explicit-constructor): a literal stands for it, as in Uint<"begin">
+    // NOLINTNEXTLINE(google-explicit-constructor): converts a literal, as in Uint<"begin">
     consteval FixedText(const char (&from)[Size]) { std::copy_n(from, Size, text); }
     char text[Size]{};
 };
 
-/// A kernel's `const uint` parameter by its name, such as Uint<"begin">: another one does not compile in its place.
+/// A kernel's `const uint` parameter with its name, such as Uint<"begin">: passing another one does not compile.
 template <FixedText Name>
 struct Uint {
     static constexpr const char* kName = Name.text;
     cl_uint value;
 };
 
-/// The parameter's name in the kernel's source; its number from 0 where the driver keeps no names.
+/// The parameter's name in the kernel's source, or its number from 0 if the driver keeps no names.
 std::string argument_name(const cl::Kernel& kernel, cl_uint index);
 
-/// A kernel's argument, to be read: a buffer's name and size, bytes of local memory, a number.
+/// A kernel's argument as text: a buffer's name and size, bytes of local memory, or a number.
 template <class T>
 std::string argument_text(const Buffer<T>& buffer) {
     return fmt::format("{}, {} x {} bytes", buffer.name(), buffer.size(), sizeof(T));
@@ -63,8 +63,8 @@ std::string argument_text(const T& value) {
         return fmt::format("struct of {} bytes", sizeof(T));
 }
 
-/// Args, in the kernel's order: `const Buffer<T>&` for an input, `Buffer<T>&` for an output, LocalMemory<T> for
-/// __local memory, Uint for a whole number, and plain values such as cl_float or an enum for the rest.
+/// A kernel. Args, in the kernel's order: `const Buffer<T>&` for an input, `Buffer<T>&` for an output, LocalMemory<T>
+/// for __local memory, Uint for a `uint`, and plain values such as cl_float or an enum for the rest.
 template <class... Args>
 class Kernel {
   public:
@@ -75,13 +75,13 @@ class Kernel {
     const std::string& name() const { return name_; }
     const cl::Kernel& handle() const { return kernel_; }
 
-    /// What a launch with these arguments is told, to be read: names, where the driver knows them, and values.
+    /// The arguments of a launch as text: names, if the driver keeps them, and values.
     std::vector<ArgumentText> argument_texts(const Args&... args) const {
         cl_uint index = 0;
         return {ArgumentText{argument_name(kernel_, index++), argument_text(args)}...};
     }
 
-    /// Sets all arguments for the launches that follow; DeviceError names the kernel and the argument's number from 0.
+    /// Sets all arguments for the following launches. DeviceError with the kernel and the argument's number from 0.
     void set_arguments(Args... args) {
         cl_uint index = 0;
         (set_argument(index++, args), ...);
@@ -114,7 +114,7 @@ class Kernel {
     std::string name_;
 };
 
-/// The bytes of __local memory that one kernel argument asks for: none, unless it is a LocalMemory.
+/// The bytes of __local memory that a kernel argument requires: 0 unless it is a LocalMemory.
 template <class T>
 std::size_t local_bytes_of(const T&) {
     return 0;
@@ -125,44 +125,45 @@ std::size_t local_bytes_of(const LocalMemory<T>& local) {
     return local.bytes();
 }
 
-/// What RAYA_BUILD_OPTIONS adds to the options of every program.
+/// The value of RAYA_BUILD_OPTIONS, which is appended to the options of every program.
 std::string user_build_options();
 
-/// Appends what a build or a first launch took to the file that RAYA_KERNEL_LOG names, from `start` to now: a line
-/// "seconds <tab> step <tab> name <tab> options". tools/kernel_builds adds them up.
+/// Appends the time of a build or a first launch, from `start` to now, to the file that RAYA_KERNEL_LOG names: a line
+/// "seconds <tab> step <tab> name <tab> options". tools/kernel_builds sums them.
 void log_kernel_build(const char* step, const std::string& name, const std::string& options, Clock::time_point start);
 
-/// Whether RAYA_KERNEL_LOG is set.
+/// Returns true if RAYA_KERNEL_LOG is set.
 bool logs_kernel_builds();
 
-/// What one program's build took, and the first launches of its kernels.
+/// Build time of a program, and the time of the first launches of its kernels.
 struct KernelBuild {
     cl::Program program;
-    std::string name, options;  // its file; as the compiler saw them
+    std::string name, options;  // file of the program; options as passed to the compiler
     double build_s = 0, launch_s = 0;
 
-    std::size_t binary_bytes() const;  // for which PoCL compiles every kernel of the program once more. DeviceError
+    /// Size of the binary. PoCL compiles every kernel of the program once more for it. DeviceError.
+    std::size_t binary_bytes() const;
 };
 
-/// A built program. Made by Session::build.
+/// A built program, made by Session::build().
 class Program {
   public:
-    /// Builds `source` for `device` with `options` exactly as given, joined by blanks; `name` is for messages.
-    /// DeviceError on any failure, with options, device and the whole build log.
+    /// Builds `source` for `device` with `options` as given, joined by blanks; `name` is for messages. DeviceError,
+    /// with options, device and the whole build log, if that fails.
     Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,
             const std::vector<std::string>& options);
 
     const std::string& name() const { return name_; }
-    const std::string& options() const { return options_; }  // as the compiler saw them
+    const std::string& options() const { return options_; }  // as passed to the compiler
     const std::string& log() const { return log_; }          // warnings of a build that succeeded
     const cl::Program& handle() const { return program_; }
 
-    /// Writes the binary where later runs find it (kernel_binaries.hpp), with the kernels that were launched; one that
-    /// came from there stays. UserError, DeviceError.
-    void keep_binary() const;
+    /// Writes the binary, with the kernels that were launched, to the file where later runs find it
+    /// (kernel_binaries.hpp). Does nothing if the program was loaded from that file. UserError, DeviceError.
+    void save_binary() const;
 
-    /// The kernel `kernel_name`, which takes Args (see Kernel).
-    /// DeviceError: no such kernel (lists those there are), or another number of parameters (names both numbers).
+    /// Returns the kernel `kernel_name` with parameters Args (see Kernel). DeviceError if there is no such kernel (with
+    /// a list of kernels) or the number of parameters differs (with both numbers).
     template <class... Args>
     Kernel<Args...> kernel(const std::string& kernel_name) const {
         return Kernel<Args...>(checked_kernel(kernel_name, sizeof...(Args)), kernel_name);
@@ -171,11 +172,11 @@ class Program {
   private:
     cl::Kernel checked_kernel(const std::string& kernel_name, std::size_t argument_count) const;
 
-    bool takes_binary(const cl::Context& context, const cl::Device& device, const std::string& source);
+    bool load_binary(const cl::Context& context, const cl::Device& device, const std::string& source);
 
     cl::Program program_;
     std::string name_, options_, log_;
-    std::filesystem::path binary_file_;  // empty: the program came from it
+    std::filesystem::path binary_file_;  // empty: the program was loaded from it, or there is no folder for it
 };
 
 }  // namespace raya

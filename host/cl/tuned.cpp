@@ -15,11 +15,11 @@ TunedSource& source_in_use() {
 }  // namespace
 
 TunedValues default_values(const DeviceInfo& device, const TunedFor& what) {
-    constexpr std::uint32_t kSpheresPassed = 16;  // on llvmpipe, as measured (docs/tuning.md)
+    constexpr std::uint32_t kSphereBatch = 16;  // fastest on llvmpipe (docs/tuning.md)
     const bool ring_of_all = !what.torus && what.accel == RAYA_ACCEL_NONE;
     return {.lanes = default_lanes(device),
             .group = default_group_size(device, what.torus),
-            .batch = ring_of_all && what.fp32 && device.loop_turns > 0 ? kSpheresPassed : 0};
+            .batch = ring_of_all && what.fp32 && device.max_loop_iterations > 0 ? kSphereBatch : 0};
 }
 
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values) {
@@ -30,21 +30,23 @@ KernelChoice with_values(KernelChoice kernels, const TunedValues& values) {
     kernels.group_size = values.group;
     kernels.local_words = kernels.local_words && values.local_words != 0;
     kernels.more = {values.batch, values.trees, values.beams, values.registers};
-    if (kernels.link_move == LinkMove::kOfDevice) kernels.link_move = static_cast<LinkMove>(values.link_exchange);
+    if (kernels.link_move == LinkMove::kAutomatic) kernels.link_move = static_cast<LinkMove>(values.link_exchange);
     return kernels;
 }
 
-TunedUse::TunedUse(TunedSource source) : before_(std::move(source_in_use())) { source_in_use() = std::move(source); }
-TunedUse::~TunedUse() { source_in_use() = std::move(before_); }
+ScopedTunedSource::ScopedTunedSource(TunedSource source) : before_(std::move(source_in_use())) {
+    source_in_use() = std::move(source);
+}
+ScopedTunedSource::~ScopedTunedSource() { source_in_use() = std::move(before_); }
 
 KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TunedFor& what) {
-    const bool links_named = kernels.link_move != LinkMove::kOfDevice;
+    const bool links_named = kernels.link_move != LinkMove::kAutomatic;
     kernels.link_origin = links_named ? "options" : "";
     if (kernels.lanes == 0 && kernels.group_size == 0) {
         const auto tuned = source_in_use() ? source_in_use()(device, what) : std::nullopt;
         kernels = with_values(kernels, tuned ? tuned->values : default_values(device, what));
         kernels.origin = tuned ? tuned->origin : "defaults";
-        if (!links_named && kernels.link_move != LinkMove::kOfDevice) kernels.link_origin = kernels.origin;
+        if (!links_named && kernels.link_move != LinkMove::kAutomatic) kernels.link_origin = kernels.origin;
         return kernels;
     }
     const TunedValues defaults = default_values(device, what);

@@ -1,4 +1,4 @@
-// raya bench: rays per second by kernel, lanes and format on this device, each row checked before it is timed.
+// raya bench: rays per second by kernel, lanes and format on this device. Each row is checked before it is timed.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <memory>
 #include <optional>
 
+#include "host/base/log.hpp"
 #include "host/base/progress.hpp"
-#include "host/base/say.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/cli/bench_build.hpp"
@@ -42,7 +42,7 @@ struct BenchCommand {
     std::optional<double> limit;  // seconds
 };
 
-// Refuses what could not be compared in the end. Returns the baseline, empty where there is none to be.
+// Checks --tolerance, --page and --compare before measuring. Returns the baseline, empty without --compare.
 BenchReport checked_files(const BenchCommand& command) {
     if (!(command.tolerance >= 0 && command.tolerance <= 100))
         throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance));
@@ -55,8 +55,8 @@ void check_comparable(const BenchCommand& command, const BenchReport& baseline, 
     if (command.baseline.empty() || rows_in_common(baseline, now) > 0) return;
     const BenchMeasurement &was = baseline.rows.front(), &is = now.rows.front();
     throw UserError(fmt::format(
-        "{}: no row of this run is in it: it has {}, {}, {}, {}, {} lanes, group {}; this run {}, {}, {}, {}, {} "
-        "lanes, group {}; remedy: the same scene and options, or a new baseline by raya bench --report",
+        "{}: contains no row of this run: it has {}, {}, {}, {}, {} lanes, group {}; this run has {}, {}, {}, {}, {} "
+        "lanes, group {}; remedy: the same scene and options, or a new baseline (raya bench --report)",
         command.baseline, was.scene, was.size, was.array, was.format, was.lanes, was.group_size, is.scene, is.size,
         is.array, is.format, is.lanes, is.group_size));
 }
@@ -72,21 +72,20 @@ void finish(const BenchCommand& command, const BenchReport& baseline, BenchRepor
     }
     write_report_and_page({command.report, command.page}, to_json(now));
     if (command.baseline.empty()) return;
-    fmt::print("\nheld against {}, of whose rates a row may lose {} %:\n{}", printable(command.baseline),
-               command.tolerance, result.text);
+    fmt::print("\ncompared with {}, tolerance {} % of its rates:\n{}", printable(command.baseline), command.tolerance,
+               result.text);
     std::fflush(stdout);
     if (result.failed())
-        throw CheckFailure{fmt::format("{}: of {} {} slower by more than {} %, {} with another image", command.baseline,
-                                       counted(result.compared, "row"), result.slower, command.tolerance,
-                                       result.other_images)};
-    fmt::print("{} compared, none slower by more than {} %, the same images\n", counted(result.compared, "row"),
+        throw CheckFailure{fmt::format("{}: of {} {} slower by more than {} %, {} with a different image",
+                                       command.baseline, counted(result.compared, "row"), result.slower,
+                                       command.tolerance, result.other_images)};
+    fmt::print("{} compared, none slower by more than {} %, all images equal\n", counted(result.compared, "row"),
                command.tolerance);
 }
 
-// Checked before anything is measured, against what cannot be meant.
 void check_build_options(const BenchCommand& command) {
     if (command.limit && !(*command.limit > 0 && *command.limit <= 1e6))
-        throw UserError(fmt::format("--limit {}: must be above 0, and 1000000 seconds at most", *command.limit));
+        throw UserError(fmt::format("--limit {}: must be above 0 and at most 1000000 seconds", *command.limit));
 }
 
 void finish_builds(const BenchCommand& command, const BenchReport& report) {
@@ -121,7 +120,7 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
         if (!command.denormals) continue;
         for (BenchRow& row : rows_of(command, session, scene, flushing, format)) {
             row.flushed = true;
-            row.said.kernel += ", flushed";
+            row.result.kernel += ", flushed";
             rows.push_back(std::move(row));
         }
     }
@@ -129,15 +128,15 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
     return rows;
 }
 
-// What would be passed over without a word.
+// Refuses options that would have no effect.
 void refuse_ignored(const CLI::App& parsed, const BenchCommand& command) {
     if (std::ranges::count(command.variants, "torus") < std::max(1L, std::ssize(command.variants))) return;
     for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
         if (parsed.count(option) > 0)
             throw UserError(
-                fmt::format("{} with --variants torus, which has 4x4x4 nodes without a memory limit: leave "
-                            "it out, or add the variant none",
-                            option));
+                fmt::format("{} with --variants torus, which has 4x4x4 nodes without a memory limit: leave out {}, or "
+                            "add the variant none",
+                            option, option));
 }
 
 Scene scene_of(const BenchCommand& command) {
@@ -160,7 +159,7 @@ void bench(const CLI::App& parsed, BenchCommand command) {
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
     command.render.format.clear();
     const Scene scene = scene_of(command);
-    const TunedUse tuned = use_tuned(command.render.no_tuned);
+    const ScopedTunedSource tuned = use_tuned(command.render.no_tuned);
     const RingSettings settings = ring_settings(command.render, scene);
     std::optional<ProgressBar> bar(std::in_place, true, command.build ? "compiling" : "preparing");
     const cl::Device device = choose_device(command.render.device);
@@ -182,7 +181,7 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     fmt::print("{} on {}: {} x {} pixels, {}, {}, {}; {} of 20 ms or more after a warm-up\n", printable(scene.name),
                session.device().name, settings.mapping.width, settings.mapping.height,
                counted(settings.mapping.pes, "PE"), counted(settings.bounces, "bounce"),
-               counted(rows.front().said.rays, "ray"), counted(command.samples, "sample"));
+               counted(rows.front().result.rays, "ray"), counted(command.samples, "sample"));
     print_rows(rows);
     print_tuned(rows);
     if (command.denormals) print_denormals(rows);
@@ -197,39 +196,66 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     finish(command, baseline, std::move(now));
 }
 
+std::vector<ShortHelp> bench_short_help() {
+    const char *const options = "Options", *const more = "More options";
+    return {{"--variants", options, "Time whole renders instead of the trace kernel"},
+            {"--format", options, "Formats to compare; default: fp32,spa22"},
+            {"--lanes", options, "Rays per work-item; default: 1, 4, 8 and 16 in turn"},
+            {"--size", options, "Size in pixels, 1..16384 a side; default: the scene's"},
+            {"--machine", options, "spa, grande, spa1, cap, pixel-machine or links"},
+            {"--samples", options, "Samples of each row, 1..1000"},
+            {"--device", options, "OpenCL device: its number, type or part of its name"},
+            {"--report", options, "Write the rows as JSON; -: stdout"},
+            {"--compare", options, "Compare with an earlier report: exit code 4 if slower"},
+            {"--tolerance", options, "Of --compare: percent, 0..100"},
+            {"--page", options, "Write rates, comparison and roofline as an HTML page"},
+            {"--accel", more, "Acceleration structure in each PE's memory"},
+            {"--pes", more, "Number of PEs; default: the machine's"},
+            {"--mapping", more, "Pixels to PEs: cyclic, column, rows, blocks, ..."},
+            {"--bounces", more, "Reflections and refractions, 0..31; default: 8"},
+            {"--group", more, "Work-items per work-group, 1..1024"},
+            {"--no-tuned", more, "Ignore the values that raya tune stored"},
+            {"--denormals", more, "Time every row also with denormals flushed to 0"},
+            {"--build", more, "Measure only compilation"},
+            {"--limit", more, "Of --build: maximum seconds of a kernel"},
+            {"--kernel-dir", more, "Read the kernels from this folder"}};
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& program) {
     CLI::App* command =
         program.add_subcommand("bench", "Measure rays per second by kernel, lanes and format on this device");
     add_examples(*command, {{"raya bench --size 256 --report today.json",
-                             "Rates of fp32 and e6m15 at all widths of lanes, kept for a later comparison"},
+                             "Measure fp32 and e6m15 at all numbers of lanes, with a report for later comparison"},
                             {"raya bench scenes/centre.nff --size 128 --samples 3 --variants none,bvh",
-                             "Whole renders of a scene, every ray against all objects and down a tree of boxes"}});
+                             "Time whole renders of a scene, without accelerator and with a BVH"}});
     const auto options = std::make_shared<BenchCommand>();
-    OptionGroup group(*command, "What is measured");
+    add_short_help(*command, bench_short_help());
+    OptionGroup group(*command, "Workload");
     add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
              "Scene in NFF; -: stdin; default: 30 spheres and a plane, 512 x 512");
     add_render_options(*command, options->render, false);
-    add_value(*command, "--variants", options->variants,
-              "Time whole renders in place of the trace kernel, in these variants, with commas between them: none, "
-              "grid, bvh: the ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; the first "
-              "is what the others are held against")
+    add_value(
+        *command, "--variants", options->variants,
+        "Time whole renders instead of the trace kernel, in these variants, comma-separated: none, grid, bvh: the "
+        "ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; the others are compared with "
+        "the first")
         ->delimiter(',')
-        ->allow_extra_args(false)  // what follows is the scene
+        ->allow_extra_args(false)  // the next argument is the scene
         ->type_name("none,grid,bvh,torus")
         ->excludes(command->get_option("--accel"));
     CLI::Option* denormals = command->add_flag(
         "--denormals", options->denormals,
-        "Time every row once more with denormal numbers taken for 0: where that is faster, lanes compute with them");
+        "Time every row also with denormal numbers flushed to 0: if that is faster, denormals cost time");
     CLI::Option* build =
         command
             ->add_flag("--build", options->build,
-                       "List what the driver's compiler takes from source, for each kernel and format of these variants: "
-                       "seconds of the build and of the first launch, size of the binary; nothing else is timed")
+                       "Measure only compilation from source, for each kernel and format of the variants: seconds of "
+                       "the build and of the first launch, size of the binary")
             ->excludes(denormals);
     add_value(*command, "--limit", options->limit,
-              "With --build: seconds that one kernel may take; exit code 4 where one takes longer")
+              "With --build: maximum seconds of a kernel; exit code 4 if one takes longer")
         ->type_name("SECONDS")
         ->needs(build);
     add_value(*command, "--samples", options->samples,
@@ -238,25 +264,24 @@ void add_bench_command(CLI::App& program) {
         ->capture_default_str();
     group.next("Report and comparison");
     add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
-             "Write the rows, for a later --compare; -: stdout, and the tables on stderr");
+             "Write the rows as JSON, for a later --compare; -: stdout, with the tables on stderr");
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
-             "Write rates, comparison and roofline as a page for a browser; it is what raya page makes of the report. "
-             "Measures the device's peak for each format and width of lanes, some seconds each")
+             "Write rates, comparison and roofline as an HTML page; raya page makes the same of a report. Measures the "
+             "device's peak for each format and number of lanes, some seconds each")
         ->excludes(build);
     CLI::Option* compare =
         add_file(*command, FileUse::kRead, "--compare", options->baseline, "FILE.json",
-                 "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
-                 "image another one")
+                 "Compare the rows with those of an earlier --report: exit code 4 if a row is slower or its image "
+                 "differs")
             ->excludes(build);
     add_value(*command, "--tolerance", options->tolerance,
-              "With --compare: percent of its rate, 0..100, that a row may lose; it is slower where its best "
-              "and its median have both lost more")
+              "With --compare: tolerance in percent, 0..100; a row is slower if both its best and its median rate fall "
+              "by more")
         ->type_name("PERCENT")
         ->capture_default_str()
         ->needs(compare);
     command->get_option("--format")
-        ->description(
-            "Formats to compare, with commas between them: fp32, spa22 (e6m15), eXmY[t]; default: fp32,spa22");
+        ->description("Formats to compare, comma-separated: fp32, spa22 (e6m15), eXmY[t]; default: fp32,spa22");
     command->callback([command, options] { bench(*command, *options); });
 }
 

@@ -16,33 +16,38 @@ std::string seconds(double s) { return fmt::format("{:.2f}", s); }
 std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingSettings settings,
                                      const std::vector<NumberFormat>& formats,
                                      const std::vector<std::string>& variants) {
-    // Drivers know a kernel again by its source and options.
-    const std::string unlike_others = fmt::format("-DRAYA_BUILT={}", Clock::now().time_since_epoch().count());
-    settings.kernels.sources.more_options.push_back(unlike_others);
-    std::vector<KernelBuild> noted;
-    session.note_builds(&noted);
+    // Drivers cache kernels by source and options: an option that no earlier build had.
+    const std::string unique_option = fmt::format("-DRAYA_BUILT={}", Clock::now().time_since_epoch().count());
+    settings.kernels.sources.more_options.push_back(unique_option);
+    std::vector<KernelBuild> recorded;
+    session.record_builds(&recorded);
     std::vector<BenchBuild> builds;
     for (const NumberFormat& format : formats) {
         for (const std::string& variant : variants) {
             RingSettings s = settings;
-            std::uint32_t lanes = render_row(session, scene, s, format, variant).said.lanes;
+            std::uint32_t lanes = render_row(session, scene, s, format, variant).result.lanes;
             if (variant != "torus" && variant == variants.front() && !s.dynamic)
                 for (const AntialiasMethod method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
                     s.antialias.method = method;
-                    lanes = render_row(session, scene, s, format, variant).said.lanes;
+                    lanes = render_row(session, scene, s, format, variant).result.lanes;
                 }
-            for (KernelBuild& one : noted) {
+            for (KernelBuild& one : recorded) {
                 std::string& options = one.options;
-                if (const auto at = options.find(unlike_others); at != options.npos)
-                    options.erase(at > 0 ? at - 1 : at, unlike_others.size() + (at > 0 ? 1 : 0));
-                builds.push_back({.kernel = one.name, .variant = variant, .format = format_name(format), .lanes = lanes,
-                                  .build_s = one.build_s, .launch_s = one.launch_s, .binary_bytes = one.binary_bytes(),
+                if (const auto at = options.find(unique_option); at != options.npos)
+                    options.erase(at > 0 ? at - 1 : at, unique_option.size() + (at > 0 ? 1 : 0));
+                builds.push_back({.kernel = one.name,
+                                  .variant = variant,
+                                  .format = format_name(format),
+                                  .lanes = lanes,
+                                  .build_s = one.build_s,
+                                  .launch_s = one.launch_s,
+                                  .binary_bytes = one.binary_bytes(),
                                   .build_options = options});
             }
-            noted.clear();
+            recorded.clear();
         }
     }
-    session.note_builds(nullptr);
+    session.record_builds(nullptr);
     return builds;
 }
 
@@ -56,8 +61,8 @@ void print_builds(const std::vector<BenchBuild>& builds) {
         build_s += one.build_s;
         launch_s += one.launch_s;
     }
-    fmt::print("{}first launch: with what the driver compiles then, and the launch itself\n", text_table(table));
-    fmt::print("in all {} s of builds and {} s of first launches\n", seconds(build_s), seconds(launch_s));
+    fmt::print("{}first launch: includes compilation that the driver defers to it\n", text_table(table));
+    fmt::print("total: {} s of builds, {} s of first launches\n", seconds(build_s), seconds(launch_s));
 }
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// `raya bench --build`: what the driver's compiler takes for the kernels of each format and variant.
+// `raya bench --build`: compile times of the kernels of each format and variant.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,11 +10,11 @@
 
 namespace raya {
 
-/// Builds and launches, from source whatever the driver keeps, the kernels that renders of these formats and variants
-/// (none, grid, bvh, torus) need, those that smooth among the first variant's. DeviceError; UserError for a variant
-/// that there is not.
+/// Builds and launches the kernels that renders in these formats and variants (none, grid, bvh, torus) need, bypassing
+/// the driver's cache. The first variant includes the anti-aliasing kernels. DeviceError; UserError: unknown variant.
 std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingSettings settings,
-                                     const std::vector<NumberFormat>& formats, const std::vector<std::string>& variants);
+                                     const std::vector<NumberFormat>& formats,
+                                     const std::vector<std::string>& variants);
 
 void print_builds(const std::vector<BenchBuild>& builds);
 

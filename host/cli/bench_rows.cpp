@@ -8,7 +8,7 @@
 #include <memory>
 #include <set>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/measure.hpp"
 #include "host/error.hpp"
 #include "host/image/image.hpp"
@@ -34,8 +34,8 @@ std::string array_text(const RingSettings& s) {
     return text + ", accel " + accel_text(s.accel);
 }
 
-BenchMeasurement said_of(const std::string& kernel, const Scene& scene, const RingSettings& settings,
-                         const std::string& array) {
+BenchMeasurement make_measurement(const std::string& kernel, const Scene& scene, const RingSettings& settings,
+                                  const std::string& array) {
     return {.kernel = kernel,
             .scene = scene.name,
             .size = fmt::format("{}x{}", settings.mapping.width, settings.mapping.height),
@@ -44,20 +44,20 @@ BenchMeasurement said_of(const std::string& kernel, const Scene& scene, const Ri
             .hash = {}};
 }
 
-// What a renderer's first image says, and how to render more of them: `seconds(result)` is what is measured of one.
+// A row from a renderer's first image. `seconds(result)` is the measured time of an image.
 template <class Renderer, class Seconds>
-BenchRow row_of(BenchMeasurement said, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
+BenchRow row_of(BenchMeasurement measurement, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
                 const EventCounts& (*events)(const decltype(renderer->render())&), Seconds seconds,
                 std::optional<KernelWork> (*work)(const RingSettings&, const decltype(renderer->render())&) = nullptr,
                 const RingSettings& settings = {}) {
     const auto first = renderer->render();
-    said.lanes = first.lanes;
-    said.group_size = first.group_size;
-    said.rays = ray_count(events(first));
-    said.hash = pixel_hash(first.image);
-    said.build_options = first.build_options;
+    measurement.lanes = first.lanes;
+    measurement.group_size = first.group_size;
+    measurement.rays = ray_count(events(first));
+    measurement.hash = pixel_hash(first.image);
+    measurement.build_options = first.build_options;
     return {.format = format,
-            .said = std::move(said),
+            .result = std::move(measurement),
             .events = events(first),
             .build_s = first.build_s,
             .tuned = first.tuned,
@@ -73,7 +73,7 @@ std::optional<KernelWork> trace_work(const RingSettings& settings, const RingRes
 }
 
 TorusSettings torus_of(const RingSettings& s) {
-    TorusSettings t = usual_torus({s.mapping.width, s.mapping.height});
+    TorusSettings t = default_torus({s.mapping.width, s.mapping.height});
     t.bounces = s.bounces;
     t.format = s.format;
     t.sampling = s.sampling;
@@ -81,14 +81,14 @@ TorusSettings torus_of(const RingSettings& s) {
     return t;
 }
 
-// The first row of the same lanes: what the slow-down of a format is measured against.
+// The first row of the same kernel and lanes: the reference of a format's slow-down.
 const BenchRow& first_of_lanes(const std::vector<BenchRow>& rows, const BenchRow& row) {
     return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) {
-        return r.said.kernel == row.said.kernel && r.said.lanes == row.said.lanes;
+        return r.result.kernel == row.result.kernel && r.result.lanes == row.result.lanes;
     });
 }
 
-// The first row of the same format: what a row is checked against.
+// The first row of the same format: the reference of checks and speed-ups.
 const BenchRow& first_of_format(const std::vector<BenchRow>& rows, const BenchRow& row) {
     return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) { return r.format == row.format; });
 }
@@ -99,7 +99,7 @@ BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, 
                    std::uint32_t lanes) {
     settings.format = format;
     settings.kernels.lanes = lanes;
-    return row_of(said_of("trace", scene, settings, array_text(settings)), format,
+    return row_of(make_measurement("trace", scene, settings, array_text(settings)), format,
                   std::make_shared<RingRenderer>(session, scene, settings), events_of_ring, trace_seconds, trace_work,
                   settings);
 }
@@ -112,11 +112,12 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
     if (what.torus) {
         const TorusSettings t = torus_of(s);
         const std::string array = fmt::format("4x4x4 nodes, torus3d, 4x4x4 voxels, {} bounces", t.bounces);
-        return row_of(said_of("torus", scene, s, array), format, std::make_shared<TorusRenderer>(session, scene, t),
-                      events_of_torus, [](const TorusResult& r) { return r.render_s; });
+        return row_of(make_measurement("torus", scene, s, array), format,
+                      std::make_shared<TorusRenderer>(session, scene, t), events_of_torus,
+                      [](const TorusResult& r) { return r.render_s; });
     }
     s.accel = {.kind = static_cast<AccelKind>(what.accel)};
-    return row_of(said_of("render, " + variant, scene, s, array_text(s)), format,
+    return row_of(make_measurement("render, " + variant, scene, s, array_text(s)), format,
                   std::make_shared<RingRenderer>(session, scene, s), events_of_ring,
                   [](const RingResult& r) { return r.render_s; });
 }
@@ -125,12 +126,13 @@ void check_rows(const std::vector<BenchRow>& rows) {
     for (const BenchRow& row : rows) {
         if (row.flushed) continue;
         const BenchRow& first = first_of_format(rows, row);
-        const bool same_counts = row.said.kernel != first.said.kernel || row.events == first.events;
-        if (row.said.hash == first.said.hash && row.said.rays == first.said.rays && same_counts) continue;
+        const bool same_counts = row.result.kernel != first.result.kernel || row.events == first.events;
+        if (row.result.hash == first.result.hash && row.result.rays == first.result.rays && same_counts) continue;
         throw DeviceError(fmt::format(
-            "{}: {}, {} lanes gives another image than {}, {} lanes: {} and {}; the device or its compiler is wrong",
-            row.said.format, row.said.kernel, row.said.lanes, first.said.kernel, first.said.lanes, row.said.hash,
-            first.said.hash));
+            "{}: {}, {} lanes: the image or its counts differ from {}, {} lanes: {} and {}; the device or its compiler "
+            "is wrong",
+            row.result.format, row.result.kernel, row.result.lanes, first.result.kernel, first.result.lanes,
+            row.result.hash, first.result.hash));
     }
 }
 
@@ -140,9 +142,9 @@ void take_samples(std::vector<BenchRow>& rows, std::uint32_t samples) {
         for (std::size_t r = 0; r < rows.size(); ++r) seconds[r].push_back(mean_seconds(rows[r].image_s));
     for (std::size_t r = 0; r < rows.size(); ++r) {
         std::ranges::sort(seconds[r]);
-        rows[r].said.best_s = seconds[r].front();
-        rows[r].said.median_s = seconds[r][samples / 2];
-        rows[r].said.samples = static_cast<int>(samples);
+        rows[r].result.best_s = seconds[r].front();
+        rows[r].result.median_s = seconds[r][samples / 2];
+        rows[r].result.samples = static_cast<int>(samples);
     }
 }
 
@@ -150,19 +152,20 @@ void print_rows(const std::vector<BenchRow>& rows) {
     std::vector<std::vector<std::string>> table = {{"kernel", "format", "lanes", "group", "Mrays/s best", "median",
                                                     "ms best", "median", "speed-up", "slow-down", "build s", "pixels"}};
     for (const BenchRow& row : rows) {
-        table.push_back({row.said.kernel, row.said.format, std::to_string(row.said.lanes),
-                         std::to_string(row.said.group_size), fmt::format("{:.1f}", row.said.best_rate()),
-                         fmt::format("{:.1f}", row.said.median_rate()), fmt::format("{:.2f}", 1e3 * row.said.best_s),
-                         fmt::format("{:.2f}", 1e3 * row.said.median_s),
-                         fmt::format("{:.2f}", first_of_format(rows, row).said.median_s / row.said.median_s),
-                         fmt::format("{:.2f}", row.said.median_s / first_of_lanes(rows, row).said.median_s),
-                         fmt::format("{:.2f}", row.build_s), row.said.hash.substr(0, 8)});
+        table.push_back({row.result.kernel, row.result.format, std::to_string(row.result.lanes),
+                         std::to_string(row.result.group_size), fmt::format("{:.1f}", row.result.best_rate()),
+                         fmt::format("{:.1f}", row.result.median_rate()),
+                         fmt::format("{:.2f}", 1e3 * row.result.best_s),
+                         fmt::format("{:.2f}", 1e3 * row.result.median_s),
+                         fmt::format("{:.2f}", first_of_format(rows, row).result.median_s / row.result.median_s),
+                         fmt::format("{:.2f}", row.result.median_s / first_of_lanes(rows, row).result.median_s),
+                         fmt::format("{:.2f}", row.build_s), row.result.hash.substr(0, 8)});
     }
     fmt::print("{}", text_table(table));
     fmt::print(
-        "speed-up: over the first row of the same format; slow-down: against the first row of the same kernel and "
+        "speed-up: over the first row of the same format; slow-down: relative to the first row of the same kernel and "
         "lanes (medians);\n"
-        "pixels: hash of the image, checked to be the same in all rows of a format\n");
+        "pixels: hash of the image, checked to be equal in all rows of a format\n");
 }
 
 void print_operations(Session& session, const std::vector<NumberFormat>& formats, std::uint32_t lanes, int samples) {
@@ -179,7 +182,7 @@ void print_operations(Session& session, const std::vector<NumberFormat>& formats
             table.back().push_back(
                 fmt::format("{:.2f} ({:.1f} x)", rates[i] * 1e-9, rates[i] > 0 ? first[i] / rates[i] : 0));
     }
-    fmt::print("\noperations of the number layer, best of {}; in brackets the time against {}\n{}", samples,
+    fmt::print("\noperations of the number layer, best of {}; in brackets the time relative to {}\n{}", samples,
                format_name(formats.front()), text_table(table));
 }
 
@@ -195,16 +198,17 @@ void print_denormals(const std::vector<BenchRow>& rows) {
         {"kernel", "format", "lanes", "ms best", "flushed", "ratio", "median", "flushed", "ratio"}};
     for (const BenchRow& row : rows)
         for (const BenchRow& other : rows) {
-            const bool pair = other.flushed && other.said.kernel == row.said.kernel + ", flushed" &&
-                              other.said.format == row.said.format && other.said.lanes == row.said.lanes;
+            const bool pair = other.flushed && other.result.kernel == row.result.kernel + ", flushed" &&
+                              other.result.format == row.result.format && other.result.lanes == row.result.lanes;
             if (!pair) continue;
             const auto ms = [](double s) { return fmt::format("{:.2f}", 1e3 * s); };
-            table.push_back({row.said.kernel, row.said.format, std::to_string(row.said.lanes), ms(row.said.best_s),
-                             ms(other.said.best_s), fmt::format("{:.2f}", row.said.best_s / other.said.best_s),
-                             ms(row.said.median_s), ms(other.said.median_s),
-                             fmt::format("{:.2f}", row.said.median_s / other.said.median_s)});
+            table.push_back({row.result.kernel, row.result.format, std::to_string(row.result.lanes),
+                             ms(row.result.best_s), ms(other.result.best_s),
+                             fmt::format("{:.2f}", row.result.best_s / other.result.best_s), ms(row.result.median_s),
+                             ms(other.result.median_s),
+                             fmt::format("{:.2f}", row.result.median_s / other.result.median_s)});
         }
-    fmt::print("\nwith denormal numbers, and with -cl-denorms-are-zero; above 1: lanes compute with them\n{}",
+    fmt::print("\nwith denormal numbers, and with -cl-denorms-are-zero; ratio above 1: denormals cost time\n{}",
                text_table(table));
 }
 
@@ -212,16 +216,16 @@ void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const
     std::map<std::pair<std::string, std::uint32_t>, DevicePeak> peaks;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (!rows[i].work) continue;
-        BenchMeasurement& said = report.rows[i];
+        BenchMeasurement& measurement = report.rows[i];
         try {
-            const auto key = std::pair(said.format, said.lanes);
-            if (!peaks.contains(key)) peaks[key] = device_peak(device, rows[i].format, said.lanes);
+            const auto key = std::pair(measurement.format, measurement.lanes);
+            if (!peaks.contains(key)) peaks[key] = device_peak(device, rows[i].format, measurement.lanes);
             const LabelSummary best{.label = rows[i].work->label,
                                     .kind = "kernel",
-                                    .total_ns = static_cast<std::uint64_t>(said.best_s * 1e9)};
-            said.roofline = roofline(peaks[key], {*rows[i].work}, {best});
-        } catch (const DeviceError& error) {  // the rates stand
-            said.roofline.emplace().lacking = error.what();
+                                    .total_ns = static_cast<std::uint64_t>(measurement.best_s * 1e9)};
+            measurement.roofline = roofline(peaks[key], {*rows[i].work}, {best});
+        } catch (const DeviceError& error) {  // the rates are valid
+            measurement.roofline.emplace().unavailable = error.what();
         }
     }
 }
@@ -233,7 +237,7 @@ BenchReport bench_report(const std::vector<BenchRow>& rows, const DeviceInfo& de
                        .version = device.version,
                        .driver = device.driver,
                        .rows = {}};
-    for (const BenchRow& row : rows) report.rows.push_back(row.said);
+    for (const BenchRow& row : rows) report.rows.push_back(row.result);
     return report;
 }
 

@@ -15,10 +15,10 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kMostBytes = 1 << 28;
+constexpr std::uint64_t kMaxBytes = 1 << 28;
 
 std::string text_of(const std::string& file) try {
-    std::string text = read_file(file, Pipes::kRead, kMostBytes);
+    std::string text = read_file(file, Pipes::kRead, kMaxBytes);
     if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     return text;
 } catch (const UnreadableFile& why) {
@@ -33,7 +33,7 @@ double angle_of(const std::string& text) {
     return angle;
 }
 
-// `words`: pairs of a name and its value.
+// `words`: alternating names and values.
 ViewOptions camera_of(std::istringstream& words) {
     std::map<std::string, std::string> values = {{"from", ""}, {"at", ""}, {"up", ""}, {"angle", ""}};
     for (std::string name, value; words >> name;) {
@@ -67,7 +67,7 @@ std::vector<View> read_camera_path(const std::string& file, const View& view) {
             throw UserError(fmt::format("{}, line {}: {}", input_name(file), number, why.what()));
         }
     }
-    if (cameras.empty()) throw UserError(fmt::format("{}: no camera; each line is one", input_name(file)));
+    if (cameras.empty()) throw UserError(fmt::format("{}: no camera; write one camera per line", input_name(file)));
     return cameras;
 }
 

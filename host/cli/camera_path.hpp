@@ -1,4 +1,4 @@
-// Files of cameras, one for each frame.
+// Camera files of --camera-path: one camera for each frame.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,9 +7,8 @@
 
 namespace raya {
 
-/// A camera for each line: what it says in the words of the command line, "from 1,2,3 at 0,0,0 up 0,0,1 angle 40" or
-/// some of those, in place of what `view` has. Empty lines and what follows a # are passed over. UserError with file,
-/// line and reason; for a file that cannot be read or has no camera.
+/// Reads one camera per line: "from 1,2,3 at 0,0,0 up 0,0,1 angle 40" or some of these; the others are as in `view`.
+/// Ignores empty lines and comments after #. UserError with file, line and reason.
 std::vector<View> read_camera_path(const std::string& file, const View& view);
 
 }  // namespace raya

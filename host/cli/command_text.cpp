@@ -3,45 +3,48 @@
 #include <algorithm>
 #include <cctype>
 #include <sstream>
+#include <stdexcept>
+#include <utility>
 
 namespace raya {
 namespace {
 
-bool is_word(const std::string& text) {
+// Lower-case letters, digits and hyphens.
+bool is_keyword(const std::string& text) {
     return text.size() > 1 && std::all_of(text.begin(), text.end(), [](unsigned char c) {
                return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '-';
            });
 }
 
-// "none|bvh|grid[:AxBxC]" as none, bvh, grid; nothing where a part is no word.
-std::vector<std::string> words_between(const std::string& text, char separator) {
-    std::vector<std::string> words;
+// "none|bvh|grid[:AxBxC]" as none, bvh, grid; empty if a part is not a keyword.
+std::vector<std::string> choices_between(const std::string& text, char separator) {
+    std::vector<std::string> choices;
     for (std::size_t from = 0; from <= text.size();) {
         const std::size_t to = std::min(text.find(separator, from), text.size());
         const std::string part = text.substr(from, to - from);
-        words.push_back(part.substr(0, part.find('[')));
-        if (!is_word(words.back())) return {};
+        choices.push_back(part.substr(0, part.find('[')));
+        if (!is_keyword(choices.back())) return {};
         from = to + 1;
     }
-    return words.size() > 1 ? words : std::vector<std::string>{};
+    return choices.size() > 1 ? choices : std::vector<std::string>{};
 }
 
-bool starts_with_any(const std::string& text, const std::vector<std::string>& starts) {
+bool starts_with_one_of(const std::string& text, const std::vector<std::string>& starts) {
     return std::any_of(starts.begin(), starts.end(), [&](const std::string& one) { return text.starts_with(one); });
 }
 
 constexpr std::size_t kIndent = 2;        // of names below a heading
-constexpr std::size_t kFarIndent = 6;     // of what is said of them, where it does not stand beside them
-constexpr std::size_t kLongestName = 24;  // a longer one has a line of its own
-constexpr std::size_t kTwoColumns = 60;   // letters that a line must have for names and what is said of them
+constexpr std::size_t kFarIndent = 6;     // of descriptions below the names
+constexpr std::size_t kLongestName = 24;  // a longer name has a line of its own
+constexpr std::size_t kTwoColumns = 60;   // minimum width for descriptions next to the names
 
 struct Entry {
-    std::string name, said;
+    std::string name, description;
 };
 using Entries = std::vector<Entry>;
 
-/// Words of a text, of which `line` letters are on the current line already. Lines after it begin with `indent` blanks;
-/// one that goes on ends in `end`.
+/// Wraps a text whose first line already has `line` letters. Further lines begin with `indent` blanks; every line but
+/// the last ends with `end`.
 std::string wrapped(const std::string& text, std::size_t line, std::size_t indent, std::size_t width,
                     const std::string& end = "") {
     std::string all;
@@ -65,18 +68,18 @@ std::string wrapped(const std::string& text, std::size_t line, std::size_t inden
 class HelpPage {
   public:
     HelpPage(const CommandText& command, std::size_t width) : width_(width) {
-        for (const Entry& entry : commands_of(command)) make_room(entry.name);
-        for (const OptionText& word : command.words) make_room(names_of(word));
-        for (const OptionText& option : command.options) make_room(names_of(option));
+        for (const Entry& entry : commands_of(command)) widen_for(entry.name);
+        for (const OptionText& argument : command.arguments) widen_for(names_of(argument));
+        for (const OptionText& option : command.options) widen_for(names_of(option));
         for (const std::string& line : lines_of(command.footer))
-            if (is_entry(line)) make_room(entry_of(line).name);
+            if (is_entry(line)) widen_for(entry_of(line).name);
     }
 
     std::string usage(const CommandText& command, const std::string& path) const {
         const std::string begin = "Usage: ";
         std::string text = path;
         if (!command.commands.empty()) text += " COMMAND";
-        for (const OptionText& word : command.words) text += ' ' + in_usage(word);
+        for (const OptionText& argument : command.arguments) text += ' ' + in_usage(argument);
         for (const OptionText& option : command.options)
             if (option.required) text += ' ' + in_usage(option);
         return begin + wrapped(text + " [OPTIONS]", begin.size(), begin.size(), width_);
@@ -88,9 +91,9 @@ class HelpPage {
 
     std::string examples(const std::vector<ExampleText>& all) const {
         std::string text;
-        for (const ExampleText& one : all)  // broken as a shell reads it
+        for (const ExampleText& one : all)  // wrapped with backslashes, for a shell
             text += std::string(kIndent, ' ') + wrapped(one.command, kIndent, kFarIndent, width_, " \\") +
-                    std::string(kFarIndent, ' ') + wrapped(one.says, kFarIndent, kFarIndent, width_);
+                    std::string(kFarIndent, ' ') + wrapped(one.description, kFarIndent, kFarIndent, width_);
         return text;
     }
 
@@ -109,17 +112,18 @@ class HelpPage {
     static Entries options_of(const std::vector<OptionText>& options, const std::string& group) {
         Entries all;
         for (const OptionText& option : options)
-            if (option.group == group) all.push_back({names_of(option), said_of(option)});
+            if (option.group == group) all.push_back({names_of(option), description_of(option)});
         return all;
     }
 
-    static Entries words_of(const std::vector<OptionText>& words) {
+    static Entries arguments_of(const CommandText& command) {
         Entries all;
-        for (const OptionText& word : words) all.push_back({names_of(word), said_of(word)});
+        for (const OptionText& argument : command.arguments)
+            all.push_back({names_of(argument), description_of(argument)});
         return all;
     }
 
-    /// Paragraphs below all options, some of them lists of names.
+    /// The footer: paragraphs, some of them lists of names.
     std::string closing(const std::string& footer) const {
         std::string text;
         for (const std::string& line : lines_of(footer))
@@ -128,7 +132,7 @@ class HelpPage {
     }
 
   private:
-    // "  NAME   what it is"
+    // "  NAME   description"
     static bool is_entry(const std::string& line) {
         return line.starts_with("  ") && line.find("  ", kIndent) != std::string::npos;
     }
@@ -148,29 +152,29 @@ class HelpPage {
     static std::string names_of(const OptionText& option) {
         std::string text;
         for (const std::string& name : option.names) text += (text.empty() ? "" : ", ") + name;
-        return option.is_flag() || option.is_word() ? text : text + ' ' + option.value;
+        return option.is_flag() || option.is_argument() ? text : text + ' ' + option.value;
     }
 
     static std::string in_usage(const OptionText& o) {
         const std::string text =
-            o.is_word() ? o.names.front() + (o.repeated ? "..." : "") : o.names.front() + ' ' + o.value;
+            o.is_argument() ? o.names.front() + (o.repeated ? "..." : "") : o.names.front() + ' ' + o.value;
         return o.required ? text : '[' + text + ']';
     }
 
-    void make_room(const std::string& name) {
+    void widen_for(const std::string& name) {
         if (name.size() <= kLongestName) longest_ = std::max(longest_, name.size());
     }
 
     std::string line_of(const Entry& entry) const {
-        const bool beside = width_ >= kTwoColumns;
-        const std::size_t column = beside ? kIndent + longest_ + 2 : kFarIndent;
+        const bool two_columns = width_ >= kTwoColumns;
+        const std::size_t column = two_columns ? kIndent + longest_ + 2 : kFarIndent;
         std::string text = std::string(kIndent, ' ') + entry.name;
-        if (entry.said.empty()) return text + '\n';
-        if (beside && entry.name.size() <= longest_)
+        if (entry.description.empty()) return text + '\n';
+        if (two_columns && entry.name.size() <= longest_)
             text += std::string(column - text.size(), ' ');
         else
             text += '\n' + std::string(column, ' ');
-        return text + wrapped(entry.said, column, column, width_);
+        return text + wrapped(entry.description, column, column, width_);
     }
 
     std::size_t width_;
@@ -181,19 +185,21 @@ class HelpPage {
 
 ValueText value_of(const OptionText& option) {
     using enum ValueText::Kind;
-    if (!option.words.empty()) return {.kind = option.repeated ? kList : kWords, .words = option.words};
-    if (const auto words = words_between(option.value, '|'); !words.empty()) return {.kind = kWords, .words = words};
-    if (const auto words = words_between(option.value, ','); !words.empty()) return {.kind = kList, .words = words};
+    if (!option.choices.empty()) return {.kind = option.repeated ? kList : kChoice, .choices = option.choices};
+    if (const auto choices = choices_between(option.value, '|'); !choices.empty())
+        return {.kind = kChoice, .choices = choices};
+    if (const auto choices = choices_between(option.value, ','); !choices.empty())
+        return {.kind = kList, .choices = choices};
     if (option.value.starts_with("DIR")) return {.kind = kFolder};
-    if (!starts_with_any(option.value, {"FILE", "SCENE", "IMAGE"})) return {};
+    if (!starts_with_one_of(option.value, {"FILE", "SCENE", "IMAGE"})) return {};
     const std::size_t dot = std::min(option.value.find('.'), option.value.size());
     std::string extension = option.value.substr(dot);
     return {.kind = kFile, .extension = extension.substr(0, extension.find('['))};
 }
 
-std::string said_of(const OptionText& option) {
+std::string description_of(const OptionText& option) {
     if (option.help.empty()) return option.value;
-    return option.usual.empty() ? option.help : option.help + "; default: " + option.usual;
+    return option.default_value.empty() ? option.help : option.help + "; default: " + option.default_value;
 }
 
 std::vector<std::string> groups_of(const CommandText& command) {
@@ -203,11 +209,11 @@ std::vector<std::string> groups_of(const CommandText& command) {
     return groups;
 }
 
-std::string brief(const std::string& help, std::size_t most) {
+std::string brief(const std::string& help, std::size_t max_letters) {
     std::string text = help.substr(0, std::min({help.find("; "), help.find(". "), help.find('\n')}));
-    if (text.size() <= most) return text;
-    const std::size_t space = text.rfind(' ', most - 4);
-    return text.substr(0, space == std::string::npos ? most - 4 : space) + " ...";
+    if (text.size() <= max_letters) return text;
+    const std::size_t space = text.rfind(' ', max_letters - 4);
+    return text.substr(0, space == std::string::npos ? max_letters - 4 : space) + " ...";
 }
 
 std::string help_text(const CommandText& command, const std::string& path, std::size_t width) {
@@ -218,10 +224,28 @@ std::string help_text(const CommandText& command, const std::string& path, std::
     };
     add("Examples", page.examples(command.examples));
     add("Commands", page.entries(HelpPage::commands_of(command)));
-    add("Arguments", page.entries(HelpPage::words_of(command.words)));
+    add("Arguments", page.entries(HelpPage::arguments_of(command)));
     for (const std::string& group : groups_of(command))
         add(group, page.entries(HelpPage::options_of(command.options, group)));
     return command.footer.empty() ? text : text + '\n' + page.closing(command.footer);
+}
+
+CommandText short_form(CommandText command, const std::string& path) {
+    if (command.short_help.empty()) return command;
+    std::vector<OptionText> shown;
+    for (const ShortHelp& one : command.short_help) {
+        const auto option = std::find_if(command.options.begin(), command.options.end(), [&](const OptionText& o) {
+            return std::find(o.names.begin(), o.names.end(), one.name) != o.names.end();
+        });
+        if (option == command.options.end()) throw std::logic_error("short help of " + path + ": no " + one.name);
+        shown.push_back(*option);
+        shown.back().group = one.group;
+        if (!one.help.empty()) shown.back().help = one.help;
+    }
+    command.footer = path + " --help-all prints all " + std::to_string(command.options.size()) +
+                     " options in full.\n\n" + command.footer;
+    command.options = std::move(shown);
+    return command;
 }
 
 }  // namespace raya

@@ -17,17 +17,17 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kDefault = 80, kMinimum = 40, kMaximum = 120, kSane = 10'000;
+constexpr std::size_t kDefaultWidth = 80, kMinWidth = 40, kMaxWidth = 120, kMaxColumns = 10'000;
 
-/// 0: nothing that can be meant.
-std::size_t named_width() {
+/// The environment variable COLUMNS; 0 if it is not a number up to kMaxColumns.
+std::size_t columns_variable() {
     const char* const columns = std::getenv("COLUMNS");
     if (columns == nullptr) return 0;
     const std::string_view text = columns;
     std::size_t width = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), width);
-    const bool sane = error == std::errc{} && end == text.data() + text.size() && width <= kSane;
-    return sane ? width : 0;
+    const bool legal = error == std::errc{} && end == text.data() + text.size() && width <= kMaxColumns;
+    return legal ? width : 0;
 }
 
 std::size_t terminal_width() {
@@ -35,42 +35,42 @@ std::size_t terminal_width() {
     return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
-/// Letters of a line for text on stdout, 40..120: what the environment variable COLUMNS says, where it is a number from
-/// 1 to 10,000, else the terminal; 80 where stdout is none.
+/// Letters of a line on stdout, 40..120: COLUMNS, else the terminal's width, else 80.
 std::size_t text_width() {
-    std::size_t width = named_width();
+    std::size_t width = columns_variable();
     if (width == 0) width = terminal_width();
-    return width == 0 ? kDefault : std::clamp(width, kMinimum, kMaximum);
+    return width == 0 ? kDefaultWidth : std::clamp(width, kMinWidth, kMaxWidth);
 }
 
-// "{1,4,8,16}", which CLI::IsMember shows behind a value's name, as words.
-std::vector<std::string> members_in(const std::string& type) {
+// CLI::IsMember appends "{1,4,8,16}" to the placeholder of a value.
+std::vector<std::string> is_member_choices(const std::string& type) {
     const std::size_t open = type.find('{'), close = type.rfind('}');
-    std::vector<std::string> words;
-    if (open == std::string::npos || close == std::string::npos || close < open) return words;
+    std::vector<std::string> choices;
+    if (open == std::string::npos || close == std::string::npos || close < open) return choices;
     std::istringstream list(type.substr(open + 1, close - open - 1));
-    for (std::string word; std::getline(list, word, ',');) words.push_back(word);
-    return words;
+    for (std::string one; std::getline(list, one, ',');) choices.push_back(one);
+    return choices;
 }
 
 }  // namespace
 
-std::string HelpFormatter::make_help(const CLI::App* command, std::string path, CLI::AppFormatMode) const {
-    return help_text(command_text(*command), path, text_width());
+std::string HelpFormatter::make_help(const CLI::App* command, std::string path, CLI::AppFormatMode mode) const {
+    const CommandText text = command_text(*command);
+    return help_text(mode == CLI::AppFormatMode::All ? text : short_form(text, path), path, text_width());
 }
 
-std::vector<ExampleText> HelpFormatter::examples_of(const CLI::App& command) const {
-    const auto found = examples_.find(&command);
-    return found == examples_.end() ? std::vector<ExampleText>{} : found->second;
+HelpFormatter::Texts HelpFormatter::texts_of(const CLI::App& command) const {
+    const auto found = texts_.find(&command);
+    return found == texts_.end() ? Texts{} : found->second;
 }
 
 void add_examples(CLI::App& command, std::vector<ExampleText> examples) {
-    dynamic_cast<HelpFormatter&>(*command.get_formatter()).keep(command, std::move(examples));
+    dynamic_cast<HelpFormatter&>(*command.get_formatter()).texts_of(command).examples = std::move(examples);
 }
 
-std::vector<ExampleText> examples_of(const CLI::App& command) {
-    const auto* const formatter = dynamic_cast<const HelpFormatter*>(command.get_formatter().get());
-    return formatter == nullptr ? std::vector<ExampleText>{} : formatter->examples_of(command);
+void add_short_help(CLI::App& command, std::vector<ShortHelp> options) {
+    command.set_help_all_flag("--help-all", "Print the help of all options and exit");
+    dynamic_cast<HelpFormatter&>(*command.get_formatter()).texts_of(command).short_help = std::move(options);
 }
 
 OptionText option_text(CLI::Option& option) {
@@ -80,13 +80,13 @@ OptionText option_text(CLI::Option& option) {
     if (option.get_positional()) text.names = {option.get_name(true)};
     const std::string type = option.get_type_size() == 0 ? "" : option.get_type_name();
     text.value = type.substr(0, type.find(":{"));
-    text.usual = option.get_default_str();
+    text.default_value = option.get_default_str();
     text.help = option.get_description();
     text.group = option.get_group();
     text.required = option.get_required();
     text.repeated = option.get_items_expected_max() > 1 || option.get_delimiter() != '\0';
-    text.words = offered_words(option);
-    if (text.words.empty()) text.words = members_in(type);
+    text.choices = offered_choices(option);
+    if (text.choices.empty()) text.choices = is_member_choices(type);
     return text;
 }
 
@@ -96,16 +96,22 @@ CommandText text_of(const CLI::App& command) {
     CommandText text;
     text.name = command.get_name();
     text.summary = command.get_description();
-    text.examples = examples_of(command);
+    const auto* const formatter = dynamic_cast<const HelpFormatter*>(command.get_formatter().get());
+    const HelpFormatter::Texts texts = formatter == nullptr ? HelpFormatter::Texts{} : formatter->texts_of(command);
+    text.examples = texts.examples;
+    text.short_help = texts.short_help;
     text.footer = command.get_footer();
     for (const CLI::Option* option : command.get_options()) {
         if (option->get_group().empty()) continue;
-        // Validators, where words are kept, can be read of an option that is not const alone.
+        // CLI11 returns validators, which hold the choices, only of an option that is not const.
         auto& readable = *const_cast<CLI::Option*>(option);
-        (option->get_positional() ? text.words : text.options).push_back(option_text(readable));
+        (option->get_positional() ? text.arguments : text.options).push_back(option_text(readable));
     }
     std::stable_partition(text.options.begin(), text.options.end(),
-                          [](const OptionText& option) { return option.group != kCommonOptions; });
+                          [](const OptionText& option) { return option.group != kGeneralOptions; });
+    if (!text.short_help.empty())
+        for (const OptionText& option : text.options)
+            if (option.group == kGeneralOptions) text.short_help.push_back({option.names.back(), option.group, ""});
     for (const CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; }))
         if (!one->get_group().empty()) text.commands.push_back(text_of(*one));
     return text;
@@ -118,8 +124,8 @@ CommandText command_text(const CLI::App& program) {
     std::vector<std::string> names;
     for (const CommandText& one : text.commands) names.push_back(one.name);
     for (CommandText& one : text.commands)
-        for (OptionText& word : one.words)
-            if (word.value == "COMMAND") word.words = names;
+        for (OptionText& argument : one.arguments)
+            if (argument.value == "COMMAND") argument.choices = names;
     return text;
 }
 

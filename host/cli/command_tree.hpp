@@ -1,4 +1,4 @@
-// What the parser knows of commands and options, as plain text; and help as the parser prints it.
+// Commands and options of the parser as plain text, and the parser's help formatter.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <map>
@@ -9,30 +9,39 @@
 
 namespace raya {
 
-/// Makes help of the tree from which manual pages are made (host/cli/command_tree.hpp), as wide as the terminal. Keeps
-/// the examples of all commands of a program.
+/// Formats help from CommandText, as wide as the terminal. Stores what CLI11 has no field for: the examples and the
+/// short help of each command.
 class HelpFormatter : public CLI::FormatterBase {
   public:
-    /// The help of a command that the words `path` lead to.
+    /// `path`: the command with its parents, "raya generate balls". The short help, if the command has one and `mode`
+    /// is not All.
     std::string make_help(const CLI::App* command, std::string path, CLI::AppFormatMode mode) const override;
 
-    void keep(const CLI::App& command, std::vector<ExampleText> examples) { examples_[&command] = std::move(examples); }
-    std::vector<ExampleText> examples_of(const CLI::App& command) const;
+    struct Texts {
+        std::vector<ExampleText> examples{};
+        std::vector<ShortHelp> short_help{};
+    };
+    Texts& texts_of(const CLI::App& command) { return texts_[&command]; }
+    /// Empty texts for an unknown command.
+    Texts texts_of(const CLI::App& command) const;
 
   private:
-    std::map<const CLI::App*, std::vector<ExampleText>> examples_;
+    std::map<const CLI::App*, Texts> texts_;
 };
 
-/// Says how the command is used: lines for a shell that run where scenes/ lies, each with what it does. The command's
-/// program has a HelpFormatter.
+/// Sets the command's examples: shell commands that run in the folder that contains scenes/. The command's program has
+/// a HelpFormatter.
 void add_examples(CLI::App& command, std::vector<ExampleText> examples);
 
-/// Those of a command; none where its program has another formatter.
-std::vector<ExampleText> examples_of(const CLI::App& command);
+/// Adds --help-all, and lets --help show these options only, in this order, followed by the general ones. The command's
+/// program has a HelpFormatter.
+void add_short_help(CLI::App& command, std::vector<ShortHelp> options);
 
+/// An option of the parser as text.
 OptionText option_text(CLI::Option& option);
 
-/// The program with all its commands, but for what help does not show. A word called COMMAND is one of those.
+/// The program with all its commands, without hidden options and commands. The choices of an argument COMMAND are the
+/// names of the commands.
 CommandText command_text(const CLI::App& program);
 
 }  // namespace raya

@@ -17,9 +17,9 @@
 #include <typeinfo>
 #include <vector>
 
+#include "host/base/child_process.hpp"
 #include "host/base/interruption.hpp"
-#include "host/base/own_process.hpp"
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cli/command_tree.hpp"
@@ -36,26 +36,26 @@
 namespace raya {
 namespace {
 
-constexpr int kExitBug = 1;
+constexpr int kExitInternalError = 1;
 constexpr int kExitCheckFailed = 4;
 
 constexpr const char* kOutOfMemory =
     "out of memory on the host; remedy: fewer pixels, a smaller scene, or more memory (ulimit -v)";
 
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 a fault of raya's own.";
+    "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 an internal error.";
 constexpr const char* kEnvironment =
     "\n\nEnvironment:\n"
-    "  RAYA_DEVICE         the device, where there is no --device\n"
-    "  RAYA_BUILD_OPTIONS  added to every kernel's build options, and told in reports\n"
-    "  RAYA_TUNED          off: take the defaults, not what raya tune has kept\n"
-    "  RAYA_BINARIES       off: compile, whatever render --keep-kernels has kept\n"
+    "  RAYA_DEVICE         the device, unless --device is given\n"
+    "  RAYA_BUILD_OPTIONS  added to every kernel's build options, and listed in reports\n"
+    "  RAYA_TUNED          off: use the defaults, not the values that raya tune stored\n"
+    "  RAYA_BINARIES       off: ignore the kernels that render --cache-kernels stored, and compile\n"
     "  RAYA_PYTHON         the Python that runs studies; default: /usr/bin/python3\n"
     "  RAYA_MPIRUN         the command with which study ranks starts ranks; default: mpirun --bind-to none\n"
     "  RAYA_RANK_TIMEOUT   seconds that a rank waits for the others; default: 600\n"
-    "  XDG_CACHE_HOME      what raya tune keeps lies in raya/ there; default: ~/.cache";
+    "  XDG_CACHE_HOME      raya tune stores its values in raya/ in this folder; default: ~/.cache";
 
-/// Of std::terminate(): memory also ends where no handler is, in a destructor, in a thread or before main().
+/// The handler of std::terminate(). std::bad_alloc may be uncaught: in a destructor, in a thread or before main().
 [[noreturn]] void end_uncaught() {
     const std::type_info* const thrown = abi::__cxa_current_exception_type();
     if (thrown == nullptr || *thrown != typeid(std::bad_alloc)) __gnu_cxx::__verbose_terminate_handler();
@@ -65,19 +65,19 @@ constexpr const char* kEnvironment =
     ::_exit(kExitUserError);
 }
 
-// Before CLI11's own objects are made, which allocate.
+// Runs before the constructors of CLI11's global objects, which allocate.
 [[gnu::constructor(101)]] void handle_uncaught() { std::set_terminate(end_uncaught); }
 
-/// The next files to be opened would be taken for those that are closed. Nothing can be written to a descriptor for
-/// reading, so that what is lost on stdout is seen.
+/// Opens closed standard descriptors, which the next open() would return otherwise. Read-only, so that writing to a
+/// closed stdout still fails.
 void open_standard_files() {
     for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(descriptor, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) < 0) return;
 }
 
-// What goes wrong becomes the last line of what it writes.
+// An error becomes the last line of the worker's output.
 int run_worker(const WorkerOrder& order) {
-    leave_driver_crashes();  // the process that has started this one tells of them
+    restore_crash_signals();  // the parent process reports crashes
     const auto stop = [&](const char* kind, const std::exception& error) {
         send_line(order.lines, {{"error", error.what()}, {"kind", kind}});
         return kExitOk;
@@ -96,8 +96,8 @@ int run_worker(const WorkerOrder& order) {
 
 int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     try {
-        if (ranks.many()) check_alike(ranks, {argv + 1, argv + argc});
-        parse_words(program, {argv + 1, argv + argc});
+        if (ranks.many()) check_same_program(ranks, {argv + 1, argv + argc});
+        parse_arguments(program, {argv + 1, argv + argc});
         return kExitOk;
     } catch (const CLI::ParseError& error) {
         return ranks.first() ? program.exit(error) : kExitOk;  // help, version
@@ -112,49 +112,50 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return ranks.fail(kOutOfMemory, kExitUserError);
     } catch (const std::exception& error) {
-        if (std::ferror(stdout) != 0) return kExitOk;  // it is what could not be printed
-        return ranks.fail(std::string("internal error: ") + error.what(), kExitBug);
+        if (std::ferror(stdout) != 0) return kExitOk;  // flush_stdout() reports it
+        return ranks.fail(std::string("internal error: ") + error.what(), kExitInternalError);
     }
 }
 
-/// `code`, unless a line that was printed is lost.
-int printed(Ranks& ranks, int code) {
+/// Flushes stdout. Returns `code`, or kExitUserError if output was lost.
+int flush_stdout(Ranks& ranks, int code) {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-    if (stdout_is_for_file()) return code;  // what is printed goes to stderr, where it may be lost
+    if (stdout_is_reserved()) return code;  // the text goes to stderr, where it may be lost
     const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
-    ranks.fail(fmt::format("cannot write to stdout{}; name a place with room for it", reason), kExitUserError);
+    ranks.fail(fmt::format("cannot write to stdout{}; redirect it to a file system with free space", reason),
+               kExitUserError);
     return code == kExitOk ? kExitUserError : code;
 }
 
-// Of all ranks the first reports a signal. From the start on: MPI's takes a while.
-void silence_interruptions() {
+// Only rank 0 reports a signal. Called before MPI starts, which takes a while.
+void silence_signals_of_other_ranks() {
     const std::optional<Launch> launch = launched();
-    if (launch && launch->rank != 0) end_silently();
+    if (launch && launch->rank != 0) suppress_interrupt_message();
 }
 
-// Other commands than these two would do the same in every process.
+// Only render and ping distribute their work; other commands would run once in every process.
 void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
     if (!ranks.many()) return;
     for (CLI::App* command : program.get_subcommands({}))
         if (command->get_name() != "render" && command->get_name() != "ping")
             command->preparse_callback([name = command->get_name()](std::size_t) {
-                throw UserError(
-                    fmt::format("{} runs in one process, render in several; remedy: start it without mpirun", name));
+                throw UserError(fmt::format(
+                    "{} runs in one process, only render and ping in several; start it without mpirun", name));
             });
 }
 
 int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
-    const std::shared_ptr<CLI::App> program = whole_program(ranks, build);
+    const std::shared_ptr<CLI::App> program = make_program(ranks, build);
     refuse_many_ranks(*program, ranks);
     try {
-        return ranks.close(printed(ranks, parse_and_run(*program, ranks, argc, argv)));
+        return ranks.close(flush_stdout(ranks, parse_and_run(*program, ranks, argc, argv)));
     } catch (const RankFailure& failure) {
         return ranks.fail(failure);
     }
 }
 
-// What fails before there are ranks fails in every process, and the first says it.
+// An error before ranks exist happens in every process; the first one reports it.
 int fail_at_start(const std::string& text, int code) {
     const std::optional<Launch> launch = launched();
     return !launch || launch->rank == 0 ? Ranks::alone().fail(text, code) : code;
@@ -162,19 +163,19 @@ int fail_at_start(const std::string& text, int code) {
 
 }  // namespace
 
-std::shared_ptr<CLI::App> whole_program(Ranks& ranks, const std::string& build) {
+std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     auto made = std::make_shared<CLI::App>(
-        "raya traces rays on models of distributed-memory array machines, written as OpenCL kernels.", "raya");
+        "A ray tracer on models of distributed-memory array machines, written as OpenCL kernels.", "raya");
     CLI::App& program = *made;
-    program.formatter(std::make_shared<HelpFormatter>());  // commands take it when they are added
+    program.formatter(std::make_shared<HelpFormatter>());  // inherited by the commands
     add_examples(program, {{"raya render scenes/centre.nff -o centre.png",
-                            "Render a scene on a ring of 256 PEs, and print how evenly they were loaded"},
-                           {"raya help render", "All that can be asked of a render"}});
+                            "Render a scene on a ring of 256 PEs and print their load balance"},
+                           {"raya help render", "Print the help of render"}});
     program.require_subcommand(1);
     program
         .set_version_flag("--version", fmt::format("{} ({})", name_and_version(), build),
                           "Print version, commit and build")
-        ->group(kCommonOptions);
+        ->group(kGeneralOptions);
     program.footer(kExitCodes);
     add_render_command(program, ranks);
     add_explore_command(program);
@@ -190,9 +191,9 @@ std::shared_ptr<CLI::App> whole_program(Ranks& ranks, const std::string& build) 
     add_manual_command(program);
     add_completion_command(program);
     add_help_command(program);
-    program.footer(std::string(kExitCodes) + kEnvironment);  // not of the commands, which take it when they are added
+    program.footer(std::string(kExitCodes) + kEnvironment);  // the commands have inherited the shorter one
     add_verbosity_options(program, ranks);
-    // Before the callback of any command. Rank 0 writes; elsewhere folders need not exist.
+    // Runs before the command's callback. Only rank 0 writes files; on other hosts the folders need not exist.
     program.parse_complete_callback([&program, &ranks] {
         const CLI::App* command = &program;
         while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
@@ -203,15 +204,15 @@ std::shared_ptr<CLI::App> whole_program(Ranks& ranks, const std::string& build) 
 
 int run_program(int argc, char** argv, const std::string& build) {
     open_standard_files();
-    end_cleanly_when_interrupted();
-    explain_driver_crashes();
-    silence_interruptions();
+    install_interrupt_handlers();
+    install_crash_handlers();
+    silence_signals_of_other_ranks();
     try {
         if (const auto order = worker_order(argc, argv)) return run_worker(*order);
         const std::unique_ptr<Ranks> ranks = open_ranks();
         if (ranks)
-            name_process_in_crashes(fmt::format("rank {} on {}: ", ranks->rank(), ranks->host()),
-                                    speaking_turn_s(ranks->rank()));
+            set_crash_prefix(fmt::format("rank {} on {}: ", ranks->rank(), ranks->host()),
+                             failure_delay_s(ranks->rank()));
         return run_on(ranks ? *ranks : Ranks::alone(), argc, argv, build);
     } catch (const UserError& error) {
         return fail_at_start(error.what(), kExitUserError);

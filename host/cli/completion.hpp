@@ -1,4 +1,4 @@
-// What completes commands, options and values in a shell.
+// Shell completion of commands, options and values.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,20 +10,19 @@ namespace raya {
 /// "bash", "zsh", "fish".
 const std::vector<std::string>& completed_shells();
 
-/// The script for one of them, which names all commands and options and needs nothing but the shell. Throws
-/// std::logic_error for another.
+/// The completion script of a shell: all commands and options; it needs only the shell. Throws std::logic_error for an
+/// unknown shell.
 std::string completion_script(const CommandText& program, const std::string& shell);
 
-// Those of each shell.
 std::string bash_completion(const CommandText& program);
 std::string zsh_completion(const CommandText& program);
 std::string fish_completion(const CommandText& program);
 
-/// 'text' as one word of a shell, bash's and zsh's: it's as 'it'\''s'.
+/// The text in single quotes, for bash and zsh: it's becomes 'it'\''s'.
 std::string shell_quoted(const std::string& text);
 
-/// Cases of a shell's `case` by a command's words, those with the same `body` together: "'raya generate
+/// The cases of a shell's `case` over command paths; paths with equal bodies share a case: "'raya generate
 /// balls'|'raya generate gears')".
-std::string shell_cases(const std::vector<std::pair<std::string, std::string>>& words_and_bodies);
+std::string shell_cases(const std::vector<std::pair<std::string, std::string>>& paths_and_bodies);
 
 }  // namespace raya

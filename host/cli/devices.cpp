@@ -1,4 +1,4 @@
-// raya devices: every device of every platform, with what matters here.
+// raya devices: the OpenCL devices of all platforms.
 #include <fmt/core.h>
 
 #include "host/cl/device.hpp"
@@ -32,18 +32,18 @@ void list_devices() {
     fmt::print("{}\n", text_table(rows));
     for (const std::string& version : versions) fmt::print("{}\n", version);
     fmt::print(
-        "\nlanes, group: what raya chooses unless given. --device takes a number, a type or a part of a name or "
-        "version; so does RAYA_DEVICE.\nRAYA_BUILD_OPTIONS is added to every kernel's build options and stands in the "
-        "report, e.g. -cl-opt-disable where a compiler is in doubt.\n");
+        "\nlanes, group: the defaults of --lanes and --group. --device takes a number, a type or a part of a name or "
+        "version; so does RAYA_DEVICE.\nRAYA_BUILD_OPTIONS is added to every kernel's build options and listed in the "
+        "report, e.g. -cl-opt-disable to check for a compiler error.\n");
 }
 
 }  // namespace
 
 void add_devices_command(CLI::App& program) {
     CLI::App* command =
-        program.add_subcommand("devices", "List every OpenCL device of every platform, with what matters here");
-    add_examples(*command, {{"raya devices", "The devices that there are, with their numbers"},
-                            {"RAYA_DEVICE=cpu raya devices -v", "The same, and what is asked for on the way"}});
+        program.add_subcommand("devices", "List every OpenCL device of every platform, with its main properties");
+    add_examples(*command, {{"raya devices", "List the devices with their numbers"},
+                            {"RAYA_DEVICE=cpu raya devices -v", "The same, with a log of the steps"}});
     command->callback(list_devices);
 }
 

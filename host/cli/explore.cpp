@@ -1,4 +1,4 @@
-// raya explore SCENE -o FILE.html: one render's costs as a page in which mapping, offset and PEs can be dragged.
+// raya explore SCENE -o FILE.html: the costs of a render as a page with sliders for mapping, offset and PEs.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "host/base/encoding.hpp"
+#include "host/base/log.hpp"
 #include "host/base/progress.hpp"
-#include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cli/command_tree.hpp"
@@ -42,21 +42,21 @@ RingSettings settings_of(const ExploreCommand& command, const Scene& scene) {
     RingSettings settings = ring_settings(command.render, scene);
     if (settings.dynamic)
         throw UserError(fmt::format(
-            "{}: its PEs take their pixels while the machine runs; the explorer shows static mappings: choose cyclic, "
-            "column, rows, blocks, grid, tiles or random{}",
+            "{}: a dynamic mapping; the explorer shows static mappings only: choose cyclic, column, rows, blocks, "
+            "grid, tiles or random{}",
             command.render.mapping.empty() ? "--machine " + command.render.machine
                                            : "--mapping " + command.render.mapping,
-            command.render.mapping.empty() ? " by --mapping" : ""));
+            command.render.mapping.empty() ? " with --mapping" : ""));
     settings.keep_costs = true;
     return settings;
 }
 
-// Without its folder: a page is sent to others.
+// Without its folder, because pages are sent to others.
 std::string scene_name(const ExploreCommand& command) {
     return std::filesystem::path(input_name(command.render.scene)).filename().string();
 }
 
-// What renders the same picture; whoever repeats it adds mapping and PEs.
+// The command that renders the same image; the page appends mapping and PEs.
 std::string command_of(const ExploreCommand& command, const RingSettings& settings) {
     const RenderOptions& o = command.render;
     std::string text = "raya render " + quoted(scene_name(command)) + " -o image.png";
@@ -70,7 +70,7 @@ std::string command_of(const ExploreCommand& command, const RingSettings& settin
     add("--sampling", o.sampling == "centres" ? "" : o.sampling);
     add("--accel", o.accel);
     add("--pe-memory", o.pe_memory ? fmt::format("{}", *o.pe_memory) : "");
-    for (const auto& [option, value] : o.view.words()) add(option.c_str(), value);
+    for (const auto& [option, value] : o.view.given_options()) add(option.c_str(), value);
     return text;
 }
 
@@ -96,7 +96,7 @@ Json machine_json(const RingSettings& settings) {
             {"rates", rates_of(settings.machine)}};
 }
 
-// What the explorer shows: no measured time, so that the same picture is the same page.
+// The explorer's data; without measured times, so that equal images give equal pages.
 Json exploration(const ExploreCommand& command, const RingSettings& settings, const DeviceInfo& device,
                  const RingResult& result) {
     return {
@@ -111,31 +111,29 @@ Json exploration(const ExploreCommand& command, const RingSettings& settings, co
         {"cost", cost_json(result.cost().cycles)}};
 }
 
-// Refuses an image of which no page that can be sent could be made, before it is rendered.
+// Refuses, before the render, an image that is too large for a page.
 void check_pixels(const ImageSize& size) {
     constexpr std::uint64_t kMaxPixels = 2'000'000;  // the project's scenes take a byte a pixel
     if (std::uint64_t{size.width} * size.height <= kMaxPixels) return;
-    throw UserError(
-        fmt::format("--size {}x{}: too many pixels for a page that can be sent, {} at most; remedy: a smaller --size",
-                    size.width, size.height, kMaxPixels));
+    throw UserError(fmt::format("--size {}x{}: too many pixels for a page, maximum {}; remedy: a smaller --size",
+                                size.width, size.height, kMaxPixels));
 }
 
 void check_cycles(const std::string& scene, const CostImage& cost) {
     if (total_cycles(cost) < kExactCycles) return;
     throw UserError(
-        fmt::format("{}: its pixels take {} cycles, more than a page adds up exactly; remedy: a smaller --size, fewer "
+        fmt::format("{}: its pixels take {} cycles, more than a page can add exactly; remedy: a smaller --size, fewer "
                     "--bounces, or --accel bvh",
                     scene, total_cycles(cost)));
 }
 
 void check_bytes(const std::string& scene, const CostImage& cost, std::size_t bytes) {
-    constexpr std::size_t kMaxBytes = 1'000'000;  // so that it goes into a letter
+    constexpr std::size_t kMaxBytes = 1'000'000;  // small enough for e-mail
     if (bytes <= kMaxBytes) return;
     const double less = 0.9 * std::sqrt(static_cast<double>(kMaxBytes) / static_cast<double>(bytes));
     const auto side = [less](std::uint32_t pixels) { return std::max(1, static_cast<int>(less * pixels)); };
-    throw UserError(fmt::format(
-        "{}: a page of {} x {} pixels would have {} bytes, {} at most so that it can be sent; remedy: --size {}x{}",
-        scene, cost.width, cost.height, bytes, kMaxBytes, side(cost.width), side(cost.height)));
+    throw UserError(fmt::format("{}: a page of {} x {} pixels would have {} bytes, maximum {}; remedy: --size {}x{}",
+                                scene, cost.width, cost.height, bytes, kMaxBytes, side(cost.width), side(cost.height)));
 }
 
 void explore(const ExploreCommand& command) {
@@ -147,7 +145,7 @@ void explore(const ExploreCommand& command) {
     const RingSettings settings = settings_of(command, input.scene);
     warn_of_slow_search(input.scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     bar->stage("preparing");
-    const TunedUse tuned = use_tuned(command.render.no_tuned, &input.warnings);
+    const ScopedTunedSource tuned = use_tuned(command.render.no_tuned, &input.warnings);
     warn_of_build_options(input.warnings);
     Session session(choose_device(command.render.device), Timing::kOff);
     RingRenderer renderer(session, input.scene, settings);
@@ -166,32 +164,49 @@ void explore(const ExploreCommand& command) {
     fmt::print("{}: {} x {} pixels, opens with {} on {}: u = {:.3f}, speed-up {:.1f}\n",
                printable(input_name(command.render.scene)), settings.mapping.width, settings.mapping.height,
                mapping_text(settings.mapping), counted(settings.mapping.pes, "PE"), load.imbalance, load.speedup);
-    fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n",
+    fmt::print("page    {} ({:.0f} KB); open it in a browser; it needs no network\n",
                printable(output_name(command.page)), static_cast<double>(page.size()) / 1e3);
+}
+
+std::vector<ShortHelp> explore_short_help() {
+    const char* const options = "Options";
+    return {{"--output", options, "HTML page to write; -: stdout"},
+            {"--size", options, "Size in pixels, 1..16384 a side; default: the scene's"},
+            {"--machine", options, "spa, grande, spa1, cap, pixel-machine or links"},
+            {"--pes", options, "Number of PEs that the page shows first"},
+            {"--mapping", options, "Mapping that the page shows first"},
+            {"--offset", options, "Offset of the cyclic mapping; default: 16"},
+            {"--format", options, "Number format: fp32, spa22 (e6m15) or eXmY[t]"},
+            {"--accel", options, "Acceleration structure in each PE's memory"},
+            {"--device", options, "OpenCL device: its number, type or part of its name"},
+            {"--bounces", options, "Reflections and refractions, 0..31; default: 8"},
+            {"--from", options, "Eye point; also --at, --up, --angle; default: scene's"},
+            {"--light", options, "Replace the scene's lights; once for each light"}};
 }
 
 }  // namespace
 
 void add_explore_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
-        "explore", "Render once, and write a page in which mapping, offset and number of PEs can be dragged");
+        "explore", "Render once and write an interactive page of loads by mapping, offset and number of PEs");
     add_examples(*command, {{"raya explore scenes/centre.nff -o centre.html",
-                             "A page that opens with the paper's machine: 256 PEs, cyclic mapping, offset 16"},
+                             "Write a page that opens with 256 PEs, cyclic mapping, offset 16"},
                             {"raya explore scenes/mirrors.nff --size 128 --pes 64 --mapping blocks -o mirrors.html",
-                             "The same of another scene, which opens with 64 PEs and blocks of scan lines"}});
+                             "Write a page that opens with 64 PEs and blocks of scan lines"}});
     const auto options = std::make_shared<ExploreCommand>();
+    add_short_help(*command, explore_short_help());
     const OptionGroup group(*command, kFiles);
     add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
-             "Scene in NFF, as the SPD programs write it; -: stdin")
+             "Scene in NFF, the format of the SPD programs; -: stdin")
         ->required();
     add_file(*command, FileUse::kWritten, "-o,--output", options->page, "FILE.html",
-             "Page to write: one file for a browser, below 1 MB, that needs no network; -: stdout")
+             "HTML page to write: one file below 1 MB that needs no network; -: stdout")
         ->required();
     add_render_options(*command, options->render, false);
     command->get_option("--mapping")
         ->description(
-            "The mapping that the page opens with: cyclic, cyclic:p, column, rows, blocks, grid:AxB, "
-            "tiles:WxH, random:seed; the page has all of them; default: the machine's, cyclic on spa");
+            "The mapping that the page shows first: cyclic, cyclic:p, column, rows, blocks, grid:AxB, tiles:WxH, "
+            "random:seed; default: the machine's, cyclic on spa");
     command->callback([options] { explore(*options); });
 }
 

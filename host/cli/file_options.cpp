@@ -43,7 +43,7 @@ class FileCheck {
         if (!is_new) refuse_output(output, other->second);
     }
 
-    // By their names, files that a scene can hardly have: what a command writes depends on what it finds.
+    // Refuses a folder that contains an input other than a scene: the command may overwrite it.
     void write_folder(const NamedFile& folder) const {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder.file, error))
@@ -51,7 +51,7 @@ class FileCheck {
                 refuse_input({folder.option, entry.path().string()}, file_identity(entry.path()));
     }
 
-    /// After all comparisons: it redirects stdout.
+    /// Call it after all comparisons: it redirects stdout.
     void check_all_writable() const {
         for (const std::string& file : written_) check_writable(file);
     }
@@ -59,8 +59,8 @@ class FileCheck {
   private:
     static std::string identity_of(const NamedFile& output) {
         if (!is_standard_stream(output.file)) return file_identity(output.file);
-        // A first check may have kept stdout for a file: then /dev/stdout is stderr.
-        const std::string stdout_file = stdout_is_for_file() ? "" : file_identity("/dev/stdout");
+        // An earlier check may have reserved stdout for a file: then /dev/stdout is stderr.
+        const std::string stdout_file = stdout_is_reserved() ? "" : file_identity("/dev/stdout");
         return stdout_file.empty() ? output.file : stdout_file;
     }
 
@@ -86,10 +86,10 @@ class FileCheck {
 }  // namespace
 
 CLI::Option* set_file_use(CLI::Option* option, FileUse use) {
-    return keep_note(option, kUse, std::to_string(static_cast<int>(use)));
+    return attach_note(option, kUse, std::to_string(static_cast<int>(use)));
 }
 
-FileUse file_use(CLI::Option& option) {
+FileUse file_use_of(CLI::Option& option) {
     const std::string use = note_of(option, kUse);
     return use.empty() ? FileUse::kNone : static_cast<FileUse>(std::stoi(use));
 }
@@ -98,7 +98,7 @@ void check_files(const CLI::App& command, const std::vector<NamedFile>& more_out
     FileCheck check;
     const auto each = [&](FileUse use, auto take) {
         for (CLI::Option* option : const_cast<CLI::App&>(command).get_options())
-            if (option->count() > 0 && file_use(*option) == use)
+            if (option->count() > 0 && file_use_of(*option) == use)
                 for (const std::string& file : option->results()) take(NamedFile{option->get_name(), file});
     };
     each(FileUse::kRead, [&](const NamedFile& file) { check.read(file); });

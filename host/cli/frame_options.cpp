@@ -17,18 +17,18 @@
 namespace raya {
 namespace {
 
-constexpr std::uint32_t kMostFrames = 999'999;
-constexpr double kMostTurn = 360'000;  // degrees
+constexpr std::uint32_t kMaxFrames = 999'999;
+constexpr double kMaxTurnDegrees = 360'000;
 
 [[noreturn]] void refuse_frames(const std::string& text) {
     throw UserError(fmt::format(
-        "--frames {}: must be A:B, frames A to B, or A:B/N, those of a sequence of N; 0..{} each", text, kMostFrames));
+        "--frames {}: must be A:B (frames A to B) or A:B/N (frames A to B of 1 to N), each 0..{}", text, kMaxFrames));
 }
 
 std::uint32_t number_of(const std::string& frames, std::string_view word) {
     std::uint32_t number = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc{} || end != word.data() + word.size() || number > kMostFrames) refuse_frames(frames);
+    if (error != std::errc{} || end != word.data() + word.size() || number > kMaxFrames) refuse_frames(frames);
     return number;
 }
 
@@ -49,17 +49,17 @@ std::vector<Frame> frames_on_path(const FrameOptions& o, const View& view) {
 void add_frame_options(CLI::App& command, FrameOptions& o) {
     const OptionGroup group(command, "Frames");
     add_value(command, "--frames", o.frames,
-              "Render frames A to B into numbered files, IMAGE-0001.png and so on, also those of --cost, --mask and "
-              "--report; A:B/N: of a sequence from 1 to N. IMAGE-frames.json keeps what was rendered: frames whose "
-              "settings and files are as it says are not rendered again")
+              "Render frames A to B to numbered files IMAGE-0001.png, ..., also for --cost, --mask and --report; "
+              "A:B/N: of a sequence from 1 to N. IMAGE-frames.json records the frames; a frame with unchanged settings "
+              "and files is not rendered again")
         ->type_name("A:B[/N]");
     add_value(command, "--turn", o.turn,
-              "Of --frames: the eye goes so many degrees round the axis through --at along --up, anticlockwise seen "
-              "from above, an equal part before each frame but the first; -360000..360000")
+              "With --frames: turn the eye by this angle about the axis through --at along --up, anticlockwise seen "
+              "from above, in equal steps from frame to frame; -360000..360000")
         ->type_name("DEGREES");
     add_file(command, FileUse::kRead, "--camera-path", o.camera_path, "FILE",
-             "A camera for each frame: a line of FILE each, with any of from, at, up and angle as on the command "
-             "line, such as: from 1,2,3 angle 40; the others stay. Empty lines and what follows # are passed over");
+             "Cameras of the frames: each line of FILE has any of from, at, up and angle with their values, such as: "
+             "from 1,2,3 angle 40. Empty lines and comments after # are ignored");
 }
 
 FrameRange parse_frames(const std::string& text) {
@@ -79,14 +79,14 @@ FrameRange parse_frames(const std::string& text) {
 
 std::vector<Frame> frames_of(const FrameOptions& o, const View& view) {
     if (o.turn && !o.camera_path.empty())
-        throw UserError("--turn and --camera-path both say where the camera is: leave one of them out");
+        throw UserError("--turn and --camera-path both set the camera: leave out one of them");
     if (!o.camera_path.empty()) return frames_on_path(o, view);
     if (!o.turn)
-        throw UserError(fmt::format(
-            "--frames {}: all would be the same; give --turn DEGREES or --camera-path FILE as well", o.frames));
-    if (o.frames.empty()) throw UserError(fmt::format("--turn {}: give --frames A:B as well", *o.turn));
-    if (!(std::abs(*o.turn) <= kMostTurn))
-        throw UserError(fmt::format("--turn {}: must be -{}..{} degrees", *o.turn, kMostTurn, kMostTurn));
+        throw UserError(
+            fmt::format("--frames {}: all frames would be equal; add --turn DEGREES or --camera-path FILE", o.frames));
+    if (o.frames.empty()) throw UserError(fmt::format("--turn {}: add --frames A:B", *o.turn));
+    if (!(std::abs(*o.turn) <= kMaxTurnDegrees))
+        throw UserError(fmt::format("--turn {}: must be -{}..{} degrees", *o.turn, kMaxTurnDegrees, kMaxTurnDegrees));
     const FrameRange range = parse_frames(o.frames);
     const double count = range.end - range.begin + 1.0;
     std::vector<Frame> frames;

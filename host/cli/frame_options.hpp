@@ -1,4 +1,4 @@
-// A sequence of images of one scene, from the command line: which frames there are and where the camera is in each.
+// Options of image sequences: frame numbers and cameras.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -32,17 +32,16 @@ struct Frame {
     View view;
 };
 
-/// Adds --frames, --turn and --camera-path with their help texts.
+/// Adds --frames, --turn and --camera-path.
 void add_frame_options(CLI::App& command, FrameOptions& options);
 
-/// "A:B", frames A to B, which are the whole sequence, or "A:B/N", of one from 1 to N. UserError.
+/// "A:B": the sequence of frames A to B; "A:B/N": frames A to B of a sequence from 1 to N. UserError.
 FrameRange parse_frames(const std::string& text);
 
-/// Each with its camera: that of `view` and what the options make of it. UserError where they do not go together, or a
-/// camera sees nothing.
+/// The frames with their cameras, derived from `view`. UserError for incompatible options or an invalid camera.
 std::vector<Frame> frames_of(const FrameOptions& options, const View& view);
 
-/// "turn.png" of frame 7: "turn-0007.png". Empty as it is.
+/// Inserts the frame's number: "turn.png" for frame 7 is "turn-0007.png". "" stays "".
 std::string numbered(const std::string& file, std::uint32_t frame);
 
 }  // namespace raya

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kKind = "raya frames";  // by which a record is known again
+constexpr const char* kKind = "raya frames";  // identifies a record
 
 std::optional<std::string> hash_of_file(const fs::path& file) try {
     return bytes_hash(read_file(file));
@@ -57,21 +57,21 @@ std::map<std::uint32_t, FrameEntry> entries_of(const Json& record) {
     return entries;
 }
 
-/// The folder of a file, locked while this lives, where the file system has locks: no file is left of it.
+/// Locks the folder of a file, if the file system supports locks. Leaves no lock file.
 class FolderLock {
   public:
     explicit FolderLock(const fs::path& file)
         : folder_(::open(fs::absolute(file).parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
         int locked = 0;
         while ((locked = ::flock(folder_, LOCK_EX)) != 0 && errno == EINTR) continue;
-        if (locked != 0) refuse_or_go_on(file);
+        if (locked != 0) check_lock_error(file);
     }
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
     ~FolderLock() { ::close(folder_); }
 
   private:
-    void refuse_or_go_on(const fs::path& file) const {
+    void check_lock_error(const fs::path& file) const {
         const int error = errno;
         if (error == ENOLCK || error == EOPNOTSUPP || error == ENOSYS || error == EINVAL) return;
         if (folder_ >= 0) ::close(folder_);
@@ -88,8 +88,7 @@ FrameRecord::FrameRecord(fs::path file) : file_(std::move(file)) { read(); }
 
 void FrameRecord::read() {
     if (!fs::exists(file_)) return;
-    const JsonSource from{file_.string(),
-                          "move it, or give -o another name: the record of the frames is written to this file"};
+    const JsonSource from{file_.string(), "move it, or change -o: the record of the frames is written to this file"};
     std::map<std::uint32_t, FrameEntry> entries = read_json(json_text(file_, from), from, entries_of);
     for (const std::uint32_t number : added_) entries.insert_or_assign(number, entries_.at(number));
     entries_ = std::move(entries);
@@ -101,11 +100,11 @@ const FrameEntry* FrameRecord::find(std::uint32_t number, const std::string& set
     if (found == entries_.end()) return nullptr;
     const FrameEntry& entry = found->second;
     if (entry.settings != settings || entry.files.size() != files.size()) return nullptr;
-    const bool there = std::ranges::all_of(files, [&](const std::string& file) {
+    const bool unchanged = std::ranges::all_of(files, [&](const std::string& file) {
         const auto known = std::ranges::find(entry.files, name_of(file), &std::pair<std::string, std::string>::first);
         return known != entry.files.end() && hash_of_file(file) == known->second;
     });
-    return there ? &entry : nullptr;
+    return unchanged ? &entry : nullptr;
 }
 
 const FrameEntry& FrameRecord::add(FrameEntry entry, const std::vector<std::string>& files) {

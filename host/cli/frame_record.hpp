@@ -1,5 +1,5 @@
-// What is kept of a sequence's frames beside them, so that a sequence that was stopped goes on, and one that was
-// changed keeps no stale frame.
+// The record of a sequence's rendered frames: an interrupted sequence continues, and frames with changed settings are
+// rendered again.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -13,30 +13,29 @@
 
 namespace raya {
 
-/// One frame that was rendered.
+/// A rendered frame.
 struct FrameEntry {
     std::uint32_t number = 0;
-    std::string settings;                                    // a hash of all that the frame follows from
+    std::string settings;                                    // a hash of everything that determines the frame
     std::string pixels;                                      // pixel_hash() of the image
     double imbalance = 0, speed_up = 0;                      // of the modelled loads
-    std::vector<std::pair<std::string, std::string>> files;  // name, seen from the record's folder; bytes_hash()
+    std::vector<std::pair<std::string, std::string>> files;  // path relative to the record's folder; bytes_hash()
 };
 
 class FrameRecord {
   public:
-    /// Reads `file`, where it is there. UserError where it is and is no record.
+    /// Reads `file` if it exists. UserError if it is not a record.
     explicit FrameRecord(std::filesystem::path file);
 
-    /// The entry of that frame, if it was rendered by these settings and `files` lie there as they were written; else a
-    /// null pointer.
+    /// The entry of a frame that was rendered with these settings and whose `files` are unchanged; else null.
     const FrameEntry* find(std::uint32_t number, const std::string& settings,
                            const std::vector<std::string>& files) const;
 
-    /// Adds a frame whose files have been written, `entry.files` aside, replacing an older one, and writes the record,
-    /// unless that would take over a twentieth of the time: then a later call does, or write().
+    /// Adds or replaces a frame whose `files` have been written; fills in entry.files. Writes the record, unless that
+    /// would take over a twentieth of the time; then a later call or write() does.
     const FrameEntry& add(FrameEntry entry, const std::vector<std::string>& files);
 
-    /// Writes the frames added here and those that other processes have written since: one process at a time merges.
+    /// Merges the frames added here with those that other processes have written, and writes the record under a lock.
     void write();
 
   private:
@@ -45,12 +44,12 @@ class FrameRecord {
 
     std::filesystem::path file_;
     std::map<std::uint32_t, FrameEntry> entries_;  // by their numbers
-    std::set<std::uint32_t> added_;                // here, and so newer than the file's
+    std::set<std::uint32_t> added_;                // by this process; newer than the file's entries
     Clock::time_point written_{};
-    Clock::duration writing_{};  // that the last one took
+    Clock::duration writing_{};  // duration of the last write
 };
 
-/// Where the record of the frames of `image` lies: "turn-frames.json" of turn.png.
+/// The path of the record for `image`: "turn-frames.json" for turn.png.
 std::string frame_record_file(const std::string& image);
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// raya generate: scenes that a program makes.
+// raya generate: procedural scenes.
 #include "host/scene/generate.hpp"
 
 #include <fmt/core.h>
@@ -47,17 +47,17 @@ CLI::App* add_kind(CLI::App& command, GenerateOptions& options, const std::strin
 }  // namespace
 
 void add_generate_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("generate", "Write a scene made by a program");
-    add_examples(*command, {{"raya generate balls --level 2 -o balls.nff", "91 spheres as SPD's balls has them"},
+    CLI::App* command = program.add_subcommand("generate", "Generate a scene");
+    add_examples(*command, {{"raya generate balls --level 2 -o balls.nff", "Generate SPD's balls with 91 spheres"},
                             {"raya generate random 500 -o - | raya render - --size 128 -o random.png",
-                             "A scene made and rendered, without a file between"}});
+                             "Generate and render a scene without a file"}});
     command->require_subcommand(1);
     const auto options = std::make_shared<GenerateOptions>();
 
     CLI::App* balls =
         add_kind(*command, *options, "balls", "SPD's sphereflake: 1 + 9 + ... + 9^L spheres above a square",
-                 {{"raya generate balls -o balls.nff", "SPD's own size: 7,381 spheres"},
-                  {"raya generate balls --level 1 -o ten.nff", "A sphere with nine around it"}});
+                 {{"raya generate balls -o balls.nff", "SPD's default size: 7,381 spheres"},
+                  {"raya generate balls --level 1 -o ten.nff", "A sphere surrounded by nine"}});
     add_value(*balls, "--level", options->level, "Levels L below the largest sphere, 0..6 (4: 7,381 spheres)")
         ->type_name("LEVEL")
         ->capture_default_str();
@@ -65,7 +65,7 @@ void add_generate_command(CLI::App& program) {
 
     CLI::App* lattice =
         add_kind(*command, *options, "lattice", "SPD's lattice: (N + 1)^3 spheres joined by cylinders, in a cube",
-                 {{"raya generate lattice -o lattice.nff", "SPD's own size: 2,197 spheres, 6,084 cylinders"},
+                 {{"raya generate lattice -o lattice.nff", "SPD's default size: 2,197 spheres, 6,084 cylinders"},
                   {"raya generate lattice --size 2 -o small.nff", "27 spheres, 54 cylinders"}});
     add_value(*lattice, "--size", options->size,
               "Cylinders N along an edge, 1..64 (12, SPD's: 2,197 spheres, 6,084 cylinders)")
@@ -75,7 +75,7 @@ void add_generate_command(CLI::App& program) {
         [options] { write_scene(*options, [&] { return generate_lattice(static_cast<int>(options->size)); }); });
 
     CLI::App* gears =
-        add_kind(*command, *options, "gears", "N^3 gear wheels that mesh: outlines of 144 vertices, in a cube",
+        add_kind(*command, *options, "gears", "N^3 meshing gear wheels with outlines of 144 vertices, in a cube",
                  {{"raya generate gears -o gears.nff", "As many triangles as SPD's gears: 36,610"},
                   {"raya generate gears --size 1 -o wheel.nff", "One wheel"}});
     add_value(*gears, "--size", options->wheels,
@@ -86,26 +86,24 @@ void add_generate_command(CLI::App& program) {
         [options] { write_scene(*options, [&] { return generate_gears(static_cast<int>(options->wheels)); }); });
 
     CLI::App* uniform =
-        add_kind(*command, *options, "uniform", "N matt spheres spread evenly over the voxels of a cube",
+        add_kind(*command, *options, "uniform", "N matt spheres, evenly distributed over the voxels of a cube",
                  {{"raya generate uniform 64 --voxels 4x4x4 -o even.nff", "One sphere in each of 64 voxels"},
                   {"raya generate uniform 1000 --voxels 2x2x1 -o slab.nff", "250 spheres in each of four voxels"}});
     add_value(*uniform, "N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
-    add_value(*uniform, "--voxels", options->voxels, "Voxels along x, y and z, 1..256 each, at most 1,048,576 together")
+    add_value(*uniform, "--voxels", options->voxels, "Voxels along x, y and z, 1..256 each, at most 1,048,576 in total")
         ->type_name("XxYxZ")
         ->required();
     uniform->callback([options] {
-        const auto sides =
-            parse_three_sides("--voxels", options->voxels, fmt::format("1..{} each", kMostVoxelsAlongAxis));
+        const auto sides = parse_three_sides("--voxels", options->voxels, fmt::format("1..{} each", kMaxVoxelsPerAxis));
         write_scene(*options, [&] {
             return generate_uniform(
                 options->count, {static_cast<int>(sides[0]), static_cast<int>(sides[1]), static_cast<int>(sides[2])});
         });
     });
 
-    CLI::App* random =
-        add_kind(*command, *options, "random", "N spheres anywhere in a cube, the same for the same seed",
-                 {{"raya generate random 500 -o random.nff", "500 spheres"},
-                  {"raya generate random 500 --seed 2 -o other.nff", "500 other ones"}});
+    CLI::App* random = add_kind(*command, *options, "random", "N spheres at random positions in a cube",
+                                {{"raya generate random 500 -o random.nff", "500 spheres"},
+                                 {"raya generate random 500 --seed 2 -o other.nff", "500 other spheres"}});
     add_value(*random, "N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
     add_value(*random, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
         ->type_name("N")
@@ -114,18 +112,18 @@ void add_generate_command(CLI::App& program) {
         [options] { write_scene(*options, [&] { return generate_random(options->count, options->seed); }); });
 
     CLI::App* cluster = add_kind(*command, *options, "cluster",
-                                 "Seven spheres above a floor, as heavy and uneven as Kohata & Ito's figures have it",
+                                 "Seven spheres above a floor, as in Kohata & Ito's scene of high and uneven cost",
                                  {{"raya generate cluster -o cluster.nff", "The scene of raya study cluster"},
-                                  {"raya generate cluster --seed 2 -o other.nff", "Another of its kind"}});
+                                  {"raya generate cluster --seed 2 -o other.nff", "Another scene of the same kind"}});
     add_value(*cluster, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
         ->type_name("N")
         ->capture_default_str();
     cluster->callback([options] { write_scene(*options, [&] { return generate_cluster(options->seed); }); });
 
     CLI::App* centre =
-        add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres crowded about the centre",
-                 {{"raya generate centre -o centre.nff", "What scenes/centre.nff has"},
-                  {"raya generate centre -o - | raya info -", "Its objects, and which machines hold them"}});
+        add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres clustered at the centre",
+                 {{"raya generate centre -o centre.nff", "The scene in scenes/centre.nff"},
+                  {"raya generate centre -o - | raya info -", "Print its objects and the machines that hold them"}});
     centre->callback([options] { write_scene(*options, [&] { return generate_centre(); }); });
 }
 

@@ -23,15 +23,15 @@ const CLI::App& command_below(const CLI::App& command, const std::string& name) 
         throw UserError(
             fmt::format("help: {} has no command {}; see raya help {}", command.get_name(), name, command.get_name()));
     throw UserError(
-        fmt::format("help: no command {}{}; there are {}", name, did_you_mean(name, known), fmt::join(known, ", ")));
+        fmt::format("help: no command {}{}; commands: {}", name, did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
-void print_help(const CLI::App& program, const std::vector<std::string>& words) {
+void print_help(const CLI::App& program, const std::vector<std::string>& names) {
     const CLI::App* command = &program;
     std::string path = program.get_name();
-    for (const std::string& word : words) {
-        command = &command_below(*command, word);
-        path += ' ' + word;
+    for (const std::string& name : names) {
+        command = &command_below(*command, name);
+        path += ' ' + name;
     }
     fmt::print("{}", command->get_formatter()->make_help(command, path, CLI::AppFormatMode::Normal));
 }
@@ -40,12 +40,12 @@ void print_help(const CLI::App& program, const std::vector<std::string>& words) 
 
 void add_help_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("help", "Print the help of a command, or of raya itself");
-    add_examples(*command, {{"raya help render", "What raya render --help prints: usage, examples, all options"},
-                            {"raya help generate balls", "The same of one generator"}});
-    const auto words = std::make_shared<std::vector<std::string>>();
-    add_value(*command, "COMMAND", *words, "The words that lead to it, such as generate balls; default: raya's own")
+    add_examples(*command, {{"raya help render", "The same as raya render --help"},
+                            {"raya help generate balls", "The help of one generator"}});
+    const auto names = std::make_shared<std::vector<std::string>>();
+    add_value(*command, "COMMAND", *names, "The command, such as generate balls; default: raya itself")
         ->type_name("COMMAND");
-    command->callback([words, &program] { print_help(program, *words); });
+    command->callback([names, &program] { print_help(program, *names); });
 }
 
 }  // namespace raya

@@ -1,11 +1,11 @@
-// raya info: what is in a scene, and which machines can hold it. No device is opened.
+// raya info: the contents of a scene and the machines that can hold it. Opens no device.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
 #include <memory>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
@@ -26,26 +26,26 @@ struct InfoCommand {
     bool json = false;
 };
 
-// What a render takes that says how it is run, and nothing of what a PE holds.
-constexpr std::array<const char*, 16> kOfRunning = {
+// Options of a render that do not affect the memory of a PE.
+constexpr std::array<const char*, 16> kExecutionOptions = {
     "--device", "--lanes",   "--group",     "--no-tuned",     "--kernel-dir",    "--exchange", "--sampling", "--points",
     "--inject", "--returns", "--threshold", "--packet-words", "--link-exchange", "--packets",  "--replay",   "--async"};
 
 void add_options(CLI::App& command, InfoCommand& options) {
     add_file(command, FileUse::kRead, "SCENE", options.render.scene, "SCENE.nff",
-             "Scene in NFF, as the SPD programs write it; -: stdin")
+             "Scene in NFF, the format of the SPD programs; -: stdin")
         ->required();
     OptionGroup group(command, kFiles);
-    command.add_flag("--json", options.json, "Print it as JSON, for programs");
+    command.add_flag("--json", options.json, "Print JSON");
     add_render_options(command, options.render);
     add_torus_options(command, options.torus);
-    for (const char* option : kOfRunning) command.remove_option(command.get_option(option));
+    for (const char* option : kExecutionOptions) command.remove_option(command.get_option(option));
     command.get_option("--machine")
         ->default_str("")
-        ->description("This machine alone, as raya render takes it; default: all of them");
+        ->description("Only this machine, as in raya render; default: all machines");
 }
 
-// Of all machines one that cannot be what the options ask for says so in its line; one that was named is refused.
+// UserError if the machine of --machine does not support the options; without --machine its row gives the reason.
 std::vector<MachineNeeds> needs_of_machines(const CLI::App& parsed, const InfoCommand& command, SceneNeeds& needs) {
     if (parsed.count("--machine") > 0) {
         refuse_options_of_other_machines(parsed, machine_named(command.render.machine));
@@ -62,10 +62,10 @@ std::vector<MachineNeeds> needs_of_machines(const CLI::App& parsed, const InfoCo
                            .needs = {},
                            .refusal = error.what()});
         }
-    const bool mistaken = std::ranges::all_of(all, [](const MachineNeeds& m) {
+    const bool all_rings_failed = std::ranges::all_of(all, [](const MachineNeeds& m) {
         return !m.refusal.empty() || machine_named(m.machine).kind == MachineKind::kTorus;
     });
-    if (mistaken) throw UserError(all.front().refusal);
+    if (all_rings_failed) throw UserError(all.front().refusal);
     return all;
 }
 
@@ -82,19 +82,36 @@ void info(const CLI::App& parsed, const InfoCommand& command) {
     report.skipped = input.remarks;
     report.warnings = input.warnings.texts();
     report.scene = input.scene;
-    fmt::print("{}", command.json ? to_json(report).dump(2) + "\n" : printable(human_summary(report)));
+    fmt::print("{}", command.json ? to_json(report).dump(2) + "\n" : printable(summary_text(report)));
+}
+
+std::vector<ShortHelp> info_short_help() {
+    const char* const options = "Options";
+    return {{"--json", options, ""},
+            {"--machine", options, ""},
+            {"--pe-memory", options, "Memory of a PE or node; default: the machine's"},
+            {"--pes", options, "Number of PEs; default: the machine's"},
+            {"--mapping", options, "Pixels to PEs: cyclic, column, rows, blocks, ..."},
+            {"--size", options, "Size in pixels, 1..16384 a side; default: the scene's"},
+            {"--format", options, "Number format: fp32, spa22 (e6m15) or eXmY[t]"},
+            {"--accel", options, "Acceleration structure; default: all of them"},
+            {"--antialias", options, "3 x 3 filter or adaptive supersampling"},
+            {"--nodes", options, "Nodes of the torus along x, y and z"},
+            {"--voxels", options, "Voxels of the torus; default: one for each node"},
+            {"--strict", options, "Refuse what NFF does not define"}};
 }
 
 }  // namespace
 
 void add_info_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
-        "info", "Tell what is in a scene and which machines can hold it, without rendering it or asking for a device");
-    add_examples(*command, {{"raya info scenes/centre.nff",
-                             "Objects, lights, extent, and which of all machines have room for them"},
-                            {"raya info scenes/polygons.nff --machine spa --pe-memory 8192 --json",
-                             "Whether a PE of 8 KB would hold the scene, as JSON"}});
+        "info", "Print the contents of a scene and the machines that can hold it, without rendering or a device");
+    add_examples(*command,
+                 {{"raya info scenes/centre.nff", "Print objects, lights, extent, and the machines with enough memory"},
+                  {"raya info scenes/polygons.nff --machine spa --pe-memory 8192 --json",
+                   "Print as JSON whether a PE of 8 KB can hold the scene"}});
     const auto options = std::make_shared<InfoCommand>();
+    add_short_help(*command, info_short_help());
     add_options(*command, *options);
     command->callback([command, options] { info(*command, *options); });
 }

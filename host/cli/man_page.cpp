@@ -9,7 +9,7 @@
 namespace raya {
 namespace {
 
-// Text of which man takes no letter for a request, nor for a typographic one.
+// Escapes the letters that man interprets.
 std::string plain(const std::string& text) {
     std::string page;
     for (const char c : text) switch (c) {
@@ -40,7 +40,7 @@ std::string plain(const std::string& text) {
     return page;
 }
 
-// A line of text; a dot in front would be a request.
+// A line of text; a leading dot would begin a macro.
 std::string line(const std::string& text) { return (text.starts_with('.') ? "\\&" : "") + plain(text) + '\n'; }
 
 std::string bold(const std::string& text) { return "\\fB" + plain(text) + "\\fR"; }
@@ -54,15 +54,15 @@ std::string upper(std::string text) {
 std::string heading(const std::string& text) { return ".SH " + upper(plain(text)) + '\n'; }
 
 std::string in_synopsis(const OptionText& o) {
-    std::string text = o.is_word() ? italic(o.names.front()) + (o.repeated ? " ..." : "")
-                                   : bold(o.names.front()) + ' ' + italic(o.value);
+    std::string text = o.is_argument() ? italic(o.names.front()) + (o.repeated ? " ..." : "")
+                                       : bold(o.names.front()) + ' ' + italic(o.value);
     return o.required ? text : '[' + text + ']';
 }
 
 std::string synopsis(const CommandText& command, const std::string& path) {
     std::string text = bold(path);
     if (!command.commands.empty()) text += ' ' + italic("COMMAND");
-    for (const OptionText& word : command.words) text += ' ' + in_synopsis(word);
+    for (const OptionText& argument : command.arguments) text += ' ' + in_synopsis(argument);
     for (const OptionText& option : command.options)
         if (option.required) text += ' ' + in_synopsis(option);
     return text + " [" + italic("OPTIONS") + "]\n";
@@ -72,8 +72,8 @@ std::string entry(const OptionText& o) {
     std::string names;
     for (const std::string& name : o.names)
         names += (names.empty() ? "" : ", ") + (name.starts_with('-') ? bold(name) : italic(name));
-    if (!o.is_flag() && !o.is_word()) names += ' ' + italic(o.value);
-    return ".TP\n" + names + '\n' + line(said_of(o));
+    if (!o.is_flag() && !o.is_argument()) names += ' ' + italic(o.value);
+    return ".TP\n" + names + '\n' + line(description_of(o));
 }
 
 std::string entries(const std::vector<OptionText>& options) {
@@ -82,10 +82,11 @@ std::string entries(const std::vector<OptionText>& options) {
     return text;
 }
 
-// Options by their groups in help, each group below `make_heading` of its name.
+// Arguments and options by group; `make_heading` makes the heading of a group from its name.
 template <class Heading>
 std::string grouped(const CommandText& command, Heading&& make_heading) {
-    std::string text = command.words.empty() ? "" : make_heading("Arguments") + entries(command.words);
+    std::string text;
+    if (!command.arguments.empty()) text = make_heading("Arguments") + entries(command.arguments);
     for (const std::string& group : groups_of(command)) {
         text += make_heading(group);
         for (const OptionText& o : command.options)
@@ -94,23 +95,23 @@ std::string grouped(const CommandText& command, Heading&& make_heading) {
     return text;
 }
 
-bool ask_alike(const CommandText& a, const CommandText& b) {
+bool take_same_options(const CommandText& a, const CommandText& b) {
     const auto alike = [](const std::vector<OptionText>& x, const std::vector<OptionText>& y) {
         return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const OptionText& p, const OptionText& q) {
-            return p.names == q.names && p.value == q.value && p.usual == q.usual && p.help == q.help;
+            return p.names == q.names && p.value == q.value && p.default_value == q.default_value && p.help == q.help;
         });
     };
-    return alike(a.words, b.words) && alike(a.options, b.options);
+    return alike(a.arguments, b.arguments) && alike(a.options, b.options);
 }
 
 std::string examples(const CommandText& command) {
     std::string text;
     for (const ExampleText& example : command.examples)
-        text += ".TP\n" + bold(example.command) + '\n' + line(example.says);
+        text += ".TP\n" + bold(example.command) + '\n' + line(example.description);
     return text;
 }
 
-// Without the options of `all`, of which the page itself tells.
+// Without the options `all`, which the page lists itself.
 CommandText without(CommandText command, const std::vector<OptionText>& all) {
     std::erase_if(command.options, [&](const OptionText& o) {
         return std::any_of(all.begin(), all.end(), [&](const OptionText& one) { return one.names == o.names; });
@@ -118,15 +119,15 @@ CommandText without(CommandText command, const std::vector<OptionText>& all) {
     return command;
 }
 
-// The commands below one, with their options; those that take the same stand together.
+// The subcommands with their options; those with equal options are grouped.
 std::string commands_below(const CommandText& command, const std::string& path) {
     std::string text = heading("Commands");
     std::vector<const CommandText*> left;
     for (const CommandText& one : command.commands) left.push_back(&one);
     while (!left.empty()) {
         const CommandText& first = *left.front();
-        const auto others =
-            std::stable_partition(left.begin(), left.end(), [&](const auto* one) { return ask_alike(*one, first); });
+        const auto others = std::stable_partition(left.begin(), left.end(),
+                                                  [&](const auto* one) { return take_same_options(*one, first); });
         for (auto one = left.begin(); one != others; ++one)
             text += ".TP\n" + synopsis(**one, path + ' ' + (*one)->name) + line((*one)->summary);
         text += ".RS\n" + grouped(without(first, command.options), [](const std::string&) { return std::string(); });
@@ -144,7 +145,7 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-// Indented lines: "  NAME   what it is" as an entry, others as they stand.
+// Indented lines: "  NAME   description" as an entry, others verbatim.
 std::string indented(const std::string& one) {
     const std::string text = one.substr(std::min(one.find_first_not_of(' '), one.size()));
     const std::size_t gap = text.find("  ");
@@ -152,7 +153,7 @@ std::string indented(const std::string& one) {
     return ".TP\n" + bold(text.substr(0, gap)) + '\n' + line(text.substr(text.find_first_not_of(' ', gap)));
 }
 
-// What stands below help, as sections.
+// The footer of help as sections.
 std::string closing(const std::string& footer) {
     std::string text;
     bool begins = true;
@@ -172,8 +173,8 @@ std::string beginning(const std::string& name, const CommandText& command, const
     std::string summary = command.summary;
     if (summary.starts_with(command.name + ' ')) summary.erase(0, command.name.size() + 1);
     return fmt::format(
-               ".\\\" Made by raya manual, of the texts of --help.\n.TH {} 1 \"\" \"{}\" \"User Commands\"\n{}{} \\- "
-               "{}",
+               ".\\\" Generated by raya manual from the texts of --help-all.\n"
+               ".TH {} 1 \"\" \"{}\" \"User Commands\"\n{}{} \\- {}",
                upper(plain(name)), version, heading("Name"), plain(name), line(summary)) +
            heading("Synopsis") + synopsis(command, path) + heading("Description") + line(command.summary);
 }

@@ -1,4 +1,4 @@
-// raya manual and raya completion: the texts of --help, as manual pages and as what completes words in a shell.
+// raya manual and raya completion: the help texts as manual pages and as shell completions.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -32,13 +32,13 @@ void print_page(const std::vector<ManPage>& pages, const std::string& command) {
         if (page.name != pages.front().name) known.push_back(page.name.substr(pages.front().name.size() + 1));
     }
     throw UserError(
-        fmt::format("no command {}{}; there are {}", command, did_you_mean(command, known), fmt::join(known, ", ")));
+        fmt::format("no command {}{}; commands: {}", command, did_you_mean(command, known), fmt::join(known, ", ")));
 }
 
 void run_manual(const CLI::App& program, const ManualCommand& command) {
     const std::vector<ManPage> pages = man_pages(command_text(program), name_and_version());
     if (command.folder.empty()) return print_page(pages, command.command);
-    if (!command.command.empty()) throw UserError("-o DIR writes all pages: leave the command out");
+    if (!command.command.empty()) throw UserError("-o DIR writes all pages: leave out the command");
     for (const ManPage& page : pages) check_writable(std::filesystem::path(command.folder) / (page.name + ".1"));
     for (const ManPage& page : pages)
         write_whole_file(std::filesystem::path(command.folder) / (page.name + ".1"), page.text);
@@ -61,32 +61,31 @@ void run_completion(const CLI::App& program, const CompletionCommand& command) {
 
 void add_manual_command(CLI::App& program) {
     CLI::App* command =
-        program.add_subcommand("manual", "Print a manual page, to be read by: raya manual COMMAND | man -l -");
-    add_examples(*command, {{"raya manual render | man -l -", "The page of a command, as man shows it"},
-                            {"mkdir -p man1 && raya manual -o man1",
-                             "All pages as files: man1/raya.1, man1/raya-render.1 and so on"}});
+        program.add_subcommand("manual", "Print a manual page; to read it: raya manual COMMAND | man -l -");
+    add_examples(*command,
+                 {{"raya manual render | man -l -", "Read the page of a command"},
+                  {"mkdir -p man1 && raya manual -o man1", "Write all pages: man1/raya.1, man1/raya-render.1, ..."}});
     const auto options = std::make_shared<ManualCommand>();
     const OptionGroup group(*command, kFiles);
-    add_value(*command, "COMMAND", options->command, "Whose page; default: the one of raya, which names the others")
+    add_value(*command, "COMMAND", options->command, "The command; default: raya itself, whose page lists the others")
         ->type_name("COMMAND");
     add_file(*command, FileUse::kWrittenFolder, "-o,--output", options->folder, "DIR",
-             "Write all pages into this folder, raya.1, raya-render.1 and so on");
+             "Write all pages to this folder: raya.1, raya-render.1, ...");
     command->callback([options, &program] { run_manual(program, *options); });
 }
 
 void add_completion_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "completion",
-        "Print what completes commands, options and values in a shell; in bash: source <(raya completion bash)");
-    add_examples(*command,
-                 {{"source <(raya completion bash)", "Commands and options complete in this bash from now on"},
-                  {"raya completion zsh -o _raya", "A file for a folder of zsh's $fpath"}});
+        "Print a shell's completion script for commands, options and values; in bash: source <(raya completion bash)");
+    add_examples(*command, {{"source <(raya completion bash)", "Enable completion in this bash"},
+                            {"raya completion zsh -o _raya", "Write the file for a folder of zsh's $fpath"}});
     const auto options = std::make_shared<CompletionCommand>();
     const OptionGroup group(*command, kFiles);
     add_value(*command, "SHELL", options->shell, "The shell: bash, zsh or fish")
         ->required()
         ->type_name("bash|zsh|fish");
-    add_file(*command, FileUse::kWritten, "-o,--output", options->file, "FILE", "Write it to a file");
+    add_file(*command, FileUse::kWritten, "-o,--output", options->file, "FILE", "Write the script to a file");
     command->callback([options, &program] { run_completion(program, *options); });
 }
 

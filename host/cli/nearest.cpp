@@ -5,7 +5,7 @@
 namespace raya {
 namespace {
 
-/// The least number of letters put in, left out, changed or swapped that makes `b` of `a`; no letter is edited twice.
+/// Damerau's edit distance from `a` to `b`; no letter is edited twice.
 std::size_t edits(const std::string& a, const std::string& b) {
     std::vector<std::vector<std::size_t>> of(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
     for (std::size_t i = 0; i <= a.size(); ++i) {
@@ -26,14 +26,14 @@ std::size_t edits(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string nearest_name(const std::string& word, const std::vector<std::string>& names) {
-    constexpr std::size_t kShortest = 3;  // letters that a beginning must have
+    constexpr std::size_t kMinPrefix = 3;
     std::string nearest;
-    std::size_t least = word.size() / 3 + 1;
+    std::size_t smallest = word.size() / 3 + 1;
     for (const std::string& name : names) {
-        const bool begins = word.size() >= kShortest && name.starts_with(word);
+        const bool begins = word.size() >= kMinPrefix && name.starts_with(word);
         const std::size_t distance = begins ? 0 : edits(word, name);
-        if (distance >= least) continue;
-        least = distance;
+        if (distance >= smallest) continue;
+        smallest = distance;
         nearest = name;
     }
     return nearest;

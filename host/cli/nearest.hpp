@@ -1,13 +1,12 @@
-// The name that a user may have meant.
+// Suggestions for misspelt names.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace raya {
 
-/// Of `names` the one that `word` is most like: which begins with it, or which it becomes by the fewest letters put in,
-/// left out, changed or swapped with their neighbour (F. J. Damerau 1964), a third of its letters at most. Empty: none
-/// is like it.
+/// The name nearest to `word`: one that begins with it, else the one with the smallest edit distance (insertions,
+/// deletions, substitutions, swaps of neighbours; F. J. Damerau 1964) up to a third of the word's length. Else "".
 std::string nearest_name(const std::string& word, const std::vector<std::string>& names);
 
 /// " (did you mean NAME?)", or nothing.

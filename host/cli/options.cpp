@@ -14,8 +14,8 @@ void refuse_value(const std::string& option, const std::string& value, const cha
                                   : fmt::format("{} {}: {}; {}: {}", option, value, reason, option, help));
 }
 
-// In a validator that is not active.
-CLI::Option* keep_note(CLI::Option* option, const char* name, const std::string& text) {
+// As the description of an inactive validator.
+CLI::Option* attach_note(CLI::Option* option, const char* name, const std::string& text) {
     try {
         option->get_validator(name)->description(text);
         return option;
@@ -26,24 +26,24 @@ CLI::Option* keep_note(CLI::Option* option, const char* name, const std::string&
 
 std::string note_of(CLI::Option& option, const char* name) {
     try {
-        CLI::Validator kept = *option.get_validator(name);
-        return kept.active().get_description();
+        CLI::Validator note = *option.get_validator(name);
+        return note.active().get_description();
     } catch (const CLI::OptionNotFound&) {
         return "";
     }
 }
 
-constexpr const char* kWords = "words";
+constexpr const char* kChoices = "choices";
 
-CLI::Option* offer_words(CLI::Option* option, const std::vector<std::string>& words) {
-    return keep_note(option, kWords, fmt::format("{}", fmt::join(words, " ")));
+CLI::Option* offer_choices(CLI::Option* option, const std::vector<std::string>& choices) {
+    return attach_note(option, kChoices, fmt::format("{}", fmt::join(choices, " ")));
 }
 
-std::vector<std::string> offered_words(CLI::Option& option) {
-    std::vector<std::string> words;
-    std::istringstream text(note_of(option, kWords));
-    for (std::string word; text >> word;) words.push_back(word);
-    return words;
+std::vector<std::string> offered_choices(CLI::Option& option) {
+    std::vector<std::string> choices;
+    std::istringstream text(note_of(option, kChoices));
+    for (std::string one; text >> one;) choices.push_back(one);
+    return choices;
 }
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// Options of a command, which take what their values' types can hold.
+// Options of a command, with values checked against their types.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -10,7 +10,7 @@
 
 namespace raya {
 
-/// The type of an option's value behind std::optional or std::vector, of which each element is given by itself.
+/// The type of one value of an option: without std::optional and std::vector.
 template <class Value>
 struct OptionValue {
     using Type = Value;
@@ -20,12 +20,12 @@ struct OptionValue<std::optional<Value>> : OptionValue<Value> {};
 template <class Value>
 struct OptionValue<std::vector<Value>> : OptionValue<Value> {};
 
-/// Throws UserError, in which the help text says what would be right.
+/// Throws UserError: option, value, reason, and the option's help text.
 [[noreturn]] void refuse_value(const std::string& option, const std::string& value, const char* reason,
                                const std::string& help);
 
-/// Refuses what is empty, and of numbers what does not read as one or does not fit the type. The parser would take the
-/// first as not given, wrap negative numbers round and cut large ones.
+/// Refuses empty values, and numbers that are malformed or out of the type's range. CLI11 takes an empty value for a
+/// missing one, wraps negative numbers and truncates large ones.
 template <class Value>
 void check_value(const std::string& option, const std::string& text, const std::string& help) {
     if (text.empty()) refuse_value(option, text, "must not be empty", help);
@@ -41,17 +41,17 @@ void check_value(const std::string& option, const std::string& text, const std::
     }
 }
 
-// Headings below which help shows options, in the commands that have them.
+// Headings of options in help.
 inline constexpr const char* kFiles = "Files";
-inline constexpr const char* kPicture = "Picture";
+inline constexpr const char* kImageGroup = "Image";
 inline constexpr const char* kCamera = "Camera and light";
 inline constexpr const char* kMachine = "Machine and mapping";
 inline constexpr const char* kTorusMachine = "Torus machine";
 inline constexpr const char* kKernels = "Kernels and device";
-inline constexpr const char* kCloserLook = "Looking closer";
-inline constexpr const char* kCommonOptions = "Common options";  // of all commands; they stand last
+inline constexpr const char* kDiagnostics = "Diagnostics";
+inline constexpr const char* kGeneralOptions = "General options";  // of all commands; listed last
 
-/// The heading of all options that are added to a command while this lives.
+/// Sets the heading of all options that are added to a command during its lifetime.
 class OptionGroup {
   public:
     OptionGroup(CLI::App& command, const std::string& heading)
@@ -62,7 +62,7 @@ class OptionGroup {
     OptionGroup& operator=(const OptionGroup&) = delete;
     ~OptionGroup() { defaults_.group(before_); }
 
-    /// Of those that follow.
+    /// Sets another heading.
     void next(const std::string& heading) { defaults_.group(heading); }
 
   private:
@@ -70,7 +70,7 @@ class OptionGroup {
     std::string before_;
 };
 
-/// Adds an option that fills `value` and refuses odd values.
+/// Adds an option that stores into `value`, checked by check_value().
 template <class Value>
 CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& help = "") {
     CLI::Option* option = command.add_option(name, value, help);
@@ -80,15 +80,15 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value,
     });
 }
 
-/// Keeps a text with an option, which neither refuses values nor shows in help; empty of what was not kept.
-CLI::Option* keep_note(CLI::Option* option, const char* name, const std::string& text);
+/// Attaches a named text to an option; help does not show it. note_of() returns "" if there is none.
+CLI::Option* attach_note(CLI::Option* option, const char* name, const std::string& text);
 std::string note_of(CLI::Option& option, const char* name);
 
-/// Names words that the value may be, for shells to offer. Help does not show them, and they refuse
-/// nothing. Where help calls the value by its words, as in "ring|bus", they need no naming.
-CLI::Option* offer_words(CLI::Option* option, const std::vector<std::string>& words);
+/// Sets the values that shells complete. They are not checked and not shown in help. Not needed if the placeholder
+/// lists them: "ring|bus".
+CLI::Option* offer_choices(CLI::Option* option, const std::vector<std::string>& choices);
 
-/// Those words, or none.
-std::vector<std::string> offered_words(CLI::Option& option);
+/// Those values, or none.
+std::vector<std::string> offered_choices(CLI::Option& option);
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// raya page REPORT.json -o FILE.html: a saved report as a page.
+// raya page REPORT.json -o FILE.html: makes an HTML page from a report.
 #include "host/cli/page.hpp"
 
 #include <fmt/core.h>
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cli/command_tree.hpp"
@@ -26,7 +26,7 @@ struct PageCommand {
     std::string report, page;
 };
 
-// A page is sent to others: the files that a run names appear without their folders.
+// Pages are sent to others: removes the folders of file names.
 Json without_folders(Json report) {
     const auto shorten = [](Json& object, const char* key) {
         const Json* const path = object.find(key);
@@ -52,12 +52,12 @@ void check_kind(const Json& report) {
     for (const char* known : {kRenderReportKind, kBenchReportKind, kVerifyReportKind, "raya gpu_day"})
         if (name == known) return;
     if (kind == nullptr && (report.find("measured") != nullptr || report.find("devices") != nullptr))
-        throw JsonError("the report of an older raya, without the command that wrote it");
+        throw JsonError("a report of an older raya, which does not name the command that wrote it");
     throw JsonError("valid JSON, but not a report of raya render, bench, verify or gpu_day");
 }
 
 JsonSource source_of(const std::string& name) {
-    return {name, "a report that this raya writes by raya render, bench or verify with --report FILE.json"};
+    return {name, "give a report that this version of raya render, bench or verify wrote with --report FILE.json"};
 }
 
 void make_page(const PageCommand& command) {
@@ -66,7 +66,7 @@ void make_page(const PageCommand& command) {
     const std::string page = page_of_report(json_text(command.report, source_of(name), Pipes::kRead), name);
     write_whole_file(command.page, page);
     if (!is_quiet())
-        fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n", printable(command.page),
+        fmt::print("page    {} ({:.0f} KB); open it in a browser; it needs no network\n", printable(command.page),
                    static_cast<double>(page.size()) / 1e3);
 }
 
@@ -74,8 +74,7 @@ void make_page(const PageCommand& command) {
 
 void check_page_name(const std::string& option, const std::string& file) {
     if (!file.ends_with(".html") && !file.ends_with(".htm") && !file.starts_with("/dev/") && !is_standard_stream(file))
-        throw UserError(
-            fmt::format("{} {}: what is written is a page for a browser; let the name end in .html", option, file));
+        throw UserError(fmt::format("{} {}: the file is an HTML page; choose a name that ends in .html", option, file));
 }
 
 std::string page_of_report(const std::string& text, const std::string& name) {
@@ -91,21 +90,20 @@ void write_report_and_page(const ReportFiles& files, const Json& report) {
 }
 
 void add_page_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand(
-        "page", "Make a page for a browser of a saved report of render, bench or verify; nothing runs again");
+    CLI::App* command = program.add_subcommand("page", "Make an HTML page from a report of render, bench or verify");
     add_examples(*command,
                  {{"raya render scenes/planes.nff --report planes.json -o planes.png && raya page planes.json -o "
                    "planes.html",
-                   "A render whose report becomes a page; render --page does both at once"},
+                   "Make a page from the report of a render; render --page does both at once"},
                   {"raya verify --brief --only number --report verify.json && raya page verify.json -o verify.html",
-                   "What was checked on this device, to be sent to somebody"}});
+                   "Make a page of the checks of this device"}});
     const auto options = std::make_shared<PageCommand>();
     const OptionGroup group(*command, kFiles);
     add_file(*command, FileUse::kRead, "REPORT", options->report, "REPORT.json",
-             "Report of raya render, bench or verify, as --report writes it")
+             "Report of raya render, bench or verify, written by --report")
         ->required();
     add_file(*command, FileUse::kWritten, "-o,--output", options->page, "FILE.html",
-             "Page to write: one file for a browser that needs no network")
+             "HTML page to write: one file that needs no network")
         ->required();
     command->callback([options] { make_page(*options); });
 }

@@ -11,14 +11,14 @@
 namespace raya {
 
 std::vector<std::uint32_t> parse_sizes(const std::string& text) {
-    constexpr std::uint32_t kMost = 1'000'000;
+    constexpr std::uint32_t kMaxSize = 1'000'000;
     std::vector<std::uint32_t> sizes;
     const char* at = text.data();
     const char* const end = at + text.size();
     for (;;) {
         std::uint32_t size = 0;
         const auto [next, error] = std::from_chars(at, end, size);
-        if (error != std::errc{} || size < 1 || size > kMost) return {};
+        if (error != std::errc{} || size < 1 || size > kMaxSize) return {};
         sizes.push_back(size);
         if (next == end) return sizes;
         if (*next != 'x') return {};
@@ -48,14 +48,14 @@ Accel parse_accel(const std::string& text) {
         text.starts_with("grid:") ? parse_sizes(text.substr(5)) : std::vector<std::uint32_t>{};
     if (sides.size() != 3)
         throw UserError(
-            fmt::format("--accel {}: must be none, bvh, grid or grid:AxBxC, A B C voxels along x, y and z", text));
+            fmt::format("--accel {}: must be none, bvh, grid or grid:AxBxC with A, B, C voxels along x, y, z", text));
     return {.kind = AccelKind::kGrid, .divisions = Divisions{sides[0], sides[1], sides[2]}};
 }
 
 std::vector<NumberFormat> parse_formats(const std::string& list) {
     std::vector<NumberFormat> formats;
-    std::istringstream words(list);
-    for (std::string word; std::getline(words, word, ',');) formats.push_back(parse_format(word));
+    std::istringstream names(list);
+    for (std::string name; std::getline(names, name, ',');) formats.push_back(parse_format(name));
     return formats;
 }
 
@@ -66,8 +66,8 @@ AntialiasMethod parse_antialias(const std::string& text) {
     throw UserError(fmt::format("--antialias {}: must be none, filter or supersample", text));
 }
 
-ExchangeWay parse_exchange(const std::string& text) {
-    for (const ExchangeWay way : {ExchangeWay::kRing, ExchangeWay::kBus, ExchangeWay::kBroadcast})
+ExchangeMethod parse_exchange(const std::string& text) {
+    for (const ExchangeMethod way : {ExchangeMethod::kRing, ExchangeMethod::kBus, ExchangeMethod::kBroadcast})
         if (text == exchange_name(way)) return way;
     throw UserError(fmt::format("--exchange {}: must be ring, bus or bus-broadcast", text));
 }
@@ -87,15 +87,15 @@ Sampling parse_sampling(const std::string& text) {
 Links parse_links(const std::string& text) {
     for (const Links links : {Links::kTorus3d, Links::kTorus2d})
         if (text == links_name(links)) return links;
-    throw UserError(fmt::format("--links {}: must be torus3d, six links a node, or torus2d, four", text));
+    throw UserError(fmt::format("--links {}: must be torus3d (6 links a node) or torus2d (4)", text));
 }
 
 void add_device_option(CLI::App& command, std::string& device) {
     const OptionGroup group(command, kKernels);
-    offer_words(
+    offer_choices(
         add_value(command, "--device", device,
-                  "OpenCL device: number, type (gpu, cpu) or part of a name or version, see raya devices; default: "
-                  "RAYA_DEVICE, else the first GPU, else the first CPU")
+                  "OpenCL device: its number, type (gpu, cpu), or part of its name or version, as raya devices lists "
+                  "them; default: RAYA_DEVICE, else the first GPU, else the first CPU")
             ->type_name("NAME"),
         {"gpu", "cpu"});
 }

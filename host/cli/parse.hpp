@@ -1,4 +1,4 @@
-// Option values that are more than one number.
+// Parsers of structured option values.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,29 +18,28 @@ class App;
 
 namespace raya {
 
-/// "512x256" as {512, 256}: whole numbers from 1 to 10^6 with x between them; empty for anything else.
+/// "512x256" as {512, 256}: integers from 1 to 10^6 separated by x; empty for anything else.
 std::vector<std::uint32_t> parse_sizes(const std::string& text);
 
-/// An image size: "512" (square) or "512x256". UserError names the option and its legal values; the range is checked
-/// later.
+/// An image size: "512" (square) or "512x256", whose range image_size() checks. UserError with the legal values.
 ImageSize parse_image_size(const std::string& text);
 
-/// Three numbers, along x, y and z: "4x4x4". UserError names the option and its legal values, "1..256 each".
+/// Three numbers, along x, y and z: "4x4x4". UserError with the option and `legal`, such as "1..256 each".
 std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
                                                const std::string& legal);
 
 /// --accel: "none", "grid" or "grid:AxBxC". UserError as above.
 Accel parse_accel(const std::string& text);
 
-/// Formats with commas between them, as --format of one takes them.
+/// A comma-separated list of formats, each as in --format.
 std::vector<NumberFormat> parse_formats(const std::string& list);
 
-// One word each; UserError names the option and the legal ones.
+// Keywords. UserError with the option and its legal values.
 
 /// --antialias: "none", "filter", "supersample".
 AntialiasMethod parse_antialias(const std::string& text);
 /// --exchange: "ring", "bus", "bus-broadcast".
-ExchangeWay parse_exchange(const std::string& text);
+ExchangeMethod parse_exchange(const std::string& text);
 /// --points: "axes", "diagonals".
 raya_u32 parse_points(const std::string& text);
 /// --sampling: "centres", "corners".
@@ -48,7 +47,7 @@ Sampling parse_sampling(const std::string& text);
 /// --links: "torus3d", "torus2d".
 Links parse_links(const std::string& text);
 
-/// Adds --device: which one, see choose_device().
+/// Adds --device; see choose_device().
 void add_device_option(CLI::App& command, std::string& device);
 
 }  // namespace raya

@@ -14,8 +14,8 @@
 namespace raya {
 namespace {
 
-/// The command that the words have led to, and its name behind the program's.
-const CLI::App& command_reached(const CLI::App& program, std::string& name) {
+/// The innermost command that was selected; appends its path without the program's name to `name`.
+const CLI::App& selected_command(const CLI::App& program, std::string& name) {
     const CLI::App* command = &program;
     while (!command->get_subcommands().empty()) {
         command = command->get_subcommands().front();
@@ -31,23 +31,23 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-/// The first word that nothing takes, and whether it stands behind "--".
-struct WordLeft {
-    std::string word;
-    bool after_mark = false;
+/// The first argument that no option or command takes.
+struct UnparsedArgument {
+    std::string text;
+    bool after_separator = false;  // after "--"
 };
 
-WordLeft first_left(const CLI::App& program, const std::vector<std::string>& arguments) {
+UnparsedArgument first_unparsed(const CLI::App& program, const std::vector<std::string>& arguments) {
     const std::vector<std::string> left = program.remaining(true);
-    const auto mark = std::find(arguments.begin(), arguments.end(), "--");
-    const auto first = std::find_if(arguments.begin(), arguments.end(), [&](const std::string& word) {
-        return word != "--" && std::find(left.begin(), left.end(), word) != left.end();
+    const auto separator = std::find(arguments.begin(), arguments.end(), "--");
+    const auto first = std::find_if(arguments.begin(), arguments.end(), [&](const std::string& one) {
+        return one != "--" && std::find(left.begin(), left.end(), one) != left.end();
     });
-    return first == arguments.end() ? WordLeft{} : WordLeft{*first, first > mark};
+    return first == arguments.end() ? UnparsedArgument{} : UnparsedArgument{*first, first > separator};
 }
 
-/// What the parser says of an option with too many values or none, in other words.
-std::string of_values(std::string text) {
+/// CLI11's message about too many or too few values, reworded.
+std::string value_error_text(std::string text) {
     const auto replace = [&](const std::string& what, const std::string& by) {
         const std::size_t at = text.find(what);
         if (at != std::string::npos) text.replace(at, what.size(), by);
@@ -57,96 +57,98 @@ std::string of_values(std::string text) {
     return text;
 }
 
-/// What an option is called here that other programs, or earlier versions, call otherwise.
-std::string usual_name(const std::string& option) {
+/// Our name of an option that earlier versions or other programs name differently.
+std::string current_option_name(const std::string& option) {
     if (option == "--ways") return "--variants";
     return option == "--width" || option == "--height" || option == "--resolution" ? "--size" : option;
 }
 
-std::string reason(const CLI::App& command, const WordLeft& first, const CLI::ParseError& error) {
+std::string reason(const CLI::App& command, const UnparsedArgument& first, const CLI::ParseError& error) {
     const std::vector<std::string> commands = command_names(command);
-    const std::string& left = first.word;
-    if (first.after_mark)
-        return fmt::format("unexpected argument '{}' after --; options and commands belong before it", left);
+    const std::string& left = first.text;
+    if (first.after_separator)
+        return fmt::format("unexpected argument '{}' after --; put options and commands before it", left);
     if (left.starts_with("-") && left.size() > 1) {
-        const std::string word = left.substr(0, left.find('='));
-        if (command.get_option_no_throw(word) != nullptr)
-            return fmt::format("{} stands before {}, to which it belongs; let it follow", word, command.get_name());
-        return fmt::format("no option {}{}", word, did_you_mean(usual_name(word), option_names(command)));
+        const std::string name = left.substr(0, left.find('='));
+        if (command.get_option_no_throw(name) != nullptr)
+            return fmt::format("{} is an option of {}; put it after {}", name, command.get_name(), command.get_name());
+        return fmt::format("no option {}{}", name, did_you_mean(current_option_name(name), option_names(command)));
     }
     if (!left.empty() && commands.empty()) return fmt::format("unexpected argument '{}'", left);
     if (!left.empty() && command.get_option_no_throw("--" + left) != nullptr)
         return fmt::format("no command {} (did you mean --{}?)", left, left);
     if (!left.empty())
-        return fmt::format("no command {}{}; there are {}", left, did_you_mean(left, commands),
+        return fmt::format("no command {}{}; commands: {}", left, did_you_mean(left, commands),
                            fmt::join(commands, ", "));
     if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !commands.empty())
-        return fmt::format("name a command: {}", fmt::join(commands, ", "));
-    return of_values(error.what());
+        return fmt::format("command missing; commands: {}", fmt::join(commands, ", "));
+    return value_error_text(error.what());
 }
 
 std::string failure_text(const CLI::App& program, const CLI::ParseError& error,
                          const std::vector<std::string>& arguments) {
     std::string name;
-    const CLI::App& command = command_reached(program, name);
-    const bool words_left = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
-                            dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
-    const WordLeft left = words_left ? first_left(program, arguments) : WordLeft{};
+    const CLI::App& command = selected_command(program, name);
+    const bool has_unparsed = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+                              dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    const UnparsedArgument left = has_unparsed ? first_unparsed(program, arguments) : UnparsedArgument{};
     return fmt::format("{}{}{}; see raya{} --help", name.empty() ? "" : name.substr(1), name.empty() ? "" : ": ",
                        reason(command, left, error), name);
 }
 
-/// The option whose value is the word behind this one, if any. Refuses what CLI11 reads otherwise than it is written:
-/// it takes the value of a flag for a number, leaves "-=x" of "-q=x", and gives "--size=" the next word.
-const CLI::Option* check_option(const CLI::App& command, const std::string& word) {
-    const bool is_long = word.starts_with("--");
-    const std::size_t equals = std::min(word.find('='), word.size());
-    for (std::size_t at = 1, end = 0; end < word.size(); ++at) {
+/// The option whose value is the argument after this one, or null. Refuses forms that CLI11 misreads: it takes the
+/// value of a flag for a number, parses "-q=x" as -q and "-=x", and gives "--size=" the next argument as value.
+const CLI::Option* check_option(const CLI::App& command, const std::string& argument) {
+    const bool is_long = argument.starts_with("--");
+    const std::size_t equals = std::min(argument.find('='), argument.size());
+    for (std::size_t at = 1, end = 0; end < argument.size(); ++at) {
         end = is_long ? equals : at + 1;
-        const std::string name = is_long ? word.substr(0, end) : std::string{'-', word[at]};
+        const std::string name = is_long ? argument.substr(0, end) : std::string{'-', argument[at]};
         const CLI::Option* option = command.get_option_no_throw(name);
         if (option == nullptr && at == 1) return nullptr;
-        if (option == nullptr) throw UserError(fmt::format("{}: no option {}", word, name));
+        if (option == nullptr) throw UserError(fmt::format("{}: no option {}", argument, name));
         const bool takes_value = option->get_items_expected_max() > 0;
-        if (takes_value && is_long && equals + 1 == word.size())
+        if (takes_value && is_long && equals + 1 == argument.size())
             refuse_value(name, "", "must not be empty", option->get_description());
-        if (takes_value) return end == word.size() ? option : nullptr;
-        if (end == equals && end < word.size()) throw UserError(fmt::format("{}: {} takes no value", word, name));
+        if (takes_value) return end == argument.size() ? option : nullptr;
+        if (end == equals && end < argument.size())
+            throw UserError(fmt::format("{}: {} takes no value", argument, name));
     }
     return nullptr;
 }
 
-void check_words(const CLI::App& program, const std::vector<std::string>& arguments) {
-    constexpr std::size_t kLongest = 4096;  // bytes: Linux's PATH_MAX
+void check_argument_values(const CLI::App& program, const std::vector<std::string>& arguments) {
+    constexpr std::size_t kMaxBytes = 4096;  // Linux's PATH_MAX
     const CLI::App* command = &program;
-    const CLI::Option* asks = nullptr;  // for this word
-    bool marked = false;
-    for (const std::string& word : arguments) {
-        if (word.size() > kLongest)
-            throw UserError(
-                fmt::format("{}: {} bytes are too many, at most {}",
-                            asks ? asks->get_name() : word.substr(0, std::min<std::size_t>(word.find('='), 40)),
-                            word.size(), kLongest));
-        marked = marked || (asks == nullptr && word == "--");
-        const bool free = asks == nullptr && !marked;
-        asks = free && word.starts_with("-") ? check_option(*command, word) : nullptr;
-        const auto next = command->get_subcommands([&](const CLI::App* one) { return one->get_name() == word; });
+    const CLI::Option* value_of_option = nullptr;  // the option whose value this argument is
+    bool after_separator = false;
+    for (const std::string& argument : arguments) {
+        if (argument.size() > kMaxBytes)
+            throw UserError(fmt::format("{}: the value has {} bytes, maximum {}",
+                                        value_of_option
+                                            ? value_of_option->get_name()
+                                            : argument.substr(0, std::min<std::size_t>(argument.find('='), 40)),
+                                        argument.size(), kMaxBytes));
+        after_separator = after_separator || (value_of_option == nullptr && argument == "--");
+        const bool free = value_of_option == nullptr && !after_separator;
+        value_of_option = free && argument.starts_with("-") ? check_option(*command, argument) : nullptr;
+        const auto next = command->get_subcommands([&](const CLI::App* one) { return one->get_name() == argument; });
         if (free && !next.empty()) command = next.front();
     }
 }
 
-/// The text of a refusal "--fold blok: ..." with the word that the option offers and that is most like "blok".
-std::string with_nearest(const CLI::App& program, std::string text) {
+/// Adds the option's choice nearest to the value to a message such as "--fold blok: ...".
+std::string with_suggestion(const CLI::App& program, std::string text) {
     std::string name;
-    for (const CLI::Option* option : command_reached(program, name).get_options()) {
+    for (const CLI::Option* option : selected_command(program, name).get_options()) {
         const std::string start = option->get_name() + ' ';
         const std::size_t end = text.find(": ");
         if (!text.starts_with(start) || end == std::string::npos || end < start.size()) continue;
         const std::string value = text.substr(start.size(), end - start.size());
-        // Validators, where words are kept, can be read of an option that is not const alone.
+        // CLI11 returns validators, which hold the choices, only of an option that is not const.
         const ValueText offered = value_of(option_text(*const_cast<CLI::Option*>(option)));
-        if (!value.starts_with(nearest_name(value, offered.words)))  // "grid:4" is a grid
-            text.insert(end, did_you_mean(value, offered.words));
+        if (!value.starts_with(nearest_name(value, offered.choices)))  // "grid:4" names a grid
+            text.insert(end, did_you_mean(value, offered.choices));
         break;
     }
     return text;
@@ -161,15 +163,15 @@ std::vector<std::string> command_names(const CLI::App& command) {
     return names;
 }
 
-void parse_words(CLI::App& program, const std::vector<std::string>& arguments) {
+void parse_arguments(CLI::App& program, const std::vector<std::string>& arguments) {
     try {
-        check_words(program, arguments);
+        check_argument_values(program, arguments);
         program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) throw;  // help, version
         throw UserError(failure_text(program, error, arguments));
     } catch (const UserError& error) {
-        const std::string text = with_nearest(program, error.what());
+        const std::string text = with_suggestion(program, error.what());
         if (text == error.what()) throw;
         throw UserError(text);
     }

@@ -1,4 +1,4 @@
-// The words of a command line, and what is said of those that the option parser does not take: one line.
+// Parses the command line with one-line error messages.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,11 +9,11 @@ class App;
 
 namespace raya {
 
-/// Parses the words behind the program's name and runs the command. What is not taken is a UserError, of one line; help
-/// and version are a CLI::ParseError.
-void parse_words(CLI::App& program, const std::vector<std::string>& arguments);
+/// Parses the arguments (without the program's name) and runs the command. Throws UserError with one line for a bad
+/// argument, CLI::ParseError for --help and --version.
+void parse_arguments(CLI::App& program, const std::vector<std::string>& arguments);
 
-/// The names of a command's own commands.
+/// The names of a command's subcommands.
 std::vector<std::string> command_names(const CLI::App& command);
 
 }  // namespace raya

@@ -13,17 +13,17 @@
 namespace raya {
 namespace {
 
-/// All of `field` as a number; from_chars does not depend on the locale.
+/// Parses the whole field, independently of the locale.
 template <typename Number>
 bool read_number(std::string_view field, Number& number) {
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
     return error == std::errc{} && end == field.data() + field.size();
 }
 
-// A whole number from least to most, written in digits alone.
-std::optional<std::uint32_t> parse_number(std::string_view text, std::uint32_t least, std::uint32_t most) {
+// An integer from min to max, digits only.
+std::optional<std::uint32_t> parse_number(std::string_view text, std::uint32_t min, std::uint32_t max) {
     std::uint32_t number = 0;
-    if (!read_number(text, number) || number < least || number > most) return {};
+    if (!read_number(text, number) || number < min || number > max) return {};
     return number;
 }
 
@@ -40,16 +40,16 @@ std::optional<std::uint32_t> parse_pair(std::string_view text) {
 constexpr std::uint32_t kDefaultSeed = 1;
 constexpr std::uint32_t kLargestSeed = std::numeric_limits<std::uint32_t>::max();
 
-// What follows the colon, where there is one: the parameter, or a refusal that says what it must be.
+// The parameter after the colon. UserError with the legal form.
 std::uint32_t parse_parameter(const MappingText& mapping, std::string_view rest) {
     std::optional<std::uint32_t> parameter;
-    std::string legal = mapping.name() + " alone";  // of those that take none
+    std::string legal = mapping.name() + ", without a parameter";
     if (mapping.rule.kind == RAYA_GRID) {
         parameter = parse_pair(rest);
-        legal = fmt::format("grid:AxB, A rows of B PEs, each 1..{}", kLargestSide);
+        legal = fmt::format("grid:AxB with A rows of B PEs, each 1..{}", kLargestSide);
     } else if (mapping.rule.kind == RAYA_TILES) {
         parameter = parse_pair(rest);
-        legal = fmt::format("tiles:WxH, the sides of a tile in pixels, each 1..{}", kLargestSide);
+        legal = fmt::format("tiles:WxH with the sides of a tile in pixels, each 1..{}", kLargestSide);
     } else if (mapping.rule.kind == RAYA_RANDOM) {
         parameter = parse_number(rest, 0, kLargestSeed);
         legal = fmt::format("random:seed with a seed 0..{}, or random", kLargestSeed);
@@ -64,8 +64,8 @@ std::uint32_t parse_parameter(const MappingText& mapping, std::string_view rest)
 [[noreturn]] void refuse_plan(const std::string& text) {
     throw UserError(
         fmt::format("--mapping {}: must be dynamic:CHUNK[,OVERHEAD] or hybrid:CHUNK[,OVERHEAD[,SHARE]] with "
-                    "CHUNK 1..{} pixels a request, OVERHEAD 0..{} cycles a request, SHARE 0..1 of a PE's own "
-                    "pixels to start with",
+                    "CHUNK 1..{} pixels per request, OVERHEAD 0..{} cycles per request, SHARE 0..1 of the pixels "
+                    "assigned statically",
                     text, kLargestChunk, kLargestOverhead));
 }
 
@@ -90,8 +90,8 @@ const std::vector<std::string>& mapping_forms() {
 MappingText parse_mapping(const std::string& text) {
     struct Name {
         const char* name;
-        MappingRule alone;  // of the name alone
-        bool needs_more = false, leaves_offset = false;
+        MappingRule rule;  // of the name without a parameter
+        bool needs_parameter = false, leaves_offset = false;
     };
     static const Name names[] = {{"cyclic", cyclic_mapping(0), false, true},
                                  {"column", column_mapping()},
@@ -104,10 +104,10 @@ MappingText parse_mapping(const std::string& text) {
     const auto* const found = std::find_if(std::begin(names), std::end(names),
                                            [&](const Name& n) { return n.name == text.substr(0, colon); });
     if (found == std::end(names))
-        throw UserError(fmt::format("--mapping {}: no such mapping, there are {}, dynamic:CHUNK, hybrid:CHUNK", text,
+        throw UserError(fmt::format("--mapping {}: no such mapping; mappings: {}, dynamic:CHUNK, hybrid:CHUNK", text,
                                     fmt::join(mapping_forms(), ", ")));
-    MappingText mapping{text, found->alone, found->leaves_offset};
-    if (colon == std::string::npos && !found->needs_more) return mapping;
+    MappingText mapping{text, found->rule, found->leaves_offset};
+    if (colon == std::string::npos && !found->needs_parameter) return mapping;
     mapping.rule.parameter = parse_parameter(mapping, colon == std::string::npos ? "" : text.substr(colon + 1));
     mapping.leaves_offset = false;
     return mapping;

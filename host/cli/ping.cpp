@@ -1,4 +1,4 @@
-// raya ping: what messages take between ranks, by the transport that renders use.
+// raya ping: measures message times between ranks, over the transport that renders use.
 #include "host/ranks/ping.hpp"
 
 #include <fmt/core.h>
@@ -13,7 +13,7 @@ namespace {
 
 void ping_pong(Ranks& ranks) {
     if (!ranks.many())
-        throw UserError("ping sends messages between ranks and there is one; start it as mpirun -n 2 raya ping");
+        throw UserError("ping needs two ranks or more and there is one; start it as mpirun -n 2 raya ping");
     const PingReport report = ping(ranks);
     if (ranks.first()) fmt::print("{}\n", report.json().dump(2));
 }
@@ -22,10 +22,10 @@ void ping_pong(Ranks& ranks) {
 
 void add_ping_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand(
-        "ping", "Under mpirun: seconds that messages of 1 B to 4 MB take between ranks, and alpha and beta, as JSON");
-    add_examples(*command, {{"mpirun -n 2 raya ping", "Between two ranks of this machine"},
+        "ping", "Under mpirun: measure messages of 1 B to 4 MB between ranks and print times, alpha and beta as JSON");
+    add_examples(*command, {{"mpirun -n 2 raya ping", "Measure between two ranks of this machine"},
                             {"mpirun -n 2 --host one,other raya ping >network.json",
-                             "Between two machines; alpha and beta are what raya study ranks --network takes"}});
+                             "Measure between two machines; raya study ranks --network takes alpha and beta"}});
     command->callback([&ranks] { ping_pong(ranks); });
 }
 

@@ -1,10 +1,10 @@
-// Words of a command line, for pages and messages that say how to repeat something.
+// Shell quoting, for commands in pages and messages.
 #pragma once
 #include <string>
 
 namespace raya {
 
-/// The word as a shell takes it: in quotes where it has more than letters, digits and what is harmless.
+/// The word for a shell: in single quotes unless all its letters are safe.
 std::string quoted(const std::string& word);
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// What every rank of a render did and held, for the report.
+// Per-rank figures of a render, for the report.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,19 +10,19 @@
 
 namespace raya {
 
-/// Of this rank.
+/// The work of this rank.
 struct RankWork {
     std::uint32_t parts = 0;  // PEs of the ring or nodes of the torus
     std::uint32_t lanes = 0, group_size = 0;
     double build_s = 0, render_s = 0;
-    RankTraffic traffic{};  // while it rendered
+    RankTraffic traffic{};  // during the render
     std::vector<LabelSummary> commands{};
 };
 
-/// One object for each rank, in rank 0; elsewhere, and where there is only one rank, none. `parts`: "pes" or "nodes".
+/// On rank 0 one object for each rank; empty on other ranks and with a single rank. `parts`: "pes" or "nodes".
 std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts, const RankWork& work);
 
-/// ... of a machine's result.
+/// From a machine's result.
 template <class Result>
 std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts, const Result& r) {
     return rank_reports(ranks, session, parts,

@@ -1,4 +1,4 @@
-// raya render: a scene file in, an image and a load report out.
+// raya render: renders a scene file into an image and a load report.
 #include <memory>
 
 #include "host/cli/command_tree.hpp"
@@ -13,22 +13,57 @@ namespace {
 
 void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) {
     refuse_options_of_other_machines(parsed, machine_named(command.render.machine));
-    if (ranks.first()) check_render(parsed, command);  // who writes; elsewhere the folders need not be there
+    if (ranks.first()) check_render(parsed, command);  // rank 0 writes; on other hosts the folders need not exist
     RenderRun run(command, ranks);
     if (command.frames.given())
         render_frames(parsed, command, run);
     else
         render_image(command, run);
-    if (command.keep_kernels && ranks.first()) run.session().keep_binaries();
+    if (command.cache_kernels && ranks.first()) run.session().save_binaries();
+}
+
+std::vector<ShortHelp> render_short_help() {
+    const char *const options = "Options", *const image = "Image", *const machine = "Machine", *const output = "Output";
+    return {{"--output", options, "Image to write: .png, .tif, .ppm, .jpg, .exr or .pfm"},
+            {"--size", options, "Size in pixels, 1..16384 a side; default: the scene's"},
+            {"--machine", options,
+             "spa (256 PEs of 32 KB), grande (a PE per image column), torus (nodes hold voxels), and others"},
+            {"--pes", options, "Number of PEs; default: the machine's"},
+            {"--mapping", options,
+             "Pixels to PEs: cyclic, column, rows, blocks, grid:AxB, tiles:WxH, random, dynamic:CHUNK, hybrid:CHUNK"},
+            {"--offset", options, "Offset of the cyclic mapping; default: 16"},
+            {"--format", options, "Number format: fp32, spa22 (e6m15) or eXmY[t]"},
+            {"--accel", options, "Acceleration structure in each PE's memory"},
+            {"--antialias", options, "3 x 3 filter or adaptive supersampling"},
+            {"--device", options, "OpenCL device: its number, type or part of its name"},
+            {"--report", options, "Write all counts and measurements; -: stdout"},
+            {"--bounces", image, "Reflections and refractions, 0..31; default: 8"},
+            {"--exposure", image, "Brighten 8-bit images by 2^EV"},
+            {"--from", image, "Eye point; also --at, --up, --angle; default: scene's"},
+            {"--light", image, "Replace the scene's lights; once for each light"},
+            {"--frames", image, "Render numbered frames, with --turn or --camera-path"},
+            {"--turn", image, "Turn the eye about --at over the frames"},
+            {"--pe-memory", machine, "Memory of a PE or node; default: the machine's"},
+            {"--fold", machine, "Assignment of slots to PEs"},
+            {"--nodes", machine, "Nodes of the torus along x, y and z"},
+            {"--voxels", machine, "Voxels of the torus; default: one for each node"},
+            {"--packets", machine, "Write every packet between nodes of the torus"},
+            {"--page", output, "Write the report as an HTML page"},
+            {"--profile", output, "Print times by kernel and the roofline"},
+            {"--trace", output, "Write a trace for ui.perfetto.dev"},
+            {"--cost", output, "Write the modelled cycles of each pixel"},
+            {"--checkpoint", output, "Save the progress of a long render to this file"},
+            {"--resume", output, "Continue from the file of --checkpoint"},
+            {"--cache-kernels", output, "Store the compiled kernels for later renders"}};
 }
 
 }  // namespace
 
 void check_render(const CLI::App& parsed, const RenderCommand& command) {
     check_trace(parsed, command.trace);
-    check_keep(parsed, command.keep);
+    check_checkpoint_options(parsed, command.checkpoint);
     if (command.frames.given()) check_frames(command);
-    check_targets(parsed, command);
+    check_output_files(parsed, command);
 }
 
 std::optional<Render> render_image(const RenderCommand& command, RenderRun& run) {
@@ -38,49 +73,48 @@ std::optional<Render> render_image(const RenderCommand& command, RenderRun& run)
 
 void describe_render(CLI::App& command, RenderCommand& options) {
     OptionGroup group(command, kFiles);
-    add_file(
-        command, FileUse::kWritten, "-o,--output", options.image, "IMAGE",
-        "Image to write: .png, .tif, .ppm or .jpg (8-bit codes; JPEG of quality 95, lossy), .exr or .pfm (linear); "
-        "-: stdout, as PPM. What goes to stdout, of this or another file, leaves the summary to stderr");
+    add_file(command, FileUse::kWritten, "-o,--output", options.image, "IMAGE",
+             "Image to write: .png, .tif, .ppm or .jpg (8-bit; JPEG with quality 95, lossy), .exr or .pfm (linear); -: "
+             "stdout, as PPM. If a file goes to stdout, the summary goes to stderr");
     add_render_options(command, options.render);
     add_tone_options(command, options.tone);
     add_frame_options(command, options.frames);
-    add_keep_options(command, options.keep);
+    add_checkpoint_options(command, options.checkpoint);
     add_torus_options(command, options.torus);
-    group.next(kCloserLook);
+    group.next(kDiagnostics);
     add_file(command, FileUse::kWritten, "--cost", options.cost, "FILE.exr",
              "Write the modelled cycles of each pixel as an image, .exr or .pfm; -: stdout, as PFM");
     add_file(command, FileUse::kWritten, "--mask", options.mask, "IMAGE",
-             "Write which pixels were supersampled, white on black");
+             "Write the mask of the supersampled pixels, white on black");
     add_file(command, FileUse::kWritten, "--report", options.report, "FILE.json",
-             "Write everything that was counted and measured; -: stdout");
+             "Write all counts and measurements as JSON; -: stdout");
     add_file(command, FileUse::kWritten, "--page", options.page, "FILE.html",
-             "Write the render as a page for a browser: picture, owners of pixels, loads, times by label, roofline, "
-             "model beside measurement, build options; it is what raya page makes of the report. Measures the device's "
-             "peak, as --profile does");
+             "Write an HTML page: image, owners of pixels, loads, times by label, roofline, modelled and measured "
+             "times, build options; raya page makes the same of a report. Measures the device's peak like --profile");
     command.add_flag("--profile", options.profile,
-                     "Print launches and times of every labelled command, the builds, and how near each kernel came "
-                     "to the device's measured peak (the roofline)");
+                     "Print launches and times of every labelled command, build times, and each kernel's share of the "
+                     "device's measured peak (the roofline)");
     add_trace_options(command, options.trace);
 }
 
 void add_render_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand("render", "Render an NFF scene on a ring machine or the torus machine");
     add_examples(*command, {{"raya render scenes/centre.nff -o centre.png",
-                             "The paper's kind of scene on a ring of 256 PEs, in the scene's own size"},
+                             "Render on a ring of 256 PEs, in the scene's resolution"},
                             {"raya render scenes/glass.nff --machine torus --size 64 --report glass.json -o glass.png",
-                             "A small picture on a torus of 64 nodes, and all that was counted as JSON"}});
+                             "Render a small image on a torus of 64 nodes, with a report"}});
     const auto options = std::make_shared<RenderCommand>();
+    add_short_help(*command, render_short_help());
     const OptionGroup group(*command, kFiles);
     add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
-             "Scene in NFF, as the SPD programs write it; -: stdin")
+             "Scene in NFF, the format of the SPD programs; -: stdin")
         ->required();
     describe_render(*command, *options);
     command->get_option("--output")->required();
     const OptionGroup kernels(*command, kKernels);
-    command->add_flag("--keep-kernels", options->keep_kernels,
-                      "Keep the binaries of this render's kernels beside the program: later renders of such scenes with "
-                      "these options, on this device and driver, compile none");
+    command->add_flag("--cache-kernels", options->cache_kernels,
+                      "Store the binaries of this render's kernels in the program's folder: later renders with the "
+                      "same kernels and options, on this device and driver, do not compile");
     command->callback([command, options, &ranks] { render(*command, *options, ranks); });
 }
 

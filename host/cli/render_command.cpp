@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "host/base/json.hpp"
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/measure.hpp"
 #include "host/cli/file_options.hpp"
@@ -20,23 +20,23 @@ namespace {
 void check_packets(const std::string& file) {
     if (!file.ends_with(".gz") && !file.starts_with("/dev/") && !is_standard_stream(file))
         throw UserError(
-            fmt::format("--packets {}: what is written is compressed with gzip; let the name end in .csv.gz", file));
+            fmt::format("--packets {}: the file is compressed with gzip; choose a name that ends in .csv.gz", file));
 }
 
 void check_replay(const CLI::App& parsed, const TorusOptions& t) {
     if (t.replay != "simgrid") throw UserError(fmt::format("--replay {}: must be simgrid", t.replay));
     if (!t.packets.ends_with(".csv.gz"))
         throw UserError(
-            "--replay simgrid writes FILE.xml and FILE.replay beside the packets: give --packets FILE.csv.gz");
+            "--replay simgrid writes FILE.xml and FILE.replay next to the packets: add --packets FILE.csv.gz");
     const ReplayFiles files(t.packets);
     check_files(parsed, {{"--replay", files.platform}, {"--replay", files.replay}});
 }
 
 }  // namespace
 
-void check_targets(const CLI::App& parsed, const RenderCommand& command) {
+void check_output_files(const CLI::App& parsed, const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
-    if (!launched())  // where mpirun may have put a terminal between itself and us
+    if (!launched())  // mpirun may insert a terminal between itself and raya
         for (const std::string& file : {command.image, command.cost, command.mask, packets})
             refuse_bytes_on_terminal(file);
     tone_of(command.tone, command.image);
@@ -47,13 +47,13 @@ void check_targets(const CLI::App& parsed, const RenderCommand& command) {
     if (!command.cost.empty()) check_image_name(command.cost, kGreyImageExtensions);
     if (!command.mask.empty()) check_image_name(command.mask, kImageExtensions);
     if (!command.mask.empty() && command.render.antialias != "supersample")
-        throw UserError("--mask shows which pixels were supersampled: give --antialias supersample as well");
+        throw UserError("--mask requires supersampling: add --antialias supersample");
 }
 
-SceneInput read_scene_once(RenderWatch& watch, RenderOptions& options, Ranks& ranks) {
+SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks) {
     SceneInput input;
     if (ranks.first()) {
-        input = watch.steps().during("read scene", [&] { return read_scene(options.scene, options.strict); });
+        input = recorder.steps().during("read scene", [&] { return read_scene(options.scene, options.strict); });
         change_view(options.view, input.scene);
     }
     if (!ranks.many()) return input;
@@ -66,31 +66,31 @@ SceneInput read_scene_once(RenderWatch& watch, RenderOptions& options, Ranks& ra
     return input;
 }
 
-void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& device, const NumberFormat& format,
+void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Device& device, const NumberFormat& format,
                  const std::vector<KernelWork>& works, Warnings& warnings) {
-    report.measured.builds = watch.builds();
-    if (!report.ranks.empty()) {  // whose commands are their own, but the works are of all
-        report.measured.roofline.emplace().lacking = "it is of one device; start one rank for it";
+    report.measured.builds = recorder.builds();
+    if (!report.ranks.empty()) {  // the commands are per rank, the work is of all ranks
+        report.measured.roofline.emplace().unavailable = "the roofline is for one device; start one rank";
         return;
     }
     try {
         const DevicePeak peak =
-            watch.steps().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
+            recorder.steps().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
         report.measured.roofline = roofline(peak, works, report.measured.commands);
-        constexpr double kMuch = 0.15;  // of the best
-        if (peak.scatter > kMuch)
+        constexpr double kMaxScatter = 0.15;  // of the best
+        if (peak.scatter > kMaxScatter)
             warnings.add(
-                fmt::format("the device's peak, measured three times, scatters by {:.0f} %: something else runs on it, "
-                            "and shares of the peak say little",
+                fmt::format("three measurements of the device's peak scatter by {:.0f} %: something else runs on it; "
+                            "shares of the peak are unreliable",
                             100 * peak.scatter));
-    } catch (const DeviceError& error) {  // the render's own figures stand
-        report.measured.roofline.emplace().lacking = error.what();
+    } catch (const DeviceError& error) {  // the render's own figures are valid
+        report.measured.roofline.emplace().unavailable = error.what();
     }
 }
 
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image) {
     const Tone tone = tone_of(command.tone, command.image);
-    const Image small = preview_of(tone == Tone{} ? image : as_shown(image, tone));
+    const Image small = preview_of(tone == Tone{} ? image : as_displayed(image, tone));
     report.image.preview = {small.width, small.height, plain_png(small)};
 }
 
@@ -105,7 +105,7 @@ ImageAttributes image_attributes(const RenderReport& report, const std::string& 
 }
 
 std::optional<ImageCodes> codes_of(const RenderCommand& command) {
-    if (command.image.empty() || !holds_codes(command.image)) return {};
+    if (command.image.empty() || !stores_codes(command.image)) return {};
     const Tone tone = tone_of(command.tone, command.image);
     return ImageCodes{tone.exposure, tone_curve_name(tone.curve), tone.gamma};
 }
@@ -119,7 +119,7 @@ void write_main_image(const RenderCommand& command, const Image& image, ImageAtt
 
 void write_report(const RenderCommand& command, const RenderReport& report) {
     if (command.reports()) write_report_and_page({command.report, command.page}, to_json(report));
-    if (!is_quiet() && command.summary) fmt::print("{}", printable(human_summary(report)));
+    if (!is_quiet() && command.summary) fmt::print("{}", printable(summary_text(report)));
     if (!command.profile || !command.prints) return;
     const auto& measured = report.measured;
     fmt::print("\n{}\n{}", profile_table(measured.build_s, measured.builds, measured.commands),

@@ -1,16 +1,15 @@
-// What `raya render` was asked for, and what its machines have in common: files that are checked before, and written
-// after.
+// The options of `raya render`, and the steps that its machines share: checks before the render, output after it.
 #pragma once
 #include <string>
 
+#include "host/base/log.hpp"
 #include "host/base/progress.hpp"
-#include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
+#include "host/cli/checkpoint_options.hpp"
 #include "host/cli/frame_options.hpp"
-#include "host/cli/keep_options.hpp"
 #include "host/cli/render_options.hpp"
+#include "host/cli/render_recorder.hpp"
 #include "host/cli/render_run.hpp"
-#include "host/cli/render_watch.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/cli/tone_options.hpp"
 #include "host/cli/torus_options.hpp"
@@ -31,79 +30,78 @@ struct RenderCommand {
     std::string image, cost, mask, report, page;
     ToneOptions tone;
     FrameOptions frames;
-    KeepOptions keep;
+    CheckpointOptions checkpoint;
     TraceOptions trace;
-    bool profile = false, keep_kernels = false, summary = true;
-    bool prints = true;                             // what --profile shows
-    ProgressCallback progress{};                    // of a caller that shows it; empty: a bar on a terminal
-    PixelSubset pixels{};                           // of the torus: that its primary rays are of
-    bool keep_costs = false, keep_packets = false;  // for a caller that reads them from Render
+    bool profile = false, cache_kernels = false, summary = true;
+    bool prints = true;                             // the table of --profile
+    ProgressCallback progress{};                    // empty: a progress bar on a terminal
+    PixelSubset pixels{};                           // torus: the pixels of the primary rays
+    bool keep_costs = false, keep_packets = false;  // store them in Render
 
-    /// Options whose files are numbered where there are frames, with their values; empty: not given.
+    /// Options whose files are numbered by --frames, with their values; empty: not given.
     std::vector<std::pair<const char*, std::string>> files() const {
         return {{"--output", image}, {"--cost", cost}, {"--mask", mask}, {"--report", report}};
     }
 
-    /// Commands are timed where somebody will read the times: a GPU's queue is faster without.
+    /// Commands are timed only if the times are shown: timing slows a GPU's queue down.
     Timing timing() const {
         return profile || reports() || !trace.file.empty() || verbosity() >= kDetailed ? Timing::kOn : Timing::kOff;
     }
-    /// A page is made of the report.
+    /// Returns true if a report is needed; a page is made from one.
     bool reports() const { return !report.empty() || !page.empty(); }
-    /// Whether kernels are held against the device's peak.
+    /// Returns true if kernels are compared with the device's peak.
     bool roofline() const { return profile || !page.empty(); }
 };
 
-/// One render: its report, and the pixels and arrays that it counted, of a ring machine or of the torus.
+/// One render: its report, image and arrays, of a ring machine or of the torus.
 struct Render {
     RenderReport report{};
     std::optional<RingResult> ring{};
     std::optional<TorusResult> torus{};
-    std::vector<PacketRecord> packets{};  // where RenderCommand::keep_packets asks for them
+    std::vector<PacketRecord> packets{};  // with RenderCommand::keep_packets
     std::optional<TorusSettings> torus_settings{};
     std::uint32_t lights = 0;                           // of the scene
-    std::optional<History> history{};                   // of the torus, with --async
-    std::vector<std::uint64_t> cycles{}, link_words{};  // of every superstep, [node] and [node][RAYA_LINKS]; with the
-                                                        // packets
+    std::optional<History> history{};                   // torus with --async
+    std::vector<std::uint64_t> cycles{}, link_words{};  // with the packets: [superstep][node] and
+                                                        // [superstep][node][RAYA_LINKS]
 
     const Image& image() const { return ring ? ring->image : torus->image; }
 };
 
-/// Renders on a ring machine, on the torus machine, and writes the files that the command names. Empty in other ranks
-/// than 0.
+/// Renders on a ring machine or on the torus machine and writes the command's files. Empty on ranks other than 0.
 std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& run);
 std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& run);
 
-/// On the machine that the command names.
+/// Renders on the command's machine.
 std::optional<Render> render_image(const RenderCommand& command, RenderRun& run);
 
-/// Adds all options of `raya render`, but not SCENE.
+/// Adds all options of `raya render` except SCENE.
 void describe_render(CLI::App& command, RenderCommand& options);
 
-/// Refuses options that do not go together, and files that cannot be written. UserError.
+/// Checks that the options are compatible and the files writable. UserError.
 void check_render(const CLI::App& parsed, const RenderCommand& command);
 
-/// Refuses what frames cannot be written to, or what is of one image alone. UserError.
+/// Refuses outputs that --frames does not support: stdout, and files of a single image. UserError.
 void check_frames(const RenderCommand& command);
 
-/// The frames of a sequence, but for those that are there already: their files, a line for each on stdout, and the
-/// record (frame_record.hpp). `parsed` holds the command's options as they were given. UserError.
+/// Renders the frames that the record (frame_record.hpp) does not list yet: writes their files and the record, prints a
+/// line for each frame. `parsed` holds the command's options as given. UserError.
 void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderRun& run);
 
-/// The scene, seen as the options say, which rank 0 alone reads. Elsewhere it has a name and a resolution, and no
-/// object; `options` name what rank 0 would choose from what it has read.
-SceneInput read_scene_once(RenderWatch& watch, RenderOptions& options, Ranks& ranks);
+/// Rank 0 reads the scene and applies the view options. Other ranks get its name and resolution without objects, and
+/// --accel as rank 0 chose it from the scene.
+SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks);
 
-/// Refuses names of files that the command cannot write, and what follows from them. UserError.
-void check_targets(const CLI::App& parsed, const RenderCommand& command);
+/// Checks the names of the output files, and options that depend on them. UserError.
+void check_output_files(const CLI::App& parsed, const RenderCommand& command);
 
-/// How the picture's codes are made; empty of a picture without.
+/// The tone mapping of an 8-bit image; empty for linear images.
 std::optional<ImageCodes> codes_of(const RenderCommand& command);
 
-/// A small picture for the report's page, in the picture's tone.
+/// Adds a small image for the report's page, in the tone of the image.
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image);
 
-/// What any machine's result tells: scene, view, image, device, times. The rest is the caller's.
+/// The report's members that all machines share: scene, view, image, device, times. The caller adds the others.
 template <class Result>
 RenderReport begin_report(const RenderCommand& command, const SceneInput& input, const DeviceInfo& device,
                           const Result& result) {
@@ -121,17 +119,17 @@ RenderReport begin_report(const RenderCommand& command, const SceneInput& input,
     return report;
 }
 
-/// For --profile: the builds, and the works of all kernels against the peak of `device`, which is measured now.
-void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& device, const NumberFormat& format,
+/// For --profile: adds build times and the roofline of all kernels. Measures the peak of `device`.
+void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Device& device, const NumberFormat& format,
                  const std::vector<KernelWork>& works, Warnings& warnings);
 
-/// What every picture of a render says about itself.
+/// The metadata of a render's image files.
 ImageAttributes image_attributes(const RenderReport& report, const std::string& scene);
 
-/// Writes the image with that, and with how its codes were made.
+/// Writes the image with these attributes and those of its tone mapping.
 void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes);
 
-/// The report's file, its page, the summary and the profile, as far as they were asked for.
+/// Writes the report and its page, prints the summary and the profile, as far as requested.
 void write_report(const RenderCommand& command, const RenderReport& report);
 
 }  // namespace raya

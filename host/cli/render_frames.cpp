@@ -1,4 +1,4 @@
-// raya render --frames: numbered images of one scene, a camera for each.
+// raya render --frames: numbered images of one scene, each with its own camera.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "host/base/encoding.hpp"
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/program.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/frame_record.hpp"
@@ -19,7 +19,7 @@
 namespace raya {
 namespace {
 
-// The command of one frame: as the whole one, into files of its own.
+// The command of one frame, with numbered file names.
 RenderCommand command_of(const RenderCommand& all, std::uint32_t frame) {
     RenderCommand one = all;
     for (std::string* file : {&one.image, &one.cost, &one.mask, &one.report}) *file = numbered(*file, frame);
@@ -42,7 +42,7 @@ void check_files_of(const CLI::App& parsed, const RenderCommand& command, const 
     check_files(parsed, outputs);
 }
 
-// All that a frame follows from beside its camera: the scene and its lights, what was asked for, the program.
+// Everything that determines a frame except its camera: the scene with its lights, the options, the program.
 std::string settings_of(const CLI::App& parsed, const Scene& scene) {
     static const std::set<std::string> neutral = {"SCENE",  "--output", "--cost",        "--mask",  "--report",
                                                   "--turn", "--frames", "--camera-path", "--quiet", "--verbose"};
@@ -64,32 +64,32 @@ FrameEntry entry_of(const RenderReport& report, std::uint32_t number, const std:
     return {number, settings, report.image.hash, report.load.imbalance, report.load.speedup, {}};
 }
 
-void tell(const RenderCommand& one, const FrameEntry& frame, bool recorded) {
+void print_frame(const RenderCommand& one, const FrameEntry& frame, bool unchanged) {
     if (is_quiet()) return;
     clear_status();
     fmt::print("frame {:4}  u {:.3f}  speed-up {:7.1f}  {}  {}{}\n", frame.number, frame.imbalance, frame.speed_up,
-               frame.pixels, printable(one.image), recorded ? ", as recorded" : "");
-    std::fflush(stdout);  // how far it has come shows in a log too
+               frame.pixels, printable(one.image), unchanged ? ", unchanged" : "");
+    std::fflush(stdout);  // shows progress in log files
 }
 
 struct Sums {
     std::size_t frames = 0, rendered = 0;
-    double least = 0, most = 0, sum = 0;
+    double min = 0, max = 0, sum = 0;
 
     void add(double imbalance, bool now) {
-        least = frames == 0 ? imbalance : std::min(least, imbalance);
-        most = std::max(most, imbalance);
+        min = frames == 0 ? imbalance : std::min(min, imbalance);
+        max = std::max(max, imbalance);
         sum += imbalance;
         ++frames;
         rendered += now;
     }
 };
 
-void tell(const Sums& sums, const std::string& record) {
+void print_sums(const Sums& sums, const std::string& record) {
     if (is_quiet()) return;
-    fmt::print("{}, {} rendered, {} as recorded in {}; u {:.3f} to {:.3f}, {:.3f} in the mean\n",
-               counted(sums.frames, "frame"), sums.rendered, sums.frames - sums.rendered, printable(record), sums.least,
-               sums.most, sums.sum / static_cast<double>(sums.frames));
+    fmt::print("{}, {} rendered, {} unchanged according to {}; u {:.3f} to {:.3f}, mean {:.3f}\n",
+               counted(sums.frames, "frame"), sums.rendered, sums.frames - sums.rendered, printable(record), sums.min,
+               sums.max, sums.sum / static_cast<double>(sums.frames));
 }
 
 }  // namespace
@@ -98,19 +98,19 @@ void check_frames(const RenderCommand& command) {
     for (const auto& [option, file] : command.files())
         if (is_standard_stream(file))
             throw UserError(
-                fmt::format("{} -: frames are many files, which stdout cannot hold; name one, which gets "
-                            "their numbers",
+                fmt::format("{} -: --frames writes several files, not stdout; name a file: each frame adds its number "
+                            "to the name",
                             option));
     const std::pair<const char*, bool> of_one_image[] = {{"--page", !command.page.empty()},
                                                          {"--trace", !command.trace.file.empty()},
                                                          {"--profile", command.profile},
-                                                         {"--keep", !command.keep.file.empty()},
+                                                         {"--checkpoint", !command.checkpoint.file.empty()},
                                                          {"--packets", !command.torus.packets.empty()},
                                                          {"--replay", !command.torus.replay.empty()}};
     for (const auto& [option, given] : of_one_image)
         if (given)
             throw UserError(fmt::format(
-                "{} is of one image: render that frame by itself, from where its report's view says (--report)",
+                "{} is for a single image; render the frame by itself, with the view in its report (--report)",
                 option));
 }
 
@@ -134,24 +134,24 @@ void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderR
         const RenderCommand one = command_of(command, frame.number);
         if (ranks.first()) run.input.scene.view = frame.view;
         const std::string hash = ranks.first() ? settings_hash(settings, run.input.scene) : "";
-        // Kernels that are being developed may have changed.
-        const bool may_be_there = ranks.first() && command.render.kernel_dir.empty();
-        const FrameEntry* there = may_be_there ? record->find(frame.number, hash, files_of(one)) : nullptr;
-        std::uint32_t renders = there == nullptr;
+        // Kernels from --kernel-dir may have changed.
+        const bool may_reuse = ranks.first() && command.render.kernel_dir.empty();
+        const FrameEntry* entry = may_reuse ? record->find(frame.number, hash, files_of(one)) : nullptr;
+        std::uint32_t renders = entry == nullptr;
         ranks.broadcast(renders);
         if (renders != 0) {
             const std::optional<Render> made = render_image(one, run);
-            if (made) there = &record->add(entry_of(made->report, frame.number, hash), files_of(one));
+            if (made) entry = &record->add(entry_of(made->report, frame.number, hash), files_of(one));
         }
-        if (there != nullptr) {
-            tell(one, *there, renders == 0);
-            sums.add(there->imbalance, renders != 0);
+        if (entry != nullptr) {
+            print_frame(one, *entry, renders == 0);
+            sums.add(entry->imbalance, renders != 0);
         }
         run.progress.next_image();
     }
     if (!ranks.first()) return;
     if (sums.rendered > 0) record->write();
-    tell(sums, frame_record_file(command.image));
+    print_sums(sums, frame_record_file(command.image));
 }
 
 }  // namespace raya

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "host/accel/tree.hpp"
+#include "host/accel/bvh.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
@@ -15,7 +15,7 @@
 namespace raya {
 namespace {
 
-// Each once, without what follows a colon.
+// The mappings' names without parameters.
 std::vector<std::string> mapping_names() {
     std::vector<std::string> names;
     for (const std::string& form : mapping_forms()) {
@@ -26,87 +26,86 @@ std::vector<std::string> mapping_names() {
     return names;
 }
 
-// What shells offer where help names a value by one word.
-void offer_render_words(CLI::App& command) {
+// Shell completions of the values whose placeholder does not list them.
+void offer_render_choices(CLI::App& command) {
     std::vector<std::string> rings;
     for (const Machine& machine : machines())
         if (machine.kind == MachineKind::kRing) rings.push_back(machine.name);
-    offer_words(command.get_option("--machine"), rings);
-    offer_words(command.get_option("--mapping"), mapping_names());
-    offer_words(command.get_option("--format"), {"fp32", "spa22"});
-    offer_words(command.get_option("--lanes"), {"1", "4", "8", "16"});
+    offer_choices(command.get_option("--machine"), rings);
+    offer_choices(command.get_option("--mapping"), mapping_names());
+    offer_choices(command.get_option("--format"), {"fp32", "spa22"});
+    offer_choices(command.get_option("--lanes"), {"1", "4", "8", "16"});
 }
 
 void add_antialias_options(CLI::App& command, RenderOptions& o) {
     add_value(command, "--antialias", o.antialias,
-              "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more points for pixels that "
-              "differ from a neighbour; neighbours come by --exchange")
+              "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more samples for pixels that "
+              "differ from a neighbour. PEs exchange border pixels as --exchange says")
         ->type_name("none|filter|supersample")
         ->capture_default_str();
     add_value(command, "--exchange", o.exchange,
-              "How neighbours come to each PE: ring: all blocks move to the next PE at once; bus: from PE to PE, one "
-              "transfer after another; bus-broadcast: each PE in turn to all. The image is the same")
+              "How PEs get their neighbours' pixels: ring: all blocks move to the next PE at once; bus: from PE to "
+              "PE, one transfer at a time; bus-broadcast: each PE in turn to all. The image is the same")
         ->type_name("ring|bus|bus-broadcast")
         ->default_str("ring");
     add_value(command, "--threshold", o.threshold,
-              "Supersample where a colour, clamped to 0..1, differs by this much or more, 0..1; default: 0.125")
+              "Supersample pixels whose colour, clamped to 0..1, differs from a neighbour's by T or more, 0..1; "
+              "default: 0.125")
         ->type_name("T");
     add_value(command, "--points", o.points,
-              "Points of supersampling: half a pixel to the left, right, above and below, or towards the corners")
+              "Positions of the four samples: half a pixel left, right, above and below, or towards the corners")
         ->type_name("axes|diagonals")
         ->default_str("axes");
 }
 
 }  // namespace
 
-void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
+void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) {
     add_strict_option(command, o.strict);
-    OptionGroup group(command, kPicture);
+    OptionGroup group(command, kImageGroup);
     add_value(command, "--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")
         ->type_name("N|WxH");
     add_value(command, "--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
         ->type_name("N");
     add_value(command, "--sampling", o.sampling,
-              "Primary rays through pixel centres, or through pixel corners as SPD counts them")
+              "Primary rays pass through pixel centres, or through pixel corners as in SPD")
         ->type_name("centres|corners")
         ->capture_default_str();
-    if (smooths) add_antialias_options(command, o);
+    if (antialiasing) add_antialias_options(command, o);
     add_view_options(command, o.view);
     group.next(kMachine);
-    add_value(
-        command, "--machine", o.machine,
-        "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
-        "cap (256 PEs), pixel-machine (64), links (256): those machines' arrays, on PEs of spa, without a limit to "
-        "their memory so that any loads can be compared")
+    add_value(command, "--machine", o.machine,
+              "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
+              "cap (256 PEs), pixel-machine (64), links (256): the arrays of these machines with PEs of spa, no memory "
+              "limit, to compare loads")
         ->type_name("NAME")
         ->capture_default_str();
     add_value(command, "--pes", o.pes, "Processing elements P, 1..W*H; default: the machine's, or A*B of a grid")
         ->type_name("P");
     add_value(command, "--offset", o.offset,
-              "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W), 0 on machines with a "
-              "mapping of their own")
+              "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W), 0 on machines whose "
+              "default mapping is not cyclic")
         ->type_name("p");
-    add_value(
-        command, "--mapping", o.mapping,
-        "Which PE owns which pixel: cyclic (slots of a sheared image, --offset), cyclic:p, column (the column "
-        "split, offset 0), rows (scan lines in turn), blocks (contiguous scan lines), grid:AxB (A rows of B "
-        "PEs: every A-th line, every B-th pixel of it), tiles:WxH (tiles of W x H pixels in turn), "
-        "random:seed (random: seed 1); dynamic:CHUNK[,OVERHEAD] and hybrid:CHUNK[,OVERHEAD[,SHARE]]: pixels handed "
-        "out while the machine runs, all or those after the first SHARE (0.5) of each PE, loads simulated; "
-        "default: the machine's, cyclic on spa")
+    add_value(command, "--mapping", o.mapping,
+              "Which PE owns which pixel: cyclic (slots of a sheared image, --offset), cyclic:p, column (the column "
+              "split, offset 0), rows (scan lines round robin), blocks (contiguous scan lines), grid:AxB (A rows of B "
+              "PEs: every A-th line, every B-th pixel of it), tiles:WxH (tiles of W x H pixels round robin), "
+              "random:seed (default seed 1); dynamic:CHUNK[,OVERHEAD]: PEs request chunks of pixels at run time; "
+              "hybrid:CHUNK[,OVERHEAD[,SHARE]]: the same after a static SHARE (0.5) of the pixels; their loads are "
+              "simulated; default: the machine's, cyclic on spa")
         ->type_name("NAME");
-    add_value(command, "--fold", o.fold, "Slots to PEs where P is not W: cyclic (c mod P) or block (c P div W)")
+    add_value(command, "--fold", o.fold, "Slots to PEs if P is not W: cyclic (c mod P) or block (c P div W)")
         ->type_name("cyclic|block")
         ->default_str("cyclic");
     add_value(
         command, "--accel", o.accel,
-        "How rays find what they hit, always the same: none: every ray is tested against all objects; bvh: it goes "
-        "down a tree of boxes in each PE's memory, sooner from a few hundred objects on; grid: it walks through voxels "
-        "and meets the objects listed there, A x B x C of them along x, y, z, by default some for each object; "
-        "default: on grande bvh where that is sooner, from some 100 spheres or 30 polygons on, else none")
+        "Acceleration structure in each PE's memory; the hits are the same: none: every ray is tested against all "
+        "objects; bvh: faster from a few hundred objects on; grid: a uniform grid of A x B x C voxels along x, y, z, "
+        "by default a few for each object; default: none; on grande bvh if it is faster, from about 100 spheres or 30 "
+        "polygons on")
         ->type_name("none|bvh|grid[:AxBxC]");
     add_value(command, "--pe-memory", o.pe_memory,
-              "Bytes of a PE's memory, of a torus node's with all its buffers; default: the machine's, 32768 on spa, "
+              "Bytes of memory of a PE, or of a torus node with all its buffers; default: the machine's, 32768 on spa, "
               "4194304 on torus, no limit on grande")
         ->type_name("BYTES");
     group.next(kKernels);
@@ -116,18 +115,18 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
         ->type_name("NAME");
     add_device_option(command, o.device);
     add_value(command, "--lanes", o.lanes,
-              "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: as the device was tuned (raya tune), "
-              "else its float vectors")
+              "Rays V per work-item: 1, 4, 8 or 16; default: as the device was tuned (raya tune), else the width of "
+              "its float vectors")
         ->type_name("V");
     add_value(
         command, "--group", o.group,
-        "Work-items L in the work-group that stands for a PE, 1..1024; default: as the device was tuned, else 1 on "
+        "Work-items L in the work-group that simulates a PE, 1..1024; default: as the device was tuned, else 1 on "
         "a CPU, 128 elsewhere")
         ->type_name("L");
     add_tuned_option(command, o.no_tuned);
     add_file(command, FileUse::kKernelFolder, "--kernel-dir", o.kernel_dir, "DIR",
-             "Read the kernels from this folder, while developing them");
-    offer_render_words(command);
+             "Read the kernels from this folder, for kernel development");
+    offer_render_choices(command);
 }
 
 namespace {
@@ -137,9 +136,9 @@ Antialias antialias_settings(const RenderOptions& o) {
     antialias.method = parse_antialias(o.antialias);
     antialias.points = parse_points(o.points.empty() ? "axes" : o.points);
     if (antialias.method != AntialiasMethod::kSupersample && (o.threshold || !o.points.empty()))
-        throw UserError("--threshold and --points say how to supersample: give --antialias supersample as well");
+        throw UserError("--threshold and --points require supersampling: add --antialias supersample");
     if (antialias.method == AntialiasMethod::kNone && !o.exchange.empty())
-        throw UserError("--exchange says how neighbours' pixels come: give --antialias as well");
+        throw UserError("--exchange requires anti-aliasing: add --antialias filter or supersample");
     antialias.exchange = parse_exchange(o.exchange.empty() ? "ring" : o.exchange);
     antialias.threshold = o.threshold.value_or(antialias.threshold) + 0.0;  // -0 is 0
     if (!(antialias.threshold >= 0 && antialias.threshold <= 1))
@@ -147,59 +146,58 @@ Antialias antialias_settings(const RenderOptions& o) {
     return antialias;
 }
 
-// --offset and --fold say how slots lie: beside a mapping that says otherwise, or has no slots, one of the two is a
-// mistake.
+// --offset and --fold place the slots of a mapping: refused for a mapping without slots or with another offset.
 void check_slot_options(const RenderOptions& o, const MappingText& mapping, const ImageSize& image) {
     const bool has_slots = mapping.rule.has_slots();
     if (!has_slots && o.offset)
         throw UserError(
-            fmt::format("--offset {} with --mapping {}: {} has no offset; leave --offset out, or choose cyclic",
+            fmt::format("--offset {} with --mapping {}: {} has no offset; leave out --offset, or choose cyclic",
                         *o.offset, mapping.text, mapping.name()));
     if (!has_slots && !o.fold.empty())
         throw UserError(fmt::format(
-            "--fold {} with --mapping {}: {} has no slots to fold; leave --fold out, or choose cyclic or column",
+            "--fold {} with --mapping {}: {} has no slots to fold; leave out --fold, or choose cyclic or column",
             o.fold, mapping.text, mapping.name()));
     if (o.offset && !mapping.leaves_offset && *o.offset != mapping.rule.parameter)
-        throw UserError(fmt::format("--offset {} with --mapping {}: the mapping's offset is {}; leave one of them out",
+        throw UserError(fmt::format("--offset {} with --mapping {}: the mapping's offset is {}; leave out one of them",
                                     *o.offset, mapping.text, mapping.rule.parameter));
     if (o.offset && *o.offset >= image.width)
         throw UserError(
             fmt::format("--offset {}: must be 0..{}, less than the image's width", *o.offset, image.width - 1));
 }
 
-// The machine's own mapping, where none is asked for. The pixels that a hybrid starts with, and those that the device
-// traces in place of a dynamic machine, are the cyclic mapping's.
-MappingText mapping_asked_for(const RenderOptions& o, const Machine& machine) {
+// --mapping, else the machine's own. The static pixels of hybrid mappings, and the pixels that the device traces for
+// dynamic ones, follow the cyclic mapping.
+MappingText requested_mapping(const RenderOptions& o, const Machine& machine) {
     if (!o.mapping.empty()) return parse_mapping(is_dynamic(o.mapping) ? "cyclic" : o.mapping);
     if (machine.mapping.has_slots()) return parse_mapping("cyclic");
     return {mapping_text(machine.mapping), machine.mapping, false};
 }
 
-// "cyclic" alone has --offset, else the machine's as far as it goes into the image.
+// "cyclic" without offset takes --offset, else the machine's offset modulo the image width.
 MappingRule rule_of(const MappingText& mapping, const RenderOptions& o, const Machine& machine, std::uint32_t width) {
     if (!mapping.rule.has_slots()) return mapping.rule;
-    const std::uint32_t usual = machine.mapping.has_slots() ? machine.mapping.parameter % width : 0;
-    const std::uint32_t offset = mapping.leaves_offset ? o.offset.value_or(usual) : mapping.rule.parameter;
+    const std::uint32_t default_offset = machine.mapping.has_slots() ? machine.mapping.parameter % width : 0;
+    const std::uint32_t offset = mapping.leaves_offset ? o.offset.value_or(default_offset) : mapping.rule.parameter;
     return cyclic_mapping(offset, o.fold.empty() ? Fold::kCyclic : parse_fold(o.fold));
 }
 
-// Fills mapping and, where the distribution is a dynamic one, its plan.
+// Sets the mapping and, for a dynamic one, its plan.
 void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize& image) {
     const Machine& machine = settings.machine;
     if (o.mapping.empty())
         settings.dynamic = machine.dynamic;
     else if (is_dynamic(o.mapping))
         settings.dynamic = parse_dynamic(o.mapping);
-    const MappingText mapping = mapping_asked_for(o, machine);
+    const MappingText mapping = requested_mapping(o, machine);
     check_slot_options(o, mapping, image);
     const std::uint32_t pes = o.pes.value_or(mapping.rule.pes().value_or(machine.pes.value_or(image.width)));
     settings.mapping = make_mapping(rule_of(mapping, o, machine, image.width), image, pes);
 }
 
-// What the machine does by default; with few objects a tree takes longer than it saves.
+// --accel, else the machine's default; with few objects a BVH costs more time than it saves.
 Accel accel_of(const RenderOptions& o, const RingSettings& settings, const Scene& scene) {
     if (!o.accel.empty()) return parse_accel(o.accel);
-    const bool pays = settings.machine.accel.kind != AccelKind::kBvh || tree_pays(scene, settings.format);
+    const bool pays = settings.machine.accel.kind != AccelKind::kBvh || bvh_pays(scene, settings.format);
     return pays ? settings.machine.accel : Accel{};
 }
 
@@ -237,7 +235,7 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     settings.machine = machine_named(o.machine);
     if (settings.machine.kind == MachineKind::kTorus)
         throw UserError(
-            fmt::format("--machine {}: its nodes hold voxels of the scene, not pixels; only raya render takes it, "
+            fmt::format("--machine {}: its nodes hold voxels of the scene, not pixels; only raya render supports it; "
                         "choose a ring: spa",
                         o.machine));
     settings.format = format_of(o, settings.machine);

@@ -1,4 +1,4 @@
-// The options of a render, shared by the commands that render; those of the torus alone are in cli/torus_options.hpp.
+// Options shared by the commands that render; those of the torus machine are in torus_options.hpp.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -15,7 +15,7 @@ class App;
 
 namespace raya {
 
-/// As given on the command line; what is empty follows the machine, the scene or the device.
+/// As given on the command line; an empty value means the default of the machine, the scene or the device.
 struct RenderOptions {
     std::string scene, machine = "spa", size, mapping, fold, format, sampling = "centres", device, antialias = "none",
                        points, exchange, kernel_dir, accel;
@@ -26,20 +26,19 @@ struct RenderOptions {
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };
 
-/// Adds the options with their help texts: unit, default, legal range. `smooths`: those of anti-aliasing too.
-void add_render_options(CLI::App& command, RenderOptions& options, bool smooths = true);
+/// Adds the options. `antialiasing`: includes those of anti-aliasing.
+void add_render_options(CLI::App& command, RenderOptions& options, bool antialiasing = true);
 
-// What --size, --format, --lanes and --group say, for any machine. UserError names the option.
+// The values of --size, --format, --lanes and --group, for any machine. UserError names the option.
 
-/// Width and height, each 1..16384; the scene's where --size is empty.
+/// Width and height, each 1..16384; default: the scene's.
 ImageSize image_size(const RenderOptions& options, const Scene& scene);
 NumberFormat format_of(const RenderOptions& options, const Machine& machine);
 KernelChoice kernel_choice(const RenderOptions& options);
 /// Bytes of a PE's memory: --pe-memory, else the machine's; empty: no limit.
 std::optional<std::uint64_t> pe_memory_of(const RenderOptions& options, const Machine& machine);
 
-/// What the ring renderer needs. UserError names the option that is out of range, and refuses a machine that is no
-/// ring.
+/// The settings of the ring renderer. UserError for an option out of range, and for a machine that is not a ring.
 RingSettings ring_settings(const RenderOptions& options, const Scene& scene);
 
 }  // namespace raya

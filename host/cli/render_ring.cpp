@@ -1,4 +1,4 @@
-// raya render on a ring machine: pixels are divided among the PEs.
+// raya render on a ring machine: the PEs share the pixels.
 #include <optional>
 
 #include "host/base/progress.hpp"
@@ -68,7 +68,7 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
     return report;
 }
 
-// Floats hold whole numbers up to 2^24; beyond, the file has the nearest they hold.
+// Floats represent integers exactly up to 2^24; larger cycle counts are rounded.
 GreyImage grey(const CostImage& cost) {
     return {static_cast<int>(cost.width), static_cast<int>(cost.height), {cost.cycles.begin(), cost.cycles.end()}};
 }
@@ -83,7 +83,7 @@ void write_images(const RenderCommand& command, const RingResult& result, const 
 
 std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& run) {
     Ranks& ranks = run.ranks;
-    RenderWatch& watch = run.watch;
+    RenderRecorder& recorder = run.recorder;
     SceneInput& input = run.input;
     const Scene& scene = input.scene;
     RingSettings settings = ring_settings(run.options, scene);
@@ -93,26 +93,28 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     RingRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     run.progress.stage("rendering");
-    const StateFile state(command.keep);
-    RingResult result = renderer.render(run.progress.callback(), state.keeping());
+    const CheckpointFile checkpoint(command.checkpoint);
+    RingResult result = renderer.render(run.progress.callback(), checkpoint.checkpointing());
     const std::vector<Json> of_ranks = rank_reports(ranks, session, "pes", result);
-    watch.gather(session, ranks);
+    recorder.gather(session, ranks);
     if (!ranks.first()) return {};
     run.progress.stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
     report.ranks = of_ranks;
     report.measured.earlier_s = result.earlier_s;
-    watch.steps().during("write images", [&] { write_images(command, result, image_attributes(report, scene.name)); });
+    recorder.steps().during("write images",
+                            [&] { write_images(command, result, image_attributes(report, scene.name)); });
     if (command.roofline()) {
         run.progress.stage("measuring the device's peak");
-        add_profile(report, watch, run.device(), settings.format, ring_kernel_work(settings, result), input.warnings);
+        add_profile(report, recorder, run.device(), settings.format, ring_kernel_work(settings, result),
+                    input.warnings);
     }
     run.progress.end();
     report.warnings = input.warnings.texts();
-    watch.steps().during("write report", [&] { write_report(command, report); });
-    state.remove();
-    const ProgressBar tracing(watch.traces(), "writing the trace");
-    watch.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
+    recorder.steps().during("write report", [&] { write_report(command, report); });
+    checkpoint.remove();
+    const ProgressBar tracing(recorder.traces(), "writing the trace");
+    recorder.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
     return Render{std::move(report), std::move(result)};
 }
 

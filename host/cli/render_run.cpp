@@ -24,7 +24,7 @@ void RenderProgress::next_image() {
 }
 
 ProgressCallback RenderProgress::callback() {
-    if (!bar_ || !bar_->active()) return callers_;
+    if (!bar_ || !bar_->active()) return callback_;
     if (images_ == 0) return [this](double share) { bar_->update(share); };
     return [this](double share) { bar_->update((static_cast<double>(done_) + share) / static_cast<double>(images_)); };
 }
@@ -35,16 +35,16 @@ void RenderProgress::end() {
 
 RenderRun::RenderRun(const RenderCommand& command, Ranks& of)
     : ranks(of),
-      watch(command.trace, command.roofline()),
+      recorder(command.trace, command.roofline()),
       progress(of.first(), "reading the scene"),
       options(command.render),
-      input(read_scene_once(watch, options, of)),
+      input(read_scene_once(recorder, options, of)),
       timing_(command.timing()),
-      pictures_{command.image, command.cost, command.mask} {}
+      images_{command.image, command.cost, command.mask} {}
 
 RenderRun::RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session)
     : ranks(Ranks::alone()),
-      watch(command.trace, command.roofline()),
+      recorder(command.trace, command.roofline()),
       progress(command.progress),
       options(command.render),
       input(std::move(scene)),
@@ -52,25 +52,25 @@ RenderRun::RenderRun(const RenderCommand& command, SceneInput scene, const cl::D
       device_(device),
       session_(&session) {
     change_view(options.view, input.scene);
-    tuned_.reset(new TunedUse(use_tuned(options.no_tuned, &input.warnings)));
+    tuned_.reset(new ScopedTunedSource(use_tuned(options.no_tuned, &input.warnings)));
     warn_of_build_options(input.warnings);
-    watch.observe(session, ranks);
+    recorder.observe(session, ranks);
 }
 
 Session& RenderRun::session() {
     if (session_ != nullptr) return *session_;
-    tuned_.reset(new TunedUse(use_tuned(options.no_tuned, &input.warnings)));
+    tuned_.reset(new ScopedTunedSource(use_tuned(options.no_tuned, &input.warnings)));
     if (ranks.first()) warn_of_build_options(input.warnings);
     progress.stage("preparing");
-    device_ = watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
-    // After the drivers: the first TBB that is loaded serves all, and Intel's runtime wants a newer one than
-    // OpenImageIO's.
-    for (const std::string& picture : pictures_)
-        if (ranks.first() && !picture.empty()) load_encoder(picture);
-    own_session_.emplace(watch.steps().during("open device", [&] { return Session(device_, timing_); }));
+    device_ = recorder.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
+    // After the OpenCL drivers: a process has only the first TBB that it loads, and Intel's runtime needs a newer TBB
+    // than OpenImageIO.
+    for (const std::string& image : images_)
+        if (ranks.first() && !image.empty()) load_encoder(image);
+    own_session_.emplace(recorder.steps().during("open device", [&] { return Session(device_, timing_); }));
     session_ = &*own_session_;
     if (ranks.first()) session_->announce_compiling();
-    watch.observe(*session_, ranks);
+    recorder.observe(*session_, ranks);
     return *session_;
 }
 

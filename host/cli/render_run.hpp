@@ -1,4 +1,4 @@
-// What the images of one command have in common: the scene, read once, the device, opened once, and who watches.
+// State shared by the images of one command: the scene, the device, the progress bar and the recorder.
 #pragma once
 #include <memory>
 #include <optional>
@@ -8,7 +8,7 @@
 #include "host/base/progress.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cli/render_options.hpp"
-#include "host/cli/render_watch.hpp"
+#include "host/cli/render_recorder.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/cli/tuned_option.hpp"
 #include "host/ranks/ranks.hpp"
@@ -17,55 +17,55 @@ namespace raya {
 
 struct RenderCommand;
 
-/// How far a command has come, of one image or of many, for a person at a terminal.
+/// The progress bar of a command that renders one image or a sequence.
 class RenderProgress {
   public:
     RenderProgress(bool wanted, const std::string& what) : bar_(std::in_place, wanted, what) {}
-    /// For a caller that shows it.
-    explicit RenderProgress(ProgressCallback callers) : callers_(std::move(callers)) {}
+    /// Reports to the caller's callback instead of a bar.
+    explicit RenderProgress(ProgressCallback callback) : callback_(std::move(callback)) {}
 
-    /// What runs from now on; of several images their number stands there.
+    /// Sets the label of the current stage; a sequence keeps the number of its images as label.
     void stage(const std::string& what);
 
-    /// From now on the bar shows how many of so many images are done.
+    /// Makes the bar show finished images of `count`.
     void begin_images(std::size_t count);
     void next_image();
 
-    /// Of the image at hand; empty where nobody looks.
+    /// Progress of the current image; empty if it is not shown.
     ProgressCallback callback();
 
-    /// Erases the bar: what follows is printed. Of several images nothing: their lines are printed above it.
+    /// Erases the bar of a single image before its summary; a sequence keeps the bar below its lines.
     void end();
 
   private:
     std::optional<ProgressBar> bar_;
-    ProgressCallback callers_;
-    std::size_t images_ = 0, done_ = 0;  // 0: one image, which is shown stage by stage
+    ProgressCallback callback_;
+    std::size_t images_ = 0, done_ = 0;  // 0: a single image, shown by stages
 };
 
 class RenderRun {
   public:
-    /// Reads the scene: rank 0 does. UserError.
+    /// Reads the scene on rank 0. UserError.
     RenderRun(const RenderCommand& command, Ranks& ranks);
 
-    /// Of one rank, with a scene that is there and a device that is open; both outlive this.
+    /// One rank, with a scene that was read and a device that is open; device and session must outlive this.
     RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session);
 
-    /// The device, opened at the first call with all that renders take from it, and what encodes the pictures. Of
-    /// several images the programs are built once.
+    /// The session on the device. The first call opens it, applies tuned values, and loads the image encoders. The
+    /// images of a sequence share its programs.
     Session& session();
-    const cl::Device& device() const { return device_; }  // of the session, once it is open
+    const cl::Device& device() const { return device_; }  // valid once the session is open
 
     Ranks& ranks;
-    RenderWatch watch;
+    RenderRecorder recorder;
     RenderProgress progress;
-    RenderOptions options;  // with what rank 0 chose by the scene
-    SceneInput input;       // the scene as it is seen in the image at hand
+    RenderOptions options;  // with the defaults that rank 0 chose from the scene
+    SceneInput input;       // with the view of the current image
 
   private:
     Timing timing_;
-    std::vector<std::string> pictures_;
-    std::unique_ptr<TunedUse> tuned_;
+    std::vector<std::string> images_;
+    std::unique_ptr<ScopedTunedSource> tuned_;
     cl::Device device_;
     std::optional<Session> own_session_;
     Session* session_ = nullptr;

@@ -1,4 +1,4 @@
-// raya render on the torus machine: the scene is divided among the nodes, rays travel between them.
+// raya render on the torus machine: the nodes share the scene, and rays travel between them.
 #include <algorithm>
 #include <numeric>
 #include <optional>
@@ -18,54 +18,52 @@
 namespace raya {
 namespace {
 
-// What is made of a render beside its image, where it is asked for.
-struct ByProducts {
-    ByProducts(const RenderCommand& command, const RenderWatch& watch, const TorusSettings& settings) {
+// The optional outputs of a render besides the image.
+struct TorusOutputs {
+    TorusOutputs(const RenderCommand& command, const RenderRecorder& recorder, const TorusSettings& settings) {
         if (!command.torus.packets.empty()) packets.emplace();
         keep_packets = command.keep_packets;
-        if (watch.traces()) trace.emplace(settings.torus);
+        if (recorder.traces()) trace.emplace(settings.torus);
         if (settings.history) history.emplace(settings.torus, settings.packets);
     }
 
     std::optional<PacketTrace> packets;
     bool keep_packets = false;
     std::vector<PacketRecord> records;
-    std::vector<std::uint64_t> cycles, link_words;  // of every superstep
+    std::vector<std::uint64_t> cycles, link_words;  // [superstep][node], [superstep][node][RAYA_LINKS]
     std::optional<TorusTrace> trace;
     std::optional<HistoryRecorder> history;
 };
 
-TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progress, ByProducts& makes) {
-    PacketSink packet_sink;
-    SuperstepSink step_sink;
-    NodeWorkSink work_sink;
-    if (makes.trace || makes.keep_packets)
-        step_sink = [&](const SuperstepDetail& step) {
-            if (makes.trace) makes.trace->add_superstep(step);
-            if (!makes.keep_packets) return;
-            makes.cycles.insert(makes.cycles.end(), step.cycles.begin(), step.cycles.end());
-            makes.link_words.insert(makes.link_words.end(), step.link_words.begin(), step.link_words.end());
+TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progress, TorusOutputs& outputs) {
+    RenderObservers observers;
+    if (outputs.trace || outputs.keep_packets)
+        observers.supersteps = [&](const SuperstepDetail& step) {
+            if (outputs.trace) outputs.trace->add_superstep(step);
+            if (!outputs.keep_packets) return;
+            outputs.cycles.insert(outputs.cycles.end(), step.cycles.begin(), step.cycles.end());
+            outputs.link_words.insert(outputs.link_words.end(), step.link_words.begin(), step.link_words.end());
         };
-    if (makes.packets || makes.keep_packets || makes.trace)
-        packet_sink = [&](const PacketRecord& record) {
-            if (makes.packets) makes.packets->add(record);
-            if (makes.keep_packets) makes.records.push_back(record);
-            if (makes.trace) makes.trace->add_packet(record);
+    if (outputs.packets || outputs.keep_packets || outputs.trace)
+        observers.packets = [&](const PacketRecord& record) {
+            if (outputs.packets) outputs.packets->add(record);
+            if (outputs.keep_packets) outputs.records.push_back(record);
+            if (outputs.trace) outputs.trace->add_packet(record);
         };
-    if (makes.history) work_sink = [&](const NodeWork& work) { makes.history->add(work); };
+    if (!outputs.packets && !outputs.keep_packets) observers.packets_every = TorusTrace::kPacketsEvery;
+    if (outputs.history) observers.work = [&](const NodeWork& work) { outputs.history->add(work); };
     progress.stage("rendering");
-    return renderer.render(progress.callback(), packet_sink, step_sink,
-                           makes.packets || makes.keep_packets ? 1 : TorusTrace::kPacketsEvery, work_sink);
+    return renderer.render(progress.callback(), observers);
 }
 
-// Where the machine stands still, a queue is looked for that is long enough.
-TorusResult render_to_its_end(TorusRenderer& renderer, RenderProgress& progress, ByProducts& makes) {
+// Renders. After a deadlock it searches a sufficient queue length, which the exception then contains.
+TorusResult render_or_find_queue(TorusRenderer& renderer, RenderProgress& progress, TorusOutputs& outputs) {
     try {
-        return render_with_progress(renderer, progress, makes);
-    } catch (const Standstill& still) {
-        progress.stage("looking for a queue that is long enough");
-        const QueueFound found = longer_queue(still.figures.queue, renderer.queue_trial());
-        throw Standstill(still.figures, queue_remedy(found));
+        return render_with_progress(renderer, progress, outputs);
+    } catch (const TorusDeadlock& deadlock) {
+        progress.stage("searching a sufficient queue length");
+        const QueueFound found = find_longer_queue(deadlock.figures.queue, renderer.queue_trial());
+        throw TorusDeadlock(deadlock.figures, queue_remedy(found));
     }
 }
 
@@ -105,15 +103,15 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
 }
 
 void write_images(const RenderCommand& command, const TorusResult& result, const RenderReport& report,
-                  const Scene& scene, ByProducts& makes, StepLog& steps) {
+                  const Scene& scene, TorusOutputs& outputs, StepLog& steps) {
     const StepLog::Step step(&steps, "write images");
     write_main_image(command, result.image, image_attributes(report, scene.name));
-    if (makes.packets) write_whole_file(command.torus.packets, makes.packets->finish());
+    if (outputs.packets) write_whole_file(command.torus.packets, outputs.packets->finish());
 }
 
 void refuse_history_of_ranks(const TorusSettings& settings, const Ranks& ranks) {
     if (settings.history && ranks.many())
-        throw UserError("--async and --replay follow every packet of all nodes; start raya without mpirun for them");
+        throw UserError("--async and --replay record every packet in one process; start raya without mpirun");
 }
 
 void write_replay(const ReplayFiles& files, const raya_torus& torus, const History& history) {
@@ -151,7 +149,7 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
 
 std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& run) {
     Ranks& ranks = run.ranks;
-    RenderWatch& watch = run.watch;
+    RenderRecorder& recorder = run.recorder;
     SceneInput& input = run.input;
     const Scene& scene = input.scene;
     TorusSettings settings = torus_settings(run.options, command.torus, scene);
@@ -160,38 +158,39 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     Session& session = run.session();
     TorusRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
-    ByProducts makes(command, watch, settings);
-    TorusResult result = render_to_its_end(renderer, run.progress, makes);
+    TorusOutputs outputs(command, recorder, settings);
+    TorusResult result = render_or_find_queue(renderer, run.progress, outputs);
     const std::vector<Json> of_ranks = rank_reports(ranks, session, "nodes", result);
-    watch.gather(session, ranks);
+    recorder.gather(session, ranks);
     if (!ranks.first()) return {};
     run.progress.stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
     report.ranks = of_ranks;
     std::optional<History> history;
-    if (makes.history) {
+    if (outputs.history) {
         run.progress.stage("simulating");
-        history = makes.history->finish();
-        add_asynchronous_time(*report.torus, command, settings, *history, watch.steps());
+        history = outputs.history->finish();
+        add_asynchronous_time(*report.torus, command, settings, *history, recorder.steps());
     }
-    write_images(command, result, report, scene, makes, watch.steps());
+    write_images(command, result, report, scene, outputs, recorder.steps());
     if (command.roofline()) {
         run.progress.stage("measuring the device's peak");
-        add_profile(report, watch, run.device(), settings.format, torus_kernel_work(settings, result), input.warnings);
+        add_profile(report, recorder, run.device(), settings.format, torus_kernel_work(settings, result),
+                    input.warnings);
     }
     run.progress.end();
     report.warnings = input.warnings.texts();
-    watch.steps().during("write report", [&] { write_report(command, report); });
-    const ProgressBar tracing(watch.traces(), "writing the trace");
-    watch.write(session, [&](TraceFile& file) { makes.trace->add_to(file, result, command.trace.pes); });
+    recorder.steps().during("write report", [&] { write_report(command, report); });
+    const ProgressBar tracing(recorder.traces(), "writing the trace");
+    recorder.write(session, [&](TraceFile& file) { outputs.trace->add_to(file, result, command.trace.pes); });
     return Render{.report = std::move(report),
                   .torus = std::move(result),
-                  .packets = std::move(makes.records),
+                  .packets = std::move(outputs.records),
                   .torus_settings = settings,
                   .lights = static_cast<std::uint32_t>(scene.lights.size()),
                   .history = std::move(history),
-                  .cycles = std::move(makes.cycles),
-                  .link_words = std::move(makes.link_words)};
+                  .cycles = std::move(outputs.cycles),
+                  .link_words = std::move(outputs.link_words)};
 }
 
 }  // namespace raya

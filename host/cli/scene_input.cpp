@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/cl/program.hpp"
 #include "host/cli/options.hpp"
@@ -16,7 +16,7 @@
 namespace raya {
 
 void Warnings::add(const std::string& text) {
-    if (std::ranges::find(texts_, text) != texts_.end()) return;  // of an earlier frame
+    if (std::ranges::find(texts_, text) != texts_.end()) return;  // repeated by another frame
     warn("warning: " + text);
     texts_.push_back(text);
 }
@@ -25,8 +25,8 @@ void add_strict_option(CLI::App& command, bool& strict) {
     const OptionGroup group(command, kFiles);
     command.add_flag(
         "--strict", strict,
-        "Refuse a scene with facets that have no area or are not flat, or with entities that are not NFF's, "
-        "in place of leaving them out, cutting them into triangles or skipping them with a warning");
+        "Refuse a scene with degenerate or non-planar facets, or with entities that are not NFF's, instead of "
+        "omitting, triangulating or skipping them with a warning");
 }
 
 SceneInput read_scene(const std::string& file, bool strict) {
@@ -37,13 +37,14 @@ SceneInput read_scene(const std::string& file, bool strict) {
     try {
         input.scene = read_nff(file, strict ? nullptr : &input.remarks);
     } catch (const UserError&) {
-        warn_of_remarks();  // what was passed over may be why the rest is no scene
+        warn_of_remarks();  // they may explain the error
         throw;
     }
     warn_of_remarks();
-    tell(kVerbose,
-         fmt::format("{}: {}, {}, {} x {} pixels", input_name(file), counted(input.scene.object_count(), "object"),
-                     counted(input.scene.lights.size(), "light"), input.scene.view.width, input.scene.view.height));
+    log_message(
+        kVerbose,
+        fmt::format("{}: {}, {}, {} x {} pixels", input_name(file), counted(input.scene.object_count(), "object"),
+                    counted(input.scene.lights.size(), "light"), input.scene.view.width, input.scene.view.height));
     return input;
 }
 
@@ -56,16 +57,16 @@ void warn_of_build_options(Warnings& warnings) {
                                                    "-g",
                                                    "-w",
                                                    "-Werror"};
-    std::istringstream words(user_build_options());
-    for (std::string word; words >> word;)
-        if (!harmless.contains(word))
-            warnings.add(fmt::format("RAYA_BUILD_OPTIONS: {} may change pixels and counts", word));
+    std::istringstream options(user_build_options());
+    for (std::string option; options >> option;)
+        if (!harmless.contains(option))
+            warnings.add(fmt::format("RAYA_BUILD_OPTIONS: {} may change pixels and counts", option));
 }
 
 void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warnings) {
     constexpr std::size_t kMany = 100'000;
     if (accelerated || scene.object_count() < kMany) return;
-    warnings.add(fmt::format("{}: every ray is tested against {} objects; --accel bvh finds the same hits sooner",
+    warnings.add(fmt::format("{}: every ray is tested against {} objects; --accel bvh finds the same hits faster",
                              scene.name, scene.object_count()));
 }
 
@@ -73,9 +74,9 @@ void warn_of_lost_objects(const Scene& scene, const LengthScale& scale, const Nu
                           Warnings& warnings) {
     if (scale.vanishing == 0) return;
     warnings.add(
-        fmt::format("{}: {} spheres, cones or checkers are not seen: they are smaller than {:.3g}, the least that {} "
-                    "holds beside a length of {:.3g}; remedy: --format fp32",
-                    scene.name, scale.vanishing, scale.least, format_name(format), scale.largest));
+        fmt::format("{}: {} spheres, cones or checkers are invisible: they are smaller than {:.3g}, the minimum of {} "
+                    "in a scene with lengths up to {:.3g}; remedy: --format fp32",
+                    scene.name, scale.vanishing, scale.min_visible, format_name(format), scale.largest));
 }
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// Scenes that a user names, and what is said of them although they are traced.
+// Reading scenes from the command line, with warnings.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ class App;
 
 namespace raya {
 
-/// What a user should know although the command goes on: said on stderr at once, and kept for the report.
+/// Warnings: printed on stderr at once, and stored for the report.
 class Warnings {
   public:
     void add(const std::string& text);
@@ -24,25 +24,25 @@ class Warnings {
     std::vector<std::string> texts_;
 };
 
-/// Adds --strict: what a scene's file has beside NFF, or that cannot be traced, is refused and not passed over.
+/// Adds --strict: refuses, instead of skipping or changing, contents that are not NFF or cannot be traced.
 void add_strict_option(CLI::App& command, bool& strict);
 
 struct SceneInput {
     Scene scene;
-    std::vector<NffRemark> remarks;  // what was passed over in its file
+    std::vector<NffRemark> remarks;  // contents of the file that were skipped or changed
     Warnings warnings;
 };
 
-/// The scene of a file, or of stdin ("-"). Warns of what is passed over. UserError as read_nff().
+/// Reads a scene from a file or stdin ("-"). Warns of skipped and changed contents. UserError as read_nff().
 SceneInput read_scene(const std::string& file, bool strict);
 
 /// Warns of options in RAYA_BUILD_OPTIONS that may change results.
 void warn_of_build_options(Warnings& warnings);
 
-/// Warns where so many objects are tested with every ray that it is hardly meant.
+/// Warns if every ray is tested against 100,000 objects or more.
 void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warnings);
 
-/// Warns of objects that a format cannot hold beside the scene's largest length.
+/// Warns of objects that are too small for the format, given the scene's largest length.
 void warn_of_lost_objects(const Scene& scene, const LengthScale& scale, const NumberFormat& format, Warnings& warnings);
 
 }  // namespace raya

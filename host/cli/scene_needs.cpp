@@ -51,7 +51,7 @@ const SceneNeeds::Words& SceneNeeds::words_of(const RingSettings& settings, cons
         PackedJob job = plain_->second;
         words.made = append_accel(job, settings);
         words.words = job.words().size();
-    } catch (const UserError& error) {  // more words than they can be numbered
+    } catch (const UserError& error) {  // more words than 32-bit addresses
         words.refusal = error.what();
     }
     return words;
@@ -85,7 +85,7 @@ MachineNeeds SceneNeeds::of_ring(const RenderOptions& options) {
                      .needs = {},
                      .refusal = {}};
     const FormatFit fit = fit_of(settings.format);
-    const std::string usual = accel_text(settings.accel);
+    const std::string default_accel = accel_text(settings.accel);
     std::vector<Accel> accels;
     for (const AccelKind kind : kKinds)
         if (options.accel.empty()) accels.push_back({kind, {}});
@@ -93,7 +93,7 @@ MachineNeeds SceneNeeds::of_ring(const RenderOptions& options) {
     for (const Accel& accel : accels) {
         settings.accel = accel;
         all.needs.push_back(need_of(settings, fit));
-        all.needs.back().is_default = options.accel.empty() && all.needs.back().accel == usual;
+        all.needs.back().is_default = options.accel.empty() && all.needs.back().accel == default_accel;
     }
     return all;
 }

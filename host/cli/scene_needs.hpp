@@ -1,4 +1,4 @@
-// What machines need to hold a scene, found without a device by what a render does first.
+// Memory that machines need for a scene, computed without a device by the preparation steps of a render.
 #pragma once
 #include <map>
 #include <optional>
@@ -11,18 +11,17 @@
 
 namespace raya {
 
-/// Packs a scene for one machine after another. What machines have in common, the words of a format and accelerator, is
-/// made once.
+/// Packs a scene for several machines. Machines with the same format and accelerator share the packed words.
 class SceneNeeds {
   public:
-    /// All three outlive this.
+    /// All three must outlive this.
     SceneNeeds(const RenderOptions& render, const TorusOptions& torus, const Scene& scene);
 
-    /// With the accelerators none, bvh and grid, or that of --accel alone. UserError where the machine cannot be what
-    /// the options ask for; what does not fit is no error.
+    /// The needs with accelerators none, bvh and grid, or with that of --accel only. UserError if the machine does not
+    /// support the options' values; a scene that does not fit is not an error.
     MachineNeeds of(const std::string& machine);
 
-    /// The formats of all machines asked for so far.
+    /// The formats of the machines passed to of() so far.
     std::vector<FormatFit> formats() const { return formats_; }
 
   private:
@@ -42,8 +41,8 @@ class SceneNeeds {
     const TorusOptions& torus_;
     const Scene& scene_;
     std::vector<FormatFit> formats_;
-    std::map<std::string, Words> words_;                      // by format and accelerator
-    std::optional<std::pair<std::string, PackedJob>> plain_;  // of the latest format, without accelerator
+    std::map<std::string, Words> words_;                      // key: format and accelerator
+    std::optional<std::pair<std::string, PackedJob>> plain_;  // for the latest format, without accelerator
 };
 
 }  // namespace raya

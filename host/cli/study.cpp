@@ -1,4 +1,4 @@
-// raya study STUDY [SCENE...] -o DIR: hands over to the laboratory (tools/lab), which is Python.
+// raya study STUDY [SCENE...] -o DIR: starts the Python module raya.lab (tools/lab), which runs studies.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <sys/stat.h>
@@ -16,8 +16,8 @@
 #include <system_error>
 
 #include "host/base/json.hpp"
+#include "host/base/log.hpp"
 #include "host/base/module.hpp"
-#include "host/base/say.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
@@ -38,11 +38,11 @@ struct StudyCommand {
     std::string study, folder, device;
     std::optional<std::uint32_t> size;
     std::vector<std::string> scenes;
-    std::vector<double> network;  // alpha in microseconds, beta in nanoseconds a byte
+    std::vector<double> network;  // alpha in microseconds per message, beta in nanoseconds per byte
     bool strict = false, no_tuned = false;
 };
 
-// Of tools/lab/studies.txt: [name, summary].
+// [name, summary] of the studies in tools/lab/studies.txt.
 std::vector<std::array<std::string, 2>> listed_studies() {
     std::istringstream lines(embedded_files().at("tools/lab/studies.txt"));
     std::vector<std::array<std::string, 2>> all;
@@ -60,7 +60,7 @@ std::vector<std::string> study_names() {
     return names;
 }
 
-// As the help of a command ends.
+// The footer of the command's help.
 std::string studies_text() {
     std::string text = "Studies:\n";
     for (const auto& [name, summary] : listed_studies()) text += fmt::format("  {}   {}\n", name, summary);
@@ -71,30 +71,32 @@ void check_study(const StudyCommand& command) {
     const std::vector<std::string> names = study_names();
     const auto is_study = [&](const std::string& word) { return std::ranges::find(names, word) != names.end(); };
     if (!is_study(command.study) && !command.study.ends_with(".py"))
-        throw UserError(fmt::format("no study {}{}; raya help study lists them, and a study of yours is a file FILE.py",
-                                    command.study, did_you_mean(command.study, names)));
+        throw UserError(
+            fmt::format("no study {}{}; raya help study lists the studies; your own study is a file FILE.py",
+                        command.study, did_you_mean(command.study, names)));
     std::error_code error;
     if (!is_study(command.study) && !fs::is_regular_file(command.study, error))
-        throw UserError(fmt::format("{}: there is no such file", command.study));
+        throw UserError(fmt::format("{}: no such file", command.study));
     for (const std::string& scene : command.scenes)
         if (is_study(scene) && !fs::exists(scene, error))
             throw UserError(fmt::format(
-                "{} is a study, not a scene: studies run one at a time, all of them with raya study all", scene));
-    constexpr std::uint32_t kSmallest = 17, kLargest = 4096;  // the paper's offset 16 must be one of the image's
+                "{} is a study, not a scene; run one study at a time, or all of them with raya study all", scene));
+    constexpr std::uint32_t kSmallest = 17, kLargest = 4096;  // the paper's offset 16 must be below the width
     if (command.size && (*command.size < kSmallest || *command.size > kLargest))
         throw UserError(fmt::format("--size {}: must be {}..{} pixels a side", *command.size, kSmallest, kLargest));
     const std::vector<double>& n = command.network;
     const auto is_time = [](double time) { return time >= 0 && time <= 1e9; };
     if (!n.empty() && (n.size() != 2 || !std::ranges::all_of(n, is_time)))
         throw UserError(
-            fmt::format("--network {}: must be two numbers, 0..10^9: microseconds a message, nanoseconds a byte",
+            fmt::format("--network {}: must be two numbers, 0..10^9: microseconds per message, nanoseconds per byte",
                         fmt::join(n, ",")));
     if (!n.empty() && command.study != "ranks" && command.study != "all")
-        throw UserError(fmt::format("--network is of study ranks; study {} has no network", command.study));
-    if (command.folder == "-") throw UserError("-o -: a study is many files, which stdout cannot hold; name a folder");
+        throw UserError(
+            fmt::format("--network applies to study ranks only, not to study {}; leave it out", command.study));
+    if (command.folder == "-") throw UserError("-o -: a study writes several files, not stdout; name a folder");
 }
 
-// What tools/lab/__main__.py reads.
+// The settings that tools/lab/__main__.py reads.
 Json settings_of(const StudyCommand& command) {
     Json settings = {{"study", command.study},   {"scenes", command.scenes},     {"output", command.folder},
                      {"size", nullptr},          {"network", nullptr},           {"device", command.device},
@@ -107,31 +109,32 @@ Json settings_of(const StudyCommand& command) {
 void describe_study(CLI::App& command, StudyCommand& options) {
     OptionGroup group(command, kFiles);
     CLI::Option* const study = add_file(command, FileUse::kRead, "STUDY", options.study, "STUDY|all|FILE.py",
-                                        "Its name (below), all, or a file with a study of yours");
-    offer_words(study->required(), study_names());
-    add_file(command, FileUse::kRead, "SCENE", options.scenes, "SCENE.nff",
-             "Scenes in NFF, one of them - for stdin; of `all`, studies of one scene take the first; default: the "
-             "study's own");
+                                        "A study of the list below, all, or a file with your own study");
+    offer_choices(study->required(), study_names());
+    add_file(
+        command, FileUse::kRead, "SCENE", options.scenes, "SCENE.nff",
+        "Scenes in NFF, at most one of them - for stdin; with `all`, studies of a single scene take the first one; "
+        "default: the study's own");
     add_file(command, FileUse::kWrittenFolder, "-o,--output", options.folder, "DIR",
-             "Folder for index.html, to be read, and Markdown, CSV, JSON and plots; made if missing")
+             "Folder for index.html, Markdown, CSV, JSON and plots; created if missing")
         ->required();
-    group.next(kPicture);
+    group.next(kImageGroup);
     add_value(command, "--size", options.size,
               "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
         ->type_name("N");
     group.next(kMachine);
     add_value(command, "--network", options.network,
-              "Of study ranks: a network of yours, as well as the study's: what a message takes in microseconds, and a "
-              "byte in nanoseconds; such as 30,0.8")
+              "Study ranks: adds a network with this latency in microseconds per message and time in nanoseconds per "
+              "byte, such as 30,0.8")
         ->delimiter(',')
-        ->allow_extra_args(false)  // what follows is a scene
+        ->allow_extra_args(false)  // the next argument is a scene
         ->type_name("ALPHA,BETA");
     add_strict_option(command, options.strict);
     add_device_option(command, options.device);
     add_tuned_option(command, options.no_tuned);
 }
 
-// The folder that Python finds the module in: of a build, or of an installation below a prefix.
+// The folder of the Python module: of the build, or of an installation under a prefix.
 fs::path package_folder(const fs::path& program) {
     std::error_code error;
     for (const fs::path& folder :
@@ -140,7 +143,7 @@ fs::path package_folder(const fs::path& program) {
     return {};
 }
 
-// Nobody else may change what Python is about to run.
+// Refuses a module that other users can change.
 void check_folder(const fs::path& folder) {
     struct stat is {};
     ::stat(folder.c_str(), &is);
@@ -154,30 +157,30 @@ void check_folder(const fs::path& folder) {
     const fs::path program = fs::read_symlink("/proc/self/exe"), folder = package_folder(program);
     if (folder.empty() && other == nullptr)
         throw UserError(
-            "study needs the Python module raya, without which this program was built; remedy: tools/setup, then build "
-            "again, or name a Python that has it in RAYA_PYTHON");
+            "study needs the Python module raya, and this program was built without it; remedy: tools/setup, then "
+            "build again, or set RAYA_PYTHON to a Python that has the module");
     if (!folder.empty()) {
         check_folder(folder);
         const char* const path = std::getenv("PYTHONPATH");
         const std::string more = path != nullptr && *path != '\0' ? fmt::format(":{}", path) : "";
         ::setenv("PYTHONPATH", (folder.string() + more).c_str(), 1);
     }
-    ::setenv("PYTHONSAFEPATH", "1", 1);  // no module of the folder that it is called in
+    ::setenv("PYTHONSAFEPATH", "1", 1);  // imports no modules from the working folder
     ::setenv("RAYA_PROGRAM", program.c_str(), 1);
     ::execlp(python.c_str(), python.c_str(), "-m", "raya.lab", "--settings", settings.c_str(), nullptr);
     throw UserError(
         fmt::format("study needs Python: cannot start {}: {}; remedy: sudo apt-get install python3, or "
-                    "name another Python in RAYA_PYTHON",
+                    "set RAYA_PYTHON to another Python",
                     python, std::generic_category().message(errno)));
 }
 
 }  // namespace
 
 void add_study_command(CLI::App& program, const std::function<void(const std::string&)>& run) {
-    CLI::App* command = program.add_subcommand("study", "Measure over many renders, and test what the papers claim");
+    CLI::App* command = program.add_subcommand("study", "Run series of renders that test the papers' claims");
     add_examples(*command, {{"raya study fig8 scenes/mirrors.nff --size 64 -o mirrors",
-                             "One study of a scene, in a small size; open mirrors/index.html in a browser"},
-                            {"raya study all -o studies", "Every study, and one document of them all"}});
+                             "Run one study at a small size; open mirrors/index.html in a browser"},
+                            {"raya study all -o studies", "Run all studies and write one document"}});
     command->footer(studies_text() + command->get_footer());
     const auto options = std::make_shared<StudyCommand>();
     describe_study(*command, *options);

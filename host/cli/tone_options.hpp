@@ -1,4 +1,4 @@
-// How colours become the codes of 8-bit pictures, from the command line.
+// Options of the tone mapping of 8-bit images.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,17 +11,16 @@ class App;
 
 namespace raya {
 
-/// As given on the command line; what is empty has its default.
+/// As given on the command line; empty: the default.
 struct ToneOptions {
     std::optional<double> exposure, gamma;  // stops; exponent
     std::string curve;
 };
 
-/// Adds --exposure, --gamma and --tone with their help texts.
+/// Adds --exposure, --gamma and --tone.
 void add_tone_options(CLI::App& command, ToneOptions& tone);
 
-/// For the picture `file`. UserError where a value is out of range, or an option is given although the picture holds
-/// linear colours.
+/// The tone mapping for the image `file`. UserError for a value out of range, and for options with a linear format.
 Tone tone_of(const ToneOptions& options, const std::string& file);
 
 }  // namespace raya

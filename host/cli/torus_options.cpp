@@ -12,7 +12,7 @@ namespace {
 
 using Sides = std::array<std::uint32_t, 3>;
 
-constexpr const char* kPacketsEnd = ".csv.gz";
+constexpr const char* kPacketsExtension = ".csv.gz";
 
 }  // namespace
 
@@ -20,117 +20,117 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
     const OptionGroup group(command, kTorusMachine);
     CLI::Option* machine = command.get_option("--machine");
     machine->description(machine->get_description() +
-                         "; torus: nodes of 4 MB that hold voxels of the scene, see below");
+                         "; torus: nodes of 4 MB that hold voxels of the scene, see Torus machine");
     std::vector<std::string> names;
     for (const Machine& one : machines()) names.push_back(one.name);
-    offer_words(machine, names);
+    offer_choices(machine, names);
     const auto add = [&](const std::string& name, auto& value, const std::string& text, const std::string& type) {
         return add_value(command, name, value, text)->type_name(type);
     };
-    add("--nodes", t.nodes, "Nodes along x, y and z of the scene, at most 65,536 together", "IxJxK")
+    add("--nodes", t.nodes, "Nodes along x, y and z of the scene, at most 65,536 in total", "IxJxK")
         ->default_str("4x4x4");
     add("--voxels", t.voxels,
-        "Equal voxels that the scene's box is cut into, at most 1024 along an axis and 2^24 together; more than "
-        "nodes are laid out cyclically, fewer leave nodes empty; default: one for each node",
+        "Equal voxels that divide the scene's box, at most 1024 along an axis and 2^24 in total; more voxels than "
+        "nodes are assigned cyclically, fewer leave nodes empty; default: one for each node",
         "AxBxC");
-    add("--links", t.links, "Links of a node: six, or four as a T805 has them: slabs of nodes beside one another",
+    add("--links", t.links, "Links of a node: six, or four as on a T805, with the slabs of nodes side by side",
         "torus3d|torus2d")
         ->default_str("torus3d");
     add("--inject", t.inject,
-        "Who makes the primary rays: the root, which sends them to where they enter the box, or all nodes, each those "
-        "that enter at its voxels",
+        "Source of the primary rays: the root, which sends them to the nodes where they enter the box, or all nodes, "
+        "each the rays that enter at its voxels",
         "root|all")
         ->default_str("all");
     add("--returns", t.returns,
-        "What a return packet brings home in the model: one term of a ray, its ambient light, a light or the "
-        "background; or all of a ray in 6 words, when its shadow rays are done, as Yoshitani & Yamazaki have it",
+        "Contents of a return packet in the model: one term of a ray (ambient light, a light, or the background), or "
+        "all terms of a ray in 6 words after its shadow rays, as in Yoshitani & Yamazaki",
         "terms|rays")
         ->default_str("terms");
     add("--packet-words", t.packet_words,
-        "Words that a ray packet is charged for in the model, in its making and on links; 16 are moved, Yoshitani & "
-        "Yamazaki name 22 and more; 16..4096",
+        "Modelled size of a ray packet in 32-bit words, in its creation and on links; the renderer moves 16, "
+        "Yoshitani & Yamazaki use 22 and more; 16..4096",
         "N")
         ->default_str("16");
     add("--queue", t.queue,
-        "Packets that wait in a node at most; a queue that is too short is refused with the length that would do; "
-        "default: what the memory leaves, at most 8192",
+        "Maximum packets queued in a node; if the queue is too short, the error gives a sufficient length; default: "
+        "as many as fit in memory, at most 8192",
         "N");
     add("--link-exchange", t.link_exchange,
-        "How packets come over the links of a device, the same ones either way: as copies between its buffers or by a "
-        "kernel; auto: as raya tune found for this device, else the kernel on a CPU, elsewhere what is sooner, "
-        "measured when the render begins",
+        "How the host moves packets over links; the result is the same: as copies between buffers or by a kernel; "
+        "auto: as the device was tuned (raya tune), else the kernel on a CPU, elsewhere the faster one, measured when "
+        "the render begins",
         "auto|copies|kernel")
         ->default_str("auto");
     add_file(
         command, FileUse::kWritten, "--packets", t.packets, "FILE.csv.gz",
         "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), compressed; -: "
         "stdout; see docs/packets.md");
-    offer_words(
+    offer_choices(
         add("--replay", t.replay,
-            "Beside the packets, write the render's history for SimGrid: FILE.xml, the platform, and FILE.replay, for "
-            "simgrid_replay; see docs/packets.md",
+            "With --packets: write the render's history for simgrid_replay: FILE.xml (the platform) and FILE.replay; "
+            "see docs/packets.md",
             "simgrid"),
         {"simgrid"});
     command.add_flag("--async", t.async,
-                     "Simulate the machine without supersteps too, whose nodes compute while its links carry: one "
-                     "modelled time beside the two bounds");
+                     "Also simulate the machine without supersteps, whose nodes compute while links transfer: one "
+                     "modelled time next to the two bounds");
 }
 
 namespace {
 
-struct Foreign {
+struct InapplicableOption {
     const char *option, *reason;
 };
 
 constexpr const char* kNoPixels =
-    "its nodes hold voxels of the scene, not pixels; leave it out, --nodes and --voxels say what a node holds";
+    "its nodes hold voxels of the scene, not pixels; leave it out: --nodes and --voxels set what a node holds";
 constexpr const char* kNoNeighbours =
-    "no node holds pixels that it could compare with their neighbours; leave it out, or choose a ring: --machine "
-    "grande";
-constexpr std::array<Foreign, 12> kOfRings = {
+    "its nodes hold no pixels to compare with their neighbours; leave it out, or choose a ring: --machine grande";
+constexpr std::array<InapplicableOption, 12> kRingOnlyOptions = {
     {{"--mapping", kNoPixels},
      {"--offset", kNoPixels},
      {"--fold", kNoPixels},
-     {"--pes", "its PEs are nodes; say how many with --nodes IxJxK"},
+     {"--pes", "its PEs are nodes; set their number with --nodes IxJxK"},
      {"--antialias", kNoNeighbours},
      {"--exchange", kNoNeighbours},
      {"--threshold", kNoNeighbours},
      {"--points", kNoNeighbours},
      {"--mask", kNoNeighbours},
      {"--cost",
-      "many nodes work for a pixel, and none of them knows its cost; leave it out, or choose a ring: --machine grande"},
-     {"--accel", "its voxels are the grid; cut the scene finer with --voxels AxBxC"},
-     {"--keep",
-      "its packets are on their way between nodes at any moment; leave it out, or choose a ring, whose picture is the "
-      "same: --machine grande"}}};
+      "several nodes work for a pixel, so that no node has its cost; leave it out, or choose a ring: --machine grande"},
+     {"--accel", "its voxels are the grid; refine it with --voxels AxBxC"},
+     {"--checkpoint",
+      "its packets are in flight between nodes at any time; leave it out, or choose a ring, whose image is the same: "
+      "--machine grande"}}};
 
 constexpr const char* kNoNodes =
     "that machine is a ring of PEs without voxels; leave it out, or choose --machine torus";
-constexpr std::array<Foreign, 11> kOfTorus = {{{"--nodes", "its PEs stand on a ring; say how many with --pes P"},
-                                               {"--voxels", kNoNodes},
-                                               {"--links", kNoNodes},
-                                               {"--inject", kNoNodes},
-                                               {"--returns", kNoNodes},
-                                               {"--packet-words", kNoNodes},
-                                               {"--queue", kNoNodes},
-                                               {"--link-exchange", kNoNodes},
-                                               {"--packets", kNoNodes},
-                                               {"--replay", kNoNodes},
-                                               {"--async", kNoNodes}}};
+constexpr std::array<InapplicableOption, 11> kTorusOnlyOptions = {
+    {{"--nodes", "its PEs form a ring; set their number with --pes P"},
+     {"--voxels", kNoNodes},
+     {"--links", kNoNodes},
+     {"--inject", kNoNodes},
+     {"--returns", kNoNodes},
+     {"--packet-words", kNoNodes},
+     {"--queue", kNoNodes},
+     {"--link-exchange", kNoNodes},
+     {"--packets", kNoNodes},
+     {"--replay", kNoNodes},
+     {"--async", kNoNodes}}};
 
 }  // namespace
 
 void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine) {
-    const auto refuse = [&](const Foreign& foreign) {
-        const CLI::Option* option = command.get_option_no_throw(foreign.option);
+    const auto refuse = [&](const InapplicableOption& one) {
+        const CLI::Option* option = command.get_option_no_throw(one.option);
         if (option == nullptr || option->empty() || option->results().front() == "none") return;
-        throw UserError(fmt::format("{} {} with --machine {}: {}", foreign.option, option->results().front(),
-                                    machine.name, foreign.reason));
+        throw UserError(fmt::format("{} {} with --machine {}: {}", one.option, option->results().front(), machine.name,
+                                    one.reason));
     };
     if (machine.kind == MachineKind::kTorus)
-        for (const Foreign& foreign : kOfRings) refuse(foreign);
+        for (const InapplicableOption& one : kRingOnlyOptions) refuse(one);
     else
-        for (const Foreign& foreign : kOfTorus) refuse(foreign);
+        for (const InapplicableOption& one : kTorusOnlyOptions) refuse(one);
 }
 
 namespace {
@@ -141,41 +141,41 @@ Injection parse_injection(const std::string& text) {
     throw UserError(fmt::format("--inject {}: must be root or all", text));
 }
 
-bool is_return_a_ray(const std::string& text) {
+bool returns_whole_rays(const std::string& text) {
     if (text.empty() || text == "terms") return false;
     if (text == "rays") return true;
     throw UserError(fmt::format("--returns {}: must be terms or rays", text));
 }
 
 LinkMove parse_link_move(const std::string& text) {
-    if (text.empty() || text == "auto") return LinkMove::kOfDevice;
+    if (text.empty() || text == "auto") return LinkMove::kAutomatic;
     if (text == "copies") return LinkMove::kCopies;
     if (text == "kernel") return LinkMove::kKernel;
     throw UserError(fmt::format("--link-exchange {}: must be auto, copies or kernel", text));
 }
 
 PacketCharge parse_charge(const TorusOptions& t) {
-    constexpr std::uint32_t kMostChargeWords = 4096;
-    const PacketCharge charge{t.packet_words.value_or(RAYA_PACKET_WORDS), is_return_a_ray(t.returns)};
-    if (charge.ray_words < RAYA_PACKET_WORDS || charge.ray_words > kMostChargeWords)
+    constexpr std::uint32_t kMaxChargeWords = 4096;
+    const PacketCharge charge{t.packet_words.value_or(RAYA_PACKET_WORDS), returns_whole_rays(t.returns)};
+    if (charge.ray_words < RAYA_PACKET_WORDS || charge.ray_words > kMaxChargeWords)
         throw UserError(fmt::format("--packet-words {}: must be {}..{}", charge.ray_words,
-                                    std::uint32_t{RAYA_PACKET_WORDS}, kMostChargeWords));
+                                    std::uint32_t{RAYA_PACKET_WORDS}, kMaxChargeWords));
     return charge;
 }
 
 Sides voxels_of(const TorusOptions& t, const Sides& nodes) {
     if (t.voxels.empty()) return nodes;
-    const Sides voxels = parse_three_sides("--voxels", t.voxels, "at most 2^24 together");
-    // The sides are 10^6 at most: no product overflows.
-    if (std::uint64_t{voxels[0]} * voxels[1] * voxels[2] > kMostCutVoxels)
-        throw UserError(fmt::format("--voxels {}: must be at most 2^24 together", t.voxels));
+    const Sides voxels = parse_three_sides("--voxels", t.voxels, "at most 2^24 in total");
+    // The sides are at most 10^6: the product does not overflow.
+    if (std::uint64_t{voxels[0]} * voxels[1] * voxels[2] > kMaxPartitionVoxels)
+        throw UserError(fmt::format("--voxels {}: must be at most 2^24 in total", t.voxels));
     return voxels;
 }
 
 }  // namespace
 
 ReplayFiles::ReplayFiles(const std::string& packets) {
-    const std::string stem = packets.substr(0, packets.rfind(kPacketsEnd));
+    const std::string stem = packets.substr(0, packets.rfind(kPacketsExtension));
     platform = stem + ".xml";
     replay = stem + ".replay";
 }
@@ -187,7 +187,7 @@ TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, cons
     settings.width = size.width;
     settings.height = size.height;
     const Sides nodes =
-        t.nodes.empty() ? kUsualNodes : parse_three_sides("--nodes", t.nodes, "at most 65,536 together");
+        t.nodes.empty() ? kDefaultNodes : parse_three_sides("--nodes", t.nodes, "at most 65,536 in total");
     settings.links = t.links.empty() ? Links::kTorus3d : parse_links(t.links);
     settings.torus = make_torus(nodes, settings.links);
     settings.voxels = voxels_of(t, nodes);

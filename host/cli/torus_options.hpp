@@ -1,4 +1,4 @@
-// The options of a render that belong to the torus machine alone.
+// Options of the torus machine.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace raya {
 
-/// As given on the command line; what is empty has its default.
+/// As given on the command line; empty: the default.
 struct TorusOptions {
     std::string nodes, voxels, links, inject, returns, packets, replay, link_exchange;
     std::optional<std::uint32_t> packet_words;
@@ -17,19 +17,19 @@ struct TorusOptions {
     bool async = false;
 };
 
-/// Adds the options with their help texts, and --pe-memory; add_render_options() has been called.
+/// Adds the options, and the torus to those of --machine. Call it after add_render_options().
 void add_torus_options(CLI::App& command, TorusOptions& torus);
 
-/// What --replay simgrid writes beside a trace of packets FILE.csv.gz: FILE.xml, the platform, and FILE.replay.
+/// The files of --replay simgrid for the packet trace FILE.csv.gz: FILE.xml (the platform) and FILE.replay.
 struct ReplayFiles {
     explicit ReplayFiles(const std::string& packets);
     std::string platform, replay;
 };
 
-/// Refuses the options that say nothing to this machine: UserError with the option, the reason and the remedy.
+/// Refuses options that do not apply to the machine. UserError with option, reason and remedy.
 void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine);
 
-/// What the torus renderer needs. UserError names the option that is out of range.
+/// The settings of the torus renderer. UserError for an option out of range.
 TorusSettings torus_settings(const RenderOptions& options, const TorusOptions& torus, const Scene& scene);
 
 }  // namespace raya

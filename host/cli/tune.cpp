@@ -1,4 +1,4 @@
-// raya tune: what a device is quickest with, searched, checked and kept.
+// raya tune: searches the fastest launch values of a device, checks them and stores them.
 #include "host/tune/tune.hpp"
 
 #include <fmt/core.h>
@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "host/base/clock.hpp"
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
@@ -29,33 +29,33 @@ namespace raya {
 namespace {
 
 struct TuneCommand {
-    TrialRenders render;
-    RenderOptions picture;  // of which --size alone is taken
+    TrialSetup render;
+    RenderOptions image;  // only --size is used
     std::string report;
     std::vector<std::string> variants, formats;
     double seconds = 60, candidate_seconds = 20;
     bool exhaustive = false;
 };
 
-void check_range(const char* option, double value, double least, double most) {
-    if (!(value >= least && value <= most))
-        throw UserError(fmt::format("{} {}: must be {}..{} seconds", option, value, least, most));
+void check_range(const char* option, double value, double min, double max) {
+    if (!(value >= min && value <= max))
+        throw UserError(fmt::format("{} {}: must be {}..{} seconds", option, value, min, max));
 }
 
 std::vector<Workload> workloads_of(const TuneCommand& command) {
-    if (command.variants.empty() && command.formats.empty()) return usual_workloads();
+    if (command.variants.empty() && command.formats.empty()) return default_workloads();
     using Names = std::vector<std::string>;
     std::vector<Workload> all;
     for (const std::string& format : command.formats.empty() ? Names{"fp32"} : command.formats)
         for (const std::string& variant :
              command.variants.empty() ? Names{"none", "grid", "bvh", "torus"} : command.variants) {
             all.push_back({variant, parse_format(format)});
-            all.back().what();  // refuses variants that there are not
+            all.back().what();  // refuses unknown variants
         }
     return all;
 }
 
-TrialWatch watch_of(const Workload& workload, const Space& space) {
+TrialProgress watch_of(const Workload& workload, const Space& space) {
     return [=](const TunedValues& values, double seconds) {
         if (shows_progress())
             show_status(fmt::format("tuning {}: {} ... {:.0f} s", workload.name(), change_text(space, values, values),
@@ -63,15 +63,15 @@ TrialWatch watch_of(const Workload& workload, const Space& space) {
     };
 }
 
-const char* fate_text(Fate fate) {
-    switch (fate) {
-        case Fate::kCompile:
+const char* status_text(TrialStatus status) {
+    switch (status) {
+        case TrialStatus::kCompile:
             return "not built";
-        case Fate::kRuntime:
+        case TrialStatus::kRuntime:
             return "failed";
-        case Fate::kCorrectness:
+        case TrialStatus::kCorrectness:
             return "wrong";
-        case Fate::kTimeout:
+        case TrialStatus::kTimeout:
             return "too long";
         default:
             return "right";
@@ -80,32 +80,32 @@ const char* fate_text(Fate fate) {
 
 void print_dropped(const Tuning& tuning) {
     for (const Trial& trial : tuning.trials)
-        if (trial.fate != Fate::kCorrect && trial.fate != Fate::kUnfinished)
+        if (trial.status != TrialStatus::kCorrect && trial.status != TrialStatus::kUnfinished)
             fmt::print("dropped: {}: {}: {}: {}\n", tuning.workload.name(),
-                       change_text(tuning.space, trial.values, trial.values), fate_text(trial.fate), trial.told);
+                       change_text(tuning.space, trial.values, trial.values), status_text(trial.status), trial.error);
 }
 
 void print_exhaustive(const Tuning& tuning) {
     if (tuning.best_all)
-        fmt::print("of all {}: {}: best is {}; the tuned one takes {:.3f} of its time\n", tuning.tried_all + 1,
-                   tuning.workload.name(), change_text(tuning.space, *tuning.best_all, *tuning.best_all),
-                   tuning.ratio_all);
+        fmt::print("all {} candidates: {}: the best is {}; the tuned one takes {:.3f} of its time\n",
+                   tuning.tried_all + 1, tuning.workload.name(),
+                   change_text(tuning.space, *tuning.best_all, *tuning.best_all), tuning.ratio_all);
 }
 
 void print_tunings(const std::vector<Tuning>& tunings) {
     std::vector<std::vector<std::string>> table = {
-        {"workload", "speed-up", "tried", "of", "dropped", "s", "defaults, and what is better"}};
+        {"workload", "speed-up", "tried", "of", "dropped", "s", "defaults -> best"}};
     for (const Tuning& t : tunings)
         table.push_back({t.workload.name(), fmt::format("{:.2f}", 1 / t.ratio), std::to_string(t.trials.size()),
                          std::to_string(t.space.size()), std::to_string(t.dropped()), fmt::format("{:.1f}", t.seconds),
-                         change_text(t.space, t.space.defaults, t.best) + (t.complete ? "" : " (time was over)")});
+                         change_text(t.space, t.space.defaults, t.best) + (t.complete ? "" : " (time limit)")});
     fmt::print("{}", text_table(table));
     fmt::print(
-        "speed-up: time of a render with the defaults over that with the better values, the median of 9 pairs after "
-        "the search;\ntried: candidates that were rendered and held against the image of the defaults; own: the "
+        "speed-up: time of a render with the defaults over that with the best values, the median of 9 pairs after "
+        "the search;\ntried: candidates that were rendered and compared with the image of the defaults; own: the "
         "kernels' own default\n");
     if (std::any_of(tunings.begin(), tunings.end(), [](const Tuning& t) { return !t.complete; }))
-        fmt::print("time was over: --seconds gives the search more\n");
+        fmt::print("time limit: --seconds allows a longer search\n");
     for (const Tuning& tuning : tunings) print_dropped(tuning);
     for (const Tuning& tuning : tunings) print_exhaustive(tuning);
 }
@@ -119,14 +119,15 @@ void tune_device(const CLI::App& parsed, TuneCommand& command) {
     check_range("--candidate-seconds", command.candidate_seconds, 1, 3600);
     Warnings warnings;
     warn_of_build_options(warnings);
-    TrialRenders& render = command.render;
+    TrialSetup& render = command.render;
     if (is_standard_stream(render.scene))
-        throw UserError("tune -: every candidate reads the scene in a process of its own; name a file");
-    if (!command.picture.size.empty()) render.size = image_size(command.picture, {});
+        throw UserError("tune -: every candidate reads the scene in its own process; name a file");
+    if (!command.image.size.empty()) render.size = image_size(command.image, {});
     const std::vector<Workload> workloads = workloads_of(command);
-    if (!render.scene.empty()) read_scene(render.scene, render.strict);  // refuses what every candidate would refuse
+    if (!render.scene.empty())
+        read_scene(render.scene, render.strict);  // reports errors of the scene before the first trial
     const DeviceInfo device = device_info(choose_device(render.device));
-    const std::filesystem::path file = tuned_place(device);
+    const std::filesystem::path file = tuned_path(device);
     check_files(parsed, {{"tune", file}});
     fmt::print("tuning {} ({}, driver {}): {}, {:.0f} s\n", device.name, device.platform, device.driver,
                counted(workloads.size(), "workload"), command.seconds);
@@ -140,35 +141,36 @@ void tune_device(const CLI::App& parsed, TuneCommand& command) {
         tunings.push_back(tune(device, workload, settings, watch_of(workload, space_of(device, workload.what()))));
         left = std::max(0.0, left - tunings.back().seconds);
         const std::string scene = render.scene.empty() ? "own" : render.scene;
-        keep_tuned(device, {date, {entry_of(tunings.back(), scene)}});
+        save_tuned(device, {date, {entry_of(tunings.back(), scene)}});
     }
     clear_status();
     print_tunings(tunings);
     if (!command.report.empty()) write_whole_file(command.report, t4_text(device, tunings));
-    fmt::print("kept in {}: render, bench and study take it, but for --lanes, --group and --no-tuned\n",
+    fmt::print("stored in {}: render, bench and study use it, unless --lanes, --group or --no-tuned is given\n",
                printable(file.string()));
 }
 
 void add_rendered_options(CLI::App& command, TuneCommand& options) {
-    TrialRenders& render = options.render;
-    OptionGroup group(command, "What is tuned");
+    TrialSetup& render = options.render;
+    OptionGroup group(command, "Workload");
     add_file(command, FileUse::kRead, "SCENE", render.scene, "SCENE.nff",
-             "Scene in NFF that is rendered with candidates for lanes, group and what else only changes the time; "
+             "Scene in NFF to render with candidates for lanes, group and other values that change only the time; "
              "default: 30 spheres and a plane, with an accelerator SPD's balls of 7,381 spheres");
     add_strict_option(command, render.strict);
     add_value(command, "--variants", options.variants,
-              "Kernels to tune, with commas between them: none, grid, bvh: the ring machine with that --accel; torus: "
-              "4x4x4 nodes; default: none in fp32 and e6m15, grid, bvh and torus in fp32")
+              "Kernels to tune, comma-separated: none, grid, bvh: the ring machine with that --accel; torus: 4x4x4 "
+              "nodes; default: none in fp32 and e6m15, grid, bvh and torus in fp32")
         ->delimiter(',')
-        ->allow_extra_args(false)  // what follows is the scene
+        ->allow_extra_args(false)  // the next argument is the scene
         ->type_name("none,grid,bvh,torus");
-    add_value(command, "--format", options.formats,
-              "In these formats, with commas between them: fp32, spa22 (e6m15), eXmY[t]; what is found in one reduced "
-              "format is taken for all of them; default: fp32 of the variants that are named")
+    add_value(
+        command, "--format", options.formats,
+        "Formats, comma-separated: fp32, spa22 (e6m15), eXmY[t]; the values of one reduced format apply to all of "
+        "them; default: fp32 for the given variants")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("NAME,...");
-    add_value(command, "--size", options.picture.size,
+    add_value(command, "--size", options.image.size,
               "Image size in pixels, 1..16384 a side; default: 512, with an accelerator and on the torus 256")
         ->type_name("N|WxH");
     add_value(command, "--pes", render.pes, "Processing elements of the ring, 1..W*H")
@@ -177,34 +179,35 @@ void add_rendered_options(CLI::App& command, TuneCommand& options) {
     add_device_option(command, render.device);
     group.next(kKernels);
     add_file(command, FileUse::kKernelFolder, "--kernel-dir", render.kernel_dir, "DIR",
-             "Read the kernels from this folder, while developing them");
+             "Read the kernels from this folder, for kernel development");
 }
 
 void add_search_options(CLI::App& command, TuneCommand& options) {
     const OptionGroup group(command, "Search");
-    add_value(command, "--seconds", options.seconds, "Seconds that the search takes, 1..86400")
+    add_value(command, "--seconds", options.seconds, "Duration of the search in seconds, 1..86400")
         ->type_name("S")
         ->capture_default_str();
-    add_value(command, "--candidate-seconds", options.candidate_seconds,
-              "Seconds, 1..3600, after which a candidate, in a process of its own, is dropped, with its build; so is "
-              "one that fails or makes another image than the defaults")
+    add_value(
+        command, "--candidate-seconds", options.candidate_seconds,
+        "Time limit of a candidate with its build, 1..3600 seconds; each runs in its own process. Candidates that "
+        "fail or whose image differs from that of the defaults are dropped as well")
         ->type_name("S")
         ->capture_default_str();
     command.add_flag("--exhaustive", options.exhaustive,
-                     "Try every candidate afterwards, however long that takes, and tell how near the search came to "
-                     "the best");
+                     "Afterwards try every candidate, without a time limit, and print how close the search came to the "
+                     "best");
     add_file(command, FileUse::kWritten, "--report", options.report, "FILE.json",
-             "Write all that was tried, in the T4 format of Kernel Tuner; -: stdout, and the tables on stderr");
+             "Write all trials in the T4 format of Kernel Tuner; -: stdout, with the tables on stderr");
 }
 
 }  // namespace
 
 void add_tune_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
-        "tune", "Search what this device is quickest with, and keep it for render, bench and study");
-    add_examples(*command, {{"raya tune", "A minute; the best is kept for this device and driver"},
+        "tune", "Search this device's fastest launch values and store them for render, bench and study");
+    add_examples(*command, {{"raya tune", "Search for a minute and store the best values for this device and driver"},
                             {"raya tune scenes/centre.nff --variants bvh --size 128 --seconds 20 --report t4.json",
-                             "One scene down a tree of boxes, and all that was tried"}});
+                             "Tune the BVH for one scene, with a report of all trials"}});
     const auto options = std::make_shared<TuneCommand>();
     add_rendered_options(*command, *options);
     add_search_options(*command, *options);

@@ -8,16 +8,16 @@ namespace raya {
 void add_tuned_option(CLI::App& command, bool& no_tuned) {
     const OptionGroup group(command, kKernels);
     command.add_flag("--no-tuned", no_tuned,
-                     "Take the defaults, not what raya tune has kept for this device and driver; the environment "
-                     "variable RAYA_TUNED=off does the same. The image is the same in any case");
+                     "Use the defaults, not the values that raya tune stored for this device and driver, like the "
+                     "environment variable RAYA_TUNED=off; the image is the same");
 }
 
-TunedUse use_tuned(bool no_tuned, Warnings* warnings) {
+ScopedTunedSource use_tuned(bool no_tuned, Warnings* warnings) {
     const auto warn = [warnings](const std::string& text) {
-        Warnings nobodys;
-        (warnings ? *warnings : nobodys).add(text);
+        Warnings unused;
+        (warnings ? *warnings : unused).add(text);
     };
-    return TunedUse(no_tuned ? TunedSource{} : kept_choices(warn));
+    return ScopedTunedSource(no_tuned ? TunedSource{} : stored_choices(warn));
 }
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// Whether a command takes what raya tune has kept for its device.
+// --no-tuned: use of the values that raya tune stored for a device.
 #pragma once
 #include "host/cl/tuned.hpp"
 #include "host/cli/scene_input.hpp"
@@ -8,8 +8,8 @@ namespace raya {
 /// Adds --no-tuned.
 void add_tuned_option(CLI::App& command, bool& no_tuned);
 
-/// While it lives, renders take what is kept, unless `no_tuned`. A file that cannot be used is a warning: one of
-/// `warnings`, where they are given, which outlive it.
-TunedUse use_tuned(bool no_tuned, Warnings* warnings = nullptr);
+/// During its lifetime renders use the stored values, unless `no_tuned`. An unusable file is a warning, added to
+/// `warnings` if given; they must outlive the result.
+ScopedTunedSource use_tuned(bool no_tuned, Warnings* warnings = nullptr);
 
 }  // namespace raya

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/ranks/ranks.hpp"
@@ -11,43 +11,44 @@
 namespace raya {
 namespace {
 
-struct Asked {
+struct VerbosityFlags {
     int quiet = 0, verbose = 0;
-    bool speaks = true;
+    bool first_rank = true;
 
     void set() const {
         if (quiet > 0 && verbose > 0) throw UserError("--quiet and --verbose: give one of them");
-        set_verbosity(speaks || quiet > 0 ? verbose - quiet : 0);
+        set_verbosity(first_rank || quiet > 0 ? verbose - quiet : 0);
     }
 };
 
-void add_to(CLI::App& command, const std::shared_ptr<Asked>& asked) {
-    const OptionGroup group(command, kCommonOptions);
-    if (command.get_help_ptr() != nullptr) command.get_help_ptr()->group(kCommonOptions);
+void add_to(CLI::App& command, const std::shared_ptr<VerbosityFlags>& flags) {
+    const OptionGroup group(command, kGeneralOptions);
+    for (const char* name : {"--help", "--help-all"})
+        if (CLI::Option* help = command.get_option_no_throw(name); help != nullptr) help->group(kGeneralOptions);
     command.add_flag_function(
         "-q,--quiet",
-        [asked](std::int64_t count) {
-            asked->quiet += static_cast<int>(count);
-            asked->set();
+        [flags](std::int64_t count) {
+            flags->quiet += static_cast<int>(count);
+            flags->set();
         },
         "Print no summary and no progress; twice: no warnings either");
     command.add_flag_function(
         "-v,--verbose",
-        [asked](std::int64_t count) {
-            asked->verbose += static_cast<int>(count);
-            asked->set();
+        [flags](std::int64_t count) {
+            flags->verbose += static_cast<int>(count);
+            flags->set();
         },
-        "Say on stderr what the host does, with its seconds; twice: build options and logs of kernels too, and the "
+        "Log the host's steps and their seconds on stderr; twice: also kernels' build options and logs, and the "
         "device's times by label");
-    for (CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; })) add_to(*one, asked);
+    for (CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; })) add_to(*one, flags);
 }
 
 }  // namespace
 
 void add_verbosity_options(CLI::App& program, const Ranks& ranks) {
-    const auto asked = std::make_shared<Asked>();
-    asked->speaks = ranks.first();
-    add_to(program, asked);
+    const auto flags = std::make_shared<VerbosityFlags>();
+    flags->first_rank = ranks.first();
+    add_to(program, flags);
 }
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// --quiet and --verbose, which every command has.
+// --quiet and --verbose of all commands.
 #pragma once
 
 namespace CLI {
@@ -9,8 +9,8 @@ namespace raya {
 
 class Ranks;
 
-/// Adds them to all commands below `program`, and puts them with --help below one heading. Of several ranks the first
-/// alone is verbose. To be called when all commands are there; both may be given twice, and not together: UserError.
+/// Adds both to `program` and to all its commands, which exist already, and puts them, --help and --help-all under one
+/// heading. Only rank 0 is verbose. Each may be given twice; both together are a UserError.
 void add_verbosity_options(CLI::App& program, const Ranks& ranks);
 
 }  // namespace raya

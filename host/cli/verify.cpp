@@ -1,4 +1,4 @@
-// raya verify: is this device, with its driver and its compiler, right?
+// raya verify: checks a device with its driver and compiler.
 #include "host/verify/verify.hpp"
 
 #include <fmt/core.h>
@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "host/base/json.hpp"
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
@@ -64,7 +64,7 @@ DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const V
                 if (!brief || check.verdict.outcome == Outcome::kFail) print(check_lines(check));
             }};
     DeviceChecks result = supervise(command.device, index, settings, sink, devices);
-    if (!brief || devices == 1 || !result.is_right())
+    if (!brief || devices == 1 || !result.all_passed())
         print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
     return result;
 }
@@ -78,7 +78,7 @@ Json report_of(const std::vector<DeviceChecks>& all, Depth depth) {
                            {"platform", one.platform},
                            {"version", one.version},
                            {"driver", one.driver},
-                           {"right", one.is_right()},
+                           {"right", one.all_passed()},
                            {"passed", count_of(one.checks, Outcome::kPass)},
                            {"failed", count_of(one.checks, Outcome::kFail)},
                            {"skipped", count_of(one.checks, Outcome::kSkip)},
@@ -112,7 +112,7 @@ void run_verify(const VerifyCommand& command) {
     bool right = true;
     for (std::size_t devices = 1; all.size() < devices;) {
         all.push_back(verify_one(command, all.size(), settings, devices));
-        right = right && all.back().is_right();
+        right = right && all.back().all_passed();
     }
     if (all.size() > 1) print_overall(all);
     write_report_and_page({command.report, command.page}, report_of(all, command.depth()));
@@ -123,42 +123,39 @@ void run_verify(const VerifyCommand& command) {
 
 void add_verify_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
-        "verify", "Check a device, its driver and its compiler: arithmetic, hits, machines and images, all by bits");
-    add_examples(*command, {{"raya verify", "All that matters of this device, a line for each check"},
+        "verify", "Check a device, its driver and its compiler bit by bit: arithmetic, hits, machines and images");
+    add_examples(*command, {{"raya verify", "Run the default checks, a line for each"},
                             {"raya verify --brief --only number --report verify.json",
-                             "Few of the checks, those of arithmetic, and what was found as JSON"}});
+                             "Run few checks, those of arithmetic only, with a report"}});
     const auto options = std::make_shared<VerifyCommand>();
-    OptionGroup group(*command, "What is checked");
+    OptionGroup group(*command, "Checks");
     command->add_flag("--quick", options->quick,
-                      "The device's own lanes, the usual formats, a dozen images: the default");
+                      "The device's default lanes, common formats, a dozen images: the default");
     command->add_flag("--brief", options->brief,
-                      "What few kernels show, with few rays: for compilers that take a minute for a kernel, and for "
-                      "simulators");
+                      "Few kernels with few rays: for simulators, and compilers that take a minute for a kernel");
     command->add_flag(
         "--full", options->full,
-        "Every format, width of lanes and group size: about five minutes with PoCL on an idle CPU, longer where "
-        "compilers are slow on wide vectors");
+        "All formats, lanes and group sizes: about five minutes with PoCL on an idle CPU, longer if the compiler is "
+        "slow on wide vectors");
     add_value(*command, "--lanes", options->lanes,
-              "This width of lanes alone, for compilers that are slow on wide vectors; default: the device's "
-              "own, with --full all")
+              "Only this number of lanes, for compilers that are slow on wide vectors; default: the device's default, "
+              "with --full all")
         ->check(CLI::IsMember({1, 4, 8, 16}))
         ->type_name("V");
     add_value(*command, "--only", options->only,
-              "Only checks with this text in \"LAYER NAME\", as printed: number, \"image glass\", spa22, ...")
+              "Only checks whose printed \"LAYER NAME\" contains this text: number, \"image glass\", spa22, ...")
         ->type_name("TEXT");
     add_device_option(*command, options->device);
     command->get_option("--device")
-        ->description(command->get_option("--device")->get_description() +
-                      "; all: every usable device, one after another");
+        ->description(command->get_option("--device")->get_description() + "; all: every usable device in turn");
     group.next(kKernels);
     add_file(*command, FileUse::kKernelFolder, "--kernel-dir", options->kernel_dir, "DIR",
-             "Read the kernels from this folder, while developing them");
-    group.next(kCloserLook);
+             "Read the kernels from this folder, for kernel development");
+    group.next(kDiagnostics);
     add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
-             "Write every check, with what is wrong, as JSON; -: stdout, and the lines on stderr");
+             "Write all checks and their failures as JSON; -: stdout, with the lines on stderr");
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
-             "Write every check, and the first that failed in full, as a page for a browser; it is what raya page "
-             "makes of the report");
+             "Write all checks, and the first failure in full, as an HTML page; raya page makes the same of a report");
     command->callback([options] { run_verify(*options); });
 }
 

@@ -18,20 +18,20 @@ constexpr const char* kPoint = "must be three numbers X,Y,Z, each at most 1e30 i
 constexpr const char* kColour = "must be three numbers R,G,B from 0 to 1e9; 1 is full intensity";
 constexpr const char* kLight = "must be a position X,Y,Z, or position and colour X,Y,Z,R,G,B, colours from 0 to 1e9";
 
-constexpr std::size_t kShown = 60;  // bytes of a value; fmt's precision does not count bytes that are no UTF-8
+constexpr std::size_t kShown = 60;  // bytes of a value in messages; fmt's precision counts UTF-8 letters
 
-/// The numbers between commas; none where one of them is no number, or none that can be traced.
+/// Parses comma-separated numbers; empty if one of them is malformed or beyond kLargestLength.
 std::vector<double> numbers_of(std::string_view text) {
     std::vector<double> numbers;
     while (true) {
-        const std::string_view word = text.substr(0, text.find(','));
+        const std::string_view field = text.substr(0, text.find(','));
         double number = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-        const bool whole = error == std::errc{} && end == word.data() + word.size();
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
+        const bool whole = error == std::errc{} && end == field.data() + field.size();
         if (!whole || !(std::abs(number) <= kLargestLength)) return {};
         numbers.push_back(number);
-        if (word.size() == text.size()) return numbers;
-        text.remove_prefix(word.size() + 1);
+        if (field.size() == text.size()) return numbers;
+        text.remove_prefix(field.size() + 1);
     }
 }
 
@@ -54,10 +54,10 @@ Light light_of(const std::string& text) {
     return light;
 }
 
-/// "--from 0,0,0 --angle 10", of what was given of the viewpoint.
+/// The camera options given: "--from 0,0,0 --angle 10".
 std::string viewpoint_text(const ViewOptions& v) {
     std::string text;
-    for (const auto& [option, value] : v.words())
+    for (const auto& [option, value] : v.given_options())
         if (option != "--background" && option != "--light")
             text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, value.substr(0, kShown));
     return text;
@@ -65,10 +65,10 @@ std::string viewpoint_text(const ViewOptions& v) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> ViewOptions::words() const {
-    std::vector<std::pair<std::string, std::string>> words;
+std::vector<std::pair<std::string, std::string>> ViewOptions::given_options() const {
+    std::vector<std::pair<std::string, std::string>> options;
     const auto add = [&](const char* option, const std::string& value) {
-        if (!value.empty()) words.emplace_back(option, value);
+        if (!value.empty()) options.emplace_back(option, value);
     };
     add("--from", from);
     add("--at", at);
@@ -76,24 +76,23 @@ std::vector<std::pair<std::string, std::string>> ViewOptions::words() const {
     add("--angle", angle ? fmt::format("{}", *angle) : "");
     add("--background", background);
     for (const std::string& light : lights) add("--light", light);
-    return words;
+    return options;
 }
 
 void add_view_options(CLI::App& command, ViewOptions& v) {
     const OptionGroup group(command, kCamera);
-    add_value(command, "--from", v.from, "Where the eye is, scene units; default: the scene's, as for the next five")
+    add_value(command, "--from", v.from,
+              "Position of the eye in scene units; default: the scene's, as for the next five options")
         ->type_name("X,Y,Z");
-    add_value(command, "--at", v.at, "The point in the middle of the image")->type_name("X,Y,Z");
-    add_value(command, "--up", v.up, "What direction is up in the image, of any length")->type_name("X,Y,Z");
-    add_value(command, "--angle", v.angle, "Angle from the image's top to its bottom, between 0 and 180 degrees")
-        ->type_name("DEGREES");
-    add_value(command, "--background", v.background, "Colour where a ray hits nothing; linear, 1 is full intensity")
+    add_value(command, "--at", v.at, "Point at the centre of the image")->type_name("X,Y,Z");
+    add_value(command, "--up", v.up, "Up direction of the image, of any length")->type_name("X,Y,Z");
+    add_value(command, "--angle", v.angle, "Vertical field of view, between 0 and 180 degrees")->type_name("DEGREES");
+    add_value(command, "--background", v.background, "Colour of rays that hit nothing; linear, 1 is full intensity")
         ->type_name("R,G,B");
-    add_value(
-        command, "--light", v.lights,
-        "A light at X,Y,Z, of colour R,G,B or white, of which n lights share sqrt(n)/2; once for each light, they "
-        "replace all of the scene's")
-        ->allow_extra_args(false)  // what follows is the scene
+    add_value(command, "--light", v.lights,
+              "A light at X,Y,Z of colour R,G,B; default: white, where n lights have the total intensity sqrt(n)/2; "
+              "repeat it for several lights; replaces all lights of the scene")
+        ->allow_extra_args(false)  // the next argument is the scene
         ->type_name("X,Y,Z[,R,G,B]");
 }
 
@@ -109,7 +108,7 @@ void change_viewpoint(const ViewOptions& v, View& view) {
     if (v.angle) view.angle_degrees = *v.angle;
     const std::string given = viewpoint_text(v);
     if (given.empty()) return;
-    const std::string fault = view_fault(view);
+    const std::string fault = view_error(view);
     if (!fault.empty()) throw UserError(fmt::format("{}: {}", given, fault));
 }
 

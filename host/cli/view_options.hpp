@@ -1,4 +1,4 @@
-// Camera, background and lights from the command line, in place of what the scene says.
+// Options that replace the scene's camera, background and lights.
 #pragma once
 #include <optional>
 #include <string>
@@ -13,28 +13,28 @@ class App;
 
 namespace raya {
 
-/// As given on the command line; what is empty stays as the scene has it.
+/// As given on the command line; empty: the scene's.
 struct ViewOptions {
     std::string from{}, at{}, up{}, background{};
     std::optional<double> angle{};  // degrees
     std::vector<std::string> lights{};
 
-    bool given() const { return !words().empty(); }
+    bool given() const { return !given_options().empty(); }
 
-    /// What was given, as option and value: {"--from", "1,2,3"}.
-    std::vector<std::pair<std::string, std::string>> words() const;
+    /// The options given, with their values: {"--from", "1,2,3"}.
+    std::vector<std::pair<std::string, std::string>> given_options() const;
 };
 
-/// Adds --from, --at, --up, --angle, --background and --light with their help texts.
+/// Adds --from, --at, --up, --angle, --background and --light.
 void add_view_options(CLI::App& command, ViewOptions& view);
 
 /// The names of those options, without dashes.
 const std::vector<std::string>& view_option_names();
 
-/// Puts what was given of the camera in place of what `view` says. UserError as change_view().
+/// Applies the camera options to `view`. UserError as change_view().
 void change_viewpoint(const ViewOptions& options, View& view);
 
-/// Puts what was given in place of what the scene says, by the rules of the reader of NFF. UserError names the option.
+/// Applies all options to the scene, with the range checks of the NFF reader. UserError names the option.
 void change_view(const ViewOptions& view, Scene& scene);
 
 }  // namespace raya

@@ -1,5 +1,5 @@
-// What the module of picture formats does for the program: the one place that knows OpenImageIO, whose 250 libraries
-// take longer to load than a small render takes.
+// Interface of the module that encodes images with OpenImageIO. It is a module because loading OpenImageIO's 250
+// libraries takes longer than a small render.
 #pragma once
 #include <string>
 #include <utility>
@@ -7,19 +7,19 @@
 
 namespace raya {
 
-inline constexpr int kJpegQuality = 95;  // 1..100, libjpeg's
+inline constexpr int kJpegQuality = 95;  // libjpeg's scale, 1..100
 
 inline constexpr const char* kEncoderModule = "raya_pictures";
 inline constexpr const char* kEncoderFunction = "raya_encode_picture";
 
-/// What a file says about its picture, as pairs of key and text. They become PNG texts and OpenEXR header entries
-/// under the names `raya:key`, which no standard attribute has, and lines `raya:key=text` of the description that TIFF
-/// and JPEG have; PFM and PPM have no place for them.
+/// Metadata of an image file, as pairs of key and text: PNG texts and OpenEXR header entries with the names `raya:key`,
+/// which no standard attribute has, and lines `raya:key=text` of the image description of TIFF and JPEG. PFM and PPM do
+/// not support metadata.
 using ImageAttributes = std::vector<std::pair<std::string, std::string>>;
 
-/// A picture as its format stores it: height x width x channels values, row 0 on top.
+/// An image to encode: height x width x channels values, row 0 on top.
 struct PictureToEncode {
-    const char* format;  // OpenImageIO's name: "png", "tiff" or "jpeg", of 8-bit codes, or "exr", of floats
+    const char* format;  // OpenImageIO's name: "png", "tiff" or "jpeg" (8-bit codes) or "exr" (floats)
     int width;           // pixels
     int height;          // pixels
     int channels;        // 3, or 1: channel Y
@@ -28,8 +28,8 @@ struct PictureToEncode {
     const ImageAttributes& attributes;
 };
 
-/// The function kEncoderFunction. True: `told` is the file's bytes; false: it is why there are none. Throws nothing but
-/// std::bad_alloc.
-using EncodePicture = bool(const PictureToEncode& picture, std::string& told);
+/// The type of kEncoderFunction. Returns true and the file's bytes in `result`, or false and an error message. Throws
+/// only std::bad_alloc.
+using EncodePicture = bool(const PictureToEncode& picture, std::string& result);
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// The module of picture formats: EncodePicture by OpenImageIO.
+// The module of image formats: EncodePicture by OpenImageIO.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-// TIFF and JPEG have no place for names of our own.
+// TIFF and JPEG do not support attributes with custom names.
 std::string description(const ImageAttributes& attributes) {
     std::string text;
     for (const auto& [key, value] : attributes) text += (text.empty() ? "raya:" : "\nraya:") + key + '=' + value;
@@ -19,7 +19,7 @@ std::string description(const ImageAttributes& attributes) {
 
 void describe_codes(OIIO::ImageSpec& spec, const PictureToEncode& picture, std::string_view format) {
     std::string space = "sRGB";
-    if (picture.gamma != 0) {  // of which PNG has the number, TIFF and JPEG nothing
+    if (picture.gamma != 0) {  // stored by PNG; TIFF and JPEG cannot store it
         std::ostringstream name;
         name << "Gamma" << picture.gamma;
         space = name.str();
@@ -32,7 +32,7 @@ void describe_codes(OIIO::ImageSpec& spec, const PictureToEncode& picture, std::
     if (!picture.attributes.empty()) spec.attribute("ImageDescription", description(picture.attributes));
     if (format == "tiff") {
         spec.attribute("compression", "zip");
-        // A second directory would have to be linked with the first, which OpenImageIO 2.4 cannot do in memory.
+        // EXIF needs a second directory linked with the first one, which OpenImageIO 2.4 cannot write in memory.
         spec.attribute("tiff:write_exif", 0);
         return;
     }
@@ -45,7 +45,7 @@ OIIO::ImageSpec make_spec(const PictureToEncode& picture) {
     OIIO::ImageSpec spec(picture.width, picture.height, picture.channels,
                          format == "exr" ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
     if (picture.channels == 1) spec.channelnames = {"Y"};
-    // Without a date OpenImageIO puts in today's; one that is no string it leaves out, with a debugging message.
+    // Without DateTime OpenImageIO writes today's date. It ignores one that is not a string, with a debug message.
     if (format == "exr" || format == "tiff") spec.attribute("DateTime", 0);
     OIIO::attribute("debug", 0);
     if (format != "exr") {
@@ -58,21 +58,21 @@ OIIO::ImageSpec make_spec(const PictureToEncode& picture) {
     return spec;
 }
 
-/// Made in memory, so that writing is checked in one place.
-bool encode(const PictureToEncode& picture, std::string& told) {
+/// Encodes in memory, so that one function writes all files and checks for errors.
+bool encode(const PictureToEncode& picture, std::string& result) {
     OIIO::Filesystem::IOVecOutput bytes;
     const auto output = OIIO::ImageOutput::create(picture.format, &bytes);
     if (!output) {
-        told = OIIO::geterror();
+        result = OIIO::geterror();
         return false;
     }
     const OIIO::ImageSpec spec = make_spec(picture);
-    const std::string name = std::string("memory.") + picture.format;  // stands in no file
+    const std::string name = std::string("memory.") + picture.format;  // not stored in the file
     if (!output->open(name, spec) || !output->write_image(spec.format, picture.values) || !output->close()) {
-        told = output->geterror();
+        result = output->geterror();
         return false;
     }
-    told.assign(bytes.buffer().begin(), bytes.buffer().end());
+    result.assign(bytes.buffer().begin(), bytes.buffer().end());
     return true;
 }
 
@@ -80,6 +80,6 @@ bool encode(const PictureToEncode& picture, std::string& told) {
 }  // namespace raya
 
 extern "C" __attribute__((visibility("default"))) bool raya_encode_picture(const raya::PictureToEncode& picture,
-                                                                           std::string& told) {
-    return raya::encode(picture, told);
+                                                                           std::string& result) {
+    return raya::encode(picture, result);
 }

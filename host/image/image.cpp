@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-/// XXH3 fed with 32-bit words, each as four bytes, the lowest first.
+/// XXH3 of 32-bit little-endian words.
 class WordHash {
   public:
     WordHash() : state_(XXH3_createState(), &XXH3_freeState) {
@@ -34,7 +34,7 @@ class WordHash {
     }
 
   private:
-    static constexpr std::size_t kBlockBytes = 1 << 16;  // a multiple of 4: add() meets it exactly
+    static constexpr std::size_t kBlockBytes = 1 << 16;  // a multiple of 4, so that add() fills a block exactly
 
     void flush() {
         XXH3_128bits_update(state_.get(), bytes_.data(), bytes_.size());

@@ -18,7 +18,7 @@ namespace raya {
 namespace fs = std::filesystem;
 namespace {
 
-/// Floats as they lie in Image and GreyImage.
+/// A view of the floats of an Image or GreyImage.
 struct Pixels {
     int width;
     int height;
@@ -31,7 +31,7 @@ struct Pixels {
     }
 };
 
-// Of stdout: of formats that need no library.
+// For stdout: the extension of a format that needs no library.
 std::string lower_case_extension(const fs::path& path, std::span<const std::string_view> extensions) {
     if (is_standard_stream(path))
         return std::find(extensions.begin(), extensions.end(), ".ppm") != extensions.end() ? ".ppm" : ".pfm";
@@ -40,7 +40,7 @@ std::string lower_case_extension(const fs::path& path, std::span<const std::stri
     return extension;
 }
 
-// OpenImageIO's name of what it encodes for us; none of the formats that this program writes without a library.
+// OpenImageIO's name of a format; null for formats that raya writes itself.
 const char* encoded_format(const std::string& extension) {
     if (extension == ".png") return "png";
     if (extension == ".exr") return "exr";
@@ -53,22 +53,22 @@ void check_shape(int width, int height, std::size_t channels, std::size_t floats
     const bool positive = width > 0 && height > 0;
     if (!positive || floats != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels)
         throw std::logic_error(
-            fmt::format("{} floats are no {} x {} image of {} channels", floats, width, height, channels));
+            fmt::format("{} floats are not a {} x {} image of {} channels", floats, width, height, channels));
 }
 
 [[noreturn]] void refuse_to_encode(const fs::path& path, const std::string& reason, const std::string& remedy = "") {
-    const char* plain = holds_codes(path) ? ".ppm" : ".pfm";  // as many bits, without a library
+    const char* plain = stores_codes(path) ? ".ppm" : ".pfm";  // same precision, without a library
     throw UserError(
         fmt::format("cannot write '{}': {}; {}name a {} file instead", path.string(), reason, remedy, plain));
 }
 
-/// Loads the module at the first call.
+/// The encoding function; loads the module at the first call.
 EncodePicture* encoder(const fs::path& path) {
     try {
         static auto* const function =
             reinterpret_cast<EncodePicture*>(module_function(kEncoderModule, kEncoderFunction));
         return function;
-    } catch (const ModuleNeeds& error) {
+    } catch (const MissingLibrary& error) {
         refuse_to_encode(path, error.what(), "remedy: install " RAYA_PICTURES_NEED ", or ");
     } catch (const ModuleError& error) {
         refuse_to_encode(path, error.what());
@@ -77,10 +77,10 @@ EncodePicture* encoder(const fs::path& path) {
 
 std::string encode(const fs::path& path, const char* format, const Pixels& pixels, const void* values,
                    const ImageAttributes& attributes, double gamma = 0) {
-    std::string told;
-    if (!encoder(path)({format, pixels.width, pixels.height, pixels.channels, values, gamma, attributes}, told))
-        refuse_to_encode(path, told);
-    return told;
+    std::string result;
+    if (!encoder(path)({format, pixels.width, pixels.height, pixels.channels, values, gamma, attributes}, result))
+        refuse_to_encode(path, result);
+    return result;
 }
 
 std::string encode_codes(const fs::path& path, const char* format, const Pixels& pixels,
@@ -93,7 +93,7 @@ std::string encode_codes(const fs::path& path, const char* format, const Pixels&
     return encode(path, format, pixels, codes.data(), attributes, tone.gamma.value_or(0));
 }
 
-// A header, then the rows one by one, so that a large picture is not in memory twice.
+// Writes a header, then the rows one by one, so that a large image is not in memory twice.
 template <class AppendRow>
 void write_rows(const fs::path& path, const Pixels& pixels, const std::string& header, const AppendRow& append_row) {
     std::string piece;
@@ -107,8 +107,8 @@ void write_rows(const fs::path& path, const Pixels& pixels, const std::string& h
     });
 }
 
-// Portable pixmap (PPM, J. Poskanzer), binary: one line `P6`, one `width height`, one `255`, then three 8-bit codes a
-// pixel, the top row first: the codes of a PNG.
+// Portable pixmap (PPM, J. Poskanzer), binary: one line `P6`, one `width height`, one `255`, then three 8-bit codes per
+// pixel, the same as in a PNG, the top row first.
 void write_ppm(const fs::path& path, const Pixels& pixels, const Tone& tone) {
     const ToneCodes codes_of(tone);
     const std::string header = fmt::format("P6\n{} {}\n255\n", pixels.width, pixels.height);
@@ -120,8 +120,7 @@ void write_ppm(const fs::path& path, const Pixels& pixels, const Tone& tone) {
 }
 
 // Portable float map (P. Debevec): one line `PF` (colour) or `Pf` (grey), one `width height`, one `-1.0`
-// (little-endian, on any machine), then the floats, the bottom row first. OpenImageIO 2.4 reads them but does not write
-// them.
+// (little-endian, on any machine), then the floats, the bottom row first. OpenImageIO 2.4 reads but does not write PFM.
 void write_pfm(const fs::path& path, const Pixels& pixels) {
     const char* const magic = pixels.channels == 3 ? "PF" : "Pf";
     const std::string header = fmt::format("{}\n{} {}\n-1.0\n", magic, pixels.width, pixels.height);
@@ -132,7 +131,7 @@ void write_pfm(const fs::path& path, const Pixels& pixels) {
     });
 }
 
-// `tone`: of codes.
+// `tone` applies to formats of 8-bit codes.
 void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttributes& attributes,
                   const std::string& extension, const Tone& tone) {
     const char* const format = encoded_format(extension);
@@ -145,7 +144,7 @@ void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttribu
 
 }  // namespace
 
-bool holds_codes(const fs::path& path) {
+bool stores_codes(const fs::path& path) {
     const std::string extension = lower_case_extension(path, kImageExtensions);
     return extension != ".exr" && extension != ".pfm";
 }
@@ -153,7 +152,7 @@ bool holds_codes(const fs::path& path) {
 void check_image_name(const fs::path& path, std::span<const std::string_view> extensions) {
     const std::string extension = lower_case_extension(path, extensions);
     if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return;
-    throw UserError(fmt::format("cannot write '{}': its extension names no image format; use one of {}", path.string(),
+    throw UserError(fmt::format("cannot write '{}': its extension is not an image format; use one of {}", path.string(),
                                 fmt::join(extensions, ", ")));
 }
 

@@ -20,7 +20,7 @@ void append_word(std::string& bytes, std::uint32_t word) {
     for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(word >> shift & 0xff);
 }
 
-// Length, name, data, check.
+// A chunk: length, name, data, CRC.
 void append_chunk(std::string& file, const char* name, std::string_view data) {
     append_word(file, static_cast<std::uint32_t>(data.size()));
     const std::string checked = std::string(name) + std::string(data);
@@ -30,14 +30,14 @@ void append_chunk(std::string& file, const char* name, std::string_view data) {
                           crc32(0, static_cast<const Bytef*>(bytes), static_cast<uInt>(checked.size()))));
 }
 
-// Of left, above and above left the one that lies nearest to left + above - above left (filter type 4, Paeth's).
+// Paeth's predictor (filter type 4): of left, above and above left, the one nearest to left + above - above left.
 std::uint8_t predicted(int left, int above, int corner) {
     const int p = left + above - corner;
     const int a = std::abs(p - left), b = std::abs(p - above), c = std::abs(p - corner);
     return static_cast<std::uint8_t>(a <= b && a <= c ? left : b <= c ? above : corner);
 }
 
-// Each row behind the number of its filter, as differences from what is predicted.
+// The filtered rows: each the number of its filter, followed by the differences from the predictions.
 std::string filtered_rows(const Image& image) {
     constexpr char kPaeth = 4;
     const std::size_t row_bytes = kChannels * static_cast<std::size_t>(image.width);
@@ -63,7 +63,7 @@ std::string deflated(const std::string& text) {
     const void* const from = text.data();
     const int code = compress2(static_cast<Bytef*>(to), &size, static_cast<const Bytef*>(from),
                                static_cast<uLong>(text.size()), Z_BEST_COMPRESSION);
-    if (code != Z_OK) throw std::bad_alloc();  // the room is enough
+    if (code != Z_OK) throw std::bad_alloc();  // the only possible error: the buffer is large enough
     bytes.resize(size);
     return bytes;
 }
@@ -73,14 +73,14 @@ std::string deflated(const std::string& text) {
 std::string plain_png(const Image& image) {
     if (image.width < 1 || image.height < 1 ||
         image.rgb.size() != kChannels * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
-        throw std::logic_error("plain_png: an image must have three floats for each pixel, and a pixel");
+        throw std::logic_error("plain_png: the image must have pixels of three floats");
     std::string header;
     append_word(header, static_cast<std::uint32_t>(image.width));
     append_word(header, static_cast<std::uint32_t>(image.height));
-    header += {8, 2, 0, 0, 0};  // bits, red green blue, deflate, filters by row, no interlace
+    header += {8, 2, 0, 0, 0};  // bit depth, RGB, deflate, filters by row, no interlacing
     std::string file = "\x89PNG\r\n\x1a\n";
     append_chunk(file, "IHDR", header);
-    append_chunk(file, "sRGB", std::string(1, '\0'));  // perceptual
+    append_chunk(file, "sRGB", std::string(1, '\0'));  // rendering intent: perceptual
     append_chunk(file, "IDAT", deflated(filtered_rows(image)));
     append_chunk(file, "IEND", {});
     return file;

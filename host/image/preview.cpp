@@ -12,7 +12,7 @@ namespace {
 
 double shown(float value) { return value > 0 ? std::min(1.0, static_cast<double>(value)) : 0; }
 
-// Where the pixels of number `at` out of `count` begin.
+// The first of the `pixels` pixels that part `at` of `count` covers.
 std::size_t begin_of(int at, int count, int pixels) {
     return static_cast<std::size_t>(std::int64_t{at} * pixels / count);
 }
@@ -24,7 +24,7 @@ int preview_side(int own, int longest, int side) {
     return std::max(1, static_cast<int>((std::int64_t{own} * side + longest / 2) / longest));
 }
 
-Image as_shown(const Image& image, const Tone& tone) {
+Image as_displayed(const Image& image, const Tone& tone) {
     const ToneCodes codes(tone);
     Image shown{image.width, image.height, {}};
     shown.rgb.reserve(image.rgb.size());

@@ -1,5 +1,5 @@
-// From linear colours to the 8-bit codes of picture files: exposure, tone curve, transfer curve (sRGB, IEC 61966-2-1,
-// or another).
+// Conversion of linear colours to 8-bit codes of image files: exposure, tone curve, and transfer curve (sRGB, IEC
+// 61966-2-1, or a power).
 #pragma once
 #include <array>
 #include <cstddef>
@@ -10,10 +10,10 @@
 
 namespace raya {
 
-/// borders[k] = the linear value half way, on the curve, between the codes k and k + 1.
+/// borders[k]: the linear value halfway, on the transfer curve, between the codes k and k + 1.
 using CodeBorders = std::array<double, 255>;
 
-/// `linear_from`: the curve's inverse, from 0..1 to linear light.
+/// `linear_from`: the inverse of the transfer curve, from 0..1 to linear light.
 template <class Curve>
 CodeBorders code_borders(Curve&& linear_from) {
     CodeBorders borders;
@@ -23,23 +23,23 @@ CodeBorders code_borders(Curve&& linear_from) {
 
 const CodeBorders& srgb_borders();
 
-/// The code 0..255 nearest to 255 curve(linear); below 0 and NaN give 0, above 1 gives 255.
+/// The code 0..255 nearest to 255 curve(linear); 0 for negative values and NaN, 255 above 1.
 std::uint8_t code_between(const CodeBorders& borders, double linear);
 
-/// That code on the sRGB curve. Has the same answer on every machine: the value is compared with the 255 borders
-/// between codes, which no float comes near (the nearest is more than 10^-11 of itself away, the C library's pow is
-/// right to about 10^-16).
+/// The code on the sRGB curve. The same on every machine: the value is compared with the 255 borders between codes, and
+/// no float is close to one (the relative distance is more than 10^-11; the C library's pow() has an error of about
+/// 10^-16).
 std::uint8_t srgb_code(float linear);
 
-/// The linear value that a code stands for.
+/// The linear value of a code.
 float srgb_light(std::uint8_t code);
 
 enum class ToneCurve {
-    kClip,      // what is brighter than 1 is 1
-    kReinhard,  // luminance L becomes L / (1 + L), and all three components change alike, so that hues stay
+    kClip,      // clamps to 1
+    kReinhard,  // luminance L becomes L / (1 + L); all three components are scaled by 1 / (1 + L), which keeps hues
 };
 
-/// How a picture's colours become codes: times 2^exposure, then the tone curve, then the transfer curve.
+/// The conversion of colours to codes: times 2^exposure, then the tone curve, then the transfer curve.
 struct Tone {
     double exposure = 0;  // stops
     ToneCurve curve = ToneCurve::kClip;
@@ -50,15 +50,15 @@ struct Tone {
 /// "clip", "reinhard".
 const char* tone_curve_name(ToneCurve curve);
 
-/// What a picture's file says of it, where it is another one than usual.
+/// The attributes of an image file for a tone: its members that differ from the defaults.
 ImageAttributes tone_attributes(const Tone& tone);
 
-/// The codes of pixels, the same on every machine but for what pow() may round otherwise at a code's border.
+/// Converts pixels to codes. The same on every machine, except for different rounding of pow() at the border of a code.
 ///
-/// kReinhard is E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone Reproduction for Digital Images",
-/// SIGGRAPH 2002, equation 3, with the exposure in place of their key over the log-average luminance, so that pictures
-/// of a series are alike. L is the luminance of sRGB's primaries (ITU-R BT.709). NaN is black, infinity the largest
-/// float.
+/// kReinhard: equation 3 of E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone Reproduction for Digital
+/// Images", SIGGRAPH 2002, with the exposure instead of their key over the log-average luminance, so that the images of
+/// a series are comparable. L is the luminance of sRGB's primaries (ITU-R BT.709). NaN becomes black, infinity the
+/// largest float.
 class ToneCodes {
   public:
     explicit ToneCodes(const Tone& tone);

@@ -13,8 +13,8 @@
 namespace raya {
 namespace {
 
-// Kohata & Ito 1993. Marks: [P] printed there, [D] arithmetic on what is printed, [?] ours. No time of a transfer from
-// PE to PE over the bus is printed: [?] it has a link's rate and a rotation's synchronisation.
+// Kohata & Ito 1993. Marks: [P] printed there, [D] derived from printed figures, [?] assumed here. The paper gives no
+// time of a transfer between PEs over the bus: [?] a link's rate and a rotation's synchronisation.
 Machine spa() {
     return {
         .name = "spa",
@@ -23,7 +23,7 @@ Machine spa() {
         .pes = 256,                                      // [P] DSPs
         .pe_memory_bytes = 32 * 1024,                    // [P]
         .bounces = 8,                                    // [P] up to 8 reflections and refractions
-        .format = {6, 15, false},                        // [P] 22 bits; [?] how they are divided
+        .format = {6, 15, false},                        // [P] 22 bits; [?] their division into exponent and fraction
         .mapping = cyclic_mapping(16),                   // [P] the best
         .cycle_ns = 100,                                 // [P] 20 MFLOPS
         .link_words_per_s = 6e6,                         // [P] DMA
@@ -31,8 +31,8 @@ Machine spa() {
         .host_words_per_s = 196'608 / 0.140};            // [D] Table 2: 256 x 256 pixels of 3 words in 140 ms
 }
 
-// An array and a mapping that the paper compares with its own, on PEs of the SPA without a limit to their memory, so
-// that loads can be compared. What times their own PEs and links would take is not known to us: they have none.
+// An array and a mapping that the paper compares with the SPA, modelled with PEs of the SPA without a memory limit, so
+// that loads can be compared. The rates of the real PEs and links are unknown, so there are no modelled times.
 Machine array_like(const std::string& name, const std::string& title, const std::string& topology,
                    const MappingRule& mapping, std::uint32_t pes) {
     Machine machine;
@@ -45,7 +45,7 @@ Machine array_like(const std::string& name, const std::string& title, const std:
     return machine;
 }
 
-// [P] Each PE takes the next pixel from a root when it has finished; [?] as many PEs as the SPA has.
+// [P] Each PE requests the next pixel from a root when it has finished one; [?] as many PEs as the SPA.
 Machine links() {
     Machine machine =
         array_like("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", cyclic_mapping(0), 256);
@@ -53,8 +53,7 @@ Machine links() {
     return machine;
 }
 
-// [?] The SPA without the memory limit, one PE a column; fp32 and a tree of boxes, as it is there for scenes that no
-// SPA could hold.
+// [?] The SPA without the memory limit, one PE per column, with fp32 and a BVH: for scenes that do not fit into an SPA.
 Machine grande() {
     Machine machine = spa();
     machine.name = machine.title = "grande";
@@ -65,18 +64,18 @@ Machine grande() {
     return machine;
 }
 
-// [P] Table 2's other SPA: one DSP, and the same host.
+// [P] The other SPA of Table 2: one DSP with the same host.
 Machine spa1() {
     Machine machine = spa();
     machine.name = "spa1";
     machine.title = "the SPA with one DSP";
     machine.pes = 1;
-    machine.mapping = cyclic_mapping(0);  // of no effect
+    machine.mapping = cyclic_mapping(0);  // no effect with one PE
     return machine;
 }
 
-// Yoshitani & Yamazaki, about 1995. Marks: [P] printed there, [T] data sheet of the T805, [?] ours. What a node and its
-// links take is in machine/t805.hpp; the rates here are those of one link, one way.
+// Yoshitani & Yamazaki, about 1995. Marks: [P] printed there, [T] data sheet of the T805, [?] assumed here. The cycles
+// of nodes and links are in model/t805.hpp; the rate here is that of one link in one direction.
 Machine torus() {
     Machine machine;
     machine.name = "torus";
@@ -84,7 +83,7 @@ Machine torus() {
     machine.kind = MachineKind::kTorus;                   // [P]
     machine.topology = "torus3d";                         // [P] a torus; [?] six links, the T805 has four
     machine.pes = 64;                                     // [P] T805s, one voxel each: 4 x 4 x 4
-    machine.pe_memory_bytes = 4 * 1024 * 1024;            // [?] of a T805 board
+    machine.pe_memory_bytes = 4 * 1024 * 1024;            // [?] a T805 board
     machine.bounces = 8;                                  // [?] as on the SPA; the paper stops at shadows
     machine.format = {};                                  // [T] IEEE, single precision
     machine.cycle_ns = kT805CycleNs;                      // [T] 25 MHz
@@ -124,7 +123,7 @@ const Machine& machine_named(const std::string& name) {
     if (found != all.end()) return *found;
     std::vector<std::string> names;
     for (const Machine& m : all) names.push_back(m.name);
-    throw UserError(fmt::format("--machine {}: no such machine, there are {}", name, fmt::join(names, ", ")));
+    throw UserError(fmt::format("--machine {}: no such machine; available: {}", name, fmt::join(names, ", ")));
 }
 
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events() {

@@ -1,5 +1,5 @@
-// The array machines as data: each number with its source; and what decides inside a PE which objects a ray is tested
-// against, never which one it hits.
+// The array machines as data, each number with its source, and the acceleration structure inside a PE, which determines
+// the objects that a ray is tested against but never the result.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,76 +20,76 @@ using Divisions = std::array<std::uint32_t, 3>;  // voxels along x, y, z
 enum class AccelKind : std::uint32_t {
     kNone = RAYA_ACCEL_NONE,  // every ray is tested against all objects
     kGrid = RAYA_ACCEL_GRID,  // voxels (host/accel/partition.hpp)
-    kBvh = RAYA_ACCEL_BVH,    // a tree of boxes (host/accel/tree.hpp)
+    kBvh = RAYA_ACCEL_BVH,    // BVH (host/accel/bvh.hpp)
 };
 
-/// How rays find their nearest hit.
+/// The acceleration structure.
 struct Accel {
     AccelKind kind = AccelKind::kNone;
-    std::optional<Divisions> divisions{};  // of a grid over the whole scene's box; empty: see accel_partition
+    std::optional<Divisions> divisions{};  // of a grid over the bounding box of the scene; empty: see accel_partition()
 };
 
-/// What `--accel` takes: "none", "grid", "grid:4x4x4", "bvh".
+/// The value of `--accel`: "none", "grid", "grid:4x4x4", "bvh".
 std::string accel_text(const Accel& accel);
 
-/// What was made of it, for reports.
+/// Size of an acceleration structure, for reports.
 struct AccelSummary {
     AccelKind kind = AccelKind::kNone;
-    std::uint64_t words = 0;   // of the job that hold it
+    std::uint64_t words = 0;   // its 32-bit words in the job
     Divisions divisions{};     // of a grid
-    std::uint64_t copies = 0;  // entries of a grid's lists beyond each object's first
+    std::uint64_t copies = 0;  // entries of a grid's lists beyond the first of each object
     std::uint32_t apart = 0;   // finite objects in no list and no leaf, which every ray is tested against
-    std::uint64_t nodes = 0;   // of a tree
+    std::uint64_t nodes = 0;   // of a BVH
     std::uint64_t leaves = 0;
-    std::uint32_t depth = 0;  // nodes on a tree's longest way down
+    std::uint32_t depth = 0;  // nodes on the longest path from the root of a BVH
 };
 
-/// The refusal of what a PE's memory cannot hold.
+/// The scene or image does not fit into a PE's memory.
 struct DoesNotFit : UserError {
     DoesNotFit(const std::string& message, std::uint64_t needed, std::uint64_t memory)
         : UserError(message), needed_bytes(needed), memory_bytes(memory) {}
 
-    std::uint64_t needed_bytes, memory_bytes;  // what a PE, the fullest of them, would have to hold, and what it can
+    std::uint64_t needed_bytes, memory_bytes;  // required by the fullest PE; available in a PE
 };
 
-/// How many events of each kind (RAYA_* of kernels/shared/events.h) were counted.
+/// The number of events of each kind (RAYA_* of kernels/shared/events.h).
 using EventCounts = std::array<std::uint64_t, RAYA_EVENTS>;
 
-/// What a machine divides among its PEs.
+/// The data that a machine distributes over its PEs.
 enum class MachineKind {
     kRing,  // the pixels (host/ring/)
-    kTorus  // the scene: its PEs are nodes that hold voxels and send rays to each other (host/torus/)
+    kTorus  // the scene: the PEs are nodes that store voxels and send rays to each other (host/torus/)
 };
 
-/// An array of PEs as a description. Empty optionals follow the image or have no limit.
+/// Description of an array of PEs.
 struct Machine {
     std::string name;
     std::string title;     // for messages: "the SPA"
-    std::string topology;  // how the PEs are joined
+    std::string topology;  // of the links
     MachineKind kind = MachineKind::kRing;
     std::optional<std::uint32_t> pes;              // empty: as many as the image has columns
     std::optional<std::uint64_t> pe_memory_bytes;  // empty: no limit
     std::uint32_t bounces = 8;
-    NumberFormat format{};                 // that its PEs compute in
+    NumberFormat format{};                 // of the PEs' arithmetic
     MappingRule mapping{};                 // pixels to PEs, of a ring
-    Accel accel{};                         // how rays find their hits inside a PE of a ring
-    std::optional<DynamicPlan> dynamic{};  // where its PEs take their pixels while it runs
+    Accel accel{};                         // inside a PE of a ring
+    std::optional<DynamicPlan> dynamic{};  // empty: PEs do not request pixels at run time
 
-    // Rates of the time model (machine/time_model.hpp); empty where they are not known.
+    // Rates of the time model (model/time_model.hpp); empty if unknown.
     std::optional<double> cycle_ns;          // of a PE, one multiply-accumulate
-    std::optional<double> link_words_per_s;  // of one PE to its neighbour, and over the bus to any
-    std::optional<double> rotation_sync_ms;  // what a rotation, or a PE's turn on the bus, takes beside its words
+    std::optional<double> link_words_per_s;  // from a PE to its neighbour, and over the bus to any PE
+    std::optional<double> rotation_sync_ms;  // overhead of a rotation, or of a transfer over the bus
     std::optional<double> host_words_per_s;  // broadcast and gather
 };
 
-/// The machines that `--machine` knows, the default first.
+/// The machines of `--machine`, the default first.
 const std::vector<Machine>& machines();
 
-/// The machine of that name; UserError lists those there are.
+/// The machine of that name. UserError with a list of all machines if there is none.
 const Machine& machine_named(const std::string& name);
 
-/// Modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h) on a PE of the SPA: those of its
-/// instruction budget (machine/budget.hpp). A torus's nodes have t805_cycles() (machine/t805.hpp).
+/// Modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h) on a PE of the SPA, from the
+/// instruction budgets (model/budget.hpp). For the nodes of a torus see t805_cycles() (model/t805.hpp).
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events();
 
 }  // namespace raya

@@ -21,7 +21,7 @@ namespace {
                     text));
 }
 
-// The number after `letter` at `at`; moves `at` behind it.
+// Reads `letter` and the number after it at position `at`, which moves behind them.
 int read_field(const std::string& text, std::size_t& at, char letter) {
     if (at >= text.size() || text[at] != letter) refuse(text);
     int value = 0;
@@ -33,13 +33,13 @@ int read_field(const std::string& text, std::size_t& at, char letter) {
 
 constexpr int kDoubleFraction = 52, kDoubleBias = 1023;
 
-// Of a normal double.
+// 2^exponent, in the range of normal doubles.
 double power_of_two(int exponent) {
     return std::bit_cast<double>(static_cast<std::uint64_t>(kDoubleBias + exponent) << kDoubleFraction);
 }
 
-// To so many bits behind the leading one; of two that are equally near, the one that ends in 0. A carry out of the
-// fraction makes the next power of two, or infinity. Denormal doubles are below every format.
+// Rounds to `bits` fraction bits, ties to even, or truncates. A carry out of the fraction gives the next power of two,
+// or infinity. Denormal doubles are below the range of every format.
 double with_fraction_bits(double value, int bits, bool truncates) {
     const int dropped = kDoubleFraction - bits;
     auto pattern = std::bit_cast<std::uint64_t>(value);
@@ -72,12 +72,12 @@ std::string format_name(const NumberFormat& format) {
 double smallest_number(const NumberFormat& format) { return std::ldexp(1.0, 2 - (1 << (format.exponent_bits - 1))); }
 
 double farthest_hit(const NumberFormat& format) {
-    constexpr int kOfFp32 = 60;
-    return std::ldexp(1.0, std::min((1 << (format.exponent_bits - 2)) - 1, kOfFp32));
+    constexpr int kFp32Exponent = 60;
+    return std::ldexp(1.0, std::min((1 << (format.exponent_bits - 2)) - 1, kFp32Exponent));
 }
 
 float round_to_format(double value, const NumberFormat& format) {
-    if (std::isnan(value)) throw std::invalid_argument("NaN has no number in any format");
+    if (std::isnan(value)) throw std::invalid_argument("no format represents NaN");
     const int highest = (1 << (format.exponent_bits - 1)) - 1, lowest = 1 - highest;
     const double rounded = with_fraction_bits(value, format.fraction_bits, format.truncates);
     const double largest = (2 - power_of_two(-format.fraction_bits)) * power_of_two(highest);

@@ -1,4 +1,4 @@
-// The number formats that kernels compute in (kernels/number/README.md), as the host knows them.
+// The number formats of the kernels' arithmetic (kernels/number/README.md), on the host.
 #pragma once
 #include <string>
 
@@ -15,20 +15,20 @@ struct NumberFormat {
     bool operator==(const NumberFormat&) const = default;
 };
 
-/// "fp32", "spa22" (e6m15), "eXmY" or "eXmYt". UserError names the legal values.
+/// Parses "fp32", "spa22" (e6m15), "eXmY" or "eXmYt". UserError with the legal values.
 NumberFormat parse_format(const std::string& text);
 
 /// "fp32", "e6m15", "e6m15t".
 std::string format_name(const NumberFormat& format);
 
-/// The smallest number above zero that every operation keeps; fp32's denormals are not counted.
+/// The smallest positive normal number. Smaller results may be flushed to zero.
 double smallest_number(const NumberFormat& format);
 
-/// Farthest distance at which a hit counts (RAYA_FAR of kernels/number/): its square is still in the format.
+/// The maximum distance of a hit (RAYA_FAR of kernels/number/): its square does not overflow.
 double farthest_hit(const NumberFormat& format);
 
-/// The number of the format for `value`: rounded once, saturated at the largest number, flushed to zero below the
-/// smallest. Throws std::invalid_argument for NaN.
+/// Converts `value` to the format: rounds once, saturates at the largest number, flushes to zero below the smallest.
+/// std::invalid_argument for NaN.
 float round_to_format(double value, const NumberFormat& format);
 
 }  // namespace raya

@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// The terms stand in the order of machine/budget.cpp, where each is named.
+// The terms are in the order of model/budget.cpp, which names each.
 constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     // corner + j step, + x step, normalise: |d|^2, times 1 / |d|
     {.event = RAYA_PRIMARY, .additions = 3 + 3 + 2, .multiplications = 3 + 3 + 3 + 3, .makes = Makes::kRay},
@@ -21,38 +21,37 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
      .makes = Makes::kRay},
     // arm, N.arm, |arm|^2, direction
     {.event = RAYA_SHADOW, .additions = 3 + 2 + 2 + 0, .multiplications = 0 + 3 + 3 + 3, .makes = Makes::kRay},
-    // b - s, b + s, against the nearest so far
+    // b - s, b + s, comparison with the nearest hit so far
     {.event = RAYA_SHADOW_HITS, .additions = 2 + 1},
     // C - O, b, l, r^2 - l.l
     {.event = RAYA_SPHERE_TESTS, .additions = 3 + 2 + 3 + 3, .multiplications = 0 + 3 + 3 + 3},
-    // n.D, d - n.O, t against the nearest so far
+    // n.D, d - n.O, comparison of t with the nearest hit so far
     {.event = RAYA_PLANE_TESTS, .additions = 2 + 3 + 1, .multiplications = 3 + 3},
-    // four corners minus O, sheared, against 0; two edges of two products and a comparison; a twentieth of the box and
-    // the plane
+    // four corners minus O, sheared, compared with 0; two edges of two products and a comparison; a twentieth of the
+    // box and the plane
     {.event = RAYA_POLYGON_TESTS,
      .additions = 4 * (3 + 2 + 1) + 2 * 1 + (12 + 24 + 2 + 3 + 6) / 20,
      .multiplications = 4 * 2 + 2 * 2 + (3 + 3 + 3) / 20},
     // X - base, to the nearest point, z, dz, side, dside, radius, dradius, a, b, c, discriminant; a third of (q, z and
-    // t
-    // twice, four comparisons)
+    // t twice, four comparisons)
     {.event = RAYA_CONE_TESTS,
      .additions = 3 + (2 + 3) + 2 + 2 + 3 + 3 + 1 + 0 + 3 + 3 + 3 + 1 + (1 + 2 + 2 + 4) / 3,
      .multiplications = 0 + (3 + 3) + 3 + 3 + 3 + 3 + 1 + 1 + 4 + 4 + 4 + 2 + 1},
-    // the sphere's root to t, P, P - C, normalise, N.D, turned, margin, P+, N.D, times -2, R, Kd C, w A, ambient, kr;
-    // the ambient term goes to the root as a return packet
+    // sphere: root and t, P, P - C, normalise, N.D, orient, margin, P+, N.D, times -2, R, Kd C, w A, ambient, kr; the
+    // ambient term is sent to the root as a return packet
     {.event = RAYA_SHADED,
      .additions = 3 + 3 + 3 + 2 + 2 + 3 + 3 + 3 + 2 + 0 + 3 + 0 + 0 + 3 + 0,
      .multiplications = 0 + 3 + 0 + (3 + 3) + 3 + 0 + 1 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 1,
      .makes = Makes::kReturn},
-    // N.L, times tint, R.L, times I, into the sum: the shadow packet becomes a return packet
+    // N.L, times tint, R.L, times I, added to the sum: the shadow packet becomes a return packet
     {.event = RAYA_LIT, .additions = 2 + 0 + 2 + 0 + 3, .multiplications = 3 + 3 + 3 + 3 + 3, .makes = Makes::kTerm},
-    // x against 1, log2, times n, exp2, Ks, to three colours
+    // x compared with 1, log2, times n, exp2, Ks, added to three colours
     {.event = RAYA_HIGHLIGHTS,
      .additions = 1 + (2 + 0 + 3 + 1) + 0 + (1 + 1 + 6) + 0 + 3,
      .multiplications = 0 + (1 + 3 + 1) + 1 + (6 + 1) + 1 + 3},
     // 6 planes, 4 comparisons, the first voxel, its far sides
     {.event = RAYA_WALKS, .additions = 6 + 4 + 3 * (1 + 1 + 1) + 3 * (1 + 1), .multiplications = 6 + 3 * 2 + 3 * 2},
-    // smallest of three, voxel, next plane, minus O, times 1 / D, nearest hit against the voxel's far side
+    // minimum of three, voxel, next plane, minus O, times 1 / D, nearest hit compared with the voxel's far side
     {.event = RAYA_STEPS, .additions = 2 + 1 + 1 + 1 + 0 + 1, .multiplications = 0 + 0 + 1 + 0 + 1},
     // the primary ray, then its first voxel
     {.event = RAYA_DISCARDED, .additions = 8 + 25, .multiplications = 12 + 18},
@@ -67,7 +66,7 @@ static_assert(work_in_order());
 
 std::uint32_t cycles_of(const T805Work& work, const Budget& budget, const PacketCharge& packets) {
     const std::uint32_t operations =
-        work.additions + work.multiplications + budget.divisions + budget.roots;  // one operand each
+        work.additions + work.multiplications + budget.divisions + budget.roots;  // one memory operand each
     return kT805AdditionCycles * work.additions + kT805MultiplicationCycles * work.multiplications +
            kT805DivisionCycles * budget.divisions + kT805RootCycles * budget.roots + kT805OperandCycles * operations +
            kT805MoveCycles * budget.moves + kT805StoreCycles * packets.words_of(work.makes) +

@@ -17,9 +17,9 @@ double milliseconds(std::uint64_t cycles, double cycle_ns, double factor) {
 Load load_of(std::vector<std::uint64_t> per_pe) {
     Load load;
     load.per_pe = std::move(per_pe);
-    const auto [least, most] = std::minmax_element(load.per_pe.begin(), load.per_pe.end());
-    load.min = *least;
-    load.max = *most;
+    const auto [lowest, highest] = std::minmax_element(load.per_pe.begin(), load.per_pe.end());
+    load.min = *lowest;
+    load.max = *highest;
     const auto pes = static_cast<double>(load.per_pe.size());
     const auto sum = static_cast<double>(std::accumulate(load.per_pe.begin(), load.per_pe.end(), std::uint64_t{0}));
     const auto max = static_cast<double>(load.max);
@@ -43,7 +43,7 @@ std::optional<ModelledTime> modelled_time(const Machine& machine, std::span<cons
     time.compute_ms = milliseconds(cycles, *machine.cycle_ns, factor);
     time.filter_ms = milliseconds(smoothing.filter, *machine.cycle_ns, factor);
     time.compare_ms = milliseconds(smoothing.compare, *machine.cycle_ns, factor);
-    // On the ring all PEs send at once, each its P-th part of the words; the bus carries one transfer after another.
+    // On the ring all PEs send at once, each 1/P of the words; the bus carries one transfer at a time.
     const auto pes = static_cast<double>(phases.front().per_pe.size());
     const std::uint64_t moves = communication.rotations + communication.transfers + communication.pe_broadcasts;
     time.communication_ms =

@@ -15,11 +15,11 @@ std::string counted(std::uint64_t count, const std::string& one, const std::stri
     return fmt::format("{} {}", count, count == 1 ? one : many.empty() ? one + 's' : many);
 }
 
-std::string needed_text(std::uint64_t bytes) {
+std::string required_size_text(std::uint64_t bytes) {
     return bytes < kKb ? fmt::format("{} bytes", bytes) : tenths_text((10 * bytes + kKb - 1) / kKb);
 }
 
-std::string present_text(std::uint64_t bytes) {
+std::string available_size_text(std::uint64_t bytes) {
     if (bytes < kKb) return fmt::format("{} bytes", bytes);
     return bytes % kKb == 0 ? fmt::format("{} KB", bytes / kKb) : tenths_text(10 * bytes / kKb);
 }

@@ -7,7 +7,7 @@ namespace {
 
 std::string text_of(const std::string& option, const py::handle& value) {
     if (py::isinstance<py::bool_>(value))
-        throw py::type_error(fmt::format("{}: True is for options without a value; give one", option));
+        throw py::type_error(fmt::format("{}: the option takes a value, not True", option));
     if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value)) return py::str(value);
     std::string text;
     for (const py::handle part : value) text += (text.empty() ? "" : ",") + text_of(option, part);
@@ -24,23 +24,23 @@ bool holds_sequences(const py::handle& value) {
 
 }  // namespace
 
-std::vector<std::string> option_words(const py::dict& options) {
-    std::vector<std::string> words;
+std::vector<std::string> option_arguments(const py::dict& options) {
+    std::vector<std::string> arguments;
     for (const auto& [key, value] : options) {
         std::string name = py::str(key);
-        while (name.ends_with('_')) name.pop_back();  // "from" is a word of Python's: from_
+        while (name.ends_with('_')) name.pop_back();  // from_: "from" is a keyword of Python
         for (char& letter : name)
             if (letter == '_') letter = '-';
         const std::string option = "--" + name;
         if (value.is_none() || value.ptr() == Py_False) continue;
         if (value.ptr() == Py_True)
-            words.push_back(option);
+            arguments.push_back(option);
         else if (name == "light" && holds_sequences(value))
-            for (const py::handle light : value) words.push_back(option + '=' + text_of(option, light));
+            for (const py::handle light : value) arguments.push_back(option + '=' + text_of(option, light));
         else
-            words.push_back(option + '=' + text_of(option, value));
+            arguments.push_back(option + '=' + text_of(option, value));
     }
-    return words;
+    return arguments;
 }
 
 py::object python_of(const Json& json) { return py::module_::import("json").attr("loads")(json.dump()); }
@@ -48,7 +48,7 @@ py::object python_of(const Json& json) { return py::module_::import("json").attr
 CostImage cost_image_of(const py::array& cost) {
     const char kind = cost.dtype().kind();
     if (cost.ndim() != 2 || (kind != 'u' && kind != 'i'))
-        throw py::value_error("cost: must be an array [height, width] of whole numbers, modelled cycles");
+        throw py::value_error("cost: must be an array [height, width] of integers, modelled cycles");
     if (kind == 'i' && cost.size() > 0 && cost.attr("min")().cast<std::int64_t>() < 0)
         throw py::value_error("cost: must not be negative");
     const CostArray array(cost);

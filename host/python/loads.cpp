@@ -1,4 +1,4 @@
-// Mappings, loads and schedules of costs that are there: no device.
+// Mappings, loads and schedules computed from given costs, without a device.
 #include <fmt/core.h>
 #include <pybind11/stl.h>
 
@@ -25,11 +25,11 @@ namespace {
 
 using Number = std::optional<std::uint32_t>;
 
-// By the checks and with the messages of the options of `raya render`.
+// Uses the checks and messages of the options of `raya render`.
 raya_mapping mapping_of(const ImageSize& size, const std::string& mapping, Number offset, const std::string& fold,
                         Number pes) {
     if (is_dynamic(mapping))
-        throw UserError(fmt::format("--mapping {}: is no static mapping; see schedule()", mapping));
+        throw UserError(fmt::format("--mapping {}: not a static mapping; use schedule()", mapping));
     RenderOptions options;
     options.machine = "grande";
     options.size = fmt::format("{}x{}", size.width, size.height);
@@ -70,13 +70,13 @@ py::array imbalances(const py::array& costs, std::uint32_t pes, const std::vecto
     return copy_of(u);
 }
 
-// With no more PEs than slots every PE has whole slots: their loads are an image of one row, of which the array's PEs
-// take columns.
+// If there are at most as many PEs as slots, every PE has whole slots. The loads of the slots are then an image of one
+// row, whose columns are mapped to the PEs.
 py::array speedups(const py::array& costs, const std::vector<std::uint32_t>& pes,
                    const std::vector<std::uint32_t>& offsets, const std::string& fold) {
     const CostImage cost = cost_image_of(costs);
     if (offsets.size() != pes.size() && offsets.size() != 1)
-        throw py::value_error("offsets: must be one, or as many as there are numbers of PEs");
+        throw py::value_error("offsets: must have one element, or as many as pes");
     const Fold how = parse_fold(fold);
     std::vector<double> all;
     CostImage slots{cost.width, 1, {}};
@@ -110,9 +110,9 @@ py::dict schedule(const py::array& costs, const std::string& plan, const std::st
     return all;
 }
 
-// Those that bring each PE its neighbours' pixels once from each side, where whole shares go round. With slots of which
-// no two PEs share one, the owner follows from the slot alone, and two rows show all pairs of neighbouring slots that
-// any number of rows does: for p > 0 their left borders lie in two slots, for p = 0 all in one.
+// The rotations that bring each PE its neighbours' pixels once from each side, if whole shares rotate. If no two PEs
+// share a slot, the owner depends only on the slot, and two rows contain all pairs of neighbouring slots that any
+// number of rows has: for p > 0 their left borders are in two slots, for p = 0 all in one.
 std::uint64_t neighbour_rotations(raya_mapping mapping) {
     if (raya_has_slots(mapping) && mapping.pes <= mapping.width) mapping.height = std::min(mapping.height, 2u);
     std::uint64_t turns = 0;
@@ -128,7 +128,8 @@ std::uint64_t rotations(std::uint32_t width, std::uint32_t height, const std::st
 
 std::uint64_t exchange_rotations(std::uint32_t width, std::uint32_t height, const std::string& mapping, Number offset,
                                  const std::string& fold, Number pes) {
-    return sum_of(exchange_moves(mapping_of({width, height}, mapping, offset, fold, pes), ExchangeWay::kRing, false));
+    return sum_of(
+        exchange_moves(mapping_of({width, height}, mapping, offset, fold, pes), ExchangeMethod::kRing, false));
 }
 
 std::uint32_t share(std::uint32_t width, std::uint32_t height, const std::string& mapping, Number offset,
@@ -136,8 +137,8 @@ std::uint32_t share(std::uint32_t width, std::uint32_t height, const std::string
     return largest_share(mapping_of({width, height}, mapping, offset, fold, pes));
 }
 
-// Modelled times of the SPA for every offset of the cyclic mapping, from what its pixels cost: the busiest PE of each
-// pass, the arithmetic between neighbours, and the rotations that bring them. Broadcast and gather are not in it.
+// Modelled times of the SPA for every offset of the cyclic mapping, from the costs of the pixels: the busiest PE of
+// each pass, the arithmetic on neighbouring pixels, and the rotations that bring them. Without broadcast and gather.
 py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::string& antialias,
                       const std::optional<py::array>& supersample) {
     const CostImage first = cost_image_of(trace);
@@ -155,7 +156,7 @@ py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::stri
     std::vector<double> again(first.width), smooth(first.width), ring(first.width);
     std::vector<std::uint64_t> turns(first.width);
     if (method == AntialiasMethod::kSupersample) {
-        if (!supersample) throw py::value_error("supersample: must be the costs of supersampling");
+        if (!supersample) throw py::value_error("supersample: the costs of supersampling are required");
         const CostImage cost = cost_image_of(*supersample);
         again = busiest_ms(cost, imbalance_of_offsets(cost, pes, RAYA_FOLD_CYCLIC, offsets));
     }
@@ -240,47 +241,47 @@ void add_loads(py::module_& module) {
                    py::arg("offset") = py::none(), py::arg("fold") = "", py::arg("pes") = py::none(), help);
     };
     of_mapping("owners", owners,
-               "uint32 [height, width]: the PE that owns each pixel. mapping, offset, fold and pes as raya render has "
-               "them, of machine grande. ValueError.");
+               "uint32 [height, width]: the PE that owns each pixel. mapping, offset, fold and pes: as in raya render "
+               "--machine grande. Raises ValueError.");
     of_mapping("rotations", rotations,
                "Rotations of the ring that bring each PE its neighbours' pixels from all four sides.");
-    of_mapping("exchange_rotations", exchange_rotations,
-               "Rotations of the filter's exchange, where whole shares move.");
-    of_mapping("largest_share", share, "Pixels of the PE that owns most.");
+    of_mapping("exchange_rotations", exchange_rotations, "Rotations of the filter's exchange, if whole shares move.");
+    of_mapping("largest_share", share, "The number of pixels of the PE with the largest share.");
     module.def("loads", loads, py::arg("cost"), py::arg("mapping") = "", py::arg("offset") = py::none(),
                py::arg("fold") = "", py::arg("pes") = py::none(),
-               "uint64 [P]: the load of each PE, the sum of its pixels' costs. cost: [H, W] of whole numbers.");
+               "uint64 [P]: the load of each PE, the sum of its pixels' costs. cost: integers [H, W].");
     module.def("imbalances", imbalances, py::arg("cost"), py::arg("pes"), py::arg("offsets"),
                py::arg("fold") = "cyclic",
-               "float64 [n]: u = (max - mean) / mean of the loads under the cyclic mapping, of each offset.");
+               "float64 [n]: u = (max - mean) / mean of the loads with the cyclic mapping, for each offset.");
     module.def("speedups", speedups, py::arg("cost"), py::arg("pes"), py::arg("offsets"), py::arg("fold") = "cyclic",
-               "float64 [n]: sum / max of the loads under the cyclic mapping, of each number of PEs, whose offset is "
-               "offsets[i], or offsets[0] of all.");
+               "float64 [n]: sum / max of the loads with the cyclic mapping, for each number of PEs pes[i] with offset "
+               "offsets[i], or offsets[0] for all.");
     module.def("schedule", schedule, py::arg("cost"), py::arg("plan"), py::arg("mapping") = "",
                py::arg("offset") = py::none(), py::arg("fold") = "", py::arg("pes") = py::none(),
-               "A simulated dynamic or hybrid distribution: plan is 'dynamic:CHUNK[,OVERHEAD]' or "
-               "'hybrid:CHUNK[,OVERHEAD[,SHARE]]'; mapping, what a hybrid begins with. dict: loads (uint64 [P], when "
-               "each PE is done), requests, makespan (cycles), speedup (pure work / makespan).");
+               "Simulates a dynamic or hybrid distribution. plan: 'dynamic:CHUNK[,OVERHEAD]' or "
+               "'hybrid:CHUNK[,OVERHEAD[,SHARE]]'; mapping: the static part of a hybrid. Returns a dict: loads (uint64 "
+               "[P], finishing times in cycles), requests, makespan (cycles), speedup (work / makespan).");
     module.def(
         "lower_bound", [](const py::array& costs, std::uint32_t pes) { return lower_bound(cost_image_of(costs), pes); },
-        py::arg("cost"), py::arg("pes"), "Cycles below which no distribution of whole pixels over P PEs ends.");
+        py::arg("cost"), py::arg("pes"), "Lower bound in cycles of any distribution of whole pixels over P PEs.");
     module.def("filter_cycles", filter_cycles, py::arg("pixels"), "Modelled cycles of the 3 x 3 filter on one PE.");
     module.def("compare_cycles", compare_cycles, py::arg("pixels"),
-               "Modelled cycles of comparing pixels with their neighbours on one PE.");
+               "Modelled cycles of the comparison of pixels with their neighbours on one PE.");
     module.def(
         "offset_times", offset_times, py::arg("cost"), py::arg("pes"), py::arg("antialias") = "none",
         py::arg("supersample") = py::none(),
-        "Modelled ms of the SPA for each offset of the cyclic mapping, without set-up of exchanges: dict of arrays "
-        "[W]: offset, imbalance (of the first pass), trace_ms, smooth_ms, supersample_ms, ring_ms, rotations.");
+        "Modelled ms of the SPA for each offset of the cyclic mapping, without the set-up of exchanges. Returns a "
+        "dict of arrays [W]: offset, imbalance (of the first pass), trace_ms, smooth_ms, supersample_ms, ring_ms, "
+        "rotations.");
     module.def("ranks_of_pes", ranks_of_pes, py::arg("pes"), py::arg("ranks"),
-               "uint32 [P]: the MPI rank that has each PE of a ring.");
+               "uint32 [P]: the MPI rank of each PE of a ring.");
     module.def("ranks_of_nodes", ranks_of_torus, py::arg("nodes"), py::arg("ranks"),
-               "uint32 [nodes]: the MPI rank that has each node of a 3-D torus of nodes = (I, J, K).");
+               "uint32 [nodes]: the MPI rank of each node of a 3-D torus of nodes = (I, J, K).");
     module.def("link_ends", link_ends, py::arg("nodes"),
-               "uint32 [nodes, 6]: where each link of a 3-D torus leads: +x, -x, +y, -y, +z, -z.");
-    module.def("machines", all_machines, "The machines: list of dict. None: no limit, or not known.");
+               "uint32 [nodes, 6]: the node at the end of each link of a 3-D torus: +x, -x, +y, -y, +z, -z.");
+    module.def("machines", all_machines, "All machines, as a list of dicts. None: no limit, or unknown.");
     module.def("reference", reference_image, py::arg("scene"), py::arg("size"), py::arg("bounces") = 8,
-               py::arg("threads") = 2, "float64 [size, size, 3]: the double-precision reference's image.");
+               py::arg("threads") = 2, "float64 [size, size, 3]: the image of the double-precision reference.");
 }
 
 }  // namespace raya

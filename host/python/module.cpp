@@ -1,10 +1,10 @@
-// The Python module raya._engine: renders, scenes and loads with numpy arrays. The package around it is raya/.
+// The Python module raya._engine: renders, scenes and loads with numpy arrays. The package raya/ imports it.
 #include "host/base/module.hpp"
 
 #include <dlfcn.h>
 #include <pybind11/pybind11.h>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/error.hpp"
 #include "host/model/machine.hpp"
 #include "host/python/session.hpp"
@@ -14,7 +14,7 @@
 
 namespace {
 
-// What raya loads late lies beside this module, not beside the interpreter.
+// Modules are next to this shared object, not next to the interpreter.
 std::filesystem::path own_file() {
     Dl_info info{};
     ::dladdr(reinterpret_cast<void*>(&own_file), &info);
@@ -26,16 +26,16 @@ std::filesystem::path own_file() {
 PYBIND11_MODULE(_engine, module) {
     using namespace raya;
     set_own_file(own_file());
-    set_verbosity(kSilent);  // warnings are Python's
+    set_verbosity(kErrorsOnly);  // warnings are raised as Python warnings
     auto& refused = pybind11::register_exception<UserError>(module, "InputError", PyExc_ValueError);
-    refused.doc() = "What was asked for cannot be done.";
-    pybind11::register_exception<Standstill>(module, "Deadlock", refused).doc() =
-        "Buffers of a torus are too short for its packets.";
+    refused.doc() = "Invalid input or options.";
+    pybind11::register_exception<TorusDeadlock>(module, "Deadlock", refused).doc() =
+        "The torus is deadlocked: its buffers are too short for its packets.";
     pybind11::register_exception<DoesNotFit>(module, "DoesNotFit", refused).doc() =
-        "A PE or node cannot hold its part of the scene.";
+        "A part of the scene does not fit into the memory of a PE or node.";
     pybind11::register_exception<DeviceError>(module, "DeviceError", PyExc_RuntimeError).doc() =
-        "There is no such OpenCL device, or it failed.";
-    module.attr("STATUS_WORDS") = std::uint32_t{RAYA_STATUS_WORDS};  // of a node, to the host in each superstep
+        "The OpenCL device was not found or failed.";
+    module.attr("STATUS_WORDS") = std::uint32_t{RAYA_STATUS_WORDS};  // sent by each node to the host in each superstep
     module.attr("__version__") = raya_version();
     add_scenes(module);
     add_renders(module);

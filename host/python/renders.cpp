@@ -27,12 +27,12 @@ using Result = std::shared_ptr<Render>;
 const Load& load_of(const Render& r) { return r.report.load; }
 
 const RingResult& ring_of(const Render& r, const char* what) {
-    if (!r.ring) throw py::value_error(fmt::format("{}: of ring machines alone; this render is the torus's", what));
+    if (!r.ring) throw py::value_error(fmt::format("{}: only for ring machines; this render used a torus", what));
     return *r.ring;
 }
 
 const TorusResult& torus_of(const Render& r, const char* what) {
-    if (!r.torus) throw py::value_error(fmt::format("{}: of the torus alone; this render is a ring machine's", what));
+    if (!r.torus) throw py::value_error(fmt::format("{}: only for a torus; this render used a ring machine", what));
     return *r.torus;
 }
 
@@ -53,7 +53,7 @@ py::array cost_array(const CostImage& cost, const py::object& owner) {
 }
 
 void check_kept(const Phase& phase) {
-    if (!phase.kept_cost) throw py::value_error("cost: was not kept; render with cost=True");
+    if (!phase.kept_cost) throw py::value_error("cost: not stored; render with cost=True");
 }
 
 py::array cost_of(const py::object& self) {
@@ -63,7 +63,7 @@ py::array cost_of(const py::object& self) {
     return cost_array(*phase.kept_cost, self);
 }
 
-// By a phase's name what `figure` makes of it.
+// Maps the name of each phase to figure(phase).
 template <class Figure>
 py::dict by_phase(const py::object& self, const char* what, Figure figure) {
     py::dict all;
@@ -103,13 +103,13 @@ py::dict supersteps_of(const Result& r) {
         for (const Superstep& step : steps) values.push_back(step.*figure);
         all[name] = copy_of(values);
     };
-    add("cycles", &Superstep::most_cycles);
-    add("link_words", &Superstep::most_link_words);
+    add("cycles", &Superstep::max_node_cycles);
+    add("link_words", &Superstep::max_link_words);
     add("live", &Superstep::live);
     return all;
 }
 
-// Counts by what was counted, as kernels/shared/events.h has it.
+// Names of the events, in the order of kernels/shared/events.h.
 constexpr const char* kEvents[RAYA_EVENTS] = {"primary",       "primary_hits", "reflected",    "refracted",
                                               "shadow",        "shadow_hits",  "sphere_tests", "plane_tests",
                                               "polygon_tests", "cone_tests",   "shaded",       "lit",
@@ -126,13 +126,13 @@ double events_ms(const std::map<std::string, std::uint64_t>& events) {
     std::uint64_t sum = 0;
     for (const auto& [name, count] : events) {
         const auto found = std::find(std::begin(kEvents), std::end(kEvents), name);
-        if (found == std::end(kEvents)) throw py::value_error(fmt::format("t805_ms: no event is called {}", name));
+        if (found == std::end(kEvents)) throw py::value_error(fmt::format("t805_ms: unknown event {}", name));
         sum += count * cycles[static_cast<std::size_t>(found - std::begin(kEvents))];
     }
     return static_cast<double>(sum) * kT805CycleNs * 1e-6;
 }
 
-// The root's part of torus_time(): what it computes, its end of every message over its links, and those links.
+// The root's part of torus_time(): its computation, its end of every message over its links, and its busiest link.
 py::dict root_of(const Result& r) {
     const TorusResult& result = torus_of(*r, "root");
     const raya_torus& torus = r->torus_settings->torus;
@@ -162,7 +162,7 @@ py::dict node_memory(const Result& r) {
     const TorusResult& result = torus_of(*r, "node_memory");
     const std::uint32_t links = links_of_node(r->torus_settings->torus);
     const std::uint64_t scene = result.node_bytes - node_bytes(0, result.buffers, links);
-    const std::uint32_t shortest = raya_shortest_queue(r->lights, r->torus_settings->bounces);
+    const std::uint32_t shortest = raya_min_queue(r->lights, r->torus_settings->bounces);
     py::dict all;
     all["scene"] = scene;
     all["shortest"] = scene + node_bytes(0, buffers_for(shortest), links);
@@ -171,11 +171,11 @@ py::dict node_memory(const Result& r) {
 }
 
 const History& history_of(const Render& r) {
-    if (!r.history) throw py::value_error("simulate: there is no history; render with async_=True");
+    if (!r.history) throw py::value_error("simulate: the render has no history; render with async_=True");
     return *r.history;
 }
 
-// The machine as it is, but for what is named: message_cycles, word_cycles, one_way, both_ways (bytes/s), buffer.
+// The default machine with changes: message_cycles, word_cycles, one_way, both_ways (bytes/s), buffer (messages).
 AsyncMachine async_machine(const py::kwargs& changes) {
     AsyncMachine m;
     for (const auto& [key, value] : changes) {
@@ -191,7 +191,7 @@ AsyncMachine async_machine(const py::kwargs& changes) {
         else if (name == "buffer")
             m.buffer = value.cast<std::uint32_t>();
         else
-            throw py::type_error(fmt::format("no part of the machine is called {}", name));
+            throw py::type_error(fmt::format("unknown parameter of the machine: {}", name));
     }
     return m;
 }
@@ -236,18 +236,18 @@ std::string line_of(const Result& r) {
 double device_seconds(const Result& r) { return r->ring ? trace_seconds(*r->ring) : r->torus->render_s; }
 
 void add_result(py::module_& module) {
-    py::class_<Render, Result>(module, "Result", "What one render made, counted and measured.")
+    py::class_<Render, Result>(module, "Result", "The image, counts and measurements of one render.")
         .def_property_readonly("image", image_of, "float32 [H, W, 3]: linear red, green, blue; row 0 is the top.")
         .def_property_readonly(
             "png", [](const Result& r) { return py::bytes(plain_png(r->image())); }, "bytes: an 8-bit PNG, sRGB.")
         .def_property_readonly(
-            "hash", [](const Result& r) { return r->report.image.hash; }, "Of the pixels' bits.")
-        .def_property_readonly("mask", mask_of, "bool [H, W]: pixels that were supersampled; None without.")
+            "hash", [](const Result& r) { return r->report.image.hash; }, "str: hash of the pixels' bits.")
+        .def_property_readonly("mask", mask_of, "bool [H, W]: the supersampled pixels; None without supersampling.")
         .def_property_readonly("cost", cost_of,
-                               "uint64 [H, W]: modelled cycles of each pixel in all phases. ValueError unless the "
-                               "render had cost=True.")
+                               "uint64 [H, W]: modelled cycles of each pixel in all phases. ValueError unless rendered "
+                               "with cost=True.")
         .def_property_readonly("costs", costs_of,
-                               "The same of each phase: {'trace': uint64 [H, W], 'supersample': ...}.")
+                               "The cost in each phase: {'trace': uint64 [H, W], 'supersample': ...}.")
         .def_property_readonly(
             "loads",
             [](const py::object& self) {
@@ -265,27 +265,26 @@ void add_result(py::module_& module) {
         .def_property_readonly("report", report_of, "dict: the JSON of raya render --report (docs/report.md).")
         .def_property_readonly(
             "job_words", [](const Result& r) { return ring_of(*r, "job_words").pe_memory.job_words; },
-            "Words of 4 bytes that each PE holds of the scene.")
+            "32-bit words of the scene in each PE.")
         .def_property_readonly(
             "accel_s", [](const Result& r) { return ring_of(*r, "accel_s").accel_s; },
-            "Measured seconds: to make the grid or BVH.")
+            "Measured seconds to build the grid or BVH.")
         .def_property_readonly(
             "render_s", [](const Result& r) { return r->report.measured.render_s; },
-            "Measured seconds: from packed scene to image, kernels, grid and BVH being there.")
+            "Measured seconds from packed scene to image, without building kernels, grid or BVH.")
         .def_property_readonly("device_s", device_seconds,
-                               "Measured seconds: tracing on the device; of the torus all of the render.")
-        .def_property_readonly("events", events_of, "dict: how often each event was counted (kernels/README.md).")
+                               "Measured seconds of tracing on the device; for a torus, of the whole render.")
+        .def_property_readonly("events", events_of, "dict: the count of each event (kernels/README.md).")
         .def_property_readonly("root", root_of,
                                "{'processor_ms', 'link_ms'}: modelled ms of the torus's root, and of its busiest link.")
-        .def_property_readonly("work_ms", work_ms, "Modelled ms: what all nodes of the torus compute together.")
+        .def_property_readonly("work_ms", work_ms, "Modelled ms: total computation of all nodes of the torus.")
         .def_property_readonly(
             "node_memory", node_memory,
-            "Bytes of the fullest node: {'scene': its part of the scene, 'shortest': with the shortest "
-            "buffers that work, 'used': with those that it had}.")
+            "Bytes of the fullest node: {'scene': its part of the scene, 'shortest': with the shortest buffers that "
+            "work, 'used': with the buffers of this render}.")
         .def_property_readonly("packets", packets_of,
-                               "Structured array of the packets that went from node to node: superstep, source, "
-                               "destination, kind (of PACKET_KINDS), words, pixel. Empty unless the render had "
-                               "packets=True.")
+                               "Structured array of the packets between nodes: superstep, source, destination, kind "
+                               "(index of PACKET_KINDS), words, pixel. Empty unless rendered with packets=True.")
         .def_property_readonly(
             "link_words", [](const py::object& self) { return links_of(self, &TorusResult::link_words); },
             "uint64 [nodes, 6]: words over each link: +x, -x, +y, -y, +z, -z.")
@@ -294,22 +293,22 @@ void add_result(py::module_& module) {
             "uint64 [nodes, 6]: messages over each link.")
         .def_property_readonly(
             "copied_words", [](const Result& r) { return torus_of(*r, "copied_words").copied_words; },
-            "Words of the scene that all nodes of the torus hold together.")
+            "Total words of the scene in all nodes of the torus.")
         .def_property_readonly("supersteps", supersteps_of,
-                               "{'cycles', 'link_words', 'live': uint64 [S]}: of the busiest node and the busiest "
-                               "link, and packets in flight at the end, of each superstep.")
+                               "{'cycles', 'link_words', 'live': uint64 [S]} of each superstep: cycles of the busiest "
+                               "node, words over the busiest link, and packets in flight at the end.")
         .def_property_readonly(
             "step_cycles", [](const py::object& self) { return steps_array(self, &Render::cycles, 1); },
-            "uint64 [S, nodes]: what each node computed in each superstep; with packets=True.")
+            "uint64 [S, nodes]: cycles of each node in each superstep; with packets=True.")
         .def_property_readonly(
             "step_link_words",
             [](const py::object& self) { return steps_array(self, &Render::link_words, RAYA_LINKS); },
             "uint64 [S, nodes, 6]: words over each link in each superstep; with packets=True.")
         .def("simulate", simulated_ms,
-             "Modelled ms of the torus without supersteps, on a machine that differs in message_cycles, word_cycles, "
-             "one_way, both_ways (bytes/s, 0: no time) or buffer (messages); with async_=True.")
+             "Modelled ms of the torus without supersteps, with changed message_cycles, word_cycles, one_way, "
+             "both_ways (bytes/s, 0: no time) or buffer (messages); requires async_=True.")
         .def("write_replay", write_replay, py::arg("platform"), py::arg("replay"),
-             "Writes that machine and the history for SimGrid (docs/packets.md); returns the number of messages.")
+             "Writes the machine and the history for SimGrid (docs/packets.md); returns the number of messages.")
         .def("__repr__", line_of);
 }
 
@@ -346,15 +345,14 @@ void add_renders(py::module_& module) {
     module.attr("PACKET_KINDS") = py::make_tuple("", "primary", "reflected", "refracted", "shadow", "return");
     add_result(module);
     py::class_<PythonSession>(module, "Session",
-                              "A device that is open, with the programs that were built for it.\n\n"
-                              "device: as raya render --device has it; default: a GPU, else a CPU. DeviceError.")
+                              "An open device with the programs built for it.\n\n"
+                              "device: as in raya render --device; default: a GPU, else a CPU. Raises DeviceError.")
         .def(py::init<const std::string&>(), py::arg("device") = "")
         .def_property_readonly(
             "device", [](const PythonSession& s) { return info_of(s.info()); },
-            "dict: name, platform, version, driver, as OpenCL names them.")
+            "dict: name, platform, version, driver, as reported by OpenCL.")
         .def("render", render_in, py::arg("scene"), py::arg("progress") = py::none(), "raya.render() on this device.");
-    module.def("t805_ms", events_ms, py::arg("events"),
-               "Modelled ms that one T805 computes for so many events, by name.");
+    module.def("t805_ms", events_ms, py::arg("events"), "Modelled ms of one T805 for events = {name: count}.");
     module.def("render", render_shared, py::arg("scene"), py::arg("progress") = py::none());
 }
 

@@ -35,9 +35,9 @@ Scene with_view(Scene scene, const py::kwargs& options) {
     ViewOptions view;
     CLI::App app;
     add_view_options(app, view);
-    std::vector<std::string> words = option_words(options);
+    std::vector<std::string> arguments = option_arguments(options);
     try {
-        app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::ParseError& error) {
         throw UserError(error.what());
     }
@@ -57,7 +57,7 @@ Scene without_lights(Scene scene) {
 
 Scene example(const std::string& name) {
     const auto file = embedded_files().find("scenes/" + name + ".nff");
-    if (file == embedded_files().end()) throw UserError(fmt::format("example '{}': raya carries no such scene", name));
+    if (file == embedded_files().end()) throw UserError(fmt::format("example '{}': no such scene", name));
     Scene scene = parse_nff(file->second, file->first);
     scene.name = name;
     return scene;
@@ -71,24 +71,25 @@ std::size_t job_words(const Scene& scene) {
 void save(const Scene& scene, const std::filesystem::path& path) { write_whole_file(path, write_nff(scene)); }
 
 void add_generators(py::module_& module) {
-    py::module_ g = module.def_submodule("generate", "Scenes that a program makes; those of raya generate.");
+    py::module_ g = module.def_submodule("generate", "Generated scenes, as by raya generate.");
     g.def("balls", generate_balls, py::arg("level") = 4,
           "SPD's sphereflake: 1 + 9 + ... + 9^level spheres, level 0..6.");
     g.def("lattice", generate_lattice, py::arg("size") = 12, "SPD's lattice: (size + 1)^3 spheres, cylinders; 1..64.");
-    g.def("gears", generate_gears, py::arg("size") = 4, "size^3 gear wheels, 1..16.");
+    g.def("gears", generate_gears, py::arg("size") = 4, "size^3 gear wheels, size 1..16.");
     g.def("uniform", generate_uniform, py::arg("count"), py::arg("voxels"),
-          "count spheres, 1..1000000, evenly over voxels = (x, y, z) of a cube.");
-    g.def("random", generate_random, py::arg("count"), py::arg("seed") = 1, "count spheres anywhere in a cube.");
+          "count spheres, 1..1000000, distributed evenly over voxels = (x, y, z) of a cube.");
+    g.def("random", generate_random, py::arg("count"), py::arg("seed") = 1,
+          "count spheres at random positions in a cube.");
     g.def(
         "cluster", [](std::uint64_t seed) { return generate_cluster(seed); }, py::arg("seed") = 1,
-        "Seven spheres above a floor, as heavy and uneven as Kohata & Ito's figures have it.");
+        "Seven spheres above a floor, with load and imbalance as in Kohata & Ito's figures.");
     g.def("centre", generate_centre, "scenes/centre.nff.");
 }
 
 }  // namespace
 
 void add_scenes(py::module_& module) {
-    py::class_<Scene>(module, "Scene", "A scene: objects, surfaces, lights and a view. It never changes.")
+    py::class_<Scene>(module, "Scene", "An immutable scene: objects, surfaces, lights and a view.")
         .def_readonly("name", &Scene::name)
         .def_property_readonly(
             "width", [](const Scene& s) { return s.view.width; }, "Pixels.")
@@ -100,10 +101,10 @@ void add_scenes(py::module_& module) {
         .def_property_readonly(
             "eye", [](const Scene& s) { return point_of(s.view.from); }, "(x, y, z), scene units.")
         .def_property_readonly(
-            "at", [](const Scene& s) { return point_of(s.view.at); }, "What the view looks at.")
+            "at", [](const Scene& s) { return point_of(s.view.at); }, "(x, y, z): the target of the view, scene units.")
         .def_property_readonly(
             "nff", [](const Scene& s) { return write_nff(s); }, "str: the scene as NFF.")
-        .def("save", save, py::arg("path"), "Writes NFF; the file appears whole or not at all. ValueError.")
+        .def("save", save, py::arg("path"), "Writes an NFF file atomically. Raises ValueError.")
         .def(
             "renamed",
             [](Scene s, const std::string& name) {
@@ -112,14 +113,14 @@ void add_scenes(py::module_& module) {
             },
             py::arg("name"))
         .def("with_view", with_view,
-             "The scene with another camera, background or lights: from_, at, up, angle, background, light, as raya "
-             "render has them. ValueError.")
+             "The scene with another camera, background or lights: from_, at, up, angle, background, light, as in raya "
+             "render. Raises ValueError.")
         .def("random_view", random_view, py::arg("seed"),
-             "From another place at the same distance, 5 to 75 degrees above the level of what is looked at.")
-        .def("turned", turned_scene, py::arg("degrees"), "After the eye went so far round what it looks at.")
-        .def("without_lights", without_lights, "No light, so no shadow rays.")
-        .def("scattered", scattered, py::arg("seed"), "Spheres of the cube [-1, 1]^3 about centres drawn from it.")
-        .def("moved_within", moved_within, "Each sphere moved until it lies within the voxel of its centre, of 4x4x4.")
+             "The scene from a random place at the same distance, 5 to 75 degrees above the target.")
+        .def("turned", turned_scene, py::arg("degrees"), "The scene with the eye rotated around the target.")
+        .def("without_lights", without_lights, "The scene without lights, and so without shadow rays.")
+        .def("scattered", scattered, py::arg("seed"), "The spheres at random centres in the cube [-1, 1]^3.")
+        .def("moved_within", moved_within, "Each sphere moved into the voxel of its centre, of 4x4x4 voxels.")
         .def("touching_walls", touching_walls, "The outermost spheres moved until they touch the cube's sides.")
         .def(
             "__eq__", [](const Scene& a, const Scene& b) { return a == b; }, py::is_operator())
@@ -133,15 +134,14 @@ void add_scenes(py::module_& module) {
                             return parse_nff(state[1].cast<std::string>(), state[0].cast<std::string>());
                         }));
     module.def("load", loaded, py::arg("path"), py::arg("strict") = false,
-               "The scene of an NFF file. What NFF does not have is skipped with a warning, or refused where strict. "
-               "ValueError with file, line and reason.");
+               "Reads an NFF file. Skips unknown content with a warning unless strict. Raises ValueError with file, "
+               "line and reason.");
     module.def("example", example, py::arg("name"),
-               "A scene that raya carries: centre, spheres, mirrors, glass, polygons, cones, planes. ValueError.");
-    module.def("job_words", job_words, py::arg("scene"),
-               "Words of 4 bytes that each PE of the SPA would hold of a scene.");
+               "An embedded scene: centre, spheres, mirrors, glass, polygons, cones, planes. Raises ValueError.");
+    module.def("job_words", job_words, py::arg("scene"), "32-bit words of a scene in each PE of the SPA.");
     module.def(
         "parse", [](const std::string& text, const std::string& name) { return parse_nff(text, name); },
-        py::arg("text"), py::arg("name") = "scene", "The scene of an NFF text. ValueError.");
+        py::arg("text"), py::arg("name") = "scene", "Parses NFF text. Raises ValueError.");
     add_generators(module);
 }
 

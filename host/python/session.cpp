@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/device.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
@@ -21,7 +21,7 @@
 namespace raya {
 namespace {
 
-// Drivers install handlers of their own (LLVM, in PoCL); Python's are put back.
+// Restores Python's signal handlers: drivers (LLVM in PoCL) install their own.
 class SignalHandlers {
   public:
     SignalHandlers() {
@@ -37,28 +37,28 @@ class SignalHandlers {
     struct sigaction before_[32]{};
 };
 
-// PoCL runs kernels in threads that it makes when it is asked for devices, and has the private memory of a work-group
-// on their stacks (host/cl/driver.cpp).
+// PoCL creates its threads when devices are queried, and puts the private memory of a work-group on their stacks
+// (host/cl/driver.cpp).
 cl::Device choose_device_with_stacks(const std::string& name) {
     pthread_attr_t before, large;
     ::pthread_getattr_default_np(&before);
     ::pthread_attr_init(&large);
     ::pthread_attr_setstacksize(&large, std::size_t{128} << 20);
     ::pthread_setattr_default_np(&large);
-    const auto put_back = [&] { ::pthread_setattr_default_np(&before); };
+    const auto restore = [&] { ::pthread_setattr_default_np(&before); };
     try {
         cl::Device device = choose_device(name);
-        put_back();
+        restore();
         return device;
     } catch (...) {
-        put_back();
+        restore();
         throw;
     }
 }
 
 void refuse_sequences(const RenderCommand& command) {
     if (command.frames.given())
-        throw UserError("--frames, --turn and --camera-path are of many images: render each of them");
+        throw UserError("--frames, --turn and --camera-path render many images; call render() for each of them");
 }
 
 RenderCommand parse_options(CLI::App& program, const py::dict& options) {
@@ -71,20 +71,20 @@ RenderCommand parse_options(CLI::App& program, const py::dict& options) {
         check_files(*render);
         check_render(*render, command);
     });
-    std::vector<std::string> words = {"render"};
-    for (const std::string& word : option_words(options)) words.push_back(word);
-    parse_words(program, words);
+    std::vector<std::string> words = {"render"};  // of the command line
+    for (const std::string& word : option_arguments(options)) words.push_back(word);
+    parse_arguments(program, words);
     return command;
 }
 
-// The options `cost` and `packets` name files; True keeps the arrays alone.
+// The options `cost` and `packets` name files; True stores only the arrays.
 bool takes_true(py::dict& options, const char* name) {
     if (!options.contains(name) || options[name].ptr() != Py_True) return false;
     options.attr("pop")(name);
     return true;
 }
 
-// pixels=(stride, first): no option of the command line.
+// pixels=(stride, first) is not an option of the command line.
 PixelSubset pixels_of(py::dict& options) {
     if (!options.contains("pixels")) return {};
     const auto [stride, first] = options.attr("pop")("pixels").cast<std::pair<std::uint32_t, std::uint32_t>>();
@@ -92,7 +92,7 @@ PixelSubset pixels_of(py::dict& options) {
     return {stride, first};
 }
 
-// JSON for raya.lab. Help is printed, and ends Python as it ends raya.
+// Returns JSON for raya.lab. After printing help it raises SystemExit, as raya exits.
 std::string study_settings(const std::vector<std::string>& arguments) {
     CLI::App program("", "raya");
     program.formatter(std::make_shared<HelpFormatter>());
@@ -100,19 +100,19 @@ std::string study_settings(const std::vector<std::string>& arguments) {
     add_study_command(program, [&settings](const std::string& json) { settings = json; });
     program.parse_complete_callback([&program] { check_files(*program.get_subcommands().front()); });
     add_verbosity_options(program, Ranks::alone());
-    set_verbosity(kUsual);
+    set_verbosity(kDefaultVerbosity);
     std::vector<std::string> words = {"study"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     int code = 0;
     try {
-        parse_words(program, words);
+        parse_arguments(program, words);
     } catch (const CLI::ParseError& error) {
         code = program.exit(error);
     } catch (const UserError&) {
-        set_verbosity(kSilent);
+        set_verbosity(kErrorsOnly);
         throw;
     }
-    set_verbosity(kSilent);
+    set_verbosity(kErrorsOnly);
     if (settings.empty()) {
         std::fflush(stdout);
         PyErr_SetObject(PyExc_SystemExit, py::int_(code).ptr());
@@ -128,11 +128,12 @@ PythonSession::PythonSession(const std::string& device)
 
 void add_study_settings(py::module_& module) {
     module.def("study_settings", study_settings, py::arg("arguments"),
-               "What `raya study` was asked for in these words, as JSON; prints help where they ask for it.");
+               "Parses the arguments of `raya study` and returns its settings as JSON. Prints help if requested.");
 }
 
 PythonSession& PythonSession::shared(const std::string& device) {
-    static auto* const sessions = new std::map<std::string, PythonSession>;  // drivers outlive no static object
+    // Never destroyed: drivers may be unloaded first.
+    static auto* const sessions = new std::map<std::string, PythonSession>;
     const SignalHandlers handlers;
     return sessions->try_emplace(device, device).first->second;
 }

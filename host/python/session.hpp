@@ -1,4 +1,4 @@
-// A device that is open, and one render on it.
+// An open device, for renders from Python.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -14,19 +14,20 @@
 
 namespace raya {
 
-/// A device with the programs that were built for it. One thread at a time renders on it; others wait.
+/// A device with the programs built for it. Renders of several threads run one after another.
 class PythonSession {
   public:
-    /// `device` as --device has it. DeviceError.
+    /// `device`: as for --device. DeviceError.
     explicit PythonSession(const std::string& device);
 
     const DeviceInfo& info() const { return session_.device(); }
 
-    /// With the keyword arguments of `raya render`. UserError, DeviceError. The interpreter is free meanwhile; a signal
-    /// that its handlers turn into an exception ends the render. `progress`: None, or called with the share done, 0..1.
+    /// Renders with the keyword arguments of raya.render(). Releases the interpreter lock; an exception raised by a
+    /// Python signal handler ends the render. `progress`: None, or a function called with the completed share, 0..1.
+    /// UserError, DeviceError.
     std::shared_ptr<Render> render(const Scene& scene, const py::dict& options, const py::object& progress);
 
-    /// The session for that device that renders without one of their own share.
+    /// The shared session of a device, for renders without a session argument.
     static PythonSession& shared(const std::string& device);
 
   private:

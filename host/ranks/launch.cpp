@@ -18,7 +18,7 @@
 namespace raya {
 namespace {
 
-constexpr double kPatience = 600;  // seconds that a rank waits for the others, unless RAYA_RANK_TIMEOUT says otherwise
+constexpr double kDefaultTimeoutS = 600;  // for waits for other ranks; RAYA_RANK_TIMEOUT overrides it
 
 std::optional<std::uint32_t> number_in(const char* text) {
     std::uint32_t value = 0;
@@ -28,31 +28,31 @@ std::optional<std::uint32_t> number_in(const char* text) {
     return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 
-double patience() {
+double rank_timeout_s() {
     const char* text = std::getenv("RAYA_RANK_TIMEOUT");
-    if (text == nullptr) return kPatience;
+    if (text == nullptr) return kDefaultTimeoutS;
     const std::optional<std::uint32_t> seconds = number_in(text);
     if (!seconds || *seconds == 0)
-        throw UserError(fmt::format("RAYA_RANK_TIMEOUT={}: must be a number of seconds, 1 or more", text));
+        throw UserError(fmt::format("RAYA_RANK_TIMEOUT={}: must be a whole number of seconds, 1 or more", text));
     return *seconds;
 }
 
-// A process that ends before it has reached MPI leaves the others waiting in MPI's start.
+// MPI's start blocks if another process ends before it starts MPI, hence the deadline.
 std::unique_ptr<Transport> open_transport(const Launch& launch) {
-    const double limit_s = patience();
+    const double limit_s = rank_timeout_s();
     const std::uint32_t count = launch.count.value_or(0);
     try {
         auto* const open = reinterpret_cast<OpenMpi*>(module_function(kMpiModule, kOpenMpi));
         const std::string text = fmt::format(
-            "raya: rank 0 has waited for all of {} ranks to start for {:g} s; remedy: look for one that hangs or has "
-            "ended, or let ranks wait longer with RAYA_RANK_TIMEOUT=SECONDS\n",
-            count, limit_s);
+            "raya: rank 0 has waited {:g} s for all of {} ranks to start; remedy: look for a process that hangs or has "
+            "ended, or raise the limit with RAYA_RANK_TIMEOUT=SECONDS\n",
+            limit_s, count);
         const Deadline deadline(limit_s, launch.rank == 0 ? text : "", kExitDeviceError);
         return std::unique_ptr<Transport>(open(limit_s));
     } catch (const ModuleError& error) {
         throw UserError(
-            fmt::format("started as one of {} processes, but this raya cannot load its MPI part: {}; remedy: install "
-                        "libopenmpi-dev or libmpich-dev and build again, or start it without mpirun",
+            fmt::format("started as one of {} processes, but raya cannot load its MPI module: {}; remedy: install "
+                        "libopenmpi-dev or libmpich-dev and build again, or start raya without mpirun",
                         count, error.what()));
     }
 }
@@ -69,7 +69,7 @@ void share_cores(const Ranks& ranks) {
     ::setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 0);
 }
 
-// Version, and what the program carries within itself.
+// Version, and a hash of the embedded files.
 std::string build_text() {
     std::size_t hash = 0;
     for (const auto& [path, text] : embedded_files()) hash = 31 * hash + std::hash<std::string>()(path + text);
@@ -103,8 +103,8 @@ std::unique_ptr<Ranks> open_ranks() {
         const std::string library = ranks->library();
         ranks->close(0);
         throw UserError(fmt::format(
-            "started as one of {} processes, but {}, which this raya was built with, knows of {}; remedy: the mpirun "
-            "of that MPI",
+            "started as one of {} processes, but {}, with which raya was built, has {}; remedy: use the mpirun of that "
+            "MPI",
             *launch->count, library, ranks->count()));
     }
     if (!ranks->many()) {
@@ -115,7 +115,7 @@ std::unique_ptr<Ranks> open_ranks() {
     return ranks;
 }
 
-void check_alike(Ranks& ranks, const std::vector<std::string>& arguments) {
+void check_same_program(Ranks& ranks, const std::vector<std::string>& arguments) {
     std::string own = build_text();
     for (const std::string& argument : arguments) own += "\n" + argument;
     std::string first = own;
@@ -125,7 +125,7 @@ void check_alike(Ranks& ranks, const std::vector<std::string>& arguments) {
     throw UserError(
         version != other
             ? fmt::format("this rank is {}, rank 0 is {}; start the same program everywhere", version, other)
-            : "this rank was started with other arguments than rank 0; all ranks take the same");
+            : "this rank was started with other arguments than rank 0; use the same for all ranks");
 }
 
 std::uint32_t threads_of_rank(std::uint32_t usable, std::uint32_t cores, std::uint32_t ranks_of_host) {

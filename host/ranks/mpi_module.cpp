@@ -1,7 +1,7 @@
-// The transport on MPI: a module, loaded under mpirun alone, so that a plain start does not pay for MPI's libraries.
-// What waits looks at its requests in turn, since MPI's own waits have no end and let nobody hear of a rank that has
-// failed.
-#define OMPI_SKIP_MPICXX  // the C++ bindings, which MPI has given up
+// MPI transport. A module of its own that is loaded only under mpirun, so that a plain start does not load MPI's
+// libraries. Waits poll their requests instead of calling MPI_Wait, which has no time limit and would not notice that
+// another rank has failed.
+#define OMPI_SKIP_MPICXX  // the C++ bindings, which MPI no longer has
 #define MPICH_SKIP_MPICXX
 #include <fmt/core.h>
 #include <mpi.h>
@@ -24,7 +24,7 @@
 namespace raya {
 namespace {
 
-// Counts of MPI are ints.
+// MPI's counts are ints, so longer messages are split.
 constexpr std::size_t kPiece = std::size_t{1} << 30;
 constexpr int kFailureTag = 1;
 
@@ -36,7 +36,7 @@ void check(int result, const char* call) {
     throw DeviceError(fmt::format("{} failed: {}", call, text.data()));
 }
 
-// "Open MPI v4.1.4, package: ..." or "MPICH Version: 4.0.2 ...": up to what says how it was built.
+// Name and version, from "Open MPI v4.1.4, package: ..." or "MPICH Version: 4.0.2 ...".
 std::string library_name() {
     std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
     int length = 0;
@@ -54,15 +54,15 @@ class MpiTransport final : public Transport {
     explicit MpiTransport(double limit_s) : limit_s_(limit_s) {
         int provided = 0;
         check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
-        // A communicator each for what ranks send and for what goes wrong.
+        // One communicator for data and one for reports of failures.
         for (MPI_Comm* comm : {&comm_, &failures_}) {
             check(MPI_Comm_dup(MPI_COMM_WORLD, comm), "MPI_Comm_dup");
             check(MPI_Comm_set_errhandler(*comm, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
         }
-        ::prctl(PR_SET_TIMERSLACK, 1);  // naps are as short as they are asked for, not longer by 50 us
+        ::prctl(PR_SET_TIMERSLACK, 1);  // exact sleeps, instead of up to 50 us longer
         MPI_Comm_rank(comm_, &rank_);
         MPI_Comm_size(comm_, &count_);
-        eager_s_ = ranks_of_host() > ::sysconf(_SC_NPROCESSORS_ONLN) ? 30e-6 : 300e-6;
+        spin_s_ = ranks_of_host() > ::sysconf(_SC_NPROCESSORS_ONLN) ? 30e-6 : 300e-6;
         std::array<char, HOST_NAME_MAX + 1> name{};
         ::gethostname(name.data(), name.size() - 1);
         host_ = name.data();
@@ -98,7 +98,7 @@ class MpiTransport final : public Transport {
         wait();
     }
 
-    // Messages of one pair and tag arrive in the order in which they were sent, so pieces do.
+    // MPI keeps the order of messages of the same pair and tag, so the pieces arrive in order.
     void start(std::span<const Outgoing> out, std::span<const Incoming> in) override {
         for (const Incoming& m : in)
             for_pieces(m.bytes, [&](std::span<std::byte> piece) {
@@ -115,38 +115,39 @@ class MpiTransport final : public Transport {
     }
 
     void wait() override {
-        if (!complete(requests_, limit_s_)) throw RankFailure(waited(), kExitDeviceError);
+        if (!complete(requests_, limit_s_)) throw RankFailure(timeout_text(), kExitDeviceError);
         requests_.clear();
     }
 
     void report_failure(const std::string& text, int code) override {
-        // Until this rank speaks itself; of several that fail at once one is the first, and ends the others.
-        const double patience_s = 4 + speaking_turn_s(rank());
+        // Time for rank 0 to end all ranks; staggered, so that of several failed ranks only the first one goes on.
+        const double timeout_s = 4 + failure_delay_s(rank());
         std::string message = fmt::format("{} {}", code, text);
         std::vector<MPI_Request> sent(1);
         const int size = static_cast<int>(message.size());
         if (MPI_Isend(message.data(), size, MPI_BYTE, 0, kFailureTag, failures_, sent.data()) != MPI_SUCCESS) return;
         const Clock::time_point start = Clock::now();
-        complete(sent, patience_s);
+        complete(sent, timeout_s);
         // Rank 0 ends this process.
-        std::this_thread::sleep_for(std::chrono::duration<double>(patience_s - seconds_since(start)));
+        std::this_thread::sleep_for(std::chrono::duration<double>(timeout_s - seconds_since(start)));
     }
 
-    void look() override {
-        if (rank_ == 0) hear_failures();
+    void poll_failures() override {
+        if (rank_ == 0) receive_failure();
     }
 
     [[noreturn]] void abort(int code) override {
         constexpr double kMost = 5;  // seconds
         const Deadline deadline(kMost, "", code);
         std::this_thread::sleep_for(
-            std::chrono::milliseconds(200));  // MPICH's mpirun may lose what was said just before
+            std::chrono::milliseconds(200));  // MPICH's mpirun may lose output written just before
         MPI_Abort(MPI_COMM_WORLD, code);
         std::_Exit(code);  // not reached, but MPI does not promise that
     }
 
     void close() override {
-        const Deadline deadline(limit_s_, rank_ == 0 ? fmt::format("raya: {}\n", waited()) : "", kExitDeviceError);
+        const Deadline deadline(limit_s_, rank_ == 0 ? fmt::format("raya: {}\n", timeout_text()) : "",
+                                kExitDeviceError);
         MPI_Finalize();
     }
 
@@ -166,34 +167,34 @@ class MpiTransport final : public Transport {
         return ranks;
     }
 
-    std::string waited() const {
+    std::string timeout_text() const {
         return fmt::format(
-            "rank {} on {}: has waited for the other ranks for {:g} s; remedy: look for one that hangs, or let ranks "
-            "wait longer with RAYA_RANK_TIMEOUT=SECONDS",
+            "rank {} on {}: has waited for the other ranks for {:g} s; remedy: look for one that hangs, or raise the "
+            "limit with RAYA_RANK_TIMEOUT=SECONDS",
             rank_, host_, limit_s_);
     }
 
     MPI_Request& next_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }
 
-    // False where it takes longer than `limit_s`. Ranks may have to share cores: who has waited for longer than a
-    // message takes sleeps, and is woken before those that compute; one that only yields would come behind them.
+    // Returns false after `limit_s` seconds. Ranks may share cores, so a wait spins only for the time of a typical
+    // message and then sleeps: the scheduler prefers a woken thread to computing ones, but not one that yields.
     bool complete(std::vector<MPI_Request>& requests, double limit_s) {
-        constexpr auto kNap = std::chrono::microseconds(20);
+        constexpr auto kSleep = std::chrono::microseconds(20);
         const Clock::time_point start = Clock::now();
         for (;;) {
             int done = 0;
             check(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE),
                   "MPI_Testall");
             if (done) return true;
-            const double waited = seconds_since(start);
-            if (waited < eager_s_) continue;
-            if (rank_ == 0) hear_failures();
-            if (waited > limit_s) return false;
-            std::this_thread::sleep_for(kNap);
+            const double elapsed_s = seconds_since(start);
+            if (elapsed_s < spin_s_) continue;
+            if (rank_ == 0) receive_failure();
+            if (elapsed_s > limit_s) return false;
+            std::this_thread::sleep_for(kSleep);
         }
     }
 
-    void hear_failures() {
+    void receive_failure() {
         int there = 0;
         MPI_Status status;
         check(MPI_Iprobe(MPI_ANY_SOURCE, kFailureTag, failures_, &there, &status), "MPI_Iprobe");
@@ -207,7 +208,7 @@ class MpiTransport final : public Transport {
     }
 
     const double limit_s_;
-    double eager_s_ = 0;  // that a wait looks without a nap
+    double spin_s_ = 0;  // time for which a wait polls before it sleeps
     MPI_Comm comm_ = MPI_COMM_NULL, failures_ = MPI_COMM_NULL;
     int rank_ = 0, count_ = 1;
     std::string host_, library_;

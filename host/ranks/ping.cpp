@@ -13,17 +13,17 @@ namespace {
 
 constexpr std::uint64_t kLongestPing = 4 << 20;
 
-// Of nothing no message is sent, so the shortest has a byte.
+// An empty message is not sent, so the shortest one has a byte.
 constexpr std::uint64_t kMessages[] = {1, 64, 1 << 10, 4 << 10, 16 << 10, 64 << 10, 256 << 10, 1 << 20, kLongestPing};
 constexpr std::uint64_t kGathers[] = {136, 1088, 8704, 69632};  // status of 1, 8, 64 and 512 nodes
 
-// Many of what is short, since little disturbs it; 1 GB in all at most.
-int turns_of(std::uint64_t bytes) { return bytes <= (64 << 10) ? 300 : 20; }
+// More repetitions of short messages; at most 1 GB in all.
+int repetitions_of(std::uint64_t bytes) { return bytes <= (64 << 10) ? 300 : 20; }
 
 template <class Call>
-double least_seconds(int turns, Call&& call) {
+double minimum_seconds(int repetitions, Call&& call) {
     double least = std::numeric_limits<double>::max();
-    for (int i = 0; i < turns; ++i) {
+    for (int i = 0; i < repetitions; ++i) {
         const Clock::time_point start = Clock::now();
         call();
         least = std::min(least, seconds_since(start));
@@ -31,11 +31,11 @@ double least_seconds(int turns, Call&& call) {
     return least;
 }
 
-// There and back, told in rank 0.
+// Half of the round trip; valid in rank 0.
 MessageTime message_time(Ranks& ranks, std::uint32_t partner, std::uint64_t bytes) {
     std::vector<std::byte> block(bytes);
     if (ranks.rank() != 0 && ranks.rank() != partner) return {bytes, 0};
-    const double both = least_seconds(turns_of(bytes), [&] {
+    const double both = minimum_seconds(repetitions_of(bytes), [&] {
         if (ranks.first()) ranks.send(partner, std::span<const std::byte>(block));
         ranks.receive(ranks.first() ? partner : 0, std::span(block));
         if (!ranks.first()) ranks.send(0, std::span<const std::byte>(block));
@@ -46,7 +46,8 @@ MessageTime message_time(Ranks& ranks, std::uint32_t partner, std::uint64_t byte
 MessageTime gather_time(Ranks& ranks, std::uint64_t bytes) {
     const std::vector<std::byte> own(bytes);
     const std::vector<std::size_t> sizes(ranks.count(), bytes);
-    return {bytes, least_seconds(turns_of(bytes), [&] { ranks.all_gather(std::span<const std::byte>(own), sizes); })};
+    return {bytes,
+            minimum_seconds(repetitions_of(bytes), [&] { ranks.all_gather(std::span<const std::byte>(own), sizes); })};
 }
 
 Json json_of(const std::vector<MessageTime>& times) {
@@ -57,7 +58,7 @@ Json json_of(const std::vector<MessageTime>& times) {
 
 }  // namespace
 
-// The sum of ((alpha + beta b) / t - 1)^2 is least where its derivatives by both are 0.
+// Minimises the sum of ((alpha + beta b) / t - 1)^2: both partial derivatives are 0.
 Network fitted_network(std::span<const MessageTime> times) {
     double ones = 0, b = 0, bb = 0, y = 0, by = 0;  // sums of 1/t^2, b/t^2, b^2/t^2, 1/t, b/t
     for (const MessageTime& time : times) {
@@ -75,11 +76,11 @@ Network fitted_network(std::span<const MessageTime> times) {
     return both;
 }
 
-// PoCL's threads are shared out when ranks are opened.
+// open_ranks() has set the number of PoCL's threads.
 RankPlace own_place(const std::string& host) {
     const auto cores = static_cast<std::uint32_t>(std::max(1L, ::sysconf(_SC_NPROCESSORS_ONLN)));
-    const char* const said = std::getenv("POCL_MAX_PTHREAD_COUNT");
-    const int threads = said != nullptr ? std::atoi(said) : 0;
+    const char* const value = std::getenv("POCL_MAX_PTHREAD_COUNT");
+    const int threads = value != nullptr ? std::atoi(value) : 0;
     return {host, threads > 0 ? static_cast<std::uint32_t>(threads) : cores, cores};
 }
 

@@ -1,5 +1,4 @@
-// What messages between ranks take: a ping-pong over the transport that renders use, and the network of two numbers
-// that lies nearest to it.
+// Message times between ranks: a ping-pong over the transport of renders, and a linear network model fitted to it.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -11,7 +10,7 @@
 
 namespace raya {
 
-/// Seconds that so many bytes take one way: the least of many times, since whatever else runs only adds to them.
+/// One-way time of a message: the minimum of many, as other load can only add to it.
 struct MessageTime {
     std::uint64_t bytes = 0;
     double seconds = 0;
@@ -20,38 +19,38 @@ struct MessageTime {
 /// A message of b bytes takes alpha + beta b seconds (R. W. Hockney, Parallel Computing 20, 1994).
 struct Network {
     double alpha_s = 0;
-    double beta_s = 0;  // of a byte
+    double beta_s = 0;  // per byte
 
     double seconds(double bytes) const { return alpha_s + beta_s * bytes; }
 };
 
-/// By least squares of the relative errors, so that short messages count as much as long ones; neither number below 0.
-/// Two lengths at least, all times above 0.
+/// Least-squares fit of the relative errors, so that short messages weigh as much as long ones; both parameters >= 0.
+/// Requires at least two different lengths and positive times.
 Network fitted_network(std::span<const MessageTime> times);
 
-/// Where a rank runs, and what of its host's processors its CPU device takes.
+/// Host of a rank, and its share of the processors.
 struct RankPlace {
     std::string host;
-    std::uint32_t threads = 0;
-    std::uint32_t cores = 0;  // of the host
+    std::uint32_t threads = 0;  // of its CPU device
+    std::uint32_t cores = 0;    // of the host
 };
 
 /// Of this process.
 RankPlace own_place(const std::string& host);
 
-/// What a ping-pong has told.
+/// Result of ping().
 struct PingReport {
     std::string library;
     std::vector<RankPlace> ranks;
-    std::uint32_t partner = 0;          // who answered rank 0: the first rank of another host, or rank 1
-    std::vector<MessageTime> messages;  // between the two
-    std::vector<MessageTime> gathers;   // of all ranks, so many bytes each: what ends a superstep of the torus
+    std::uint32_t partner = 0;          // of rank 0: the first rank of another host, or rank 1
+    std::vector<MessageTime> messages;  // between rank 0 and the partner
+    std::vector<MessageTime> gathers;   // all-gather of `bytes` of each rank, as at the end of a torus superstep
     Network network;                    // fitted to the messages
 
     Json json() const;
 };
 
-/// Two ranks at least. Whole in rank 0 alone.
+/// Collective; requires at least two ranks. Only rank 0 gets the complete report.
 PingReport ping(Ranks& ranks);
 
 }  // namespace raya

@@ -8,7 +8,7 @@
 
 #include "host/base/clock.hpp"
 #include "host/base/interruption.hpp"
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 
 namespace raya {
 namespace {
@@ -25,7 +25,7 @@ class NoTransport final : public Transport {
     }
     void start(std::span<const Outgoing>, std::span<const Incoming>) override {}
     void wait() override {}
-    void look() override {}
+    void poll_failures() override {}
     void report_failure(const std::string&, int) override {}
     [[noreturn]] void abort(int code) override { std::exit(code); }
     void close() override {}
@@ -152,7 +152,7 @@ void Ranks::wait_for_first_on_host() {
 
 int Ranks::fail(const std::string& text, int code) {
     if (!many()) {
-        say(fmt::format("raya: {}\n", text));
+        print_log(fmt::format("raya: {}\n", text));
         return code;
     }
     return end_all(fmt::format("rank {} on {}: {}", rank_, host(), text), code);
@@ -162,8 +162,8 @@ int Ranks::fail(const RankFailure& failure) { return end_all(failure.what(), fai
 
 int Ranks::end_all(const std::string& whole, int code) {
     if (!first()) transport_->report_failure(whole, code);
-    end_silently();  // mpirun ends this rank too
-    say(fmt::format("raya: {}\n", whole));
+    suppress_interrupt_message();  // mpirun ends this rank too
+    print_log(fmt::format("raya: {}\n", whole));
     transport_->abort(code);
     return code;
 }

@@ -1,4 +1,4 @@
-// The ranks that share a render: processes, each with a device of its own. A program that runs alone is the only one.
+// Ranks: the processes that share a render, each with its own device. A program started alone has a single rank.
 #pragma once
 #include <concepts>
 #include <cstdint>
@@ -17,8 +17,8 @@ namespace raya {
 template <class T>
 concept Sendable = std::is_trivially_copyable_v<T>;
 
-/// What a rank handed to its transport and how long it waited there. A broadcast is one message of rank 0, what all
-/// gather one of each.
+/// Traffic that a rank has sent, and its waiting time. A broadcast counts as one message of rank 0, an all-gather as
+/// one message of each rank.
 struct RankTraffic {
     std::uint64_t messages = 0, bytes = 0;
     double waiting_s = 0;
@@ -28,25 +28,26 @@ struct RankTraffic {
     }
 };
 
-/// Calls are made by all ranks in the same order. Alone they do nothing: what rank 0 sends to all is there already.
+/// Communication among ranks. Collective calls must be made by all ranks in the same order. With a single rank they do
+/// nothing.
 class Ranks {
   public:
-    /// The only rank.
+    /// A single rank.
     static Ranks& alone();
 
-    /// Learns which ranks share a host.
+    /// Collective: finds the ranks that share a host.
     explicit Ranks(std::unique_ptr<Transport> transport);
 
     std::uint32_t rank() const { return rank_; }
     std::uint32_t count() const { return count_; }
     bool first() const { return rank_ == 0; }  // rank 0 reads, prints and writes
     bool many() const { return count_ > 1; }
-    std::uint32_t on_host() const { return on_host_; }  // this rank's number among those of its host
-    std::uint32_t of_host() const { return of_host_; }  // how many there are
+    std::uint32_t on_host() const { return on_host_; }  // index of this rank among those of its host
+    std::uint32_t of_host() const { return of_host_; }  // number of ranks of this host
     std::string host() const { return transport_->host(); }
     std::string library() const { return transport_->library(); }
 
-    /// A value, the elements of a vector, a text of rank 0 to all.
+    /// Sends a value, a vector or a text of rank 0 to all ranks.
     template <Sendable T>
     void broadcast(T& value) {
         broadcast_bytes(std::as_writable_bytes(std::span(&value, 1)));
@@ -60,7 +61,7 @@ class Ranks {
     }
     void broadcast(std::string& text);
 
-    /// What every rank has, in the order of ranks.
+    /// Returns the elements of all ranks, in the order of ranks.
     template <Sendable T>
     std::vector<T> all_gather(std::span<const T> own) {
         return all_gather(own, all_sizes(own.size()));
@@ -69,7 +70,7 @@ class Ranks {
     std::vector<T> all_gather(const T& own) {
         return all_gather(std::span(&own, 1), std::vector<std::size_t>(count_, 1));
     }
-    /// `sizes` [rank]: elements of each.
+    /// `sizes` [rank]: number of elements.
     template <Sendable T>
     std::vector<T> all_gather(std::span<const T> own, std::vector<std::size_t> sizes) {
         std::size_t all = 0;
@@ -78,7 +79,7 @@ class Ranks {
         gather_bytes(std::as_bytes(own), std::as_writable_bytes(std::span(gathered)), sizes);
         return gathered;
     }
-    /// The same in rank 0 alone, where it may be large; elsewhere nothing.
+    /// The same in rank 0 only, for large data; empty in other ranks.
     template <Sendable T>
     std::vector<T> gather(std::span<const T> own, const std::vector<std::size_t>& sizes) {
         if (!first()) {
@@ -94,7 +95,7 @@ class Ranks {
     }
     std::vector<std::string> gather(const std::string& text);
 
-    /// Elements to one rank, which asks this one for as many.
+    /// Sends elements to one rank, which must receive the same number.
     template <Sendable T>
     void send(std::uint32_t to, std::span<const T> values) {
         const Outgoing out{to, kPlainTag, std::as_bytes(values)};
@@ -108,15 +109,15 @@ class Ranks {
         wait();
     }
 
-    /// Several at once, as Transport has it.
+    /// Several messages at once (see Transport).
     void start(std::span<const Outgoing> out, std::span<const Incoming> in);
     void wait();
 
-    /// Between steps of a long work: rank 0 hears of a rank that has failed. RankFailure.
-    void look() { transport_->look(); }
+    /// Throws RankFailure in rank 0 if another rank has failed. To be called during long computations.
+    void poll_failures() { transport_->poll_failures(); }
 
-    /// Does the work in one rank of each host, then in the others: what the first leaves in a cache they find there.
-    /// Returns when all have done it.
+    /// Does the work in one rank of each host, then in the others, so that these find its results in caches. Returns
+    /// when all ranks have done it.
     template <std::invocable Work>
     void one_first_on_each_host(Work&& work) {
         if (on_host_ == 0) work();
@@ -127,14 +128,13 @@ class Ranks {
 
     const RankTraffic& traffic() const { return traffic_; }
 
-    /// Says what went wrong here, once, and ends all ranks with the code. Returns the code where there is no other
-    /// rank.
+    /// Prints the error of this rank once and ends all ranks with the code. With a single rank, returns the code.
     int fail(const std::string& text, int code);
 
-    /// The same for what another rank has told, or what is known of it.
+    /// The same for a failure of another rank.
     int fail(const RankFailure& failure);
 
-    /// All ranks are done; the exit code of the one that has the greatest.
+    /// Collective: closes the transport and returns the maximum of all exit codes.
     int close(int code);
 
   private:
@@ -156,15 +156,14 @@ class Ranks {
     RankTraffic traffic_;
 };
 
-/// Adding `offset_ns` to a time of this rank gives rank 0's, at most `uncertainty_ns` off.
+/// Adding `offset_ns` to a time of this rank gives rank 0's time, with an error of at most `uncertainty_ns`.
 struct RankClock {
     std::int64_t offset_ns = 0;
     std::uint64_t uncertainty_ns = 0;
 };
 
-/// Each rank in turn asks rank 0 for its time, again and again, and takes the answer that came soonest: it lies between
-/// the two looks at its own clock (as NTP has it, D. L. Mills 1991). Clocks may drift apart afterwards, which is not
-/// seen. `now`: nanoseconds.
+/// Synchronises clocks as NTP does (D. L. Mills 1991): each rank in turn asks rank 0 for its time repeatedly and takes
+/// the answer with the shortest round trip. Later drift of the clocks is not corrected. `now`: nanoseconds.
 RankClock rank_clock(Ranks& ranks, const std::function<std::uint64_t()>& now);
 
 }  // namespace raya

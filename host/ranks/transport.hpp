@@ -1,5 +1,5 @@
-// What carries bytes from rank to rank: MPI in a module of its own, threads in tests, nothing where a program runs
-// alone.
+// Interface for the transfer of bytes between ranks: MPI in a module of its own, threads in tests, a stub for a single
+// rank.
 #pragma once
 #include <unistd.h>
 
@@ -18,83 +18,85 @@
 
 namespace raya {
 
-/// Bytes on their way to a rank; `tag` tells those of one pair of ranks apart.
+/// Bytes to send to a rank; `tag` distinguishes messages of the same pair of ranks.
 struct Outgoing {
     std::uint32_t to = 0;
     int tag = 0;  // 0..32767
     std::span<const std::byte> bytes{};
 };
 
-/// Room for bytes that a rank sends: exactly as many as it sends.
+/// Buffer for bytes from a rank, of exactly the size that it sends.
 struct Incoming {
     std::uint32_t from = 0;
     int tag = 0;
     std::span<std::byte> bytes{};
 };
 
-/// Another rank has failed, or does not answer: thrown out of whatever waits. The text names rank and host; `code`: the
-/// exit code that goes with it.
+/// Another rank has failed or does not answer; thrown by waiting calls. The text has rank and host; `code` is the exit
+/// code.
 struct RankFailure : std::runtime_error {
     RankFailure(const std::string& text, int exit_code) : std::runtime_error(text), code(exit_code) {}
     int code;
 };
 
-/// Seconds by which a rank that has failed lets those before it speak and end all, so that of several one is heard.
-inline double speaking_turn_s(std::uint32_t rank) {
+/// Seconds that a failed rank waits before its report, so that of several failed ranks only the first one reports and
+/// ends all.
+inline double failure_delay_s(std::uint32_t rank) {
     constexpr double kTurn = 0.25, kMost = 3;
     return std::min(kTurn * rank, kMost);
 }
 
-/// Calls are made by all ranks in the same order, by one thread each. Every wait has an end: RankFailure.
+/// Collective calls must be made by all ranks in the same order, by one thread each. Every wait has a time limit, after
+/// which it throws RankFailure.
 class Transport {
   public:
     virtual ~Transport() = default;
 
     virtual std::uint32_t rank() const = 0;   // 0 .. count() - 1
-    virtual std::uint32_t count() const = 0;  // ranks, 1 at least
+    virtual std::uint32_t count() const = 0;  // number of ranks, >= 1
     virtual std::string host() const = 0;     // the name of this rank's host
     virtual std::string library() const = 0;  // name and version, for messages and reports
 
-    /// Bytes of rank 0 to all, of the same number in each.
+    /// Sends the bytes of rank 0 to all; the size must be the same in all ranks.
     virtual void broadcast(std::span<std::byte> bytes) = 0;
 
-    /// What all ranks have, one after another, to each; `sizes` [rank]: bytes of each, 2^31 together at most.
+    /// Concatenates the bytes of all ranks in each rank; `sizes` [rank]: bytes, at most 2^31 in all.
     virtual void all_gather(std::span<const std::byte> own, std::span<std::byte> all,
                             std::span<const std::size_t> sizes) = 0;
 
-    /// Begins to send and to receive, and returns; wait() is called before the next call of any kind, and until then
-    /// the bytes stay where they are.
+    /// Starts non-blocking messages. wait() must be called before any other call, and the buffers must stay valid until
+    /// then.
     virtual void start(std::span<const Outgoing> out, std::span<const Incoming> in) = 0;
     virtual void wait() = 0;
 
-    /// Throws RankFailure in rank 0 where another rank has told of one, and does not wait: for a rank that computes.
-    virtual void look() = 0;
+    /// Throws RankFailure in rank 0 if another rank has reported one; does not block.
+    virtual void poll_failures() = 0;
 
-    /// Tells rank 0 what went wrong here, so that it says so and ends all; returns after some seconds if it does not.
+    /// Reports an error of this rank to rank 0, which prints it and ends all ranks. Returns after some seconds if rank
+    /// 0 does not.
     virtual void report_failure(const std::string& text, int code) = 0;
 
     /// Ends the processes of all ranks with that exit code.
     [[noreturn]] virtual void abort(int code) = 0;
 
-    /// Nothing is called behind it.
+    /// Must be the last call.
     virtual void close() = 0;
 };
 
-/// Starts MPI. A wait of more than `limit_s` seconds ends with RankFailure. The caller owns what is returned.
+/// Starts MPI. A wait of more than `limit_s` seconds ends with RankFailure. The caller owns the result.
 using OpenMpi = Transport*(double limit_s);
 
 inline constexpr const char *kMpiModule = "raya_mpi", *kOpenMpi = "raya_open_mpi";
 
-/// An end for calls that have none of their own, such as MPI's beginning and its end.
-/// Ends the process with `code` where it lives longer than `limit_s` seconds, and says `text` on stderr before; empty:
-/// nothing.
+/// Time limit for calls without one, such as MPI_Init and MPI_Finalize. Unless destroyed within `limit_s` seconds, it
+/// prints `text` on stderr and ends the process with `code`.
 class Deadline {
   public:
     Deadline(double limit_s, std::string text, int code)
         : watch_([this, limit_s, text = std::move(text), code] {
               std::unique_lock lock(mutex_);
               if (ended_.wait_for(lock, std::chrono::duration<double>(limit_s), [this] { return over_; })) return;
-              if (!text.empty() && ::write(STDERR_FILENO, text.data(), text.size()) < 0) std::_Exit(code);  // unheard
+              if (!text.empty() && ::write(STDERR_FILENO, text.data(), text.size()) < 0) std::_Exit(code);
               std::_Exit(code);
           }) {}
     ~Deadline() {

@@ -13,7 +13,7 @@ namespace {
 
 using Rows = std::vector<BenchMeasurement>;
 
-/// What was measured, without how it went.
+/// Identifies what was measured.
 auto key(const BenchMeasurement& r) {
     return std::tie(r.kernel, r.scene, r.size, r.array, r.format, r.lanes, r.group_size);
 }
@@ -23,12 +23,12 @@ const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wante
     return found == rows.end() ? nullptr : &*found;
 }
 
-/// Percent of the rate: -10 where a tenth is lost.
+/// Change of a rate in percent.
 double change(double before, double now) { return 100 * (now / before - 1); }
 
 std::string percent(double value) { return fmt::format("{:+.1f} %", value); }
 
-std::vector<std::string> named(const BenchMeasurement& row) {
+std::vector<std::string> key_cells(const BenchMeasurement& row) {
     return {row.kernel, row.scene, row.size, row.format, std::to_string(row.lanes), std::to_string(row.group_size)};
 }
 
@@ -39,7 +39,7 @@ std::vector<std::string> joined(std::vector<std::string> first, const std::vecto
 
 std::string rate(double value) { return fmt::format("{:.1f}", value); }
 
-/// The verdict on a row that both sides have, counted.
+/// Verdict on a row of both runs; counts it in `sum`.
 std::string verdict(BenchComparison& sum, const BenchMeasurement& before, const BenchMeasurement& now,
                     double tolerance) {
     const double best = change(before.best_rate(), now.best_rate());
@@ -56,19 +56,19 @@ std::string verdict(BenchComparison& sum, const BenchMeasurement& before, const 
     return std::min(best, median) > tolerance ? "faster" : "as before";
 }
 
-/// The two sides' words for the same thing, where they differ.
+/// Adds a remark if the two texts differ.
 void add_difference(BenchComparison& sum, const char* what, const std::string& before, const std::string& now) {
     if (before == now) return;
     sum.remarks.push_back(fmt::format("another {}: {}, the baseline's is {}", what, now, before));
     sum.text += "warning: " + sum.remarks.back() + "\n";
 }
 
-/// Of either side, a null pointer where it lacks the row.
-Json row_json(const BenchMeasurement* before, const BenchMeasurement* now, const std::string& said) {
+/// `before`, `now`: null if that run does not have the row.
+Json row_json(const BenchMeasurement* before, const BenchMeasurement* now, const std::string& verdict_text) {
     Json json = measured_json(now != nullptr ? *now : *before);
     json["mrays_per_s"] = now != nullptr ? rates_json(*now) : Json{};
     json["mrays_per_s_was"] = before != nullptr ? rates_json(*before) : Json{};
-    json["verdict"] = said;
+    json["verdict"] = verdict_text;
     return json;
 }
 
@@ -88,23 +88,24 @@ BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& no
                                                     "best Mrays/s", "was", "change", "median", "was", "change", ""}};
     for (const BenchMeasurement& row : now.rows) {
         const BenchMeasurement* before = find_row(baseline.rows, row);
-        const std::string said = before == nullptr ? "not in the baseline" : verdict(sum, *before, row, tolerance);
-        sum.rows.push_back(row_json(before, &row, said));
+        const std::string text = before == nullptr ? "not in the baseline" : verdict(sum, *before, row, tolerance);
+        sum.rows.push_back(row_json(before, &row, text));
         if (before == nullptr) {
             table.push_back(
-                joined(named(row), {rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", "-", said}));
+                joined(key_cells(row), {rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", "-", text}));
             continue;
         }
-        table.push_back(joined(named(row), {rate(row.best_rate()), rate(before->best_rate()),
-                                            percent(change(before->best_rate(), row.best_rate())),
-                                            rate(row.median_rate()), rate(before->median_rate()),
-                                            percent(change(before->median_rate(), row.median_rate())), said}));
+        table.push_back(joined(key_cells(row), {rate(row.best_rate()), rate(before->best_rate()),
+                                                percent(change(before->best_rate(), row.best_rate())),
+                                                rate(row.median_rate()), rate(before->median_rate()),
+                                                percent(change(before->median_rate(), row.median_rate())), text}));
     }
     for (const BenchMeasurement& row : baseline.rows) {
         if (find_row(now.rows, row) != nullptr) continue;
-        const std::string said = "in the baseline alone";
-        sum.rows.push_back(row_json(&row, nullptr, said));
-        table.push_back(joined(named(row), {"-", rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", said}));
+        const std::string text = "in the baseline alone";
+        sum.rows.push_back(row_json(&row, nullptr, text));
+        table.push_back(
+            joined(key_cells(row), {"-", rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", text}));
     }
     sum.text += text_table(table);
     return sum;

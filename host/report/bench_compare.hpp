@@ -1,4 +1,4 @@
-// Two runs of `raya bench`, row against row: what became slower, faster, or another image.
+// Compares two runs of `raya bench` row by row: rates and images.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,22 +8,21 @@
 namespace raya {
 
 struct BenchComparison {
-    std::string text;                    // warnings, and a table with a line for each row of either side
-    int compared = 0;                    // rows that both sides have
-    int slower = 0;                      // of these, past the tolerance
-    int other_images = 0;                // of these, with another hash
-    Json rows = Json::list();            // of either side: what was measured, rates now and before, the verdict
-    std::vector<std::string> remarks{};  // another device, driver, version
+    std::string text;                    // warnings, and a table of all rows of both runs
+    int compared = 0;                    // rows in both runs
+    int slower = 0;                      // of these: slower by more than the tolerance
+    int other_images = 0;                // of these: with another hash
+    Json rows = Json::list();            // all rows: key, rates now and before, verdict
+    std::vector<std::string> remarks{};  // differences of device, driver and version
     bool failed() const { return slower + other_images > 0; }
 };
 
-/// How many rows of `now` the baseline has as well.
+/// Number of rows of `now` that the baseline also has.
 int rows_in_common(const BenchReport& baseline, const BenchReport& now);
 
-/// Rates of `now` against those of `baseline`. A row is slower where its best and its median have both lost more than
-/// `tolerance` percent of their rate: a disturbance from outside moves one of them, a slower kernel both. Another
-/// device, driver or version of raya is a warning, a row that one side lacks a remark; another image is a failure,
-/// whatever its time.
+/// Compares `now` with `baseline`. A row is slower if its best and its median rate have both dropped by more than
+/// `tolerance` percent: a disturbance by other programs affects one of them, a slower kernel both. Another image is a
+/// failure at any rate. Another device, driver or version of raya gives a warning; rows in only one run are listed.
 BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& now, double tolerance);
 
 }  // namespace raya

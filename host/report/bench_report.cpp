@@ -21,7 +21,7 @@ Json row_json(const BenchMeasurement& row) {
     json["hash"] = row.hash;
     json["build_options"] = row.build_options;
     if (!row.roofline) return json;
-    if (!row.roofline->lacking.empty()) json["no_roofline"] = row.roofline->lacking;
+    if (!row.roofline->unavailable.empty()) json["no_roofline"] = row.roofline->unavailable;
     if (row.roofline->rows.empty()) return json;
     json["peak"] = peak_json(row.roofline->peak);
     json["roofline"] = roofline_json(*row.roofline).elements().front();
@@ -30,23 +30,23 @@ Json row_json(const BenchMeasurement& row) {
 
 BenchMeasurement row_of(const Json& json) {
     const auto text = [&](const char* key) { return json.at(key).text(); };
-    const auto few = [&](const char* key) { return static_cast<std::uint32_t>(json.at(key).whole(INT32_MAX)); };
+    const auto number = [&](const char* key) { return static_cast<std::uint32_t>(json.at(key).whole(INT32_MAX)); };
     return {.kernel = text("kernel"),
             .scene = text("scene"),
             .size = text("size"),
             .array = text("array"),
             .format = text("format"),
-            .lanes = few("lanes"),
-            .group_size = few("group"),
+            .lanes = number("lanes"),
+            .group_size = number("group"),
             .rays = json.at("rays").whole(),
             .best_s = json.at("ms").at("best").number() * 1e-3,
             .median_s = json.at("ms").at("median").number() * 1e-3,
-            .samples = static_cast<int>(few("samples")),
+            .samples = static_cast<int>(number("samples")),
             .hash = text("hash"),
             .build_options = text("build_options")};
 }
 
-bool can_be_a_time(double seconds) { return seconds > 0; }  // JSON has no infinite numbers
+bool is_valid_time(double seconds) { return seconds > 0; }  // JSON has no infinite numbers
 
 BenchReport report_of(const Json& json) {
     const Json* const kind = json.find("kind");
@@ -64,7 +64,7 @@ BenchReport report_of(const Json& json) {
     std::set<std::string> measured;
     for (const BenchMeasurement& row : report.rows) {
         const std::string name = fmt::format("row {} of {} lanes", row.format, row.lanes);
-        if (!can_be_a_time(row.best_s) || !can_be_a_time(row.median_s) || row.rays == 0)
+        if (!is_valid_time(row.best_s) || !is_valid_time(row.median_s) || row.rays == 0)
             throw JsonError(name + " has rays or times that are not positive");
         if (!measured.insert(measured_json(row).dump()).second) throw JsonError(name + " occurs twice");
     }

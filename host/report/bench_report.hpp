@@ -1,4 +1,4 @@
-// What `raya bench` measured, as a file that a later run can be compared with.
+// Report of `raya bench`: written as JSON, and read as the baseline of a later run.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -11,29 +11,29 @@
 
 namespace raya {
 
-/// One kernel with one set of options. All but the times and the image's hash say what was measured: two rows that
-/// agree there can be compared.
+/// Measurement of one kernel with one set of options. Two rows can be compared if all members of measured_json() are
+/// equal.
 struct BenchMeasurement {
-    std::string kernel, scene;  // the scene's file without folder
+    std::string kernel, scene;  // scene: file name without folder
     std::string size;           // pixels, "512x512"
     std::string array;          // PEs, mapping, bounces, grid: "256 PEs, cyclic:16, 8 bounces, accel none"
     std::string format;
     std::uint32_t lanes = 0, group_size = 0;
     std::uint64_t rays = 0;           // of one image
-    double best_s = 0, median_s = 0;  // of one image, > 0: the kernel's on the device, or a whole render's on the host
-    int samples = 0;                  // of which these are the best and the median
-    std::string hash, build_options = {};  // of the image; as the compiler saw them
-    std::optional<Roofline> roofline{};    // of one row, the best sample's; where the device's peak was measured
+    double best_s = 0, median_s = 0;  // for one image, > 0: kernel time on the device, or of a whole render on the host
+    int samples = 0;                  // from which best and median are taken
+    std::string hash, build_options = {};  // hash of the image; options as passed to the compiler
+    std::optional<Roofline> roofline{};    // one row, of the best sample; if the device's peak was measured
 
     double best_rate() const { return static_cast<double>(rays) / best_s * 1e-6; }  // Mrays/s
     double median_rate() const { return static_cast<double>(rays) / median_s * 1e-6; }
 };
 
-/// What the driver's compiler took for a program's kernels.
+/// Build of a program by the driver's compiler.
 struct BenchBuild {
-    std::string kernel, variant, format;  // the program's file; of which render; of which format
+    std::string kernel, variant, format;  // program file, variant of the render, number format
     std::uint32_t lanes = 0;
-    double build_s = 0, launch_s = 0;  // of the first launches
+    double build_s = 0, launch_s = 0;  // launch_s: first launches
     std::size_t binary_bytes = 0;
     std::string build_options{};
 };
@@ -43,21 +43,21 @@ struct BenchReport {
     std::string device, platform, version, driver;
     std::vector<BenchMeasurement> rows;
     std::vector<BenchBuild> builds{};  // with --build, which leaves `rows` empty
-    Json compared{};  // compare_bench()'s, with the baseline's name; null: held against none
+    Json compared{};                   // result of compare_bench(), with the baseline's name; null: no comparison
 };
 
-/// What was measured, by which rows are compared; and its rates, Mrays/s.
+/// Members that identify a row; rates in Mrays/s.
 Json measured_json(const BenchMeasurement& row);
 Json rates_json(const BenchMeasurement& row);
 
-/// By which a report is known again: its member "kind".
+/// Member "kind" of a report, which identifies it.
 inline constexpr const char* kBenchReportKind = "raya bench";
 
 /// The report, its kind first.
 Json to_json(const BenchReport& report);
 
-/// Reads what to_json() made, but for rooflines and comparison. Throws UserError with file, reason and
-/// remedy for a file that cannot be read, is no such report, or holds a row that cannot be one.
+/// Reads a report, except rooflines and comparison. Throws UserError with file, reason and remedy if the file cannot be
+/// read, is not a report of raya bench, or has an invalid row.
 BenchReport read_bench_report(const std::filesystem::path& path);
 
 }  // namespace raya

@@ -17,7 +17,7 @@ std::string build_line(double build_s, const std::vector<ProgramBuild>& builds) 
     std::string text = fmt::format("kernel build {:.3f} s, not among the commands", build_s);
     for (std::size_t i = 0; i < builds.size(); ++i)
         text += fmt::format("{} {} {:.3f} s", i == 0 ? ":" : ",", builds[i].name, builds[i].seconds);
-    return text + (builds.empty() ? "\n" : "; the rest are first launches, at which some drivers compile\n");
+    return text + (builds.empty() ? "\n" : "; the remainder is first launches, at which some drivers compile\n");
 }
 
 }  // namespace
@@ -38,8 +38,8 @@ std::string profile_table(double build_s, const std::vector<ProgramBuild>& build
                         c.bytes > 0 && c.total_ns > 0 ? fmt::format("{:.3f}", number(c.bytes) / total) : "-"});
     }
     return build_line(build_s, builds) + text_table(rows) +
-           "total, share, min, mean and max are from start to end; queue->submit and submit->start are means of what "
-           "came before\n";
+           "total, share, min, mean and max: times from start to end; queue->submit and submit->start: mean waiting "
+           "times before the start\n";
 }
 
 Json commands_json(const std::vector<LabelSummary>& commands, bool waits) {

@@ -1,4 +1,4 @@
-// Launches and times of every labelled command, as a table and as JSON.
+// Launches and times of commands by label, as a table and as JSON.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,13 +9,13 @@
 
 namespace raya {
 
-/// A line about the builds, which are none of the commands, then one line for each label and kind: launches, total,
-/// share of all commands, least, mean and most, all from a command's start to its end; then, kept apart, how long one
-/// waited on average until it was submitted to the device, and from there until it started.
+/// A line about builds, which are not commands, then a table with a row for each label and kind: launches; total,
+/// share, minimum, mean and maximum of the times from start to end; mean times from queueing to submission and from
+/// submission to start; bytes.
 std::string profile_table(double build_s, const std::vector<ProgramBuild>& builds,
                           const std::vector<LabelSummary>& commands);
 
-/// `waits`: with those two times and the bytes moved.
+/// `waits`: also the mean times before the start, and the bytes moved.
 Json commands_json(const std::vector<LabelSummary>& commands, bool waits);
 Json builds_json(const std::vector<ProgramBuild>& builds);
 

@@ -90,7 +90,7 @@ Json accel_json(const std::optional<AccelSummary>& a) {
         {"kind", "grid"}, {"divisions", a->divisions}, {"copies", a->copies}, {"words", a->words}, {"apart", a->apart}};
 }
 
-// Operations of all that was counted, by the modelled PEs' instruction budget.
+// Operations of all events, by the modelled PEs' instruction budget.
 Json budget_json(const EventCounts& events) {
     const Operations sum = operations_of(events);
     return {{"multiply_accumulates", sum.multiply_accumulates},
@@ -120,8 +120,8 @@ Json measured_json(const RenderReport& report) {
     if (!report.ranks.empty()) json["ranks"] = report.ranks;
     if (!m.roofline) return json;
     json["builds"] = builds_json(m.builds);
-    if (!m.roofline->lacking.empty()) json["no_roofline"] = m.roofline->lacking;
-    if (!m.roofline->lacking.empty()) return json;
+    if (!m.roofline->unavailable.empty()) json["no_roofline"] = m.roofline->unavailable;
+    if (!m.roofline->unavailable.empty()) return json;
     json["peak"] = peak_json(m.roofline->peak);
     json["roofline"] = roofline_json(*m.roofline);
     return json;
@@ -233,7 +233,7 @@ std::string model_line(const RenderReport& r) {
                        time_text(t.image_ms), time_text(t.total_ms), r.machine.name);
 }
 
-// Machine and what lies where.
+// PEs and mapping, or nodes and voxels.
 std::string machine_text(const RenderReport& r) {
     if (r.torus) return torus_machine_text(*r.torus);
     return fmt::format("{}, {} mapping{}", counted(r.machine.pes, "PE"), r.machine.mapping,
@@ -246,9 +246,9 @@ std::string accel_line(const RenderReport& r) {
     const EventCounts& e = r.events;
     const auto rays = static_cast<double>(ray_count(e));
     const double tests = static_cast<double>(test_count(e)) / rays, steps = static_cast<double>(e[RAYA_STEPS]) / rays;
-    const std::string apart = a.apart ? fmt::format(", {} held apart", a.apart) : "";
+    const std::string apart = a.apart ? fmt::format(", {} listed separately", a.apart) : "";
     if (a.kind == AccelKind::kBvh)
-        return fmt::format("tree    {}, {}, depth {}{}; {:.1f} tests and {:.1f} nodes a ray\n",
+        return fmt::format("bvh     {}, {}, depth {}{}; {:.1f} tests and {:.1f} nodes a ray\n",
                            counted(a.nodes, "node"), counted(a.leaves, "leaf", "leaves"), a.depth, apart, tests, steps);
     return fmt::format("grid    {}x{}x{} voxels, {} of objects{}; {:.1f} tests and {:.1f} steps a ray\n",
                        a.divisions[0], a.divisions[1], a.divisions[2], counted(a.copies, "copy", "copies"), apart,
@@ -261,13 +261,14 @@ std::string scale_line(const RenderReport& r) {
 }
 
 std::string memory_line(const RenderReport& r) {
-    return fmt::format(
-        "memory  {} in {}{}{}\n", needed_text(r.machine.pe_memory_used_bytes), r.torus ? "the fullest node" : "each PE",
-        r.machine.pe_memory_bytes ? fmt::format(" of {}", present_text(r.machine.pe_memory_bytes)) : ", no limit",
-        r.torus ? torus_memory_text(*r.torus) : "");
+    return fmt::format("memory  {} in {}{}{}\n", required_size_text(r.machine.pe_memory_used_bytes),
+                       r.torus ? "the fullest node" : "each PE",
+                       r.machine.pe_memory_bytes ? fmt::format(" of {}", available_size_text(r.machine.pe_memory_bytes))
+                                                 : ", no limit",
+                       r.torus ? torus_memory_text(*r.torus) : "");
 }
 
-// Which of the ranks waited longest for the others, and what they sent.
+// Messages of the ranks, and the longest time that one waited for others.
 std::string ranks_line(const RenderReport& r) {
     if (r.ranks.empty()) return {};
     double waiting = 0;
@@ -279,13 +280,13 @@ std::string ranks_line(const RenderReport& r) {
         bytes += rank.at("bytes_sent").whole();
         hosts.insert(rank.at("host").text());
     }
-    return fmt::format("ranks   {} on {}; {}, {} sent; one waited {:.3f} s for others\n", r.ranks.size(),
-                       counted(hosts.size(), "host"), counted(messages, "message"), needed_text(bytes), waiting);
+    return fmt::format("ranks   {} on {}; {}, {} sent; longest wait for others {:.3f} s\n", r.ranks.size(),
+                       counted(hosts.size(), "host"), counted(messages, "message"), required_size_text(bytes), waiting);
 }
 
 }  // namespace
 
-std::string human_summary(const RenderReport& r) {
+std::string summary_text(const RenderReport& r) {
     const EventCounts& e = r.events;
     const std::uint64_t rays = ray_count(e);
     std::string text =

@@ -1,4 +1,4 @@
-// The report of one render: plain data, as JSON for programs and as a few lines for people.
+// Report of one render: plain data, written as JSON and as a summary on the terminal.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,18 +17,18 @@
 
 namespace raya {
 
-/// How the image was smoothed over ring or bus.
+/// Anti-aliasing of an image on the ring machine.
 struct Antialiasing {
     std::string method;             // "filter" or "supersample"
-    std::string exchange;           // how neighbours' pixels came: "ring", "bus", "bus-broadcast"
+    std::string exchange;           // how neighbours' pixels are exchanged: "ring", "bus", "bus-broadcast"
     std::string points;             // of supersampling: "axes" or "diagonals"
     double threshold = 0;           // of supersampling, 0..1
     std::uint64_t recomputed = 0;   // pixels supersampled
     double recomputed_share = 0;    // of all pixels
-    std::uint32_t band_pixels = 0;  // pixels of a PE that move at a time
+    std::uint32_t band_pixels = 0;  // pixels of a PE that move at once
 };
 
-/// How linear colours became the codes of an 8-bit picture.
+/// Conversion of linear colours to codes of an 8-bit picture.
 struct ImageCodes {
     double exposure = 0;          // stops: colours were multiplied by 2^exposure
     std::string tone;             // "clip" or "reinhard"
@@ -44,10 +44,10 @@ struct ProgramBuild {
 struct RenderReport {
     std::string raya;  // version
     std::string scene;
-    std::vector<std::string> warnings;  // what was said on stderr
-    std::vector<NffRemark> skipped;     // what the scene's file has and the scene has not
+    std::vector<std::string> warnings;  // as printed on stderr
+    std::vector<NffRemark> skipped;     // entities of the scene's file that were skipped
 
-    Json view;  // as it was rendered, by the scene or the command line (view_json.hpp)
+    Json view;  // as rendered, with the options of the command line (view_json() in scene_report.hpp)
 
     struct {
         int width = 0, height = 0;  // pixels
@@ -55,13 +55,13 @@ struct RenderReport {
         std::optional<ImageCodes> codes{};
         struct {
             int width = 0, height = 0;  // pixels
-            std::string png;            // the file's bytes; empty: none was made
-        } preview{};                    // for the page of the report (host/image/preview.hpp)
+            std::string png;            // bytes of the file; empty: no preview
+        } preview{};                    // for the report's page (host/image/preview.hpp)
     } image;
 
     struct {
         std::string name, topology;
-        std::string mapping;              // "cyclic" or "column", else the whole text: "grid:16x16"
+        std::string mapping;              // "cyclic" or "column", otherwise with parameters: "grid:16x16"
         std::optional<std::string> fold;  // of a mapping with slots
         std::string format;
         std::uint32_t pes = 0;
@@ -75,43 +75,43 @@ struct RenderReport {
     struct {
         std::string name, platform, version, driver, build_options;
         std::uint32_t lanes = 0, group_size = 0;
-        std::string tuned;  // where lanes, group and what goes with them come from: "defaults", "options", "FILE, DATE"
+        std::string tuned;  // origin of lanes, group and related options: "defaults", "options", "FILE, DATE"
     } device;
 
     EventCounts events{};
-    std::optional<std::uint64_t> requests;            // for pixels, where loads are a simulated dynamic distribution's
+    std::optional<std::uint64_t> requests;            // for pixels, if loads are of a simulated dynamic distribution
     Load load;                                        // of all phases together
     std::vector<std::pair<std::string, Load>> loads;  // of each phase, by its name
     std::optional<Antialiasing> antialias;
-    std::optional<AccelSummary> accel;  // empty: every ray is tested against all objects
+    std::optional<AccelSummary> accel;  // empty: no accelerator
     Communication communication;
     std::optional<ModelledTime> modelled;  // empty: the machine's rates are not known
-    std::optional<TorusReport> torus;      // of a machine that divides the scene, in place of the four above
+    std::optional<TorusReport> torus;      // of the torus machine, instead of the four members above
 
-    std::vector<Json> ranks;  // of each rank what it had, did and sent; empty where there is one
+    std::vector<Json> ranks;  // device, times and messages of each MPI rank; empty for one rank
 
     struct {
         double build_s = 0, render_s = 0;
         std::vector<LabelSummary> commands;
-        std::vector<ProgramBuild> builds{};  // of --profile, as the next
+        std::vector<ProgramBuild> builds{};  // with --profile, like `roofline`
         std::optional<Roofline> roofline{};
-        double earlier_s = 0;  // of render_s: of runs whose state this one went on with
+        double earlier_s = 0;  // part of render_s that earlier runs took, whose checkpoint this run resumed
     } measured;
 };
 
-/// By which a report of a render is known again: its member "kind".
+/// Member "kind" of a report, which identifies it.
 inline constexpr const char* kRenderReportKind = "raya render";
 
-/// Rays of all kinds.
+/// Number of rays of all kinds.
 std::uint64_t ray_count(const EventCounts& events);
 
-/// Tests of rays against objects of all kinds.
+/// Number of intersection tests of all kinds.
 std::uint64_t test_count(const EventCounts& events);
 
-/// The keys are fixed; more may be added.
+/// Members are documented in docs/report.md and only ever added.
 Json to_json(const RenderReport& report);
 
-/// Rays, u, efficiency and times in a few lines.
-std::string human_summary(const RenderReport& report);
+/// The summary on the terminal: rays, imbalance u, efficiency, times.
+std::string summary_text(const RenderReport& report);
 
 }  // namespace raya

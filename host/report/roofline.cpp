@@ -13,9 +13,9 @@ namespace {
 
 double as_double(std::uint64_t count) { return static_cast<double>(count); }
 
-double of_time(double count, double seconds) { return seconds > 0 ? count / seconds : 0; }
+double per_second(double count, double seconds) { return seconds > 0 ? count / seconds : 0; }
 
-// Seconds of the operations at the format's own rates.
+// Time of the operations at the format's own rates.
 double seconds_in_format(const KernelWork& w, const DevicePeak& peak) {
     return as_double(w.operations) / peak.multiply_per_s + as_double(w.divisions) / peak.divide_per_s +
            as_double(w.roots) / peak.root_per_s;
@@ -40,18 +40,18 @@ const char* bound_name(Bound bound) { return bound == Bound::kCompute ? "compute
 
 std::string hundredths(double share) { return fmt::format("{:.2f}", 100 * share); }
 
-// A cell that says nothing where there is nothing to say.
+// "-" for a value of 0.
 std::string cell(double value, const std::string& text) { return value > 0 ? text : "-"; }
 
 std::vector<std::string> cells_of(const RooflineRow& r) {
     const double operations = as_double(r.work.all_operations()), rays = as_double(r.work.rays),
                  bytes = as_double(r.work.bytes);
     return {r.work.label,
-            cell(rays, fmt::format("{:.2f}", 1e-6 * of_time(rays, r.seconds))),
+            cell(rays, fmt::format("{:.2f}", 1e-6 * per_second(rays, r.seconds))),
             cell(operations, fmt::format("{:.4f}", 1e-9 * operations)),
-            cell(operations, fmt::format("{:.3f}", 1e-9 * of_time(operations, r.seconds))),
+            cell(operations, fmt::format("{:.3f}", 1e-9 * per_second(operations, r.seconds))),
             cell(bytes, fmt::format("{:.3f}", 1e-6 * bytes)),
-            cell(bytes, fmt::format("{:.3f}", 1e-9 * of_time(bytes, r.seconds))),
+            cell(bytes, fmt::format("{:.3f}", 1e-9 * per_second(bytes, r.seconds))),
             cell(r.intensity, fmt::format("{:.3g}", r.intensity)),
             bound_name(r.bound),
             hundredths(r.share),
@@ -62,27 +62,26 @@ std::string peak_lines(const DevicePeak& p) {
     return fmt::format(
         "peak    {:.2f} Gop/s multiply-adds in fp32; in {}: {:.2f} multiply-adds, {:.2f} divisions, {:.2f} roots; "
         "{:.2f} GB/s copied\n"
-        "        measured just now by small programs; copies of {} MB, each byte counted as read and as written,\n"
-        "        where the table of commands counts it once\n"
-        "op      an addition, multiplication, comparison, multiply-add, division or root of the budgets of the events "
-        "that were counted\n"
-        "MB      the fewest that the kernel has to read and write. The roof is compute above {:.2f} op/byte, else "
-        "bandwidth\n",
+        "        measured in this run by small programs; copies of {} MB, each byte counted as read and as written\n"
+        "        (the table of commands counts it once)\n"
+        "op      an addition, multiplication, comparison, multiply-add, division or root in the budgets of the "
+        "counted events\n"
+        "MB      the minimum that the kernel has to read and write. The roof is compute above {:.2f} op/byte, "
+        "otherwise bandwidth\n",
         1e-9 * p.fp32_per_s, p.format, 1e-9 * p.multiply_per_s, 1e-9 * p.divide_per_s, 1e-9 * p.root_per_s,
         1e-9 * p.copy_bytes_per_s, p.copy_bytes >> 20, p.fp32_per_s / p.copy_bytes_per_s);
 }
 
 std::string format_remark(const DevicePeak& p) {
     const std::string text =
-        "format  the time that the same operations take at the rates of " + p.format + ", in % of the kernel's";
+        "format  the time of the same operations at the rates of " + p.format + ", in % of the kernel's time";
     if (p.format == "fp32") return text + "\n";
     return text +
-           "; one of them is many instructions;\n"
-           "        above 100 % where most are had for less: comparisons, and spheres that the filter in fp32 rules "
-           "out\n";
+           "; each takes many instructions;\n"
+           "        above 100 % if most are cheaper: comparisons, and spheres that the fp32 filter rejects\n";
 }
 
-// Which roof, what share of it.
+// The kernel's bound and its share of the roof.
 std::string verdict(const RooflineRow& r, const DevicePeak& p) {
     const bool compute = r.bound == Bound::kCompute;
     std::string line = fmt::format("roof    {}: {} bound, {:.2f} % of {}", r.work.label, bound_name(r.bound),
@@ -105,7 +104,7 @@ KernelWork work_of(const std::string& label, const EventCounts& events) {
 Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
                   const std::vector<LabelSummary>& commands) {
     Roofline all{.peak = peak};
-    if (!is_known(peak)) all.lacking = "the device does not time its commands";
+    if (!is_known(peak)) all.unavailable = "the device does not time its commands";
     if (!is_known(peak)) return all;
     for (const KernelWork& work : works)
         for (const LabelSummary& c : commands)
@@ -115,7 +114,7 @@ Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
 }
 
 std::string roofline_table(const Roofline& roofline) {
-    if (!roofline.lacking.empty()) return "no roofline: " + roofline.lacking + "\n";
+    if (!roofline.unavailable.empty()) return "no roofline: " + roofline.unavailable + "\n";
     std::vector<std::vector<std::string>> rows = {
         {"kernel", "Mrays/s", "Gop", "Gop/s", "MB", "GB/s", "op/byte", "bound", "% of roof", "% of format"}};
     for (const RooflineRow& row : roofline.rows) rows.push_back(cells_of(row));
@@ -141,11 +140,11 @@ Json roofline_json(const Roofline& roofline) {
         const double operations = as_double(r.work.all_operations());
         rows.push_back({{"label", r.work.label},
                         {"rays", r.work.rays},
-                        {"rays_per_s", of_time(as_double(r.work.rays), r.seconds)},
+                        {"rays_per_s", per_second(as_double(r.work.rays), r.seconds)},
                         {"operations", r.work.all_operations()},
-                        {"operations_per_s", of_time(operations, r.seconds)},
+                        {"operations_per_s", per_second(operations, r.seconds)},
                         {"bytes", r.work.bytes},
-                        {"bytes_per_s", of_time(as_double(r.work.bytes), r.seconds)},
+                        {"bytes_per_s", per_second(as_double(r.work.bytes), r.seconds)},
                         {"operations_per_byte", r.intensity},
                         {"bound", bound_name(r.bound)},
                         {"share_of_roof", r.share},

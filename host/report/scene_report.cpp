@@ -44,7 +44,7 @@ Json format_json(const FormatFit& f) {
             {"length_exponent", f.scale.exponent},
             {"largest", f.scale.largest},
             {"smallest", f.scale.smallest},
-            {"least_seen", f.scale.least},
+            {"least_seen", f.scale.min_visible},
             {"vanishing", f.scale.vanishing},
             {"refusal", f.refusal.empty() ? Json() : Json(f.refusal)}};
 }
@@ -108,49 +108,51 @@ std::string lights_text(const Scene& scene) {
         lights.push_back(
             fmt::format("at {} of {}", vector_text(light.position), vector_text(light_colour(scene, light))));
     }
-    std::string text = lights.empty() ? "none; everything is seen by ambient light"
+    std::string text = lights.empty() ? "none; only ambient light"
                                       : fmt::format("{}: {}", scene.lights.size(), fmt::join(lights, "; "));
     if (scene.lights.size() > kShown) text += fmt::format("; and {} more", scene.lights.size() - kShown);
     return text;
 }
 
 std::string extent_text(const SceneReport& r) {
-    std::string box = "planes alone have no box";
+    std::string box = "no bounding box, only planes";
     if (!r.box.isEmpty())
         box = fmt::format("{:.6g}..{:.6g} x {:.6g}..{:.6g} x {:.6g}..{:.6g}", r.box.min.x, r.box.max.x, r.box.min.y,
                           r.box.max.y, r.box.min.z, r.box.max.z);
-    return fmt::format("{}; with the eye within {:.6g} of the origin along each axis", box, scene_extent(r.scene));
+    return fmt::format("{}; with the camera at most {:.6g} from the origin along each axis", box,
+                       scene_extent(r.scene));
 }
 
 std::string format_text(const FormatFit& f) {
     if (!f.refusal.empty()) return f.refusal;
     std::string text = f.format + ": ";
-    text += f.scale.exponent == 0 ? "as it is" : fmt::format("lengths x 2^{}", f.scale.exponent);
+    text += f.scale.exponent == 0 ? "lengths unchanged" : fmt::format("lengths x 2^{}", f.scale.exponent);
     if (f.scale.vanishing > 0)
-        text += fmt::format(", {} spheres, cones or checkers smaller than {:.3g} are not seen", f.scale.vanishing,
-                            f.scale.least);
+        text += fmt::format(", {} spheres, cones or checkers smaller than {:.3g} are not visible", f.scale.vanishing,
+                            f.scale.min_visible);
     return text;
 }
 
-// A verdict in a few words: whether a PE holds it, or by how much it does not.
+// "fits", "needs 12 KB more" or "refused".
 std::string verdict(const AccelNeed& need) {
-    if (need.refusal.empty()) return "holds it";
-    if (need.missing_bytes > 0) return "misses " + needed_text(need.missing_bytes);
-    return "refuses it";
+    if (need.refusal.empty()) return "fits";
+    if (need.missing_bytes > 0) return fmt::format("needs {} more", required_size_text(need.missing_bytes));
+    return "refused";
 }
 
 std::string machine_table(const std::vector<MachineNeeds>& machines) {
     std::vector<std::vector<std::string>> rows = {
-        {"machine", "PEs", "format", "accel", "job words", "a PE needs", "and has", "verdict"}};
+        {"machine", "PEs", "format", "accel", "job words", "needed per PE", "available", "verdict"}};
     for (const MachineNeeds& m : machines)
         for (const AccelNeed& n : m.needs)
             rows.push_back({m.machine, std::to_string(m.pes), m.format, n.accel + (n.is_default ? " *" : ""),
-                            n.words > 0 ? std::to_string(n.words) : "-", n.pe_bytes > 0 ? needed_text(n.pe_bytes) : "-",
-                            m.memory_bytes ? present_text(*m.memory_bytes) : "no limit", verdict(n)});
-    return rows.size() == 1 ? "" : text_table(rows) + "*: what the machine takes by default\n";
+                            n.words > 0 ? std::to_string(n.words) : "-",
+                            n.pe_bytes > 0 ? required_size_text(n.pe_bytes) : "-",
+                            m.memory_bytes ? available_size_text(*m.memory_bytes) : "no limit", verdict(n)});
+    return rows.size() == 1 ? "" : text_table(rows) + "*: the machine's default\n";
 }
 
-// What was refused for another reason than memory, once each.
+// Refusals for other reasons than memory.
 std::string refusals_text(const std::vector<MachineNeeds>& machines) {
     std::string text;
     for (const MachineNeeds& m : machines) {
@@ -183,7 +185,7 @@ Json to_json(const SceneReport& r) {
     return json;
 }
 
-std::string human_summary(const SceneReport& r) {
+std::string summary_text(const SceneReport& r) {
     const View& v = r.scene.view;
     std::string text = fmt::format("{}: {}\n", r.file, objects_text(r.scene));
     text += fmt::format("camera  from {} at {} up {}, {:.6g} degrees, {} x {} pixels, background {}\n",

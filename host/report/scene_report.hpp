@@ -1,4 +1,4 @@
-// What `raya info` tells of a scene: plain data, as JSON for programs and as a few lines for people.
+// Report of `raya info`: plain data about a scene, written as JSON and as text on the terminal.
 #pragma once
 
 #include <Imath/ImathBox.h>
@@ -16,55 +16,54 @@
 
 namespace raya {
 
-/// How a number format holds a scene.
+/// Representation of a scene in a number format.
 struct FormatFit {
     std::string format;
     LengthScale scale;
-    std::string refusal;  // of a render in it; empty: it can be rendered
+    std::string refusal;  // error of a render in this format; empty: none
 };
 
-/// What a PE, of the torus the fullest node, must hold of a scene with one accelerator.
+/// Memory that a PE (on the torus the fullest node) needs for a scene with one accelerator.
 struct AccelNeed {
-    std::string accel;           // as --accel takes it; "voxels" of the torus
-    bool is_default = false;     // of the machine, for this scene
-    std::uint64_t words = 0;     // of the job, of 4 bytes, with the accelerator's; of the torus the fullest node's
-    AccelSummary made;           // of a grid or a tree
-    std::uint64_t pe_bytes = 0;  // with rays, pixels and buffers; where that does not fit, what it takes at the least
+    std::string accel;                // value of --accel; "voxels" on the torus
+    bool is_default = false;          // the machine's default for this scene
+    std::uint64_t words = 0;          // of 4 bytes: job with accelerator, on the torus of the fullest node
+    AccelSummary made;                // grid or BVH
+    std::uint64_t pe_bytes = 0;       // with rays, pixels and buffers; if that does not fit: the minimum
     std::uint64_t missing_bytes = 0;  // 0: it fits
-    std::string refusal;              // what a render would say; empty: it can be rendered
+    std::string refusal;              // error of a render; empty: none
 };
 
-/// A machine and what its PEs must hold.
+/// Memory needs of a machine's PEs.
 struct MachineNeeds {
     std::string machine, format;
     std::uint32_t pes = 0;
     std::optional<std::uint64_t> memory_bytes;  // of a PE; empty: no limit
     std::vector<AccelNeed> needs;
-    std::string refusal;  // of the options, by this machine; then there are no needs
+    std::string refusal;  // error for the options on this machine; `needs` is then empty
 };
 
 struct SceneReport {
     std::string raya;  // version
     std::string file;
     Scene scene;
-    Imath::Box3d box;  // of the finite objects
+    Imath::Box3d box;  // bounding box of the finite objects
     std::vector<NffRemark> skipped;
     std::vector<std::string> warnings;
     std::vector<FormatFit> formats;
     std::vector<MachineNeeds> machines;
 };
 
-/// The keys are fixed; more may be added.
+/// Members are documented in docs/report.md and only ever added.
 Json to_json(const SceneReport& report);
 
-/// Objects, camera, lights, extent, formats, and a table of machines.
-std::string human_summary(const SceneReport& report);
+/// The text on the terminal: objects, camera, lights, extent, formats, and a table of machines.
+std::string summary_text(const SceneReport& report);
 
 Json vector_json(const Vec3& v);
 
-/// Camera, background and lights, each with the colour that it emits: what --from, --at, --up, --angle, --background
-/// and
-/// --light take to make the picture again.
+/// Camera, background, and lights with the colours that they emit: the values of --from, --at, --up, --angle,
+/// --background and --light that reproduce the picture.
 Json view_json(const Scene& scene);
 
 }  // namespace raya

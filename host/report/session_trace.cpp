@@ -15,7 +15,7 @@ std::string name_of(const std::string& process, const TraceRank& rank) {
     return rank.named ? fmt::format("rank {} {}", rank.number, process) : process;
 }
 
-// Times of one device on the trace's.
+// Converts times of the device's clock to times of the trace.
 class DeviceTimes {
   public:
     DeviceTimes(const ClockAnchor& anchor, std::uint64_t begin)
@@ -51,7 +51,7 @@ Json arguments_of(const CommandRecord& c) {
     return json;
 }
 
-// The first track that is free at `start`; a new one where none is.
+// Returns the first track that is free at `start`; adds one if there is none.
 std::uint32_t free_track(TraceFile& trace, std::uint32_t process, std::vector<std::uint64_t>& busy_until,
                          std::uint64_t start) {
     const auto found =
@@ -69,9 +69,9 @@ Json clock_json(const ClockAnchor& anchor) {
         {"same_as_host", anchor.same_clock},
         {"offset_ns", anchor.offset_ns},
         {"uncertainty_ns", anchor.uncertainty_ns},
-        {"note", anchor.same_clock ? "device times are by the host's clock (CLOCK_MONOTONIC_RAW)"
-                                   : "host time = device time + offset, from one command given between two looks at "
-                                     "the host's clock; drift is not corrected"}};
+        {"note", anchor.same_clock ? "device times are on the host's clock (CLOCK_MONOTONIC_RAW)"
+                                   : "host time = device time + offset, from one command between two readings of the "
+                                     "host's clock; drift is not corrected"}};
 }
 
 }  // namespace

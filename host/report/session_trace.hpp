@@ -1,4 +1,4 @@
-// What was measured, as two processes of a trace: the host's steps and the device's commands.
+// Adds measured times to a trace, as two processes: the host's steps and the device's commands.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,21 +8,21 @@
 
 namespace raya {
 
-/// Whose they are, where there are several ranks: then the number stands before the processes' names.
+/// MPI rank of the processes; `named`: prefix their names with the rank, for several ranks.
 struct TraceRank {
     std::uint32_t number = 0;
     bool named = false;
 };
 
-/// One track of steps. `begin`: host_clock_ns() at the trace's beginning; no step is earlier.
+/// Adds one track of steps. `begin`: host_clock_ns() at the start of the trace; no step starts earlier.
 void add_host_steps(TraceFile& trace, const std::vector<HostStep>& steps, std::uint64_t begin,
                     const TraceRank& rank = {});
 
-/// A slice for each command from its start to its end, all in the queue's track, with its four times by the device's
-/// clock, bytes, and what is known of a kernel's launch. The queue is in order, so commands follow each other; should a
-/// driver say otherwise, those that overlap go to a track of their own. A command whose times are out of order, or
-/// before `begin`, is moved to the nearest time that is not, and counted in the metadata. What the clocks are to each
-/// other goes to the metadata too. A device that does not time its commands has no process, and the metadata says so.
+/// Adds a slice for each command from start to end, with its four times on the device's clock, bytes, and details of
+/// kernel launches. All slices are in one track, because the queue is in order; commands whose reported times overlap
+/// go to further tracks. Times that are out of order or before `begin` are moved to the nearest valid time and counted
+/// in the metadata, which also has the relation of the clocks. For a device that does not time its commands, adds only
+/// a remark to the metadata.
 void add_device_commands(TraceFile& trace, const std::string& device, const Profile& profile, const ClockAnchor& anchor,
                          std::uint64_t begin, const TraceRank& rank = {});
 

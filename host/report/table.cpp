@@ -12,8 +12,8 @@ bool is_number(const std::string& cell) {
     return cell == "-" || (!cell.empty() && std::isdigit(static_cast<unsigned char>(cell.front())));
 }
 
-// A column of numbers, header aside, stands to the right.
-bool stands_right(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
+// Returns true for a column whose cells, except the header, are numbers.
+bool is_right_aligned(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
     return std::all_of(rows.begin() + 1, rows.end(),
                        [&](const auto& row) { return column >= row.size() || is_number(row[column]); });
 }
@@ -31,8 +31,8 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows) {
         std::string line;
         for (std::size_t i = 0; i < row.size(); ++i) {
             if (i > 0) line += "  ";
-            line += stands_right(rows, i) ? fmt::format("{:>{}}", row[i], widths[i])
-                                          : fmt::format("{:<{}}", row[i], widths[i]);
+            line += is_right_aligned(rows, i) ? fmt::format("{:>{}}", row[i], widths[i])
+                                              : fmt::format("{:<{}}", row[i], widths[i]);
         }
         line.erase(line.find_last_not_of(' ') + 1);
         text += line + '\n';

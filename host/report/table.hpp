@@ -5,8 +5,8 @@
 
 namespace raya {
 
-/// The rows under each other, columns two blanks apart; the first row is the header. Columns of numbers,
-/// or of "-" in place of one, stand to the right.
+/// Formats rows as lines with columns two spaces apart; the first row is the header. Columns of numbers and "-" are
+/// aligned to the right.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace raya

@@ -92,13 +92,13 @@ std::string torus_lines(const TorusReport& t) {
     for (const Kind& kind : kKinds)
         kinds += fmt::format("{}{} {}", kinds.empty() ? "" : " + ", t.made[kind.number], kind.name);
     std::string text = fmt::format("packets {} = {}; {}\n", made, kinds, counted(t.supersteps, "superstep"));
-    text += fmt::format("charged {} of {}, {} words a ray and {} a return; {} primary rays thrown away\n",
+    text += fmt::format("charged {} of {}, {} words a ray and {} a return; {} primary rays discarded\n",
                         counted(t.returns, "return"), returns_name(t.packets), t.packets.ray_words,
                         t.packets.return_words(), t.discarded);
-    text += fmt::format("links   {} over {}, {} in all; {} over one on average, {} over the busiest\n",
-                        counted(t.hops, "message"), counted(t.link.count, "link"),
-                        data_text(static_cast<double>(t.link.total_bytes)), data_text(t.link.mean_bytes()),
-                        data_text(static_cast<double>(t.link.max_bytes)));
+    text +=
+        fmt::format("links   {} over {}, {} in all; mean {}, maximum {} over one link\n", counted(t.hops, "message"),
+                    counted(t.link.count, "link"), data_text(static_cast<double>(t.link.total_bytes)),
+                    data_text(t.link.mean_bytes()), data_text(static_cast<double>(t.link.max_bytes)));
     const TorusTime& m = t.modelled;
     text += fmt::format(
         "model   {} if nothing waits (processors {}: compute {}, messages {}; links {}), {} step by step (modelled "
@@ -107,8 +107,8 @@ std::string torus_lines(const TorusReport& t) {
         time_text(m.links_ms), time_text(m.stepwise_ms));
     if (const auto& async = m.asynchronous)
         text += fmt::format(
-            "async   {} without supersteps (busiest processor {}, link {}; a main task waited for links {} at most; {} "
-            "messages)\n",
+            "async   {} without supersteps (busiest processor {}, link {}; longest wait of a main task for links {}; "
+            "{} messages)\n",
             time_text(async->finish_ms), time_text(async->processor_ms), time_text(async->links_ms),
             time_text(async->port_ms), async->delivered);
     return text;

@@ -18,7 +18,7 @@ std::string json_text(const Json& json) { return json.dump(); }
 
 std::string microseconds(std::uint64_t ns) { return fmt::format("{}.{:03}", ns / 1000, ns % 1000); }
 
-std::string named(const char* what, TraceTrack track, const Json& arguments) {
+std::string name_record(const char* what, TraceTrack track, const Json& arguments) {
     return fmt::format(R"({{"ph":"M","name":"{}","pid":{},"tid":{},"args":{}}})", what, track.process, track.thread,
                        json_text(arguments));
 }
@@ -26,19 +26,19 @@ std::string named(const char* what, TraceTrack track, const Json& arguments) {
 }  // namespace
 
 void TraceFile::name_process(std::uint32_t process, const std::string& name) {
-    names_ += named("process_name", {process, 0}, {{"name", name}}) + ",\n";
-    names_ += named("process_sort_index", {process, 0}, {{"sort_index", process}}) + ",\n";
+    names_ += name_record("process_name", {process, 0}, {{"name", name}}) + ",\n";
+    names_ += name_record("process_sort_index", {process, 0}, {{"sort_index", process}}) + ",\n";
 }
 
 void TraceFile::name_track(TraceTrack track, const std::string& name) {
-    names_ += named("thread_name", track, {{"name", name}}) + ",\n";
-    names_ += named("thread_sort_index", track, {{"sort_index", track.thread}}) + ",\n";
+    names_ += name_record("thread_name", track, {{"name", name}}) + ",\n";
+    names_ += name_record("thread_sort_index", track, {{"sort_index", track.thread}}) + ",\n";
     open_[track];
 }
 
-// Whether there is room for so many more.
-bool TraceFile::take(std::size_t events) {
-    const bool fits = events <= most_events_ - events_;
+// Counts `events` events as added, or as dropped if they exceed the limit. Returns true if they fit.
+bool TraceFile::reserve(std::size_t events) {
+    const bool fits = events <= max_events_ - events_;
     (fits ? events_ : left_out_) += events;
     return fits;
 }
@@ -53,12 +53,12 @@ void TraceFile::add(const std::string& event) { text_ += event + ",\n"; }
 void TraceFile::slice(TraceTrack track, const std::string& name, std::uint64_t start, std::uint64_t end,
                       const Json& arguments) {
     check_named(track);
-    if (!take(1)) return;
+    if (!reserve(1)) return;
     std::vector<std::uint64_t>& ends = open_.at(track);
     while (!ends.empty() && ends.back() <= start) ends.pop_back();
     std::uint64_t& last = last_start_[track];
     if (end < start || start < last || (!ends.empty() && end > ends.back()))
-        throw std::logic_error(fmt::format("trace: slice '{}' from {} to {} crosses another one", name, start, end));
+        throw std::logic_error(fmt::format("trace: slice '{}' from {} to {} overlaps another one", name, start, end));
     last = start;
     ends.push_back(end);
     add(fmt::format(R"({{"ph":"X","name":{},"pid":{},"tid":{},"ts":{},"dur":{},"args":{}}})", json_text(name),
@@ -68,7 +68,7 @@ void TraceFile::slice(TraceTrack track, const std::string& name, std::uint64_t s
 
 void TraceFile::counter(std::uint32_t process, const std::string& name, std::uint64_t at,
                         const std::vector<std::pair<std::string, double>>& values) {
-    if (!take(1)) return;
+    if (!reserve(1)) return;
     Json arguments = Json::object();
     for (const auto& [series, value] : values) {
         if (!std::isfinite(value)) throw std::logic_error(fmt::format("trace: counter '{}' is {}", name, value));
@@ -83,7 +83,7 @@ void TraceFile::flow(const std::string& name, TraceTrack from, std::uint64_t fro
     check_named(from);
     check_named(to);
     if (to_at < from_at) throw std::logic_error(fmt::format("trace: flow '{}' goes back in time", name));
-    if (!take(2)) return;
+    if (!reserve(2)) return;
     ++flows_;
     const auto end = [&](const char* phase, TraceTrack track, std::uint64_t at) {
         add(fmt::format(R"({{"ph":{},"cat":"flow","name":{},"id":{},"pid":{},"tid":{},"ts":{}}})", phase,
@@ -98,7 +98,7 @@ void TraceFile::add(const Part& part) {
     text_ += part.text;
     events_ += part.events;
     left_out_ += part.left_out;
-    most_events_ = std::max(most_events_, events_);
+    max_events_ = std::max(max_events_, events_);
 }
 
 std::string TraceFile::head() const { return "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n"; }
@@ -121,8 +121,8 @@ std::string TraceFile::finish(bool compressed) const {
     return file.finish();
 }
 
-std::vector<TracedPe> traced_pes(const std::vector<std::uint64_t>& loads, std::size_t most) {
-    const std::size_t pes = loads.size(), all = std::min(most, pes);
+std::vector<TracedPe> traced_pes(const std::vector<std::uint64_t>& loads, std::size_t max_count) {
+    const std::size_t pes = loads.size(), all = std::min(max_count, pes);
     std::vector<std::uint32_t> by_load(pes);
     std::iota(by_load.begin(), by_load.end(), 0u);
     std::stable_sort(by_load.begin(), by_load.end(), [&](auto a, auto b) { return loads[a] > loads[b]; });

@@ -1,8 +1,8 @@
-// Writes one trace in Chrome's JSON format, as Perfetto and chrome://tracing read it. Knows nothing of what is traced.
+// Writes a trace in the Trace Event Format (JSON) of Chrome, which Perfetto and chrome://tracing read.
 //
-// What readers ask for, and what is held here: processes and tracks are whole numbers, named by records that stand
-// before all others; times are microseconds, with three decimals; slices of one track lie within each other or one
-// after another; either end of a flow lies in a slice.
+// Rules of the format that the writer follows: processes and tracks are integers, named by records before all events;
+// times are microseconds with three decimals; slices of a track are nested or disjoint; both ends of a flow lie in
+// slices.
 #pragma once
 
 #include <cmath>
@@ -17,10 +17,10 @@
 
 namespace raya {
 
-/// The processes of a raya trace, in the order in which they are shown: those of rank 0 with the modelled machine, then
-/// host and device of each other rank.
+/// Processes of a raya trace in display order: host and device of rank 0, the modelled machine, then host and device of
+/// the other ranks.
 enum TraceProcess : std::uint32_t { kTraceHost = 1, kTraceDevice = 2, kTraceMachine = 3 };
-inline constexpr std::uint32_t kTraceProcesses = 3;  // of a rank
+inline constexpr std::uint32_t kTraceProcesses = 3;  // numbers reserved for a rank
 
 /// A row of slices.
 struct TraceTrack {
@@ -30,33 +30,34 @@ struct TraceTrack {
 
 inline std::uint64_t nanoseconds(double ms) { return static_cast<std::uint64_t>(std::llround(ms * 1e6)); }
 
-/// All times are nanoseconds from the trace's beginning. std::logic_error for a track that has no name yet, a slice
-/// that ends before it begins or crosses another one. Holds the text in memory: about 150 bytes for each event.
+/// All times are nanoseconds since the start of the trace. Throws std::logic_error for a track without a name, and for
+/// a slice that ends before it starts or overlaps another one. Keeps the text in memory: about 150 bytes for each
+/// event.
 class TraceFile {
   public:
-    /// `most_events`: slices, counters and ends of flows; what comes after so many is left out and counted.
-    explicit TraceFile(std::size_t most_events) : most_events_(most_events) {}
+    /// `max_events`: limit for slices, counters and ends of flows; further events are dropped and counted.
+    explicit TraceFile(std::size_t max_events) : max_events_(max_events) {}
 
-    /// Processes and tracks are shown in the order of their numbers.
+    /// Numbers of processes and tracks define the display order.
     void name_process(std::uint32_t process, const std::string& name);
     void name_track(TraceTrack track, const std::string& name);
 
-    /// Slices of a track come in the order of their starts, the outer one first.
+    /// Slices of a track must be added by start time, outer slices first.
     void slice(TraceTrack track, const std::string& name, std::uint64_t start, std::uint64_t end,
                const Json& arguments = {});
 
-    /// The values of a counter's series from `at` on.
+    /// Sets the values of a counter's series from time `at` on.
     void counter(std::uint32_t process, const std::string& name, std::uint64_t at,
                  const std::vector<std::pair<std::string, double>>& values);
 
-    /// An arrow between the slices that lie there on the two tracks at the two times.
+    /// Adds an arrow from the slice at `from_at` on track `from` to the slice at `to_at` on track `to`.
     void flow(const std::string& name, TraceTrack from, std::uint64_t from_at, TraceTrack to, std::uint64_t to_at);
 
-    /// What the trace says of itself.
+    /// Member "otherData" of the trace.
     Json& metadata() { return metadata_; }
 
-    /// What was put in so far, to be added to the trace of another process. Processes and tracks of the two are not the
-    /// same; there are no flows in it.
+    /// Contents of a trace, to be added to another one. The two must have different processes and tracks, and the part
+    /// must have no flows.
     struct Part {
         std::string names, text;
         std::uint64_t events = 0, left_out = 0;
@@ -67,18 +68,18 @@ class TraceFile {
     std::size_t events() const { return events_; }
     std::size_t left_out() const { return left_out_; }
 
-    /// The file, compressed with gzip if `compressed`.
+    /// Returns the text of the file, compressed with gzip if `compressed`.
     std::string finish(bool compressed) const;
 
   private:
-    bool take(std::size_t events);
+    bool reserve(std::size_t events);
     void check_named(TraceTrack track) const;
     void add(const std::string& event);
     std::string head() const;
     std::string tail() const;
 
-    std::size_t most_events_, events_ = 0, left_out_ = 0, flows_ = 0;
-    std::map<TraceTrack, std::vector<std::uint64_t>> open_;  // of each track: where the slices end that are open
+    std::size_t max_events_, events_ = 0, left_out_ = 0, flows_ = 0;
+    std::map<TraceTrack, std::vector<std::uint64_t>> open_;  // ends of each track's open slices
     std::map<TraceTrack, std::uint64_t> last_start_;
     std::string names_, text_;
     Json metadata_ = Json::object();
@@ -89,9 +90,9 @@ struct TracedPe {
     std::string remark;  // "busiest", "idlest" or empty
 };
 
-/// At most `most` PEs, by number: a quarter of them the busiest, a quarter the idlest, of equals the lowest numbers;
-/// the others spread evenly over the numbers, PE 0 first. All PEs where there are no more than that.
-std::vector<TracedPe> traced_pes(const std::vector<std::uint64_t>& loads, std::size_t most);
+/// Selects at most `max_count` PEs, sorted by number: a quarter are the busiest, a quarter the idlest (lower numbers
+/// first among equal loads), the others evenly spaced from PE 0 on. Returns all PEs if they are no more than that.
+std::vector<TracedPe> traced_pes(const std::vector<std::uint64_t>& loads, std::size_t max_count);
 
 /// "PE 17 (busiest)"; `kind` is "PE" or "node".
 std::string traced_pe_name(const std::string& kind, const TracedPe& traced);

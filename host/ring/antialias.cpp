@@ -21,13 +21,13 @@ std::string antialias_name(AntialiasMethod method) { return kMethods.at(static_c
 void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool dynamic) {
     if (dynamic && method != AntialiasMethod::kNone)
         throw UserError(
-            fmt::format("--antialias {} with a dynamic or hybrid --mapping: who owns a neighbour is decided "
-                        "while the machine runs; choose cyclic, column, rows, blocks, grid or tiles",
+            fmt::format("--antialias {} with a dynamic or hybrid --mapping: the owner of a neighbour is only known at "
+                        "run time; use cyclic, column, rows, blocks, grid or tiles",
                         antialias_name(method)));
     if (method == AntialiasMethod::kNone || mapping.kind != RAYA_RANDOM) return;
     throw UserError(fmt::format(
-        "--antialias {} with --mapping {}: random: neighbours live on PEs all over the ring; choose cyclic, "
-        "column, rows, blocks, grid or tiles",
+        "--antialias {} with --mapping {}: random: neighbours are on PEs all over the ring; use cyclic, column, rows, "
+        "blocks, grid or tiles",
         antialias_name(method), mapping_text(mapping)));
 }
 

@@ -1,4 +1,4 @@
-// How the image is smoothed after the first pass (Kohata & Ito 1993, anti-aliasing).
+// Anti-aliasing of the image after the first pass (Kohata & Ito 1993).
 #pragma once
 #include <string>
 
@@ -10,31 +10,31 @@ namespace raya {
 
 enum class AntialiasMethod {
     kNone,
-    kFilter,      // every pixel becomes the mean of its 3 x 3 neighbourhood
-    kSupersample  // pixels that differ from a neighbour become the mean of five points
+    kFilter,      // mean of the 3 x 3 neighbourhood of every pixel
+    kSupersample  // mean of five points for pixels that differ from a neighbour
 };
 
 struct Antialias {
     AntialiasMethod method = AntialiasMethod::kNone;
-    double threshold = 0.125;                   // of the difference in a colour, 0..1; supersampling
-    raya_u32 points = RAYA_POINTS_AXES;         // RAYA_POINTS_AXES or _DIAGONALS; supersampling
-    ExchangeWay exchange = ExchangeWay::kRing;  // how neighbours' pixels come
+    double threshold = 0.125;            // difference of a colour component, 0..1; supersampling
+    raya_u32 points = RAYA_POINTS_AXES;  // RAYA_POINTS_AXES or _DIAGONALS; supersampling
+    ExchangeMethod exchange = ExchangeMethod::kRing;
 };
 
 /// "none", "filter", "supersample"
 std::string antialias_name(AntialiasMethod method);
 
-/// Throws UserError where the mapping leaves no neighbours to be had by turning the ring.
+/// Throws UserError if the mapping is dynamic or random, so that neighbours are not in fixed PEs nearby.
 void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool dynamic);
 
-/// "axes", "diagonals", of RAYA_POINTS_*
+/// "axes" or "diagonals", for RAYA_POINTS_*
 std::string points_name(raya_u32 points);
 
-/// Moves of ring or bus that bring neighbours' pixels from each side, where whole shares move. The filter's sums have
-/// an order, comparisons have none.
+/// Moves of ring or bus that bring neighbours' pixels from each side, if whole shares move. The filter's sums depend on
+/// the order of sides, comparisons do not.
 MovesOfSides smoothing_moves(const Antialias& antialias, const raya_mapping& mapping);
 
-/// Cycles that a PE whose share has `share` pixels spends on the method's arithmetic between neighbours.
+/// Cycles of the method's arithmetic between neighbours, for a PE of `share` pixels.
 SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share);
 
 }  // namespace raya

@@ -24,9 +24,9 @@ void Bus::send(const Buffer<float>& own, PeWords from, Buffer<float>& blocks, Pe
     }
     if (ranks_.rank() == sender) ranks_.send(receiver, std::span<const float>(read("bus.send", own, from, words)));
     if (ranks_.rank() == receiver) {
-        std::vector<float> come(to.rows * words);
-        ranks_.receive(sender, std::span(come));
-        write("bus.send", blocks, to, come, here_.first);
+        std::vector<float> received(to.rows * words);
+        ranks_.receive(sender, std::span(received));
+        write("bus.send", blocks, to, received, here_.first);
     }
 }
 
@@ -35,11 +35,11 @@ void Bus::broadcast_from(const Buffer<float>& own, PeWords from, Buffer<float>& 
     counted_.pe_broadcast_words += from.rows * words;
     if (!ranks_.many()) return copy("bus.broadcast_from", own, from, heard, to, words, 0);
     const std::uint32_t sender = rank_of_pe(pes_, ranks_.count(), from.pe);
-    std::vector<float> said;
-    if (ranks_.rank() == sender) said = read("bus.broadcast_from", own, from, words);
+    std::vector<float> sent;
+    if (ranks_.rank() == sender) sent = read("bus.broadcast_from", own, from, words);
     std::vector<std::size_t> sizes(ranks_.count());
     sizes[sender] = from.rows * words;
-    write("bus.broadcast_from", heard, to, ranks_.all_gather(std::span<const float>(said), sizes), 0);
+    write("bus.broadcast_from", heard, to, ranks_.all_gather(std::span<const float>(sent), sizes), 0);
 }
 
 void Bus::gather(const Buffer<float>& blocks, std::span<float> to, std::uint64_t words) {
@@ -89,17 +89,17 @@ void Ring::load(const Buffer<float>& own, std::size_t own_words, std::size_t beg
     session_.copy_blocks("ring.load", own, {begin, own_words}, front_, {0, row_words_}, count, rows);
 }
 
-// What goes to another rank leaves first, so that it travels while the others are copied.
+// The block for another rank is sent first, so that it travels while the others are copied.
 void Ring::rotate(Turn turn) {
-    if (ranks_.many()) leave(turn);
+    if (ranks_.many()) send_block(turn);
     turn_here(turn);
-    if (ranks_.many()) arrive(turn);
+    if (ranks_.many()) receive_block(turn);
     counted_.rotations += 1;
     counted_.rotation_words += pes_ * block_words_;
     std::swap(front_, back_);
 }
 
-// The block that leaves at one end comes in at the other; on one rank the ends are neighbours.
+// Moves blocks within the segment; with a single rank also from one end to the other.
 void Ring::turn_here(Turn turn) {
     const bool down = turn == Turn::kDown;
     const char* const label = down ? "ring.rotate_down" : "ring.rotate_up";
@@ -108,22 +108,22 @@ void Ring::turn_here(Turn turn) {
     if (!ranks_.many()) move(label, front_, down ? 0 : last, back_, down ? last : 0, 1);
 }
 
-void Ring::leave(Turn turn) {
+void Ring::send_block(Turn turn) {
     const bool down = turn == Turn::kDown;
     const std::uint32_t ranks = ranks_.count(), below = (ranks_.rank() + ranks - 1) % ranks,
                         above = (ranks_.rank() + 1) % ranks;
-    leaves_.resize(block_words_);
-    comes_.resize(block_words_);
-    session_.read("ring.leave", front_, leaves_, down ? 0 : (here_.count - 1) * block_words_);
-    const Outgoing out{down ? below : above, 0, std::as_bytes(std::span(leaves_))};
-    const Incoming in{down ? above : below, 0, std::as_writable_bytes(std::span(comes_))};
+    outgoing_.resize(block_words_);
+    incoming_.resize(block_words_);
+    session_.read("ring.leave", front_, outgoing_, down ? 0 : (here_.count - 1) * block_words_);
+    const Outgoing out{down ? below : above, 0, std::as_bytes(std::span(outgoing_))};
+    const Incoming in{down ? above : below, 0, std::as_writable_bytes(std::span(incoming_))};
     ranks_.start({&out, 1}, {&in, 1});
 }
 
-void Ring::arrive(Turn turn) {
+void Ring::receive_block(Turn turn) {
     session_.flush();
     ranks_.wait();
-    session_.write("ring.arrive", back_, comes_, turn == Turn::kDown ? (here_.count - 1) * block_words_ : 0);
+    session_.write("ring.arrive", back_, incoming_, turn == Turn::kDown ? (here_.count - 1) * block_words_ : 0);
 }
 
 void Ring::take(const Buffer<float>& heard, std::size_t distance) {

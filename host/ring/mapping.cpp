@@ -9,7 +9,7 @@
 namespace raya {
 namespace {
 
-// The divisor of `side` that lies nearest to `wanted`, the lesser of two.
+// The divisor of `side` nearest to `wanted`, the lower one in case of a tie.
 std::uint32_t nearest_divisor(std::uint32_t side, std::uint32_t wanted) {
     const auto away = [&](std::uint32_t d) { return d < wanted ? wanted - d : d - wanted; };
     std::uint32_t nearest = 1;
@@ -29,13 +29,13 @@ void check_tiles(const raya_mapping& m) {
 void check_pes(const MappingRule& rule, const raya_mapping& m) {
     const std::uint32_t pixels = m.width * m.height, own = rule.pes().value_or(m.pes);
     if (own > pixels && rule.pes())
-        throw UserError(fmt::format("--mapping {}: {} PEs, must be 1..{}, a PE for each pixel at most",
+        throw UserError(fmt::format("--mapping {}: {} PEs: must be 1..{}, at most one for each pixel",
                                     mapping_text(rule), own, pixels));
     if (own != m.pes)
-        throw UserError(fmt::format("--pes {} with --mapping {}: this grid has {} PEs; leave --pes out, or give {}",
-                                    m.pes, mapping_text(rule), own, own));
+        throw UserError(fmt::format("--pes {} with --mapping {}: this grid has {} PEs; omit --pes, or use {}", m.pes,
+                                    mapping_text(rule), own, own));
     if (m.pes < 1 || m.pes > pixels)
-        throw UserError(fmt::format("--pes {}: must be 1..{}, a PE for each pixel at most", m.pes, pixels));
+        throw UserError(fmt::format("--pes {}: must be 1..{}, at most one for each pixel", m.pes, pixels));
 }
 
 void check_offset(const raya_mapping& m) {

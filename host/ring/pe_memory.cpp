@@ -10,16 +10,17 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kWaitingRayWords = 7;  // origin, direction, weight
+constexpr std::uint64_t kWaitingRayWords = 7;  // a ray on the stack: origin, direction, weight
 constexpr std::uint64_t kWalkWords = 32;       // the ray, its hit, normal, mirror direction, tint, sum and counters
 constexpr std::uint64_t kPixelBytes = 12;
 
 [[noreturn]] void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes,
                          const std::string& remedy) {
     const char* other = machine.name == "grande" ? "a larger --pe-memory, or none" : "--machine grande";
-    throw DoesNotFit(fmt::format("{}: needs {} in every PE, a PE of {} has {}; use {}{}", what, needed_text(bytes),
-                                 machine.title, present_text(*machine.pe_memory_bytes), remedy, other),
-                     bytes, *machine.pe_memory_bytes);
+    throw DoesNotFit(
+        fmt::format("{}: needs {} in every PE, a PE of {} has {}; use {}{}", what, required_size_text(bytes),
+                    machine.title, available_size_text(*machine.pe_memory_bytes), remedy, other),
+        bytes, *machine.pe_memory_bytes);
 }
 
 }  // namespace

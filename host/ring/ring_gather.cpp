@@ -1,4 +1,4 @@
-// What comes back from the PEs of a ring, of all ranks to rank 0: pixels, costs, marks, counters.
+// Collects results from the PEs of all ranks in rank 0: pixels, costs, marks, counters.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -8,14 +8,14 @@
 #include "host/error.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/ring/tracer.hpp"
-#include "kernels/shared/mapping.h"
+#include "kernels/shared/share_pixels.h"
 
 namespace raya {
 namespace {
 
-/// Calls `move` for each pixel of a range of the share of every PE of a segment, with the PE's number in the segment,
-/// the pixel's in the PE's block and its number in the image. Some PEs at a time, a run of each: where neighbours own
-/// neighbouring columns, what is near in the image is moved together.
+/// Calls `move(PE, pixel, to)` for the pixels in `range` of every PE's share: index of the PE in the segment, of the
+/// pixel in the PE's block, and of the pixel in the image. Interleaves runs of some PEs for locality, as neighbouring
+/// PEs often own neighbouring columns.
 template <class Move>
 void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange range, Move&& move) {
     constexpr std::uint32_t kTogether = 16;
@@ -52,21 +52,21 @@ Image black(const raya_mapping& m) {
             std::vector<float>(3 * std::size_t{m.width} * m.height)};
 }
 
-// Each pixel has one primary ray, counted when its lane takes it. Some devices end long loops early and say nothing
-// (Mesa's llvmpipe after 65,535 turns of a work-item); the pixels that they leave out would be wrong.
+// Checks that every pixel has a primary ray. Some devices end long loops early without an error (Mesa's llvmpipe after
+// 65,535 iterations of a work-item), so that pixels would be missing.
 void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const PeSegment& pes,
                       const DeviceInfo& device) {
     std::uint64_t pixels = 0;
     for (std::uint32_t i = 0; i < pes.count; ++i) pixels += raya_share_size(raya_share_of(m, pes.first + i));
     const std::uint64_t traced = first_pass[RAYA_PRIMARY];
     if (traced == pixels) return;
-    throw DeviceError(
-        fmt::format("{} {} ended the trace kernel after {} of {} pixels; remedy: see what raya verify finds; more PEs "
-                    "(--pes), which leave each work-item fewer pixels and do not change the image, or another device",
-                    device.platform, device.name, traced, pixels));
+    throw DeviceError(fmt::format(
+        "{} {} ended the trace kernel after {} of {} pixels; remedy: run raya verify; use more PEs (--pes), "
+        "which give each work-item fewer pixels and do not change the image, or another device",
+        device.platform, device.name, traced, pixels));
 }
 
-// The events of all ranks, added to both.
+// Adds the events of all ranks to those of the phase and of the render.
 void add_events(const std::vector<EventCounts>& of_ranks, EventCounts& phase, EventCounts& all) {
     for (const EventCounts& events : of_ranks)
         for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
@@ -77,9 +77,9 @@ void add_events(const std::vector<EventCounts>& of_ranks, EventCounts& phase, Ev
 
 }  // namespace
 
-// What each rank's PEs hold, so many elements a PE, comes to rank 0, which takes it rank by rank.
+// Sends the elements of each rank, `of_pe` a PE, to rank 0, which calls `take` for one rank after another.
 template <class T, class Take>
-void RingRenderer::bring(std::vector<T>& own, std::size_t of_pe, const Take& take) {
+void RingRenderer::collect(std::vector<T>& own, std::size_t of_pe, const Take& take) {
     if (!ranks_.first()) return ranks_.send(0, std::span<const T>(own));
     take(pes_, own);
     for (std::uint32_t rank = 1; rank < ranks_.count(); ++rank) {
@@ -90,9 +90,8 @@ void RingRenderer::bring(std::vector<T>& own, std::size_t of_pe, const Take& tak
     }
 }
 
-// Memory for the next pixels, whose first use is slow: of the image, and where those of the last range were until they
-// are placed.
-void RingRenderer::make_room(RingResult& result) {
+// Places the pixels gathered last, and touches the memory for the next ones in advance, as its first use is slow.
+void RingRenderer::prepare_memory(RingResult& result) {
     const StepLog::Step step = session_.step("make room");
     if (result.image.rgb.empty() && ranks_.first()) result.image = black(settings_.mapping);
     place_gathered(result);
@@ -109,8 +108,8 @@ void RingRenderer::gather(PixelRange range, RingResult& result) {
     }
     bus_.gather(pixels_, gathered_, 3 * owned);
     if (ranks_.many())
-        bring(gathered_, std::size_t{3} * window_,
-              [&](const PeSegment& pes, std::span<const float> pixels) { place(pes, range, pixels, result); });
+        collect(gathered_, std::size_t{3} * window_,
+                [&](const PeSegment& pes, std::span<const float> pixels) { place(pes, range, pixels, result); });
     else
         gathered_range_ = range;
 }
@@ -133,14 +132,14 @@ void RingRenderer::place(const PeSegment& pes, PixelRange range, std::span<const
     });
 }
 
-// What the kernels counted is read by the host to be reported: no transfer of the machine.
+// The host reads the kernels' counters for reports; this is no transfer of the modelled machine.
 void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
-    if (!keeps_costs()) return;
+    if (!records_costs()) return;
     const StepLog::Step step = session_.step("collect costs");
     for (std::size_t i = 0; i < counters_.size(); ++i) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
-        bring(cycles, window_, [&](const PeSegment& pes, std::span<const std::uint64_t> counted) {
+        collect(cycles, window_, [&](const PeSegment& pes, std::span<const std::uint64_t> counted) {
             for_each_pixel(settings_.mapping, pes, range, [&](std::size_t pe, std::size_t pixel, std::size_t to) {
                 const std::uint64_t cost = counted[pe * window_ + pixel];
                 result.phases[i].kept_cost->cycles[to] = cost;
@@ -155,7 +154,7 @@ void RingRenderer::collect_marks(RingResult& result) {
     if (ranks_.first()) result.mask = black(settings_.mapping);
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
-    bring(marks, window_, [&](const PeSegment& pes, std::span<const std::uint8_t> marked) {
+    collect(marks, window_, [&](const PeSegment& pes, std::span<const std::uint8_t> marked) {
         const PixelRange all{0, 0, share_};
         for_each_pixel(settings_.mapping, pes, all, [&](std::size_t pe, std::size_t pixel, std::size_t to) {
             const std::uint8_t mark = marked[pe * window_ + pixel];
@@ -180,7 +179,7 @@ void RingRenderer::collect_events(RingResult& result) {
         }
         if (i == 0) check_all_traced(events, settings_.mapping, pes_, session_.device());
         add_events(ranks_.all_gather(events), result.phases[i].events, result.all.events);
-        bring(loads, 1, [&](const PeSegment&, std::span<const std::uint64_t> of_rank) {
+        collect(loads, 1, [&](const PeSegment&, std::span<const std::uint64_t> of_rank) {
             of_all.insert(of_all.end(), of_rank.begin(), of_rank.end());
         });
         std::transform(of_all.begin(), of_all.end(), all.begin(), all.begin(), std::plus<>());

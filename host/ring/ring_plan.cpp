@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "host/accel/bvh.hpp"
 #include "host/accel/partition.hpp"
-#include "host/accel/tree.hpp"
 #include "host/base/clock.hpp"
 #include "host/cl/tuned.hpp"
 #include "host/ring/mapping.hpp"
@@ -13,28 +13,28 @@
 namespace raya {
 namespace {
 
-// Local memory is as fast as a CPU's other memory, and each launch copies the words into it for each PE: where
-// they are many and few of them are read, they stay where they are.
+// Copying the words into local memory costs time for each PE in each launch. It does not pay if there are many words of
+// which an accelerator reads few, nor on CPUs, whose local memory is no faster.
 bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel) {
     constexpr std::size_t kMostCopied = 64 * 1024;
     constexpr std::size_t kFewTurns = 4096;
-    if (device.loop_turns > 0 && job.words().size() > kFewTurns) return false;
-    const std::size_t bytes = 4 * job.words().size() + 32;  // whole rows, and what work-items share
+    if (device.max_loop_iterations > 0 && job.words().size() > kFewTurns) return false;
+    const std::size_t bytes = 4 * job.words().size() + 32;  // padding to whole rows, and the work-group's own data
     return bytes <=
            (accel != AccelKind::kNone ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
 }
 
-constexpr std::size_t kTestsOfWalk = 20;  // of a ray through voxels or down a tree, about
+constexpr std::size_t kTestsOfWalk = 20;  // approximate tests of a ray with an accelerator
 
-// What a launch may do at most, in tests and steps of a lane's rays, where a tree's next step takes as many as `step`.
-// On llvmpipe 12 turns of loops for a test were too few for the images of `raya verify`, 16 enough; a step down a tree
-// turns once for each of sixteen boxes, and then some. What a launch does once is a loop over the words that are
-// copied.
+// Maximum work of a launch on a device that limits loop iterations, in tests and steps of a lane's rays; `step`:
+// maximum work beyond the budget. For the images of `raya verify` on llvmpipe, 12 iterations for a test were too few
+// and 16 enough; a BVH step has one iteration for each of sixteen boxes and some more. The fixed part of a launch is
+// the loop that copies words.
 double most_work(AccelKind accel, double step, const DeviceInfo& device) {
     constexpr double kTurnsOfTest = 24, kTurnsOfStep = 96, kTurnsOfLaunch = 8192;
-    if (device.loop_turns == 0) return 1u << 31;
+    if (device.max_loop_iterations == 0) return 1u << 31;
     const double turns = accel == AccelKind::kNone ? kTurnsOfTest : kTurnsOfStep;
-    return std::max(1.0, (device.loop_turns - kTurnsOfLaunch) / turns - step);
+    return std::max(1.0, (device.max_loop_iterations - kTurnsOfLaunch) / turns - step);
 }
 
 PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
@@ -53,7 +53,7 @@ RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSett
     return all;
 }
 
-// All of a job but its words.
+// A job without its words, as it is sent to other ranks.
 struct RingFigures {
     AccelSummary accel;
     double accel_s = 0;
@@ -96,7 +96,7 @@ LaunchWork launch_work(const RingSettings& settings, const KernelOptions& option
                        std::size_t lights, std::uint32_t pes, const DeviceInfo& device) {
     if (const std::uint32_t work = settings.work_per_launch) return {work, work, work};
     constexpr double kTestsPerLaunch = 2e8;  // about a quarter of a second of two CPU cores
-    constexpr double kRaysPerPixel = 6;      // of the project's scenes
+    constexpr double kRaysPerPixel = 6;      // typical
     const double tests_of_ray = static_cast<double>(
         settings.accel.kind != AccelKind::kNone ? std::min(kTestsOfWalk, objects) : std::max<std::size_t>(1, objects));
     const double most = most_work(settings.accel.kind, tests_of_ray * static_cast<double>(1 + lights), device);
@@ -118,7 +118,7 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
             .accel = static_cast<std::uint32_t>(settings.accel.kind),
             .stack = (RAYA_BVH_WIDTH - 1) * accel.depth,
             .filter = settings.kernels.filter && (job.header().objects.spheres > 0 || job.has_polygons()) &&
-                      filters_hold(settings.format, job.header().extent),
+                      filters_are_valid(settings.format, job.header().extent),
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones(),
@@ -135,7 +135,7 @@ PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const 
 
 AccelSummary append_accel(PackedJob& job, const RingSettings& settings) {
     return settings.accel.kind == AccelKind::kBvh
-               ? append_tree(job, settings.format)
+               ? append_bvh(job, settings.format)
                : append_grid(job, accel_partition(job, settings.format, settings.accel));
 }
 

@@ -1,5 +1,4 @@
-// What a render on a ring machine is asked for, what is chosen where the user leaves the choice, and what every PE
-// holds of the scene.
+// Set-up of a render on a ring machine: settings, choices that the user leaves open, and the words of the scene.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -21,44 +20,44 @@ namespace raya {
 
 struct RingSettings {
     Machine machine;
-    std::optional<DynamicPlan> dynamic;  // loads are those of a dynamic distribution, simulated from the pixels' costs
-    raya_mapping mapping{};              // image size, PEs, which of them owns which pixel
+    std::optional<DynamicPlan> dynamic;  // dynamic distribution, whose loads are simulated from the pixels' costs
+    raya_mapping mapping{};              // image size, PEs and owners of pixels
     std::uint32_t bounces = 8;
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
-    bool keep_costs = false;  // of each pixel, 8 bytes on the host; a dynamic distribution keeps them by itself
+    bool keep_costs = false;  // record the cost of each pixel, 8 bytes on the host; implied by `dynamic`
     Accel accel;
     KernelChoice kernels;
-    std::uint64_t device_pixels = 1 << 22;  // of all PEs that lie on the device at a time, 20 bytes each; smoothed
-                                            // images lie there as a whole
-    std::uint32_t work_per_launch = 0;      // tests and steps of a lane's rays; 0: as much as takes about a second
+    std::uint64_t device_pixels = 1 << 22;  // pixels of all PEs on the device at a time, 20 bytes each; anti-aliased
+                                            // images are there as a whole
+    std::uint32_t work_per_launch = 0;      // tests and steps of a lane's rays; 0: about a second's worth
 };
 
 JobSettings job_settings(const RingSettings& settings, const LengthScale& scale);
 
-/// What a PE has to hold of a job of so many words; `scene` is its name.
+/// Memory demand of a PE for a job of that many words; `scene`: name of the scene.
 PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::uint64_t job_words);
 
-/// The settings with lanes and group size chosen. UserError, before anything is packed or taken, if the kernels cannot
-/// be built with them.
+/// Returns the settings with lanes and group size chosen. Throws UserError, before anything is packed or allocated, if
+/// the kernels cannot be built with them.
 RingSettings checked(RingSettings settings, const DeviceInfo& device);
 
-/// How much one launch should do: no more than takes about a second, so that a progress bar moves, Ctrl-C is heard and
-/// a GPU's watchdog sleeps, and no more than the device lets loops do. `objects`: of the scene; `lights`: of it; `pes`:
-/// on this device.
+/// Work of a launch: at most about a second, so that progress is shown, Ctrl-C takes effect and no GPU watchdog
+/// intervenes, and at most the loop iterations that the device allows. `objects`, `lights`: of the scene; `pes`: on
+/// this device.
 LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
                        std::size_t lights, std::uint32_t pes, const DeviceInfo& device);
 
-/// `accel`: what was made of settings.accel.
+/// `accel`: of the accelerator that settings.accel selected.
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
                              const DeviceInfo& device);
 
-/// A job with the grid or tree behind it, and what was made of that.
+/// A job with its grid or BVH.
 struct RingJob {
     PackedJob job;
     AccelSummary accel;
-    double accel_s = 0;  // measured: to make it
+    double accel_s = 0;  // measured build time of the accelerator
     LengthScale scale;
     std::uint64_t objects = 0;
 };
@@ -66,10 +65,10 @@ struct RingJob {
 /// The words of a scene for this machine, without accelerator.
 PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const LengthScale& scale);
 
-/// Puts the settings' accelerator behind them, which is not none.
+/// Builds the settings' accelerator, which must not be kNone, and appends it to the job.
 AccelSummary append_accel(PackedJob& job, const RingSettings& settings);
 
-/// Packed by rank 0 and sent to all; elsewhere `scene` is not looked at.
+/// Rank 0 packs the job and sends it to all; other ranks do not read `scene`.
 RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks);
 
 }  // namespace raya

@@ -16,16 +16,16 @@ namespace {
 PeSegment segment_here(const raya_mapping& m, const Ranks& ranks) {
     if (m.pes < ranks.count())
         throw UserError(fmt::format(
-            "{} ranks for {} PEs: a rank has one PE at least; start {} ranks or fewer, or take more PEs (--pes)",
+            "{} ranks for {} PEs: a rank needs at least one PE; start {} ranks or fewer, or use more PEs (--pes)",
             ranks.count(), m.pes, m.pes));
     return own_segment(m.pes, ranks);
 }
 
-// Of large images the device holds a part of what the PEs' memories do, so that it and the host need not hold all
-// pixels twice. What goes round the ring lies there as a whole. It is the same in all ranks.
+// For large images the device holds only a window of each PE's pixels, to save memory on device and host. Anti-aliasing
+// needs all pixels on the device. The result must be the same in all ranks.
 std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings, std::uint32_t ranks) {
     if (settings.antialias.method != AntialiasMethod::kNone) return memory.block_pixels;
-    const std::uint32_t pes = (settings.mapping.pes + ranks - 1) / ranks;  // of the rank that has most
+    const std::uint32_t pes = (settings.mapping.pes + ranks - 1) / ranks;  // maximum of a rank
     const std::uint64_t most = std::max<std::uint64_t>(1, settings.device_pixels / pes);
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory.block_pixels, most));
 }
@@ -85,12 +85,12 @@ void RingRenderer::build_exchange(KernelOptions options) {
     counters_.push_back(tracer_->make_counters(kSupersamplePass));
 }
 
-RingResult RingRenderer::render(const ProgressCallback& progress, const RingKeeping* keeping) {
+RingResult RingRenderer::render(const ProgressCallback& progress, const RingCheckpointing* checkpointing) {
     session_.clear_profile();
     communication_ = {};
     const StepLog::Step rendering = session_.step("render");
     started_ = Clock::now();
-    keeping_ = keeping;
+    checkpointing_ = checkpointing;
     const RankTraffic before = ranks_.traffic();
     RingResult result;
     prepare(result);
@@ -109,7 +109,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const RingKeep
     return result;
 }
 
-// A block of each PE's share, as much as its memory holds: a window of the device's after another.
+// Renders the block of each PE's share that fits its memory, one device window after another.
 void RingRenderer::render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress) {
     const std::uint32_t end = std::min(share_, block + memory_.block_pixels);
     if (resumed_ && resumed_->window >= end) return;
@@ -130,7 +130,7 @@ void RingRenderer::prepare(RingResult& result) {
     const StepLog::Step step = session_.step("prepare");
     const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
     std::optional<CostImage> none;
-    if (keeps_costs() && ranks_.first())
+    if (records_costs() && ranks_.first())
         none = CostImage{settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
     if (counters_.size() > 1) result.all.kept_cost = none;
     for (PassCounters& counters : counters_) {
@@ -146,13 +146,13 @@ void RingRenderer::trace(PixelRange range, RingResult& result, const ProgressCal
     const StepLog::Step step = session_.step(kTracePass);
     const double passes = static_cast<double>(counters_.size());
     const auto report = [&](double done) {
-        ranks_.look();
+        ranks_.poll_failures();
         if (progress) progress((range.begin + done * (range.end - range.begin)) / share_ / passes);
     };
-    in_bands(0, range, result, [&](PixelRange band) {
+    trace_in_bands(0, range, result, [&](PixelRange band) {
         range = band;
         tracer_->trace(kTracePass, broadcast_, band, RAYA_POINTS_OWN, marks_, pixels_, counters_[0],
-                       progress || listens() ? report : ProgressCallback{}, [&] { make_room(result); });
+                       progress || polls_failures() ? report : ProgressCallback{}, [&] { prepare_memory(result); });
     });
 }
 
@@ -161,18 +161,18 @@ void RingRenderer::supersample(RingResult& result, const ProgressCallback& progr
     if (!resumed_ || resumed_->pass == 0) contrast_->apply(pixels_, *exchange_);
     PixelRange range{0, 0, share_};
     const auto report = [&](double done) {
-        ranks_.look();
+        ranks_.poll_failures();
         if (progress) progress((1 + (range.begin + done * (range.end - range.begin)) / share_) / 2);
     };
-    in_bands(1, range, result, [&](PixelRange band) {
+    trace_in_bands(1, range, result, [&](PixelRange band) {
         range = band;
         tracer_->trace(kSupersamplePass, broadcast_, band, settings_.antialias.points, contrast_->marks(), pixels_,
-                       counters_[1], progress || listens() ? report : ProgressCallback{});
+                       counters_[1], progress || polls_failures() ? report : ProgressCallback{});
     });
 }
 
-// Work-groups run to their end, so what a PE takes while the machine runs cannot be seen on a device; but it follows
-// from what the pixels cost.
+// OpenCL work-groups cannot hand out pixels among each other at run time, so the dynamic distribution is simulated from
+// the costs of the pixels.
 void RingRenderer::simulate_schedule(RingResult& result) {
     const StepLog::Step step = session_.step("simulate schedule");
     const Schedule schedule = dynamic_schedule(result.cost(), settings_.mapping, *settings_.dynamic);

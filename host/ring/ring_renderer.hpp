@@ -1,4 +1,4 @@
-// Renders a scene on a model of a ring machine: the host drives PEs, bus and ring; the kernels are the PEs.
+// Renders a scene on a model of a ring machine: the host drives PEs, bus and ring; kernels model the PEs.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -23,42 +23,41 @@ namespace raya {
 
 class RingRenderer {
   public:
-    /// Packs the scene, checks that it fits the machine's PEs, builds the kernels and takes the device memory for the
-    /// PEs of this rank. Only rank 0 looks at the scene. Throws UserError (what does not fit, what is out of range,
-    /// more ranks than PEs), DeviceError.
+    /// Packs the scene, checks that it fits the PEs, builds the kernels and allocates the device memory for the PEs of
+    /// this rank. Only rank 0 reads the scene. Throws UserError (the scene does not fit, a setting is out of range,
+    /// more ranks than PEs) or DeviceError.
     RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks = Ranks::alone());
 
-    /// One image. May be called again: the pixels are the same, the times are those of this call. In other ranks than 0
-    /// the result is of this rank alone, and has no image.
-    /// `keeping`, where given, is of one rank, and the image is traced in bands, after each of which what is done may
-    /// be kept; a render that goes on makes the same image and counts the same, and its seconds are those of all runs.
-    RingResult render(const ProgressCallback& progress = {}, const RingKeeping* keeping = nullptr);
+    /// Renders one image; may be called again. In ranks other than 0 the result is of this rank only and has no image.
+    /// With `checkpointing`, which requires a single rank, the image is traced in bands, after each of which a
+    /// checkpoint may be saved. A resumed render has the same image and counts, and the sum of the seconds of all runs.
+    RingResult render(const ProgressCallback& progress = {}, const RingCheckpointing* checkpointing = nullptr);
 
-    /// By what the scene's lengths are multiplied.
+    /// The factor by which the scene's lengths are multiplied.
     const LengthScale& scale() const { return job_.scale; }
 
   private:
-    bool keeps_costs() const { return settings_.keep_costs || settings_.dynamic.has_value(); }
-    bool listens() const { return ranks_.many() && ranks_.first(); }  // for what others tell of their failures
+    bool records_costs() const { return settings_.keep_costs || settings_.dynamic.has_value(); }
+    bool polls_failures() const { return ranks_.many() && ranks_.first(); }  // of other ranks
     void build();
     void build_exchange(KernelOptions options);
     void prepare(RingResult& result);
     void render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress);
     void trace(PixelRange range, RingResult& result, const ProgressCallback& progress);
     void supersample(RingResult& result, const ProgressCallback& progress);
-    void in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
-                  const std::function<void(PixelRange)>& trace);
+    void trace_in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
+                        const std::function<void(PixelRange)>& trace);
     StateSettings state_settings() const;
     RingState host_state(const RingResult& result) const;
-    RingState state(const RingResult& result);
+    RingState checkpoint_state(const RingResult& result);
     void resume(RingResult& result);
-    void keep(std::uint32_t pass, PixelRange range, RingResult& result);
-    void make_room(RingResult& result);
+    void save_checkpoint(std::uint32_t pass, PixelRange range, RingResult& result);
+    void prepare_memory(RingResult& result);
     void gather(PixelRange range, RingResult& result);
     void place_gathered(RingResult& result);
     void place(const PeSegment& pes, PixelRange range, std::span<const float> pixels, RingResult& result) const;
     template <class T, class Take>
-    void bring(std::vector<T>& own, std::size_t of_pe, const Take& take);
+    void collect(std::vector<T>& own, std::size_t of_pe, const Take& take);
     void collect_costs(PixelRange range, RingResult& result);
     void collect_marks(RingResult& result);
     void collect_events(RingResult& result);
@@ -70,28 +69,27 @@ class RingRenderer {
     RingSettings settings_;  // lanes and group size chosen
     PeSegment pes_;          // of this rank
     RingJob job_;
-    std::uint32_t share_ = 0;  // pixels of the PE that owns most
+    std::uint32_t share_ = 0;  // maximum number of pixels of a PE
     PeMemory memory_;
-    std::uint32_t window_ =
-        0;  // pixels of each PE that lie on the device at a time: those of its memory, or some of them
+    std::uint32_t window_ = 0;  // pixels of each PE on the device at a time: a whole block of its memory or a part
     Communication communication_;
     Bus bus_;
     double build_s_ = 0;
     Buffer<std::uint32_t> broadcast_;
     Buffer<float> pixels_;         // [PE][3][window]
-    std::vector<float> gathered_;  // on their way from there into the image: those of a range
+    std::vector<float> gathered_;  // pixels of gathered_range_, read from the device but not placed in the image yet
     PixelRange gathered_range_;
-    Buffer<std::uint8_t> marks_;  // what the first pass is given in place of marks
+    Buffer<std::uint8_t> marks_;  // stands for marks in the first pass
     std::unique_ptr<Tracer> tracer_;
     std::vector<PassCounters> counters_;  // of each phase
     std::unique_ptr<NeighbourExchange> exchange_;
     std::unique_ptr<RingFilter> filter_;
     std::unique_ptr<RingContrast> contrast_;
 
-    // Of a render that keeps its state.
-    const RingKeeping* keeping_ = nullptr;
-    std::optional<RingState> resumed_;  // until the window is done in which it stood
-    std::uint32_t band_ = 0;            // pixels of each PE's share
+    // Of a render with checkpoints.
+    const RingCheckpointing* checkpointing_ = nullptr;
+    std::optional<RingState> resumed_;  // until its window is complete
+    std::uint32_t band_ = 0;            // length, pixels of each PE's share
     double earlier_s_ = 0;              // of earlier runs
     Clock::time_point started_;
 };

@@ -14,7 +14,7 @@ std::uint64_t launches_of(const RingResult& result, const std::string& label) {
     return launches;
 }
 
-// Beside pixels, at each launch: the words of the scene, which were broadcast once, and the counters.
+// Bytes of each launch except for pixels: the broadcast words of the scene, and the counters.
 std::uint64_t launch_bytes(const RingSettings& s, const RingResult& r, const std::string& label) {
     const std::uint64_t words = r.words_local ? r.communication.broadcast_words * s.mapping.pes : 0;
     const std::uint64_t counters = std::uint64_t{s.mapping.pes} * r.group_size * RAYA_EVENTS;
@@ -30,7 +30,7 @@ KernelWork trace_work(const RingSettings& s, const RingResult& r, const Phase& p
     return work;
 }
 
-// Of each pixel that has the neighbour, for three colours: so many operations, so many colours moved.
+// `operations` for each of three colour components, and `colours` read or written, for each of `pixels`.
 KernelWork neighbour_work(const std::string& label, std::uint64_t pixels, std::uint64_t operations,
                           std::uint64_t colours) {
     KernelWork work;
@@ -43,7 +43,7 @@ KernelWork neighbour_work(const std::string& label, std::uint64_t pixels, std::u
 }  // namespace
 
 const CostImage& Phase::cost() const {
-    if (!kept_cost) throw std::logic_error("costs of pixels that were not kept: RingSettings::keep_costs");
+    if (!kept_cost) throw std::logic_error("the costs of pixels were not recorded: set RingSettings::keep_costs");
     return *kept_cost;
 }
 
@@ -66,7 +66,7 @@ std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const Rin
         works.push_back(neighbour_work("filter.sum_columns", above, 1, 3));
         works.push_back(neighbour_work("filter.take_means", width * height, 1, 2));
     }
-    // Both colours clamped to 0..1, their difference, the threshold: as compare_cycles() has it.
+    // Both colours clamped to 0..1, their difference, the threshold: as in compare_cycles().
     if (settings.antialias.method == AntialiasMethod::kSupersample)
         works.push_back(neighbour_work("supersample.compare", beside + above, 4 + 1 + 1, 2));
     return works;

@@ -12,7 +12,7 @@
 namespace raya {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "states are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "checkpoints have the byte order of memory");
 
 constexpr std::size_t kHashLetters = 32;
 
@@ -54,7 +54,7 @@ class Reader {
     std::string_view bytes_;
 };
 
-// All of a state's vectors, in one order for both ways.
+// All vectors of a state, in the order of the file.
 template <class State, class Each>
 void for_each_vector(State& state, const Each& each) {
     each(state.image);
@@ -75,7 +75,7 @@ Json header_of(const RingState& s, const StateSettings& settings) {
             {"share", s.share}, {"seconds", s.seconds}, {"passes", s.passes.size()}};
 }
 
-// The first difference is reported: what a user knows by name comes before hashes.
+// Reports the first difference: settings with a name come before hashes.
 void check_settings(const Json& of, const StateSettings& settings) {
     for (const auto& [name, value] : settings) {
         const std::string& kept = of.at(name).text();

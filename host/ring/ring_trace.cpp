@@ -14,7 +14,7 @@ namespace {
 constexpr TraceTrack kPhases = {kTraceMachine, 1};
 constexpr std::array<const char*, RAYA_SIDES> kSides = {"left", "right", "above", "below"};
 
-// Puts one phase behind the other.
+// Lays the phases out one after another.
 class RingTimeline {
   public:
     RingTimeline(TraceFile& trace, const Machine& machine, std::vector<TracedPe> pes)
@@ -24,7 +24,7 @@ class RingTimeline {
         for (const TracedPe& p : pes_) trace.name_track(track_of(p), traced_pe_name("PE", p));
     }
 
-    // All PEs at once. `times` > 1: so many in turn, shown within it.
+    // A slice of all PEs. With `times` > 1, it contains that many equal rotations.
     void together(const std::string& name, double ms, const Json& arguments, std::uint64_t times = 1) {
         const double begin = now_ms_;
         phase(name, ms, arguments);
@@ -37,7 +37,7 @@ class RingTimeline {
         }
     }
 
-    // Every PE its own cycles, then it waits for the busiest.
+    // Each PE computes for its own cycles, then waits for the busiest PE.
     void compute(const std::string& name, const Load& load) {
         const double begin = now_ms_;
         const auto busiest = std::max_element(load.per_pe.begin(), load.per_pe.end()) - load.per_pe.begin();
@@ -55,7 +55,7 @@ class RingTimeline {
         }
     }
 
-    // A PE of this machine follows one ray at a time, so rays that live are PEs that trace.
+    // A PE of this machine traces one ray at a time, so the number of live rays is that of PEs that trace.
     void trace_rays(const std::string& name, const Load& load) {
         constexpr std::size_t kMostPoints = 512;
         std::vector<std::uint64_t> ends = load.per_pe;
@@ -87,7 +87,7 @@ class RingTimeline {
     std::vector<TracedPe> pes_;
 };
 
-// A quarter of the cycles that each PE spends on its own pixels, the quarters' sum being all of them.
+// One side's quarter of the cycles that each PE spends on its pixels; the quarters add up to all cycles.
 Load quarter(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_t), std::uint32_t side) {
     std::vector<std::uint64_t> cycles;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
@@ -97,12 +97,12 @@ Load quarter(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_t), s
     return load_of(std::move(cycles));
 }
 
-// What a move is called, and all of a side's. Those of the bus concern a PE or two each, so that no PE's track shows
-// them one by one.
+// Names of a move and of all moves of a side. A bus transfer concerns few PEs, so the tracks do not show them one by
+// one.
 struct MoveNames {
     const char *one, *all;
 };
-constexpr std::array<MoveNames, 3> kMoves = {  // in the order of ExchangeWay
+constexpr std::array<MoveNames, 3> kMoves = {  // in the order of ExchangeMethod
     {{"rotate", "rotations"}, {"send over the bus", "transfers"}, {"broadcast from each PE", "broadcasts"}}};
 
 void add_smoothing(RingTimeline& line, const RingSettings& s, const RingResult& r, double communication_ms) {
@@ -116,7 +116,7 @@ void add_smoothing(RingTimeline& line, const RingSettings& s, const RingResult& 
         if (moves > 0)
             line.together(fmt::format("{}, for neighbours {}", names.one, kSides[side]),
                           communication_ms * static_cast<double>(of_sides[side]) / all, {{names.all, moves}},
-                          s.antialias.exchange == ExchangeWay::kRing ? moves : 1);
+                          s.antialias.exchange == ExchangeMethod::kRing ? moves : 1);
         line.compute(fmt::format("{} {}", filter ? "filter" : "compare", kSides[side]),
                      quarter(s.mapping, filter ? filter_cycles : compare_cycles, side));
     }
@@ -132,8 +132,8 @@ void add_ring_machine(TraceFile& trace, const RingSettings& settings, const Ring
                                     smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
     if (!time || pes == 0) {
         trace.metadata()["machine"] =
-            time ? "left out: no PE was asked for"
-                 : fmt::format("left out: {} has no modelled time, as its rates are not known", settings.machine.name);
+            time ? "left out: the number of PEs to trace is 0"
+                 : fmt::format("left out: {} has no modelled time, as its rates are unknown", settings.machine.name);
         return;
     }
     RingTimeline line(trace, settings.machine, traced_pes(result.all.load.per_pe, pes));
@@ -147,8 +147,8 @@ void add_ring_machine(TraceFile& trace, const RingSettings& settings, const Ring
                                    {"modelled_ms", time->total_ms},
                                    {"pes", settings.mapping.pes},
                                    {"note",
-                                    "modelled time, from the trace's time 0 on; it has nothing to do with the "
-                                    "measured times above it"}};
+                                    "modelled time, from time 0 of the trace; independent of the measured times "
+                                    "above"}};
 }
 
 }  // namespace raya

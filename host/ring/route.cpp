@@ -7,15 +7,15 @@
 namespace raya {
 namespace {
 
-// In the order of ExchangeWay.
-constexpr std::array<const char*, 3> kWays = {"ring", "bus", "bus-broadcast"};
+// In the order of ExchangeMethod.
+constexpr std::array<const char*, 3> kExchangeNames = {"ring", "bus", "bus-broadcast"};
 
-std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeWay way, raya_u32 side) {
+std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeMethod method, raya_u32 side) {
     const std::vector<std::uint32_t> distances = neighbour_distances(mapping, side);
     const auto distant = static_cast<std::uint64_t>(
         std::ranges::count_if(distances, [](std::uint32_t distance) { return distance > 0; }));
-    if (way == ExchangeWay::kBus) return distant * mapping.pes;
-    if (way == ExchangeWay::kBroadcast) return distant > 0 ? mapping.pes : 0;
+    if (method == ExchangeMethod::kBus) return distant * mapping.pes;
+    if (method == ExchangeMethod::kBroadcast) return distant > 0 ? mapping.pes : 0;
     std::uint64_t turns = 0;
     for (const Leg& leg : shortest_route(mapping.pes, distances)) turns += leg.turns();
     return turns;
@@ -61,13 +61,13 @@ std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32
     return legs;
 }
 
-std::string exchange_name(ExchangeWay way) { return kWays.at(static_cast<std::size_t>(way)); }
+std::string exchange_name(ExchangeMethod method) { return kExchangeNames.at(static_cast<std::size_t>(method)); }
 
-MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeWay way, bool together) {
+MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool together) {
     MovesOfSides moves{};
     for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
-        const bool served = way == ExchangeWay::kBroadcast && together && sum_of(moves) > 0;
-        if (!served) moves[side] = moves_of_side(mapping, way, side);
+        const bool served = method == ExchangeMethod::kBroadcast && together && sum_of(moves) > 0;
+        if (!served) moves[side] = moves_of_side(mapping, method, side);
     }
     return moves;
 }

@@ -9,23 +9,25 @@
 #include <stdexcept>
 #include <utility>
 
+#include "kernels/shared/share_pixels.h"
+
 namespace raya {
 namespace {
 
 void check_image(const CostImage& image, std::uint32_t pes) {
     const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
     if (pixels == 0 || image.cycles.size() != pixels)
-        throw std::invalid_argument("a cost image must have one cost for each pixel, and a pixel");
+        throw std::invalid_argument("a cost image must have at least one pixel, and one cost for each pixel");
     if (pes < 1 || pes > pixels) throw std::invalid_argument("P must be 1..W H");
 }
 
 void check_mapping(const CostImage& image, const raya_mapping& mapping) {
     check_image(image, mapping.pes);
     if (mapping.width != image.width || mapping.height != image.height)
-        throw std::invalid_argument("the mapping is of another size than the cost image");
+        throw std::invalid_argument("the mapping has another size than the cost image");
 }
 
-/// The owner of each pixel of the image that is not sheared (offset 0), in which column and slot are the same.
+/// [row][slot]: the owner. `unsheared` must have an offset of 0, so that columns are slots.
 std::vector<std::uint32_t> owners_of_slots(const raya_mapping& unsheared) {
     std::vector<std::uint32_t> owners;
     owners.reserve(std::size_t{unsheared.width} * unsheared.height);
@@ -34,7 +36,7 @@ std::vector<std::uint32_t> owners_of_slots(const raya_mapping& unsheared) {
     return owners;
 }
 
-/// The loads of the PEs under an offset.
+/// Adds the loads of the PEs for an offset.
 void add_sheared(const CostImage& image, const std::vector<std::uint32_t>& owners, std::uint32_t offset,
                  std::vector<std::uint64_t>& per_pe) {
     const std::uint64_t* costs = image.cycles.data();
@@ -49,7 +51,7 @@ void add_sheared(const CostImage& image, const std::vector<std::uint32_t>& owner
     }
 }
 
-/// Does what each PE starts with: adds its costs to `busy` and marks its pixels as done.
+/// Renders the static part of each PE: adds its costs to `busy`. Returns the pixels that are done.
 std::vector<bool> do_static_part(const CostImage& image, const raya_mapping& start, double share,
                                  std::vector<std::uint64_t>& busy) {
     std::vector<bool> done(image.cycles.size());
@@ -70,22 +72,22 @@ std::vector<bool> do_static_part(const CostImage& image, const raya_mapping& sta
 /// Cost of each chunk of the pixels that are not done, requests not included.
 std::vector<std::uint64_t> chunks_of(const CostImage& image, const std::vector<bool>& done, std::uint32_t chunk) {
     std::vector<std::uint64_t> chunks;
-    std::uint32_t room = 0;  // pixels for which the last chunk still has room
+    std::uint32_t free_pixels = 0;  // of the last chunk
     for (std::size_t at = 0; at < done.size(); ++at) {
         if (done[at]) continue;
-        if (room == 0) {
+        if (free_pixels == 0) {
             chunks.push_back(0);
-            room = chunk;
+            free_pixels = chunk;
         }
         chunks.back() += image.cycles[at];
-        --room;
+        --free_pixels;
     }
     return chunks;
 }
 
-/// Hands the chunks out to PEs that have been busy for a while each, and leaves in `busy` when they have finished.
-void hand_out(const std::vector<std::uint64_t>& chunks, std::uint64_t overhead, std::vector<std::uint64_t>& busy) {
-    using Free = std::pair<std::uint64_t, std::uint32_t>;  // since when, and which PE: of equals the lowest comes first
+/// Assigns the chunks to PEs. `busy`: finishing times before and after.
+void assign_chunks(const std::vector<std::uint64_t>& chunks, std::uint64_t overhead, std::vector<std::uint64_t>& busy) {
+    using Free = std::pair<std::uint64_t, std::uint32_t>;  // time, PE; ties go to the lowest PE
     std::vector<Free> all;
     all.reserve(busy.size());
     for (std::uint32_t pe = 0; pe < busy.size(); ++pe) all.emplace_back(busy[pe], pe);
@@ -140,7 +142,7 @@ Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, con
     std::vector<std::uint64_t> busy(start.pes);
     const auto done = do_static_part(image, start, plan.static_share, busy);
     const auto chunks = chunks_of(image, done, plan.chunk);
-    hand_out(chunks, plan.overhead, busy);
+    assign_chunks(chunks, plan.overhead, busy);
     return {load_of(std::move(busy)), chunks.size()};
 }
 

@@ -1,5 +1,5 @@
-// What needs neighbours' pixels, over ring or bus: the 3 x 3 filter (kernels/ring/filter.cl), and marking the pixels
-// that differ from a neighbour (kernels/ring/contrast.cl).
+// Anti-aliasing steps that need neighbours' pixels: the 3 x 3 filter (kernels/ring/filter.cl), and marks of pixels that
+// differ from a neighbour (kernels/ring/contrast.cl).
 #pragma once
 #include <cstdint>
 #include <span>
@@ -27,11 +27,11 @@ using TakeMeansKernel = DescribedKernel<"ring/filter.cl", "take_means", const Bu
 
 class RingFilter {
   public:
-    /// Takes the kernels, which are for one lane, launches each once for nothing (PoCL compiles at the first launch)
-    /// and takes the device memory.
+    /// The kernels must be built for one lane. Launches each once without pixels, as PoCL compiles at the first launch,
+    /// and allocates the device memory.
     RingFilter(Kernels& kernels, const ExchangeSetup& setup);
 
-    /// Every pixel becomes the mean of its 3 x 3 neighbourhood. `pixels` is [PE][3][capacity]; afterwards it may name
+    /// Replaces every pixel by the mean of its 3 x 3 neighbourhood. `pixels`: [PE][3][capacity]; may be swapped with
     /// another buffer of that shape.
     void apply(Buffer<float>& pixels, NeighbourExchange& exchange);
 
@@ -53,8 +53,8 @@ using MarkContrastsKernel =
 
 class RingContrast {
   public:
-    /// Takes the kernel, which is for one lane, launches it once for nothing (PoCL compiles at the first launch) and
-    /// takes the device memory. `threshold` is a number of the format, 0..1.
+    /// The kernel must be built for one lane. Launches it once without pixels, as PoCL compiles at the first launch,
+    /// and allocates the device memory. `threshold` must be a number of the format, 0..1.
     RingContrast(Kernels& kernels, const ExchangeSetup& setup, float threshold);
 
     /// Marks the pixels of `pixels`, [PE][3][capacity].
@@ -63,7 +63,7 @@ class RingContrast {
     /// [PE][capacity]: 1 where a pixel is marked, else 0.
     const Buffer<std::uint8_t>& marks() const { return marks_; }
 
-    /// Takes marks that were made before.
+    /// Restores the marks of a checkpoint.
     void set_marks(std::span<const std::uint8_t> marks) { setup_.session.write("set marks", marks_, marks); }
 
   private:

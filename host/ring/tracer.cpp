@@ -7,16 +7,16 @@
 namespace raya {
 namespace {
 
-// After a launch of so much that took `seconds`.
+// Work of the next launch, scaled from that of the last one, which took `seconds`, to take `aim` seconds.
 std::uint32_t next_work(std::uint32_t work, std::uint32_t most, double seconds, double aim) {
     constexpr double kMostGrowth = 4;
     const double growth = seconds * kMostGrowth > aim ? aim / seconds : kMostGrowth;
     return static_cast<std::uint32_t>(std::clamp(growth * work, 1.0, 1.0 * most));
 }
 
-std::size_t kept_words(const KernelOptions& options, std::uint32_t pes) {
+std::size_t saved_tree_words(const KernelOptions& options, std::uint32_t pes) {
     const std::size_t lanes = std::size_t{pes} * options.group_size * options.lanes;
-    return lanes * raya_kept_words(trees_of(options), options.bounces);
+    return lanes * raya_saved_words(trees_of(options), options.bounces);
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ Tracer::Tracer(Kernels& kernels, const PeSegment& pes, std::uint32_t capacity, c
       build_options_(kernels.program(TraceKernel::kFile).options()),
       kernel_(kernels.get<TraceKernel>()),
       progress_(session_.buffer<raya_trace_progress>("progress", pes.count)),
-      kept_(session_.buffer<std::uint32_t>("kept trees", kept_words(options_, pes.count))) {}
+      saved_trees_(session_.buffer<std::uint32_t>("kept trees", saved_tree_words(options_, pes.count))) {}
 
 PassCounters Tracer::make_counters(const std::string& pass) const {
     return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, std::size_t{pes_.count} * capacity_),
@@ -56,42 +56,43 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
     std::uint32_t work = progress ? work_.watched : work_.first;
     begin(label, range.begin);
     for (bool first = true, done = false; !done; first = false) {
-        work = guard_.begin(session_, label, work, progress_, kept_, pixels, counters.cycles, counters.events);
+        work = guard_.begin(session_, label, work, progress_, saved_trees_, pixels, counters.cycles, counters.events);
         const Clock::time_point start = Clock::now();
         launch(label, job, range, points, work, marks, pixels, counters);
         if (first && meanwhile) {
             session_.flush();
             meanwhile();
         }
-        const Standing standing = look(label);
-        if (standing.cut) {
-            guard_.go_back(session_, label, "fewer tests of a ray (--accel bvh or grid), other --lanes or --group",
-                           progress_, kept_, pixels, counters.cycles, counters.events);
+        const State state = read_state(label);
+        if (state.cut) {
+            guard_.restore_state(session_, label,
+                                 "fewer tests of a ray (--accel bvh or grid), other --lanes or --group", progress_,
+                                 saved_trees_, pixels, counters.cycles, counters.events);
             continue;
         }
-        done = standing.done;
+        done = state.done;
         work = next_work(work, work_.most, seconds_since(start), aim);
         if (!progress) continue;
         const double all = 1.0 * pes_.count * (range.end - range.begin), begun = 1.0 * pes_.count * range.begin;
-        progress(done ? 1.0 : (static_cast<double>(standing.taken) - begun) / all);
+        progress(done ? 1.0 : (static_cast<double>(state.taken) - begun) / all);
     }
 }
 
-// By a write: Oclgrind does not know that a filled buffer has values.
+// Writes instead of filling, as Oclgrind takes a filled buffer for uninitialised.
 void Tracer::begin(const std::string& label, std::uint32_t pixel) {
     session_.write(label, progress_, std::vector<raya_trace_progress>(pes_.count, {pixel, 0, 0}));
 }
 
-Tracer::Standing Tracer::look(const std::string& label) {
+Tracer::State Tracer::read_state(const std::string& label) {
     std::vector<raya_trace_progress> pes(pes_.count);
     session_.read(label, progress_, pes);
-    Standing standing{.done = true};
+    State state{.done = true};
     for (const raya_trace_progress& pe : pes) {
-        standing.done &= pe.left == 0;
-        standing.taken += pe.next;
-        standing.cut |= pe.cut > 0;
+        state.done &= pe.left == 0;
+        state.taken += pe.next;
+        state.cut |= pe.cut > 0;
     }
-    return standing;
+    return state;
 }
 
 void Tracer::launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
@@ -102,7 +103,7 @@ void Tracer::launch(const std::string& label, const Buffer<std::uint32_t>& job, 
                     Uint<"points">{points}, Uint<"first_pe">{pes_.first}, Uint<"work">{work}, marks,
                     LocalMemory<raya_trace_progress>{1},
                     LocalMemory<std::uint32_t>{options_.words_local ? (job.size() + 3) / 4 * 4 : 4}, pixels,
-                    counters.cycles, counters.events, progress_, kept_);
+                    counters.cycles, counters.events, progress_, saved_trees_);
 }
 
 }  // namespace raya

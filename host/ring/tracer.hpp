@@ -1,4 +1,4 @@
-// The trace kernel: built for a job and a device, and launched in slices.
+// The trace kernel: its build for a job and a device, and its launches in slices of bounded work.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -14,20 +14,19 @@
 
 namespace raya {
 
-/// What one pass counts.
+/// Counters of one pass.
 struct PassCounters {
     Buffer<std::uint64_t> cycles;  // [PE][capacity]: modelled cycles of each pixel
     Buffer<std::uint64_t> events;  // [PE][L][RAYA_EVENTS]
 };
 
-/// Pixels `begin` to `end` - 1 of each PE's share; they lie in the block whose first pixel has the number `block`.
+/// Pixels `begin` .. `end` - 1 of each PE's share, in the block that starts with pixel `block`.
 struct PixelRange {
     std::uint32_t block = 0, begin = 0, end = 0;
 };
 
-/// Work of a lane, in tests and steps of its rays, after which a launch ends: `first` for the first launch, `watched`
-/// where somebody watches how far it has come; then as much as takes about a second, half of one where it is watched,
-/// and never more than `most`.
+/// Work of a lane in a launch, in tests and steps of its rays: `first` for the first launch, or `watched` if progress
+/// is shown. Later launches are scaled to a second, half a second if progress is shown, but to at most `most`.
 struct LaunchWork {
     std::uint32_t first = 0, watched = 0, most = 0;
 };
@@ -40,21 +39,21 @@ using TraceKernel = DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::
 
 class Tracer {
   public:
-    /// `pes` are on the device; `capacity`: pixels in the memory of each PE.
+    /// `pes`: of this device; `capacity`: pixels in the memory of each PE.
     Tracer(Kernels& kernels, const PeSegment& pes, std::uint32_t capacity, const LaunchWork& work);
 
-    /// Counters of a pass, all 0.
+    /// Allocates the counters of a pass.
     PassCounters make_counters(const std::string& pass) const;
     void clear(PassCounters& counters);
 
-    /// One launch for no pixels: PoCL compiles a kernel's body at its first launch, and this counts as building.
+    /// One launch without pixels: PoCL compiles a kernel at its first launch, which is to count as build time.
     void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                  PassCounters& counters);
 
-    /// Traces `points` (RAYA_POINTS_*) of the range's pixels, of those marked only where the points are new ones. Every
-    /// command is labelled `label`. `job` has been broadcast. A launch ends by itself after a bounded amount of work,
-    /// so that no watchdog ends it; launches follow until all is done. What the host has to do it does `meanwhile`,
-    /// once the device has the first of them. DeviceError where the device ends loops even of the smallest launch.
+    /// Traces `points` (RAYA_POINTS_*) of the range's pixels, for supersampling points only of marked pixels. Commands
+    /// are labelled `label`. `job`: the broadcast words. A launch ends after a bounded amount of work, so that no
+    /// watchdog intervenes, and is repeated until all pixels are traced. The host calls `meanwhile` after it has
+    /// submitted the first launch. Throws DeviceError if the device ends loops early even in the smallest launch.
     void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                const ProgressCallback& progress = {}, const std::function<void()>& meanwhile = {});
@@ -63,16 +62,16 @@ class Tracer {
     const std::string& build_options() const { return build_options_; }
 
   private:
-    /// What a launch is for: the pixels up to the range's end that PEs have not taken yet.
+    /// Launches the kernel for the range's pixels that PEs have not taken yet.
     void launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                 std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
-    void begin(const std::string& label, std::uint32_t pixel);  // every PE, with that pixel of its share
-    struct Standing {
+    void begin(const std::string& label, std::uint32_t pixel);  // of each PE's share
+    struct State {
         bool done = false;
-        std::uint64_t taken = 0;  // pixels of all PEs since the share's first
+        std::uint64_t taken = 0;  // pixels that all PEs have taken, from the start of their shares on
         bool cut = false;         // the device has ended loops early
     };
-    Standing look(const std::string& label);
+    State read_state(const std::string& label);
 
     Session& session_;
     KernelOptions options_;
@@ -82,7 +81,7 @@ class Tracer {
     std::string build_options_;
     TraceKernel kernel_;
     Buffer<raya_trace_progress> progress_;  // [PE]
-    Buffer<std::uint32_t> kept_;            // what work-items go on with in the next launch
+    Buffer<std::uint32_t> saved_trees_;     // ray trees that the next launch continues
     LaunchGuard<raya_trace_progress, std::uint32_t, float, std::uint64_t, std::uint64_t> guard_;
 };
 

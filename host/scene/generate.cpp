@@ -13,17 +13,17 @@
 namespace raya {
 namespace {
 
-constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // to which coordinates are rounded
+constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // precision of coordinates
 
 void check_count(const char* kind, int count) {
-    if (count < 1 || count > kMostSpheres)
-        throw UserError(fmt::format("{}: {} spheres: must lie in 1..{}", kind, count, kMostSpheres));
+    if (count < 1 || count > kMaxSpheres)
+        throw UserError(fmt::format("{}: {} spheres: must lie in 1..{}", kind, count, kMaxSpheres));
 }
 
-/// The cube [-1, 1]^3 from a corner, filling most of the image.
+/// A view of the cube [-1, 1]^3 from a corner; the cube fills most of the image.
 View view_of_cube() { return {{2.6, 3.4, 1.9}, {0, 0, -0.1}, {0, 0, 1}, 36, 0, 512, 512}; }
 
-/// `count` spheres in the box from `low` of the given sides, each in a cell of its own of a k^3 grid.
+/// Adds `count` spheres in the box with corner `low` and the given sides, each in its own cell of a k^3 grid.
 void fill_box(Scene& scene, const Vec3& low, const Vec3& sides, std::int64_t count, SplitMix& random) {
     std::int64_t k = 1;
     while (k * k * k < count) ++k;
@@ -35,9 +35,9 @@ void fill_box(Scene& scene, const Vec3& low, const Vec3& sides, std::int64_t cou
             low +
             Vec3(static_cast<double>(at % k), static_cast<double>(at / k % k), static_cast<double>(at / k / k)) * cell;
         const double radius = half * random.uniform(0.5, 0.9);
-        const double room = 0.98 * (1 - radius / half);  // of the way from the cell's middle to touching its side
+        const double shift = 0.98 * (1 - radius / half);  // maximum offset from the cell's centre, relative to `half`
         const auto place = [&](double side) {
-            return side / 2 + (side / 2 - half + half * room) * random.uniform(-1, 1);
+            return side / 2 + (side / 2 - half + half * shift) * random.uniform(-1, 1);
         };
         const double x = place(cell.x), y = place(cell.y), z = place(cell.z);
         scene.spheres.push_back({rounded(corner + Vec3(x, y, z), kMillionths), rounded(radius, kMillionths),
@@ -52,7 +52,7 @@ struct SphereRing {
     double radius;    // of the spheres
     double first;     // azimuth of the first sphere, in turns
     int first_surface;
-    int surface_count;  // surfaces taken in turn
+    int surface_count;  // surfaces assigned cyclically
 };
 
 void add_ring(Scene& scene, const SphereRing& ring) {
@@ -84,12 +84,12 @@ Scene generate_uniform(int count, std::array<int, 3> voxels) {
     check_count("uniform", count);
     std::int64_t total = 1;
     for (const int along : voxels) {
-        if (along < 1 || along > kMostVoxelsAlongAxis)
+        if (along < 1 || along > kMaxVoxelsPerAxis)
             throw UserError(
-                fmt::format("uniform: {} voxels along an axis: must lie in 1..{}", along, kMostVoxelsAlongAxis));
+                fmt::format("uniform: {} voxels along an axis: must lie in 1..{}", along, kMaxVoxelsPerAxis));
         total *= along;
     }
-    if (total > kMostVoxels) throw UserError(fmt::format("uniform: {} voxels: at most {}", total, kMostVoxels));
+    if (total > kMaxVoxels) throw UserError(fmt::format("uniform: {} voxels: at most {}", total, kMaxVoxels));
 
     Scene scene;
     scene.name = fmt::format("uniform{}_{}x{}x{}.nff", count, voxels[0], voxels[1], voxels[2]);
@@ -161,7 +161,7 @@ Scene generate_centre() {
 }
 
 Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
-    constexpr int kTries = 200;  // for a place where the sphere touches no other
+    constexpr int kTries = 200;  // to place a sphere where it touches no other
     enum { kGlass, kMirror, kMatt, kFloor };
     Scene scene;
     scene.name = fmt::format("cluster{}.nff", seed);
@@ -200,14 +200,14 @@ Scene scattered(const Scene& even, std::uint64_t seed) {
 
 Scene moved_within(const Scene& scene) {
     constexpr double kVoxel = 2.0 / kObjectSides;
-    constexpr double kGap = kVoxel / 16;  // the most by which registration takes a sphere for larger than it is
+    constexpr double kGap = kVoxel / 16;  // upper bound of the enlargement of a sphere's bounds at registration
     Scene moved = scene;
     for (Sphere& sphere : moved.spheres)
         for (int axis = 0; axis < 3; ++axis) {
             double& at = sphere.centre[axis];
             const double low = -1 + kVoxel * std::clamp(std::floor((at + 1) / kVoxel), 0.0, kObjectSides - 1.0);
-            const double room = std::min(sphere.radius + kGap, kVoxel / 2);
-            at = std::clamp(at, low + room, low + kVoxel - room);
+            const double margin = std::min(sphere.radius + kGap, kVoxel / 2);
+            at = std::clamp(at, low + margin, low + kVoxel - margin);
         }
     return moved;
 }

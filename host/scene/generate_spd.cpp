@@ -13,9 +13,9 @@
 namespace raya {
 namespace {
 
-/// Where nine unit balls touch the one that they sit on, seen from the +z side, in SPD's order: of the twelve
-/// neighbours in a dense packing the three below are left out. Three groups, a third of a turn apart, of one upper and
-/// two on the equator.
+/// The directions from a ball to the nine that touch it, around +z, in SPD's order: the twelve neighbours in a dense
+/// packing without the lower three. Three groups, a third of a turn apart, each of one upper ball and two on the
+/// equator.
 std::array<Vec3, 9> nine_directions() {
     std::array<Vec3, 9> directions;
     const double upper = std::sqrt(2.0 / 3.0), outward = std::sqrt(1.0 / 3.0);
@@ -29,8 +29,8 @@ std::array<Vec3, 9> nine_directions() {
     return directions;
 }
 
-/// `v` turned by the shortest rotation that takes +z to the unit vector `axis` (Rodrigues); half a turn about y for -z,
-/// as SPD has it.
+/// `v` rotated by the shortest rotation that maps +z to the unit vector `axis` (Rodrigues); for -z half a turn about y,
+/// as in SPD.
 Vec3 turned_from_z(const Vec3& v, const Vec3& axis) {
     if (axis.z < -1 + 1e-9) return {-v.x, v.y, -v.z};
     const Vec3 pivot(-axis.y, axis.x, 0);
@@ -47,20 +47,20 @@ void add_flake(Scene& scene, int level, const Vec3& centre, double radius, const
     }
 }
 
-/// A multiple of four: wheels that mesh on one side then do so on all four.
+/// A multiple of four, so that wheels that mesh on one side mesh on all four.
 constexpr int kTeeth = 24;
 
 struct Corner {
-    double turn;    // from the middle of the tooth, in shares of the pitch
+    double turn;    // angle from the middle of the tooth, in pitches
     double radius;  // in pitch radii
 };
 
-/// A tooth, counter-clockwise: foot, flank and tip, tip, flank and foot. Narrower than half a pitch at the pitch
-/// circle, and shorter than the gap that it stands in is deep: wheels that mesh do not touch.
+/// A tooth, counter-clockwise: foot, flank and tip, tip, flank and foot. It is narrower than half a pitch at the pitch
+/// circle and shorter than the depth of a gap, so that meshing wheels do not touch.
 constexpr std::array<Corner, 6> kTooth{
     {{-0.32, 0.9}, {-0.235, 1}, {-0.12, 1.075}, {0.12, 1.075}, {0.235, 1}, {0.32, 0.9}}};
 
-/// Of the cube [-1, 1]^3, from above one of its upright edges.
+/// A view of the cube [-1, 1]^3 from above one of its vertical edges.
 View view_of_wheels() { return {{2.4, 3.2, 3.0}, {0, 0, -0.15}, {0, 0, 1}, 36, 0, 512, 512}; }
 
 /// Brass, steel, glass and red enamel.
@@ -71,12 +71,12 @@ std::vector<Surface> finishes() {
             {{0.8, 0.15, 0.12}, 0.9, 0.1, 20, 0, 1, {}}};
 }
 
-/// A wheel about an upright axis.
+/// A wheel with a vertical axis.
 struct Wheel {
     Vec3 centre;
     double radius;     // of the pitch circle
     double thickness;  // along the axis
-    double turned;     // of its first tooth from the x axis, in shares of the pitch
+    double turned;     // angle of its first tooth from the x axis, in pitches
     int surface;
 };
 
@@ -93,7 +93,7 @@ std::vector<Vec3> outline(const Wheel& wheel, double height) {
     return corners;
 }
 
-/// Two faces, and a quadrilateral for each of their edges; all show their fronts to the outside.
+/// Adds two faces and a quadrilateral for each of their edges; all fronts face outwards.
 void add_wheel(Scene& scene, const Wheel& wheel) {
     const std::vector<Vec3> upper = outline(wheel, rounded(wheel.centre.z + wheel.thickness / 2));
     const std::vector<Vec3> lower = outline(wheel, rounded(wheel.centre.z - wheel.thickness / 2));
@@ -105,12 +105,13 @@ void add_wheel(Scene& scene, const Wheel& wheel) {
     }
 }
 
-// Shares of the distance between neighbouring spheres. A cylinder starts inside its sphere, half-way to its surface but
-// for a hundredth, and ends so far inside the next one.
+// Relative to the distance between neighbouring spheres. A cylinder starts inside its sphere, at 0.99 of half the
+// sphere's radius, and ends at the same depth inside the next one.
 constexpr double kSphereRadius = 1.0 / 4, kCylinderRadius = 1.0 / 16, kCylinderStart = 0.99 / 8;
 
-/// From above the middle of the far edge of the top, half a distance beside a column and below a layer of spheres, so
-/// that the eye is in none of them; half-way down through the cube. Of SPD's view only that of 12 is known.
+/// A view from near the middle of an upper edge diagonally down through the cube. The eye is half a lattice distance
+/// from a column and a layer of spheres, so that it is outside of all objects. SPD's own view is known only for size
+/// 12.
 View view_of_lattice(int size) {
     const double x = (size / 2 + 0.5) / size, z = 1 - 0.5 / size;
     return {rounded({x, 1, z}), rounded({x, -1, z - 2}), {0.2, 1, 0}, 60, 0, 512, 512};

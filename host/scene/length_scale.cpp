@@ -11,18 +11,18 @@
 namespace raya {
 namespace {
 
-// Powers of two: between a scene that is packed as it is and the format's lower limits; from the largest length of a
-// scene with planes that is scaled to their horizon.
+// Powers of two: kSpare is the margin to the format's lower limits in a scene that is not scaled; kHorizon is added
+// above the largest length of a scaled scene with planes, which extend to the horizon.
 constexpr double kSpare = 2, kHorizon = 6;
 
-/// Calls `see` with each length that must not come out as 0: its square is stored, or it stands under a fraction.
-template <class See>
-void for_each_small_length(const Scene& scene, See&& see) {
-    for (const Sphere& s : scene.spheres) see(std::abs(s.radius));
+/// Calls `visit` with each length that must not become 0, because its square is stored or it is a divisor.
+template <class Visit>
+void for_each_small_length(const Scene& scene, Visit&& visit) {
+    for (const Sphere& s : scene.spheres) visit(std::abs(s.radius));
     for (const Cone& c : scene.cones)
-        see(std::min(std::max(std::abs(c.base_radius), std::abs(c.apex_radius)), (c.apex - c.base).length()));
+        visit(std::min(std::max(std::abs(c.base_radius), std::abs(c.apex_radius)), (c.apex - c.base).length()));
     for (const Surface& s : scene.surfaces)
-        if (s.checker) see(s.checker->size);
+        if (s.checker) visit(s.checker->size);
 }
 
 double largest_length(const Scene& scene) {
@@ -33,30 +33,31 @@ double largest_length(const Scene& scene) {
     return largest;
 }
 
-/// What is left between a scene at scale 1 and the limits of a format, in powers of two; negative: it is beyond them.
+/// The margins between a scene at scale 1 and the limits of a format, in powers of two; negative if a limit is
+/// exceeded.
 struct ScaleRange {
     double above, below;
 };
 
-ScaleRange room_of(const LengthScale& scale, const NumberFormat& format) {
+ScaleRange margins_of(const LengthScale& scale, const NumberFormat& format) {
     const double smallest = smallest_number(format);
     return {std::log2(farthest_hit(format) / (4 * scale.largest)),
             std::min(std::log2(scale.smallest / std::sqrt(smallest)),
                      std::log2(std::ldexp(scale.largest, -format.fraction_bits - 1) / smallest))};
 }
 
-int exponent_for(const ScaleRange& room, bool has_planes) {
-    if (room.above >= 0 && room.below >= kSpare) return 0;
+int exponent_for(const ScaleRange& margins, bool has_planes) {
+    if (margins.above >= 0 && margins.below >= kSpare) return 0;
     return static_cast<int>(
-        std::floor(std::min((room.above - room.below + 1) / 2, room.above - (has_planes ? kHorizon : 0))));
+        std::floor(std::min((margins.above - margins.below + 1) / 2, margins.above - (has_planes ? kHorizon : 0))));
 }
 
 [[noreturn]] void refuse(const Scene& scene, const LengthScale& scale, const NumberFormat& format) {
     throw UserError(
-        fmt::format("{}: its lengths, from {:.3g} to {:.3g}, are too far apart for {}: where the largest fits, nothing "
-                    "below {:.3g} can be seen, and that is every object; remedy: --format fp32, or bring nearer what "
-                    "is so far off",
-                    scene.name, scale.smallest, scale.largest, format_name(format), scale.least));
+        fmt::format("{}: the range of its lengths, {:.3g} to {:.3g}, is too wide for {}: scaled to the largest length, "
+                    "all objects are below the smallest visible length, {:.3g}; remedy: --format fp32, or move distant "
+                    "objects closer",
+                    scene.name, scale.smallest, scale.largest, format_name(format), scale.min_visible));
 }
 
 }  // namespace
@@ -64,15 +65,15 @@ int exponent_for(const ScaleRange& room, bool has_planes) {
 LengthScale length_scale(const Scene& scene, const NumberFormat& format) {
     LengthScale scale;
     scale.largest = scale.smallest = largest_length(scene);
-    if (scale.largest == 0) return scale;  // planes through the origin, seen from there
+    if (scale.largest == 0) return scale;  // only planes through the origin, with the eye at the origin
     std::uint64_t lengths = 0;
     for_each_small_length(scene, [&](double length) {
         scale.smallest = std::min(scale.smallest, length);
         ++lengths;
     });
-    scale.exponent = exponent_for(room_of(scale, format), !scene.planes.empty());
-    scale.least = std::ldexp(std::sqrt(smallest_number(format)), -scale.exponent);
-    for_each_small_length(scene, [&](double length) { scale.vanishing += length < scale.least; });
+    scale.exponent = exponent_for(margins_of(scale, format), !scene.planes.empty());
+    scale.min_visible = std::ldexp(std::sqrt(smallest_number(format)), -scale.exponent);
+    for_each_small_length(scene, [&](double length) { scale.vanishing += length < scale.min_visible; });
     const bool has_others = !scene.polygons.empty() || !scene.planes.empty();
     if (scale.vanishing == lengths && lengths > 0 && !has_others) refuse(scene, scale, format);
     return scale;

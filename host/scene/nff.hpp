@@ -13,9 +13,8 @@
 //     #raya checker r g b r g b size        checker for the next plane, polygon or patch
 //     # anything else                       comment
 //
-// An entity starts on a new line; its numbers may be spread over lines as one likes, but what follows `#raya` stands on
-// one line. All six parts of `v` must be given, in any order. Where `hither` lies does not matter, so any number will
-// do.
+// An entity starts on a new line. Its numbers may span several lines, except after `#raya`. All six parts of `v` are
+// required, in any order. The value of `hither` is ignored.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -27,35 +26,35 @@
 
 namespace raya {
 
-/// What a file has and its scene has not, or not as it stands there: all of one kind.
+/// A remark on something in a file that the scene does not contain, or contains in a changed form; one for each kind.
 struct NffRemark {
     std::string what;  // "polygon without area, left out"
     std::uint64_t count = 0;
-    int line = 0;  // of the first
+    int line = 0;  // of the first occurrence
 };
 
-/// Counts one more of its kind.
+/// Adds a remark, or increments the count of an equal one.
 void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line);
 
 /// "FILE:LINE: polygon without area, left out (3 in all)".
 std::string remark_text(const std::string& file, const NffRemark& remark);
 
-/// The scene that `text` describes, with shared surfaces (share_surfaces) and normals of length 1. Scene::name is
-/// `name` without folder. Throws UserError "NAME:LINE: reason" for anything that is not NFF or cannot be traced.
+/// Parses NFF. The scene has shared surfaces (share_surfaces()) and normals of length 1; its name is `name` without
+/// folder. Throws UserError "NAME:LINE: reason" for anything that is not NFF or cannot be traced.
 ///
-/// Where `remarks` has a place, what other programs put up with is passed over and remarked, never taken silently:
-/// objects without size and facets without area are left out; polygons that are not flat are cut into triangles;
-/// patches with a normal of 0 become polygons; entities of other dialects (la, lf, tt, ...) and a mail header are
-/// skipped. Nothing that reads as prose is, and a file without view or objects is no scene.
+/// If `remarks` is not null, parse_nff() accepts what other programs tolerate, and records a remark for it: it leaves
+/// out objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
+/// with a normal of 0 into polygons, and skips entities of other dialects (la, lf, tt, ...) and a mail header. Prose,
+/// and a file without view or objects, are still errors.
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks = nullptr);
 
-/// Reads a file, or stdin ("-"), whose name is "stdin" then. Throws UserError as parse_nff() does, and "NAME: reason"
-/// where the file cannot be read.
+/// Reads a file, or stdin ("-") with the name "stdin". Throws UserError as parse_nff() does, and "NAME: reason" if the
+/// file cannot be read.
 Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remarks = nullptr);
 
-/// The scene as NFF text. Numbers have the fewest digits that read back as the same double, so parse_nff() of the text
-/// gives an equal scene where `scene` has shared surfaces (share_surfaces). Throws UserError for a checker on a sphere
-/// or cone, which NFF cannot express.
+/// Writes a scene as NFF. Numbers have the fewest digits that round-trip, so parse_nff() of the text returns an equal
+/// scene if `scene` has shared surfaces (share_surfaces()). UserError for a checker on a sphere or cone, which NFF
+/// cannot express.
 std::string write_nff(const Scene& scene);
 
 }  // namespace raya

@@ -15,15 +15,17 @@ constexpr std::string_view kBlanks = " \t\v\f", kLineEnds = "\r\n";
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-bool reads_as_keyword(std::string_view word) {
-    constexpr std::size_t kLongest = 8;
-    return !word.empty() && word.size() <= kLongest && is_letter(word[0]) &&
-           std::all_of(word.begin(), word.end(),
+bool reads_as_keyword(std::string_view token) {
+    constexpr std::size_t kMaxLength = 8;
+    return !token.empty() && token.size() <= kMaxLength && is_letter(token[0]) &&
+           std::all_of(token.begin(), token.end(),
                        [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-/// A dot or a slash before its last character: `wood.ppm`, but not the last word of a sentence.
-bool reads_as_file(std::string_view word) { return word.substr(0, word.size() - 1).find_first_of("./") != word.npos; }
+/// Has a dot or a slash before its last character: `wood.ppm`, but not the last word of a sentence.
+bool reads_as_file(std::string_view token) {
+    return token.substr(0, token.size() - 1).find_first_of("./") != token.npos;
+}
 
 bool opens_mail(std::string_view line) {
     const auto colon = std::find_if_not(line.begin(), line.end(), [](char c) { return is_letter(c) || c == '-'; });
@@ -33,23 +35,23 @@ bool opens_mail(std::string_view line) {
 }  // namespace
 
 bool reads_as_entity(std::string_view keyword, std::string_view rest) {
-    constexpr int kMostParts = 2;
-    int numbers = 0, words = 0;
+    constexpr int kMaxNames = 2;
+    int numbers = 0, names = 0;
     rest = rest.substr(0, rest.find('#'));
     for (std::size_t at = 0; (at = rest.find_first_not_of(kBlanks, at)) != rest.npos;) {
-        const std::string_view word = rest.substr(at, rest.find_first_of(kBlanks, at) - at);
-        if (reads_as_number(word))
+        const std::string_view token = rest.substr(at, rest.find_first_of(kBlanks, at) - at);
+        if (reads_as_number(token))
             ++numbers;
-        else if (!reads_as_file(word))
-            ++words;
-        at += word.size();
+        else if (!reads_as_file(token))
+            ++names;
+        at += token.size();
     }
-    return reads_as_keyword(keyword) && words <= (numbers > 0 ? kMostParts : 0);
+    return reads_as_keyword(keyword) && names <= (numbers > 0 ? kMaxNames : 0);
 }
 
-bool opens_sense8(std::string_view word) {
-    constexpr std::string_view kWord = "nff";
-    return std::equal(word.begin(), word.end(), kWord.begin(), kWord.end(),
+bool is_sense8_keyword(std::string_view token) {
+    constexpr std::string_view kKeyword = "nff";
+    return std::equal(token.begin(), token.end(), kKeyword.begin(), kKeyword.end(),
                       [](char c, char lower) { return is_letter(c) && (c | 0x20) == lower; });
 }
 

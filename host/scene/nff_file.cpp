@@ -1,4 +1,4 @@
-// NFF files, read; and scenes written as NFF.
+// Reading NFF files, and writing scenes as NFF.
 #include <fmt/core.h>
 
 #include <cstddef>
@@ -58,7 +58,7 @@ class NffWriter {
             line("l {}{}", text_of(light.position), light.colour ? after_blank(*light.colour) : "");
     }
 
-    /// An `f` where it differs from the last one, and the checker, which holds for one object only.
+    /// Writes an `f` if it differs from the last one, and the checker, which applies to one object only.
     void write_surface(int index, bool flat) {
         const Surface& s = scene_.surfaces.at(static_cast<std::size_t>(index));
         const std::string fill = fmt::format("f {} {} {} {} {} {}", text_of(s.colour), s.diffuse, s.specular, s.shine,

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kLargestSide = 16384;    // pixels
 constexpr double kLargestShare = 100;  // Kd, Ks, T; more than 1 is unphysical, far more is a typing error
-constexpr int kMostVertices = 1'000'000'000;
+constexpr int kMaxVertices = 1'000'000'000;
 
 class NffReader {
   public:
@@ -31,15 +31,15 @@ class NffReader {
     }
 
     Scene read() {
-        if (opens_sense8(tokens_.peek().text))
+        if (is_sense8_keyword(tokens_.peek().text))
             tokens_.refuse(tokens_.peek().line,
                            "this is Sense8's NFF (WorldToolKit), another format of the same name; raya reads E. "
                            "Haines's NFF");
         while (!tokens_.peek().text.empty()) read_entity();
         const int end = tokens_.peek().line;
         if (checker_) tokens_.refuse(checker_line_, "no plane or polygon follows this '#raya checker'");
-        if (!has_view_) tokens_.refuse(end, "no 'v': the file must say from where to look");
-        if (scene_.object_count() == 0) tokens_.refuse(end, "no object: nothing could be seen");
+        if (!has_view_) tokens_.refuse(end, "no 'v': the file has no viewpoint");
+        if (scene_.object_count() == 0) tokens_.refuse(end, "no object: the image would be empty");
         share_surfaces(scene_);
         return std::move(scene_);
     }
@@ -47,18 +47,18 @@ class NffReader {
   private:
     [[noreturn]] void refuse(std::string_view reason) const { tokens_.refuse(tokens_.entity_line(), reason); }
 
-    /// Something that cannot be traced, but left out or mended: `what` says what becomes of it. Refused where there is
-    /// no place for remarks.
-    void pass_over(std::string_view reason, const std::string& what) {
+    /// Records the remark `what` about an object that cannot be traced as given and is left out or repaired. Refuses it
+    /// for `reason` in strict mode.
+    void remark_or_refuse(std::string_view reason, const std::string& what) {
         if (!remarks_) refuse(reason);
         add_remark(*remarks_, what, tokens_.entity_line());
     }
 
     double read_length(std::string_view what) { return tokens_.take_number(what, kLargestLength); }
 
-    Vec3 read_vector(std::string_view what, double most = kLargestLength) {
+    Vec3 read_vector(std::string_view what, double max = kLargestLength) {
         Vec3 vector;
-        for (int axis = 0; axis < 3; ++axis) vector[axis] = tokens_.take_number(what, most);
+        for (int axis = 0; axis < 3; ++axis) vector[axis] = tokens_.take_number(what, max);
         return vector;
     }
 
@@ -93,7 +93,7 @@ class NffReader {
         const std::string_view keyword = tokens_.take_keyword();
         for (const Entity& entity : kEntities)
             if (entity.keyword == keyword) return (this->*entity.read)();
-        if (number) refuse(in_quotes(keyword) + " where an entity should start: has the one before too many numbers?");
+        if (number) refuse(in_quotes(keyword) + " instead of an entity: does the previous one have too many numbers?");
         if (remarks_ && tokens_.skip_unknown())
             return add_remark(*remarks_, "entity " + in_quotes(keyword) + " of another dialect, skipped",
                               tokens_.entity_line());
@@ -109,9 +109,9 @@ class NffReader {
             const auto part = std::find(kParts.begin(), kParts.end(), tokens_.peek().text);
             const auto index = static_cast<std::size_t>(part - kParts.begin());
             if (part == kParts.end()) refuse_incomplete_view(kParts, seen);
-            if (seen[index]) tokens_.refuse(tokens_.peek().line, fmt::format("'{}' stands twice in 'v'", *part));
+            if (seen[index]) tokens_.refuse(tokens_.peek().line, fmt::format("'{}' occurs twice in 'v'", *part));
             seen.set(index);
-            tokens_.take_word(*part);
+            tokens_.take_name(*part);
             if (*part == "from") view.from = read_vector("from");
             if (*part == "at") view.at = read_vector("at");
             if (*part == "up") view.up = read_vector("up");
@@ -122,7 +122,7 @@ class NffReader {
                 view.height = tokens_.take_integer("the height", 1, kLargestSide);
             }
         }
-        if (const std::string fault = view_fault(view); !fault.empty()) refuse(fault);
+        if (const std::string fault = view_error(view); !fault.empty()) refuse(fault);
         has_view_ = true;
     }
 
@@ -163,7 +163,7 @@ class NffReader {
         scene_.surfaces.push_back(surface);
     }
 
-    /// The surface of a plane or polygon: the current one, with the checker that waits for it.
+    /// Returns the surface of a plane or polygon: the current one, with a pending checker.
     int take_flat_surface() {
         if (!checker_) return current_surface_;
         Surface surface = scene_.surfaces[static_cast<std::size_t>(current_surface_)];
@@ -176,7 +176,7 @@ class NffReader {
         Sphere sphere{read_vector("the centre"), 0, current_surface_};
         sphere.radius = read_length("the radius");
         if (std::abs(sphere.radius) < kSmallestLength)
-            return pass_over("the radius of the sphere is zero", "sphere of radius 0, left out");
+            return remark_or_refuse("the radius of the sphere is zero", "sphere of radius 0, left out");
         scene_.spheres.push_back(sphere);
     }
 
@@ -185,9 +185,9 @@ class NffReader {
 
     void read_polygon(bool patch) {
         Polygon polygon;
-        const int fewest = remarks_ ? 0 : 3;
+        const int min_count = remarks_ ? 0 : 3;
         const auto count =
-            static_cast<std::size_t>(tokens_.take_integer("the number of vertices", fewest, kMostVertices));
+            static_cast<std::size_t>(tokens_.take_integer("the number of vertices", min_count, kMaxVertices));
         const std::size_t shortest = patch ? 12 : 6;  // characters: one digit and one blank for each number
         if (count > tokens_.characters_left() / shortest + 2)
             refuse(fmt::format("the file is too short for a polygon of {} vertices", count));
@@ -198,26 +198,25 @@ class NffReader {
         }
         polygon.surface = take_flat_surface();
         if (std::find(polygon.normals.begin(), polygon.normals.end(), Vec3(0)) != polygon.normals.end()) {
-            pass_over("a normal of the patch is zero", "patch with a normal of 0, taken as a flat polygon");
+            remark_or_refuse("a normal of the patch is zero", "patch with a normal of 0, taken as a flat polygon");
             polygon.normals.clear();
         }
         add_polygon(std::move(polygon));
     }
 
     void add_polygon(Polygon polygon) {
-        const OutlineVerdict verdict = tidy_outline(polygon);
-        // A triangle is flat but for rounding: one that is not has no area to speak of, and nothing to cut.
-        const bool is_sliver = verdict.fault == OutlineFault::kNotFlat && polygon.vertices.size() == 3;
-        if (verdict.fault == OutlineFault::kNoArea || verdict.fault == OutlineFault::kCrosses ||
-            (remarks_ && is_sliver))
-            return pass_over("the polygon " + verdict.reason, verdict.fault == OutlineFault::kCrosses
-                                                                  ? "polygon that " + verdict.reason + ", left out"
-                                                                  : "polygon without area, left out");
-        if (verdict.fault == OutlineFault::kNone) {
+        const OutlineCheck check = clean_outline(polygon);
+        // A triangle is flat up to rounding. One that is not is a sliver with almost no area, and cannot be cut.
+        const bool is_sliver = check.fault == OutlineFault::kNotFlat && polygon.vertices.size() == 3;
+        if (check.fault == OutlineFault::kNoArea || check.fault == OutlineFault::kCrosses || (remarks_ && is_sliver))
+            return remark_or_refuse("the polygon " + check.reason, check.fault == OutlineFault::kCrosses
+                                                                       ? "polygon that " + check.reason + ", left out"
+                                                                       : "polygon without area, left out");
+        if (check.fault == OutlineFault::kNone) {
             scene_.polygons.push_back(std::move(polygon));
             return;
         }
-        pass_over("the polygon " + verdict.reason, "polygon that is not flat, cut into triangles");
+        remark_or_refuse("the polygon " + check.reason, "polygon that is not flat, cut into triangles");
         for (const std::array<int, 3>& corners : triangulate(polygon.vertices, newell_normal(polygon.vertices))) {
             Polygon triangle{{}, {}, polygon.surface};
             for (const int corner : corners) {
@@ -238,18 +237,18 @@ class NffReader {
         cone.surface = current_surface_;
         const auto [lower, upper] = std::minmax(cone.base_radius, cone.apex_radius);
         if (std::max(-lower, upper) < kSmallestLength)
-            return pass_over("both radii of the cone are zero", "cone without radius, left out");
+            return remark_or_refuse("both radii of the cone are zero", "cone without radius, left out");
         if (lower < 0 && upper > 0) refuse("one radius of the cone is negative, the other positive");
         if ((cone.apex - cone.base).length() < kSmallestLength)
-            return pass_over("the height of the cone is zero", "cone without height, left out");
+            return remark_or_refuse("the height of the cone is zero", "cone without height, left out");
         scene_.cones.push_back(cone);
     }
 
     void read_directive() {
-        const std::string_view word = tokens_.take_word("the word");
-        if (word == "plane") return read_plane();
-        if (word == "checker") return read_checker();
-        refuse("unknown extension " + in_quotes(word) + "; raya knows '#raya plane' and '#raya checker'");
+        const std::string_view name = tokens_.take_name("the word");
+        if (name == "plane") return read_plane();
+        if (name == "checker") return read_checker();
+        refuse("unknown extension " + in_quotes(name) + "; raya knows '#raya plane' and '#raya checker'");
     }
 
     void read_plane() {
@@ -258,7 +257,7 @@ class NffReader {
         if (plane.normal == Vec3(0)) refuse("the normal of the plane is zero");
         if (plane.normal != given) plane.distance /= given.length();
         if (!(std::abs(plane.distance) <= kLargestLength))
-            refuse("the plane lies too far from the origin: at most 1e30 with a normal of length 1");
+            refuse("the plane is too far from the origin: at most 1e30 with a normal of length 1");
         plane.surface = take_flat_surface();
         scene_.planes.push_back(plane);
     }
@@ -273,11 +272,11 @@ class NffReader {
     }
 
     NffTokens tokens_;
-    std::vector<NffRemark>* remarks_;  // none: everything is refused
+    std::vector<NffRemark>* remarks_;  // null: strict mode
     Scene scene_;
     bool has_view_ = false, has_background_ = false;
     int current_surface_ = 0;
-    std::optional<Checker> checker_;  // waits for a plane or polygon
+    std::optional<Checker> checker_;  // pending, for the next plane or polygon
     int checker_line_ = 0;
 };
 

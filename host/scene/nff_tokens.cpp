@@ -22,11 +22,11 @@ bool is_binary(char c) { return (static_cast<unsigned char>(c) < ' ' && !is_blan
 
 struct ParsedNumber {
     double value = 0;
-    std::string_view rest;  // what follows the number
+    std::string_view rest;  // characters after the number
     std::errc error{};
 };
 
-/// std::from_chars knows no locale; it takes no leading '+', which scanf, and so other readers, do.
+/// std::from_chars ignores the locale. Unlike scanf, which other readers use, it rejects a leading '+'.
 ParsedNumber parsed_number(std::string_view text) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     ParsedNumber number;
@@ -118,7 +118,7 @@ NffToken NffTokens::take_part(std::string_view what) {
     return token;
 }
 
-std::string_view NffTokens::take_word(std::string_view what) {
+std::string_view NffTokens::take_name(std::string_view what) {
     const NffToken token = take_part(what);
     if (one_line_) entity_ += fmt::format(" {}", token.text);
     return token.text;
@@ -134,22 +134,22 @@ bool NffTokens::skip_unknown() {
 
 bool NffTokens::number_follows() const { return reads_as_number(next_.text); }
 
-double NffTokens::take_number(std::string_view what, double most) {
+double NffTokens::take_number(std::string_view what, double max) {
     const ParsedNumber number = parsed_number(next_.text);
     const bool no_number = number.error == std::errc::invalid_argument;
-    const bool cut_short = no_number && next_.first_on_line && !one_line_;
+    const bool incomplete = no_number && next_.first_on_line && !one_line_;
     const NffToken token = take_part(what);
     const auto refused = [&](std::string_view reason) {
         refuse(token.line, fmt::format("{} of {}: {} {}", what, in_quotes(entity_), in_quotes(token.text), reason));
     };
-    if (cut_short)
-        refuse(token.line, fmt::format("{} of line {} is cut short: {} stands where {} should be", in_quotes(entity_),
-                                       entity_line_, in_quotes(token.text), what));
+    if (incomplete)
+        refuse(token.line, fmt::format("{} of line {} is incomplete: expected {}, found {}", in_quotes(entity_),
+                                       entity_line_, what, in_quotes(token.text)));
     if (no_number) refused("is not a number");
     if (number.error == std::errc::result_out_of_range) refused("is outside the range of double precision");
-    if (!number.rest.empty()) refused("is a number with something after it");
+    if (!number.rest.empty()) refused("has characters after the number");
     if (!std::isfinite(number.value)) refused("is not a finite number");
-    if (std::abs(number.value) > most) refused(fmt::format("is out of range: at most {:.0e} in magnitude", most));
+    if (std::abs(number.value) > max) refused(fmt::format("is out of range: at most {:.0e} in magnitude", max));
     return number.value;
 }
 

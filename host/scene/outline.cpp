@@ -36,7 +36,7 @@ Vec3 unit_vector(const Vec3& v) {
     return scaled / scaled.length();
 }
 
-OutlineVerdict tidy_outline(Polygon& polygon) {
+OutlineCheck clean_outline(Polygon& polygon) {
     drop_repeats(polygon);
     const std::vector<Vec3>& vertices = polygon.vertices;
     if (vertices.size() < 3) return {OutlineFault::kNoArea, "has fewer than three different vertices"};
@@ -52,7 +52,7 @@ OutlineVerdict tidy_outline(Polygon& polygon) {
     }
     if (size < kSmallestLength) return {OutlineFault::kNoArea, fmt::format("is smaller than {}", kSmallestLength)};
 
-    // What rounding alone can make of vertices that lie on one line.
+    // Upper bound of the area that rounding alone gives collinear vertices.
     const double no_area = 1e-12 * size * size + 8 * kEpsilon * reach * size;
     const Vec3 normal = newell_normal(vertices);
     for (std::size_t i = 2; normal.length() <= no_area && i < vertices.size(); ++i)
@@ -65,26 +65,26 @@ OutlineVerdict tidy_outline(Polygon& polygon) {
         off = std::max(off, std::abs((v - vertices[0] - mean).dot(normal) / normal.length()));
     if (off > kFlatness * size)
         return {OutlineFault::kNotFlat,
-                fmt::format("is not flat: a vertex lies {:.3g} off its plane, at most {:.3g} ({} of its size) is "
-                            "allowed; cut it into triangles",
+                fmt::format("is not flat: a vertex lies {:.3g} off its plane, more than {:.3g} ({} of its size); cut "
+                            "it into triangles",
                             off, kFlatness * size, kFlatness)};
     return {};
 }
 
-std::string view_fault(const View& view) {
-    constexpr double kLeastUpAngle = 1e-6;  // sine of the angle between the gaze and up, below which up is no help
+std::string view_error(const View& view) {
+    constexpr double kMinUpSine = 1e-6;  // of the angle between the viewing direction and up
     const Vec3 gaze = view.at - view.from;
     if (gaze.length() < kSmallestLength) return "'from' and 'at' are the same point";
     if (!(view.angle_degrees > 0 && view.angle_degrees < 180))
         return fmt::format("the angle is {}: must lie between 0 and 180 degrees", view.angle_degrees);
-    if (unit_vector(gaze).cross(unit_vector(view.up)).length() < kLeastUpAngle)
-        return "'up' is zero or points along the gaze; turn it";
+    if (unit_vector(gaze).cross(unit_vector(view.up)).length() < kMinUpSine)
+        return "'up' is zero or parallel to the viewing direction; change it";
     return {};
 }
 
 bool is_colour(const Colour& colour) {
-    const auto [least, most] = std::minmax({colour.x, colour.y, colour.z});
-    return least >= 0 && most <= kLargestNumber;
+    const auto [lowest, highest] = std::minmax({colour.x, colour.y, colour.z});
+    return lowest >= 0 && highest <= kLargestNumber;
 }
 
 }  // namespace raya

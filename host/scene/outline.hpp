@@ -1,5 +1,4 @@
-// What an outline of a polygon, a viewpoint and colours must be, whoever gives them: a scene's file or the command
-// line.
+// Validity of polygon outlines, viewpoints and colours, for scene files and the command line.
 #pragma once
 #include <string>
 
@@ -7,34 +6,34 @@
 
 namespace raya {
 
-/// Lengths below this count as 0: products of four must fit double precision. What a number format cannot hold next to
-/// the scene's largest length is the packer's concern (length_scale.hpp), so that a scene may be in any unit.
+/// Shorter lengths count as 0: products of four must not underflow a double. A scene may be in any unit; the packer
+/// handles lengths that a number format cannot represent next to the largest one (length_scale.hpp).
 inline constexpr double kSmallestLength = 1e-30;
 
-/// How far a vertex may lie from the plane of its polygon, as a share of the polygon's size (the longest side of its
-/// box). Files of six digits stray by some 1e-5; a thousandth is a pixel where the polygon spans 1,000.
+/// The maximum distance of a vertex from the plane of its polygon, relative to the polygon's size (the longest side of
+/// its bounding box). Files with six digits deviate by about 1e-5; 1e-3 is one pixel if the polygon spans 1,000.
 inline constexpr double kFlatness = 1e-3;
 
 enum class OutlineFault { kNone, kNoArea, kCrosses, kNotFlat };
 
-/// What is wrong with an outline, and that as the end of a sentence that begins "the polygon".
-struct OutlineVerdict {
+/// The defect of an outline. `reason` completes a sentence that begins with "the polygon".
+struct OutlineCheck {
     OutlineFault fault = OutlineFault::kNone;
     std::string reason;
 };
 
-/// Drops vertices that repeat their neighbour, with their normals. An outline that crosses itself is detected only
-/// where its signed area is 0.
-OutlineVerdict tidy_outline(Polygon& polygon);
+/// Removes vertices that repeat their neighbour, with their normals, and checks the outline. A self-intersection is
+/// detected only if the signed area is 0.
+OutlineCheck clean_outline(Polygon& polygon);
 
-/// `v` with length 1. A vector that has it already, to rounding, is left as it is, so that a scene survives being
-/// written and read. The zero vector is returned as it is.
+/// Normalises `v`. A vector that has length 1 up to rounding is returned unchanged, so that a scene survives writing
+/// and reading; so is the zero vector.
 Vec3 unit_vector(const Vec3& v);
 
-/// Why nothing can be seen from there: "'from' and 'at' are the same point"; empty where it can.
-std::string view_fault(const View& view);
+/// Returns why a view is invalid: "'from' and 'at' are the same point"; empty if it is valid.
+std::string view_error(const View& view);
 
-/// Whether light can have that colour: components from 0 to kLargestNumber.
+/// Returns true if all components are in 0..kLargestNumber.
 bool is_colour(const Colour& colour);
 
 }  // namespace raya

@@ -13,10 +13,10 @@
 namespace raya {
 namespace {
 
-// A job's words, of one format, with lengths of one scale.
+// The words of a job, in one number format and with one length scale.
 struct JobWords : std::vector<std::uint32_t> {
     NumberFormat format;
-    double unit;  // what a length of 1 in the scene is in the job: a power of two
+    double unit;  // the length in the job of one scene unit: a power of two
 
     JobWords(const NumberFormat& of_numbers, double of_lengths) : format(of_numbers), unit(of_lengths) {}
 };
@@ -27,7 +27,7 @@ void put(JobWords& words, double value) {
 void put(JobWords& words, const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) put(words, v[axis]);
 }
-// A length, a place, the square of a length, a number per length; put() takes what has no length in it.
+// Lengths and positions, squares of lengths, and reciprocal lengths are scaled; put() appends dimensionless numbers.
 template <class Value>
 void put_length(JobWords& words, const Value& value) {
     put(words, words.unit * value);
@@ -67,7 +67,7 @@ void pack_surface(JobWords& words, const Surface& s) {
     put_length(words, checker.size);
 }
 
-// A flat polygon of its own in the packed scene: a whole polygon, or one triangle of a patch.
+// A flat polygon of the packed scene: a whole polygon, or one triangle of a patch.
 struct Face {
     const Polygon* polygon;
     std::vector<int> corners;  // indices of vertices
@@ -211,9 +211,9 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     job.objects.polygons = static_cast<std::uint32_t>(faces.size());
     job.objects.polygons_at = here();
     pack_faces(words, faces, surface_at);
-    if (words.size() > kMostWords)
+    if (words.size() > kMaxWords)
         throw UserError(
-            fmt::format("{}: packs to {} words, more than 32-bit word numbers reach", scene.name, words.size()));
+            fmt::format("{}: packs to {} words, more than 32-bit indices can address", scene.name, words.size()));
 
     const bool has_patches =
         std::any_of(faces.begin(), faces.end(), [](const Face& f) { return !f.polygon->normals.empty(); });

@@ -1,4 +1,4 @@
-// Packs a scene and a view into the words that the bus broadcasts and every PE holds (kernels/shared/job.h).
+// Packs a scene and a view into the words that the bus broadcasts and every PE stores (kernels/shared/job.h).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -18,16 +18,16 @@ namespace raya {
 template <class Record>
 inline constexpr std::size_t kWordsOf = sizeof(Record) / sizeof(std::uint32_t);
 
-/// The most words of a job or a node's memory: 32-bit word numbers reach them with room to spare. 4 GB.
-inline constexpr std::size_t kMostWords = std::size_t{1} << 30;
+/// The maximum number of words of a job or of a node's memory, 4 GB: well within 32-bit indices.
+inline constexpr std::size_t kMaxWords = std::size_t{1} << 30;
 
-/// `words`, filled up to rows of four (kernels read float4).
-constexpr std::size_t whole_rows(std::size_t words) { return (words + 3) / 4 * 4; }
+/// `words` rounded up to a multiple of four (kernels read float4).
+constexpr std::size_t padded_to_rows(std::size_t words) { return (words + 3) / 4 * 4; }
 
 template <class Record>
 using WordsOf = std::array<std::uint32_t, kWordsOf<Record>>;
 
-/// The record that starts at words[at].
+/// Reads the record that starts at words[at].
 template <class Record>
 Record record_at(std::span<const std::uint32_t> words, std::size_t at) {
     WordsOf<Record> own;
@@ -41,23 +41,23 @@ void put_record(std::span<std::uint32_t> words, std::size_t at, const Record& re
     std::copy(own.begin(), own.end(), words.subspan(at, own.size()).begin());
 }
 
-/// Where in a pixel its primary ray goes through (kernels/README.md, Camera).
+/// The position of the primary ray in a pixel (kernels/README.md, Camera).
 enum class Sampling { kCentres, kCorners };
 
-/// What a job needs beside its scene.
+/// Parameters of a job besides its scene.
 struct JobSettings {
     ImageSize image;
     Sampling sampling = Sampling::kCentres;
     std::uint32_t bounces = 8;
     std::array<std::uint32_t, RAYA_EVENTS> cycles{};  // modelled cycles of one event of each kind
     NumberFormat format{};                            // of every number in the job
-    int length_exponent = 0;                          // every length is multiplied by 2^this; see length_scale()
+    int length_exponent = 0;                          // lengths are multiplied by 2^length_exponent; see length_scale()
 };
 
-/// A job's words, and the header with which they open.
+/// The words of a job, which begin with its header.
 class PackedJob {
   public:
-    /// `words` open with room for the header.
+    /// `words` begins with space for the header.
     PackedJob(const raya_job& header, std::vector<std::uint32_t> words, bool has_patches);
 
     const raya_job& header() const { return header_; }
@@ -75,9 +75,9 @@ class PackedJob {
     bool has_patches_;
 };
 
-/// One PE has all pixels: whose machine has more sets the header's mapping. Numbers are rounded from double to the
-/// format once each. Patches of more than three vertices are cut into triangles, each of which counts as a polygon of
-/// its own. Throws UserError for a scene of more than 2^30 words.
+/// Packs a scene. The header's mapping assigns all pixels to one PE; machines with more PEs replace it. Each number is
+/// rounded from double to the format once. Patches of more than three vertices are cut into triangles, each of which
+/// counts as a polygon. UserError for a scene of more than 2^30 words.
 PackedJob pack_job(const Scene& scene, const JobSettings& settings);
 
 }  // namespace raya

@@ -10,10 +10,10 @@ namespace {
 
 using Vec2 = Imath::V2d;
 
-/// Twice the signed area of a triangle, > 0 where it runs counter-clockwise.
+/// Twice the signed area of a triangle, > 0 if it is counter-clockwise.
 double doubled_area(const Vec2& a, const Vec2& b, const Vec2& c) { return (b - a).cross(c - a); }
 
-/// The vertices in the plane's two coordinates, mirrored where needed so that they run counter-clockwise.
+/// The vertices in the plane's two coordinates, mirrored if necessary to be counter-clockwise.
 std::vector<Vec2> flattened(const std::vector<Vec3>& vertices, const Vec3& normal) {
     const int axis = dropped_axis(normal);
     const int first = axis == 0 ? 1 : 0;
@@ -27,9 +27,9 @@ std::vector<Vec2> flattened(const std::vector<Vec3>& vertices, const Vec3& norma
     return flat;
 }
 
-/// A corner is an ear where it is convex and no other vertex lies in its triangle. Vertices on its border count as
-/// inside, so that no ear leaves a flat rest behind; those that coincide with a corner (the two sides of a cut that
-/// joins a hole to the outline) do not.
+/// Returns true if a corner is an ear: convex, with no other vertex in its triangle. Vertices on the triangle's border
+/// count as inside, so that cutting an ear never leaves a degenerate polygon. Vertices that coincide with a corner (the
+/// two sides of a cut that joins a hole to the outline) do not count.
 bool is_ear(const std::vector<Vec2>& flat, const std::vector<int>& rest, const std::array<int, 3>& corner) {
     const auto at = [&](int i) { return flat[static_cast<std::size_t>(i)]; };
     const Vec2 a = at(corner[0]), b = at(corner[1]), c = at(corner[2]);
@@ -46,7 +46,7 @@ bool is_ear(const std::vector<Vec2>& flat, const std::vector<int>& rest, const s
 
 Vec3 newell_normal(const std::vector<Vec3>& vertices) {
     Vec3 sum(0, 0, 0);
-    // Taken about the first vertex, not the origin: a small polygon far out keeps its digits.
+    // Relative to the first vertex instead of the origin: a small polygon far from the origin keeps its precision.
     for (std::size_t i = 2; i < vertices.size(); ++i)
         sum += (vertices[i - 1] - vertices[0]).cross(vertices[i] - vertices[0]);
     return sum;
@@ -69,7 +69,7 @@ std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, c
     };
     std::vector<std::array<int, 3>> triangles;
     while (rest.size() >= 3) {
-        std::size_t ear = 1;  // of a triangle, and of an outline without ears: gives (0, 1, 2)
+        std::size_t ear = 1;  // for a triangle or an outline without ears: corners (0, 1, 2)
         if (rest.size() > 3)
             for (std::size_t i = 0; i < rest.size(); ++i)
                 if (is_ear(flat, rest, corner(i))) {

@@ -1,4 +1,4 @@
-// A scene as plain data, in double precision, as the file gives it. Nothing here knows a machine, a format or OpenCL.
+// A scene as plain data in double precision, independent of machines, number formats and OpenCL.
 #pragma once
 #include <Imath/ImathVec.h>
 
@@ -18,20 +18,20 @@ struct View {
     Vec3 at{0, 0, 1};
     Vec3 up{0, 1, 0};
     double angle_degrees = 45;  // of the whole height, in (0, 180)
-    double hither = 0;          // kept, not used: a ray tracer has no hither plane
+    double hither = 0;          // stored for writing only: a ray tracer has no hither plane
     int width = 256;            // pixels
     int height = 256;
     bool operator==(const View&) const = default;
 };
 
-/// A positional light. `colour` is empty where the file gives none: then sqrt(n) / (2 n) white for n lights.
+/// A positional light. An empty `colour` means white of sqrt(n) / (2 n) for n lights.
 struct Light {
     Vec3 position;
     std::optional<Colour> colour;
     bool operator==(const Light&) const = default;
 };
 
-/// Squares of side `size`, of two colours in turn, in place of the surface's own colour (kernels/README.md, Checker).
+/// Squares of side `size` in two alternating colours, instead of the surface's colour (kernels/README.md, Checker).
 struct Checker {
     Colour even{1, 1, 1}, odd{0, 0, 0};
     double size = 1;  // scene units, > 0
@@ -45,7 +45,7 @@ struct Surface {
     double specular = 0;       // Ks: highlight and share of the reflected ray
     double shine = 0;          // Phong exponent
     double transmittance = 0;  // T: share of the refracted ray
-    double refraction = 1;     // index of refraction, > 0 where transmittance > 0
+    double refraction = 1;     // index of refraction, > 0 if transmittance > 0
     std::optional<Checker> checker{};
     bool operator==(const Surface&) const = default;
 };
@@ -66,7 +66,7 @@ struct Plane {
     bool operator==(const Plane&) const = default;
 };
 
-/// A planar polygon, concave ones too (`p`), or a patch with a normal at each vertex (`pp`).
+/// A planar polygon, convex or concave (`p`), or a patch with a normal at each vertex (`pp`).
 struct Polygon {
     std::vector<Vec3> vertices;  // 3 or more, in order around the polygon, counter-clockwise seen from its front
     std::vector<Vec3> normals;   // empty, or one of length 1 for each vertex
@@ -84,7 +84,7 @@ struct Cone {
     bool operator==(const Cone&) const = default;
 };
 
-/// Everything that a file says. Objects are numbered by kind, then by their order in the file: all spheres first, then
+/// The contents of a scene file. Objects are numbered by kind, then by their order in the file: all spheres, then
 /// planes, polygons and cones. Of two hits at equal distance the lower number wins.
 struct Scene {
     std::string name;  // the file's name without folder, or what generated it
@@ -101,17 +101,17 @@ struct Scene {
     bool operator==(const Scene&) const = default;
 };
 
-/// Stores equal surfaces once, in the order in which the objects (by number) first use them, and drops unused ones. Two
-/// scenes that say the same thing then compare equal.
+/// Stores equal surfaces once, in the order in which the objects (by number) first use them, and removes unused ones,
+/// so that equivalent scenes compare equal.
 void share_surfaces(Scene& scene);
 
-/// What a light of this scene emits: its own colour, or white of sqrt(n) / (2 n) (SPD, E. Haines).
+/// The colour of a light of this scene: its own, or white of sqrt(n) / (2 n) (SPD, E. Haines).
 Colour light_colour(const Scene& scene, const Light& light);
 
-/// The ambient intensity: sqrt(n) / (2 n) for n lights (SPD); 1 in a scene without lights, so that it can be seen.
+/// The ambient intensity: sqrt(n) / (2 n) for n lights (SPD); 1 without lights, so that the image is not black.
 double ambient_intensity(const Scene& scene);
 
-/// Half the side of the smallest cube about the origin that holds the eye and all finite objects, scene units.
+/// Half the side of the smallest cube around the origin that contains the eye and all finite objects, scene units.
 double scene_extent(const Scene& scene);
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// Random numbers that are the same on every platform.
+// Platform-independent random numbers.
 #pragma once
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-// The camera on its way round what it looks at, views drawn at random, and the box about a scene's finite objects.
+// Rotation of the camera around its target, random views, and the bounding box of a scene.
 #pragma once
 #include <Imath/ImathBox.h>
 
@@ -8,20 +8,20 @@
 
 namespace raya {
 
-/// The view after its eye has gone by so many degrees round the axis through `at` along `up`, anticlockwise for who
-/// looks against `up`: at the same height and distance. Whole turns change no bit of it, quarter turns have the exact
-/// sine and cosine.
+/// Rotates the eye by `degrees` around the axis through `at` along `up`, anticlockwise as seen from above (`up` towards
+/// the viewer). Height and distance stay the same. Full turns change no bit; quarter turns use the exact sine and
+/// cosine.
 View turned(View view, double degrees);
 
-inline constexpr double kLowestView = 5, kHighestView = 75;  // degrees above the level of what is looked at
+inline constexpr double kLowestView = 5, kHighestView = 75;  // elevation above the target, degrees
 
-/// The scene from another place, at the same distance from the point that its view looks at and with the same angle.
-/// The place is drawn evenly from the part of the sphere about that point between the two heights; above is where the
-/// view's `up` points. A function of its arguments, the same on every platform: directions have six decimals.
+/// The scene with a random eye at the same distance from `at` and with the same angle. The eye is uniform on the part
+/// of the sphere around `at` between the two elevations above the plane perpendicular to `up`. A function of its
+/// arguments, the same on every platform: directions are rounded to six decimals.
 Scene random_view(Scene scene, std::uint64_t seed);
 
-/// The smallest box with sides along the axes that holds all spheres, polygons and cones, scene units; empty
-/// (isEmpty()) of a scene of planes alone. Patches count by their corners.
+/// The axis-aligned bounding box of all spheres, polygons and cones, scene units; empty (isEmpty()) if the scene has
+/// only planes. Patches count by their corners.
 Imath::Box3d scene_box(const Scene& scene);
 
 }  // namespace raya

@@ -14,49 +14,49 @@ AsyncSimulation::AsyncSimulation(const raya_torus& torus, const History& history
     : torus_(torus),
       history_(history),
       machine_(machine),
-      caused_(tasks_of_messages(history)),
+      task_of_message_(tasks_of_messages(history)),
       arrived_(history.messages.size()),
       nodes_(raya_nodes(torus)),
-      ways_(nodes_.size() * RAYA_LINKS) {
-    for (std::uint32_t link = 0; link < ways_.size(); ++link) {
-        Way& way = ways_[link];
-        way.start = link / RAYA_LINKS;
-        way.end = raya_link_end(torus, way.start, link % RAYA_LINKS);
-        way.back = way.end * RAYA_LINKS + (link % RAYA_LINKS ^ 1u);
+      channels_(nodes_.size() * RAYA_LINKS) {
+    for (std::uint32_t link = 0; link < channels_.size(); ++link) {
+        Channel& channel = channels_[link];
+        channel.start = link / RAYA_LINKS;
+        channel.end = raya_link_end(torus, channel.start, link % RAYA_LINKS);
+        channel.back = channel.end * RAYA_LINKS + (link % RAYA_LINKS ^ 1u);
     }
     for (std::uint32_t task = 0; task < history.tasks.size(); ++task)
         if (history.tasks[task].cause == HistoryTask::kInjection) nodes_[history.tasks[task].node].own.push_back(task);
     result_.nodes.resize(nodes_.size());
-    result_.links.resize(ways_.size());
+    result_.links.resize(channels_.size());
 }
 
-void AsyncSimulation::foresee(double after, What what, std::uint32_t place, std::uint32_t version) {
-    events_.push({now_ + after, foreseen_++, what, place, version});
+void AsyncSimulation::schedule(double after, EventKind kind, std::uint32_t location, std::uint32_t version) {
+    events_.push({now_ + after, scheduled_++, kind, location, version});
 }
 
 AsyncResult AsyncSimulation::run() {
-    for (std::uint32_t node = 0; node < nodes_.size(); ++node) next_task(node);
+    for (std::uint32_t node = 0; node < nodes_.size(); ++node) start_next_task(node);
     while (!events_.empty()) {
         const Event event = events_.top();
         events_.pop();
-        happen(event);
+        handle(event);
     }
     if (done_ < history_.tasks.size() || result_.delivered < history_.messages.size())
-        throw std::runtime_error(fmt::format("the asynchronous torus stands still: {} of {} messages delivered",
+        throw std::runtime_error(fmt::format("deadlock of the asynchronous torus: {} of {} messages delivered",
                                              result_.delivered, history_.messages.size()));
     return std::move(result_);
 }
 
-void AsyncSimulation::happen(const Event& event) {
-    const bool holds =
-        event.what == What::kMessageDone ||
-        event.version == (event.what == What::kMainDone ? nodes_[event.place].version : ways_[event.place].version);
-    if (!holds) return;  // it was put off, and foreseen anew
+void AsyncSimulation::handle(const Event& event) {
+    const bool valid = event.kind == EventKind::kMessageDone ||
+                       event.version == (event.kind == EventKind::kTaskDone ? nodes_[event.location].version
+                                                                            : channels_[event.location].version);
+    if (!valid) return;  // it was postponed and scheduled again
     now_ = event.time;
     result_.finish_ms = now_ * kMsPerNs;
-    if (event.what == What::kMessageDone) finish_job(event.place);
-    if (event.what == What::kMainDone) finish_task(event.place);
-    if (event.what == What::kCarried) end_carrying(event.place);
+    if (event.kind == EventKind::kMessageDone) finish_job(event.location);
+    if (event.kind == EventKind::kTaskDone) finish_task(event.location);
+    if (event.kind == EventKind::kTransferDone) end_transfer(event.location);
 }
 
 AsynchronousTime AsyncResult::time() const {
@@ -72,8 +72,10 @@ AsynchronousTime AsyncResult::time() const {
 
 AsyncResult simulate(const raya_torus& torus, const History& history, const AsyncMachine& machine) {
     if (machine.entering < 1 || machine.buffer < machine.entering)
-        throw UserError(fmt::format("a port with room for {} messages, of which {} must be free for a ray to enter",
-                                    machine.buffer, machine.entering));
+        throw UserError(
+            fmt::format("a port of {} slots, of which {} must be free for a ray to enter a ring; use 1 or "
+                        "more to enter, and at least as many slots",
+                        machine.buffer, machine.entering));
     check_history(history, raya_nodes(torus));
     return AsyncSimulation(torus, history, machine).run();
 }

@@ -15,16 +15,16 @@
 namespace raya {
 namespace {
 
-// Twice as long; the longest that fits, where twice as long does not.
+// Twice the length, or the longest queue that fits if twice the length does not.
 std::uint32_t next_queue(std::uint32_t tried, const QueueTrial& trial) {
     const auto fits = [&](std::uint32_t queue) { return trial.bytes(buffers_for(queue)) <= trial.limit; };
     const std::uint32_t next = std::min(2 * tried, trial.most);
     if (!fits(tried) || fits(next)) return next;
-    const std::uint32_t longest = last_that_holds(tried, next, fits);
+    const std::uint32_t longest = last_where(tried, next, fits);
     return longest > tried ? longest : next;
 }
 
-// Entries of lists that are made in a fraction of a second.
+// Limit for a trial's object lists: entries that take a fraction of a second.
 constexpr std::uint64_t kFewEntries = std::uint64_t{1} << 24;
 
 std::uint64_t voxels_of(const Divisions& divisions) {
@@ -36,16 +36,16 @@ class PlanTrial {
     PlanTrial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels)
         : job_(job), format_(format), voxels_(voxels) {}
 
-    std::optional<TrialNodes> operator()(const std::array<std::uint32_t, 3>& nodes) {
-        TrialNodes tried{0, voxels_};
+    std::optional<NodeTrialResult> operator()(const std::array<std::uint32_t, 3>& nodes) {
+        NodeTrialResult tried{0, voxels_};
         for (std::size_t axis = 0; axis < 3; ++axis)
             while (tried.voxels[axis] < nodes[axis]) tried.voxels[axis] *= 2;
         const std::uint64_t voxels = voxels_of(tried.voxels);
-        if (voxels > kMostCutVoxels || everywhere_ * voxels > kFewEntries) return {};
+        if (voxels > kMaxPartitionVoxels || everywhere_ * voxels > kFewEntries) return {};
         try {
             const Partition cut = partition(job_, format_, tried.voxels);
             everywhere_ = cut.objects.size() == cut.distinct * voxels ? cut.distinct : 0;
-            // Which voxels a node holds does not depend on its links.
+            // The assignment of voxels to nodes does not depend on the links.
             tried.words = fullest_node_words(job_, cut, make_torus(nodes, Links::kTorus3d));
             return tried;
         } catch (const TooManyEntries&) {
@@ -57,22 +57,22 @@ class PlanTrial {
     const PackedJob& job_;
     const NumberFormat format_;
     const Divisions voxels_;
-    // How many objects the last trial found in every voxel, if all. Formats without a bound for the registration do
-    // that to any number of voxels; no number of nodes helps then, and the lists grow long.
+    // Number of objects if the last trial registered every object in every voxel, else 0. Formats without a bound for
+    // the registration do so for any number of voxels. Then no number of nodes helps, and the lists grow long.
     std::uint64_t everywhere_ = 0;
 };
 
 constexpr std::uint64_t kPacketBytes = RAYA_PACKET_WORDS * sizeof(std::uint32_t);
 constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t);
 
-// The longest queue from `least` to `most` that fits beside the words; `least` fits.
+// The longest queue in [least, most] that fits next to the words; `least` must fit.
 std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t least,
                             std::uint32_t most) {
-    return last_that_holds(least, std::uint64_t{most} + 1,
-                           [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; });
+    return last_where(least, std::uint64_t{most} + 1,
+                      [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; });
 }
 
-// What is asked of every node.
+// Memory that a scene needs in every node.
 struct Demand {
     const std::string& scene;
     const NodeMemories& memories;
@@ -113,26 +113,26 @@ std::string node_text(const NodeMemories& memories, std::uint32_t number) {
     return fmt::format("node {} ({} with {})", number, voxels, counted(objects, "object"));
 }
 
-// Twice as many nodes along the shortest side, the first of equals.
+// Twice as many nodes along the shortest side, the first in case of a tie.
 std::array<std::uint32_t, 3> doubled(std::array<std::uint32_t, 3> nodes) {
     *std::min_element(nodes.begin(), nodes.end()) *= 2;
     return nodes;
 }
 
-// "--nodes 16x16x8", or nothing where no machine fits that has up to 65,536 nodes.
+// "--nodes 16x16x8", or an empty text if no machine of up to 65,536 nodes fits.
 std::string larger_machine(const Demand& demand, const NodeTrial& trial) {
     const std::uint32_t* const own = demand.torus.nodes;
-    // A torus with sides I x J x 1 may be of either kind; that of more links needs no less memory.
+    // A torus of I x J x 1 sides may be of either kind: assume the 3-D one, which needs at least as much memory.
     const Links links = demand.torus.sides[2] != own[2] ? Links::kTorus2d : Links::kTorus3d;
     std::array<std::uint32_t, 3> nodes = doubled({own[0], own[1], own[2]});
-    for (std::uint64_t count = 2 * demand.nodes(); count <= kMostNodes; count *= 2, nodes = doubled(nodes)) {
+    for (std::uint64_t count = 2 * demand.nodes(); count <= kMaxNodes; count *= 2, nodes = doubled(nodes)) {
         const std::uint32_t node_links = links_of_node(make_torus(nodes, links));
         const auto fits = [&](std::uint64_t words) {
             return node_bytes(words, demand.buffers, node_links) <= demand.limit;
         };
-        // Smaller voxels hold more copies, so no machine does whose nodes could not even share these words evenly.
+        // Smaller voxels add copies of objects, so an even split of the present words is a lower bound.
         if (!fits(demand.memories.words.size() / count)) continue;
-        const std::optional<TrialNodes> tried = trial(nodes);
+        const std::optional<NodeTrialResult> tried = trial(nodes);
         if (tried && fits(tried->words))
             return fmt::format("--nodes {}{}", sides_text(nodes),
                                tried->voxels == nodes ? "" : " --voxels " + sides_text(tried->voxels));
@@ -149,7 +149,7 @@ std::string remedies(const Demand& demand, std::uint64_t words, std::uint32_t fe
                            longest_queue(words, links, demand.limit, fewest, demand.buffers.queue), memory);
     if (!trial) return "use " + memory;
     const std::string machine = larger_machine(demand, trial);
-    if (machine.empty()) return fmt::format("more nodes, up to {}, would not do; use {}", kMostNodes, memory);
+    if (machine.empty()) return fmt::format("no machine of up to {} nodes is large enough; use {}", kMaxNodes, memory);
     return fmt::format("use {} or {}", machine, memory);
 }
 
@@ -159,11 +159,11 @@ std::string remedies(const Demand& demand, std::uint64_t words, std::uint32_t fe
     for (std::uint32_t node = 0; node < demand.nodes(); ++node) fit += demand.bytes(demand.words(node)) <= demand.limit;
     const std::uint64_t words = demand.words(fullest);
     throw NodesDoNotFit(
-        fmt::format("{}: does not fit: {} of {} nodes can hold what they have to, {} cannot; {} needs {} "
-                    "beside {} of buffers, a node has {}; {}",
+        fmt::format("{}: does not fit: {} of {} nodes can hold their voxels, {} cannot; {} needs {} and {} of "
+                    "buffers, a node has {}; {}",
                     demand.scene, fit, demand.nodes(), demand.nodes() - fit, node_text(demand.memories, fullest),
-                    needed_text(4 * words), needed_text(demand.bytes(0)), present_text(demand.limit),
-                    remedies(demand, words, fewest, trial)),
+                    required_size_text(4 * words), required_size_text(demand.bytes(0)),
+                    available_size_text(demand.limit), remedies(demand, words, fewest, trial)),
         demand.bytes(words), demand.limit, demand.nodes(), fit, fullest);
 }
 
@@ -181,17 +181,17 @@ std::uint64_t node_bytes(std::uint64_t words, const NodeBuffers& buffers, std::u
            kReturnBytes * return_boxes * buffers.box;
 }
 
-QueueFound longer_queue(std::uint32_t queue, const QueueTrial& trial) {
+QueueFound find_longer_queue(std::uint32_t queue, const QueueTrial& trial) {
     QueueFound found{.queue = queue};
     try {
         while (!found.ends && found.queue < trial.most) {
             const std::uint32_t next = next_queue(found.queue, trial);
             const NodeBuffers buffers = buffers_for(next);
-            if (!trial.device_holds(buffers)) break;
+            if (!trial.fits_device(buffers)) break;
             found.ends = trial.ends(buffers);
             found.queue = next;
         }
-    } catch (const DeviceError&) {  // a machine with that queue does not fit into the device
+    } catch (const DeviceError&) {  // a machine with that queue does not fit the device
     }
     found.bytes = trial.bytes(buffers_for(found.queue));
     found.fits = found.bytes <= trial.limit;
@@ -208,7 +208,7 @@ std::string queue_remedy(const QueueFound& found) {
                        found.queue, (found.bytes + 1023) / 1024 * 1024);
 }
 
-NodeTrial trial_of(const PackedJob& job, const NumberFormat& format, const Divisions& voxels) {
+NodeTrial make_node_trial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels) {
     return PlanTrial(job, format, voxels);
 }
 
@@ -218,8 +218,8 @@ NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories,
     fewest = std::max(1u, fewest);
     if (queue > 0 && queue < fewest)
         throw UserError(
-            fmt::format("{}: --queue {}: the tree of a single ray can ask for {} packets; use --queue {} or more",
-                        scene, queue, fewest, fewest));
+            fmt::format("{}: --queue {}: the tree of a single ray may need {} packets; use --queue {} or more", scene,
+                        queue, fewest, fewest));
     const std::uint32_t most = queue > 0 ? queue : std::max(default_queue(raya_nodes(torus)), fewest);
     if (!memory_bytes) return buffers_for(most);
     const Demand demand{scene, memories, torus, *memory_bytes, buffers_for(queue > 0 ? queue : fewest)};
@@ -228,7 +228,7 @@ NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories,
     return buffers_for(longest_queue(words, links_of_node(torus), *memory_bytes, demand.buffers.queue, most));
 }
 
-bool device_holds(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceMemory& memory) {
+bool fits_device(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceMemory& memory) {
     const std::uint64_t queues = kPacketBytes * nodes * buffers.queue;
     const std::uint64_t boxes = kPacketBytes * RAYA_LINKS * nodes * (std::uint64_t{1} + buffers.box);
     const std::uint64_t all = queues + 2 * boxes + 2 * boxes * kReturnBytes / kPacketBytes;
@@ -237,12 +237,12 @@ bool device_holds(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceM
 
 void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,
                          const std::string& device, const DeviceMemory& memory) {
-    if (device_holds(buffers, nodes, memory)) return;
+    if (fits_device(buffers, nodes, memory)) return;
     std::uint32_t queue = buffers.queue;
-    while (queue > 1 && !device_holds(buffers_for(queue), nodes, memory)) queue /= 2;
+    while (queue > 1 && !fits_device(buffers_for(queue), nodes, memory)) queue /= 2;
     throw UserError(
-        fmt::format("{}: queues of {} packets and their boxes in {} nodes do not fit into {}; use --queue {} or "
-                    "fewer nodes",
+        fmt::format("{}: queues of {} packets and their mailboxes in {} nodes do not fit the memory of {}; use "
+                    "--queue {} or fewer nodes",
                     scene, buffers.queue, nodes, device, queue));
 }
 

@@ -22,17 +22,17 @@ void put(std::vector<float>& colours, const raya_head& packet) {
     colours.push_back(packet.weight);
 }
 
-// Work-groups of `group` work-items, each of which has 16 pixels or more, and fewer than would turn its loops too
-// often.
+// Number of work-groups of `group` work-items: at least 16 pixels for each work-item, but so few that no loop exceeds
+// the device's limit of iterations.
 std::size_t groups_of(const Contributions& contributions, std::uint32_t group, const DeviceInfo& device) {
     constexpr std::size_t kPixels = 16, kMostGroups = 4096;
     const std::vector<std::uint32_t>& starts = contributions.starts;
     const std::size_t pixels = starts.size() - 1;
     std::size_t groups = std::min(kMostGroups, pixels / (kPixels * group) + 1);
-    if (device.loop_turns == 0) return groups;
-    std::size_t most = 0;  // contributions of a pixel
+    if (device.max_loop_iterations == 0) return groups;
+    std::size_t most = 0;  // maximum number of contributions of a pixel
     for (std::size_t i = 0; i < pixels; ++i) most = std::max<std::size_t>(most, starts[i + 1] - starts[i]);
-    return std::max(groups, 2 * pixels * (most + 2) / (std::size_t{group} * device.loop_turns) + 1);
+    return std::max(groups, 2 * pixels * (most + 2) / (std::size_t{group} * device.max_loop_iterations) + 1);
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
     sorted.starts.assign(std::size_t{pixels} + 1, 0);
     for (const raya_head& packet : returns) {
         if (packet.pixel >= pixels)
-            throw std::logic_error(fmt::format("a contribution to pixel {} of {}", packet.pixel, pixels));
+            throw std::logic_error(fmt::format("a contribution to pixel {}, in an image of {}", packet.pixel, pixels));
         ++sorted.starts[packet.pixel + 1];
     }
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) sorted.starts[pixel + 1] += sorted.starts[pixel];
@@ -57,7 +57,7 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
         std::sort(first, last, [&](std::uint32_t a, std::uint32_t b) { return comes_before(returns[a], returns[b]); });
         for (auto i = first; i != last; ++i) {
             if (i != first && !comes_before(returns[i[-1]], returns[*i]))
-                throw std::logic_error(fmt::format("pixel {}: two contributions with one place in its tree", pixel));
+                throw std::logic_error(fmt::format("pixel {}: two contributions of the same ray", pixel));
             put(sorted.colours, returns[*i]);
         }
     }
@@ -84,7 +84,8 @@ std::vector<float> Composer::compose(const Contributions& contributions) {
         session_.fill("compose", cut, 0);
         session_.launch("compose", compose_, groups, group_, colours, starts, Uint<"pixels">{pixels}, image, cut);
         session_.read("compose", cut, {&was_cut, 1});
-        if (was_cut && groups * group_ >= pixels) throw loops_cut("compose", session_.device().name, "fewer --bounces");
+        if (was_cut && groups * group_ >= pixels)
+            throw truncated_loops_error("compose", session_.device().name, "fewer --bounces");
     }
     std::vector<float> pixels_of_image(3ull * pixels);
     session_.read("compose", image, pixels_of_image);

@@ -1,4 +1,4 @@
-// Puts the contributions that come back to the root into the order of their pixels' ray trees and adds them up.
+// Collects the contributions that the root receives: sorts them by pixel and place in the ray tree, and sums them up.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,15 +8,14 @@
 
 namespace raya {
 
-/// Sorted as the pixels' sums need them: first to last pixel, in each the order of its ray tree. `starts`: [pixels +
-/// 1].
+/// Contributions in the order of summation: by pixel, then by place in the pixel's ray tree.
 struct Contributions {
     std::vector<float> colours;         // [contribution][4]: red, green, blue, weight
-    std::vector<std::uint32_t> starts;  // where those of each pixel start
+    std::vector<std::uint32_t> starts;  // [pixels + 1]: first contribution of each pixel
 };
 
-/// Takes return packets in any order. std::logic_error for a pixel beyond `pixels`, or two packets with the same place
-/// in a pixel's tree.
+/// Takes return packets in any order. Throws std::logic_error for a pixel >= `pixels`, or for two packets with the same
+/// place in a pixel's tree, UserError for more than 2^32 packets.
 Contributions sort_contributions(const std::vector<raya_head>& returns, std::uint32_t pixels);
 
 using ComposeKernel = DescribedKernel<"torus/compose.cl", "compose", const Buffer<float>&, const Buffer<std::uint32_t>&,
@@ -24,10 +23,11 @@ using ComposeKernel = DescribedKernel<"torus/compose.cl", "compose", const Buffe
 
 class Composer {
   public:
-    /// Kernels for one lane.
+    /// The kernels must be built for one lane.
     explicit Composer(Kernels& kernels);
 
-    /// [pixels][3]: linear red, green, blue, in the format of the build. DeviceError where the device ends loops early.
+    /// Returns [pixels][3]: linear red, green, blue, in the format of the build. Throws DeviceError if the device ends
+    /// loops early.
     std::vector<float> compose(const Contributions& contributions);
 
   private:

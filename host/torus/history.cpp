@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned kLightBits = 16;
 constexpr std::uint64_t kLights = std::uint64_t{1} << kLightBits;
 
-// Finaliser of SplitMix64 (Steele, Lea & Flood 2014): neighbouring pixels land far apart.
+// Finaliser of SplitMix64 (Steele, Lea & Flood 2014): spreads neighbouring pixels over the table.
 std::uint64_t scrambled(std::uint64_t x) {
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
     x = (x ^ x >> 27) * 0x94d049bb133111ebu;
@@ -24,37 +24,37 @@ void require(bool right, std::size_t number, const char* what) {
     if (!right) throw std::logic_error(fmt::format("history: {} {}", what, number));
 }
 
-constexpr std::uint32_t kNobody = UINT32_MAX;
+constexpr std::uint32_t kUnset = UINT32_MAX;
 
 std::uint32_t number_of(std::size_t count) {
-    if (count >= kNobody) throw std::logic_error("history: more than 2^32 - 2 tasks or messages");
+    if (count >= kUnset) throw std::logic_error("history: more than 2^32 - 2 tasks or messages");
     return static_cast<std::uint32_t>(count);
 }
 
-RayName name_of(std::uint32_t pixel, std::uint32_t path, std::uint32_t state) {
-    return {pixel, RayName::place_of(path, raya_state_level(state)), raya_state_light(state)};
+RayId id_of(std::uint32_t pixel, std::uint32_t path, std::uint32_t state) {
+    return {pixel, RayId::place_of(path, raya_state_level(state)), raya_state_light(state)};
 }
 
 }  // namespace
 
-std::uint32_t RayName::place_of(std::uint32_t path, std::uint32_t level) {
+std::uint32_t RayId::place_of(std::uint32_t path, std::uint32_t level) {
     return level == 0 ? 1 : std::uint32_t{1} << level | path >> (32 - level);
 }
 
-RayName RayName::parent() const { return light != 0 ? RayName{pixel, place, 0} : RayName{pixel, place / 2, 0}; }
+RayId RayId::parent() const { return light != 0 ? RayId{pixel, place, 0} : RayId{pixel, place / 2, 0}; }
 
-std::uint64_t RayNumbers::number_of(const RayName& name) {
-    if (name.place == 0 || name.light >= kLights) throw std::logic_error("RayNumbers: no such ray");
+std::uint64_t RayNumbers::number_of(const RayId& id) {
+    if (id.place == 0 || id.light >= kLights) throw std::logic_error("RayNumbers: invalid ray id");
     if (3 * (taken_ + 1) > 2 * slots_.size()) grow();
-    Slot& slot = slot_of(std::uint64_t{name.pixel} << 32 | name.place, name.light);
+    Slot& slot = slot_of(std::uint64_t{id.pixel} << 32 | id.place, id.light);
     if (slot.ray == 0) {
-        slot = {std::uint64_t{name.pixel} << 32 | name.place, next_++ << kLightBits | name.light};
+        slot = {std::uint64_t{id.pixel} << 32 | id.place, next_++ << kLightBits | id.light};
         ++taken_;
     }
     return slot.number_and_light >> kLightBits;
 }
 
-// The slot that has the ray, or the empty one where it belongs.
+// The slot of the ray, or the empty slot where it is to be inserted.
 RayNumbers::Slot& RayNumbers::slot_of(std::uint64_t ray, std::uint64_t light) {
     std::size_t at = scrambled(ray + scrambled(light));
     for (;; ++at) {
@@ -81,7 +81,7 @@ std::vector<std::uint32_t> tasks_of_messages(const History& history) {
         const std::uint32_t cause = history.tasks[t].cause;
         if (cause == HistoryTask::kInjection) continue;
         require(cause < caused.size() && caused[cause] == HistoryTask::kInjection, t,
-                "no message of its own causes task");
+                "invalid or repeated cause of task");
         caused[cause] = static_cast<std::uint32_t>(t);
     }
     return caused;
@@ -89,23 +89,22 @@ std::vector<std::uint32_t> tasks_of_messages(const History& history) {
 
 void check_history(const History& history, std::uint32_t nodes) {
     const auto& [tasks, messages] = history;
-    require(tasks.empty() ? messages.empty() : tasks.front().first == 0, 0, "messages before task");
+    require(tasks.empty() ? messages.empty() : tasks.front().first == 0, 0, "messages precede task");
     for (std::size_t t = 0; t < tasks.size(); ++t) {
         const std::size_t end = t + 1 < tasks.size() ? tasks[t + 1].first : messages.size();
-        require(tasks[t].node < nodes, t, "no node for task");
-        require(tasks[t].first <= end && end <= messages.size(), t, "messages in disorder of task");
-        for (std::size_t m = tasks[t].first; m < end; ++m)
-            require(messages[m].task == t, m, "another task has message");
+        require(tasks[t].node < nodes, t, "invalid node of task");
+        require(tasks[t].first <= end && end <= messages.size(), t, "messages out of order in task");
+        for (std::size_t m = tasks[t].first; m < end; ++m) require(messages[m].task == t, m, "wrong task of message");
         require(tasks[t].cause == HistoryTask::kInjection || tasks[t].cause < tasks[t].first, t,
-                "no cause before task");
+                "the cause does not precede task");
     }
     const std::vector<std::uint32_t> caused = tasks_of_messages(history);
     for (std::size_t m = 0; m < messages.size(); ++m) {
         const bool returns = messages[m].kind == RAYA_KIND_RETURN, causes = caused[m] != HistoryTask::kInjection;
-        require(messages[m].to < nodes && messages[m].words > 0, m, "no node or no word for message");
+        require(messages[m].to < nodes && messages[m].words > 0, m, "invalid destination or no words of message");
         require(causes != returns, m, returns ? "a task is caused by return" : "no task is caused by ray");
         require(returns ? messages[m].to == RAYA_ROOT : messages[m].to == tasks[caused[m]].node, m,
-                "another node has the task of message");
+                "wrong destination of message");
     }
 }
 
@@ -114,7 +113,7 @@ HistoryRecorder::Ray& HistoryRecorder::ray_of(std::uint64_t number) {
     return rays_[number];
 }
 
-std::uint32_t HistoryRecorder::goal_of(std::uint32_t node, const raya_head& packet) const {
+std::uint32_t HistoryRecorder::destination_of(std::uint32_t node, const raya_head& packet) const {
     if (raya_state_kind(packet.state) == RAYA_KIND_RETURN) return RAYA_ROOT;
     if (packet.voxel == RAYA_NO_VOXEL) return node;
     const raya_place v = raya_unpack_place(packet.voxel);
@@ -134,25 +133,25 @@ void HistoryRecorder::send(const Sent& sent) {
 void HistoryRecorder::add(const NodeWork& work) {
     add_injection(work);
     const std::size_t first_task = history_.tasks.size();
-    add_treated(work);
+    add_processed(work);
     add_packets(work, first_task);
 }
 
-// Primary rays that have not been seen: treated already, or still in the slots where they were made.
+// Adds a task for each primary ray not seen before: already processed, or still in the slot in which it was made.
 void HistoryRecorder::add_injection(const NodeWork& work) {
     std::vector<Sent> made;
-    for (std::size_t slot = 0; slot < work.treated.size(); ++slot) {
-        const raya_treated& t = work.treated[slot];
+    for (std::size_t slot = 0; slot < work.processed.size(); ++slot) {
+        const raya_processed& t = work.processed[slot];
         const raya_head& waits = work.queue[slot].head;
-        const bool treated = t.state != RAYA_KIND_NONE;
-        const std::uint32_t state = treated ? t.state : waits.state;
+        const bool processed = t.state != RAYA_KIND_NONE;
+        const std::uint32_t state = processed ? t.state : waits.state;
         if (raya_state_kind(state) != RAYA_KIND_PRIMARY) continue;
-        const std::uint64_t ray = numbers_.number_of(name_of(treated ? t.pixel : waits.pixel, 0, state));
-        if (ray_of(ray).message != kNobody) continue;
-        const std::uint32_t to = treated ? work.node : goal_of(work.node, waits);
+        const std::uint64_t ray = numbers_.number_of(id_of(processed ? t.pixel : waits.pixel, 0, state));
+        if (ray_of(ray).message != kUnset) continue;
+        const std::uint32_t to = processed ? work.node : destination_of(work.node, waits);
         made.push_back({{.to = to, .words = words_of(RAYA_KIND_PRIMARY), .kind = RAYA_KIND_PRIMARY}, ray});
     }
-    std::uint64_t cycles = in_vain_[work.node] + work.injection_cycles, left = made.size();
+    std::uint64_t cycles = uncharged_cycles_[work.node] + work.injection_cycles, left = made.size();
     for (Sent& ray : made) {
         const std::uint64_t share = cycles / left--;
         cycles -= share;
@@ -160,22 +159,22 @@ void HistoryRecorder::add_injection(const NodeWork& work) {
         history_.tasks.push_back({.node = work.node, .cycles = share, .first = number_of(history_.messages.size())});
         send(ray);
     }
-    in_vain_[work.node] = cycles;
+    uncharged_cycles_[work.node] = cycles;
 }
 
-void HistoryRecorder::add_treated(const NodeWork& work) {
+void HistoryRecorder::add_processed(const NodeWork& work) {
     const std::uint32_t first_message = number_of(history_.messages.size());
-    for (const raya_treated& t : work.treated) {
+    for (const raya_processed& t : work.processed) {
         if (t.state == RAYA_KIND_NONE) continue;
-        Ray& ray = ray_of(numbers_.number_of(name_of(t.pixel, t.path, t.state)));
-        if (ray.message == kNobody) throw std::logic_error("history: a packet that nobody sent");
+        Ray& ray = ray_of(numbers_.number_of(id_of(t.pixel, t.path, t.state)));
+        if (ray.message == kUnset) throw std::logic_error("history: a packet that no task sent");
         ray.task = number_of(history_.tasks.size());
         history_.tasks.push_back({.node = work.node, .cause = ray.message, .cycles = t.cycles, .first = first_message});
     }
 }
 
-// What is fresh was made or changed by a packet treated here and now; or it is older and waits for a link, and then the
-// ray that it came from was treated before.
+// Adds the packets that this superstep's tasks made or changed. A packet with RAYA_STATE_FRESH may also be older and
+// wait for a link; then the task of its ray precedes `first_task`.
 void HistoryRecorder::add_packets(const NodeWork& work, std::size_t first_task) {
     std::vector<Sent> made;
     for (const raya_packet& p : work.queue) {
@@ -183,12 +182,12 @@ void HistoryRecorder::add_packets(const NodeWork& work, std::size_t first_task) 
         const std::uint32_t kind = raya_state_kind(h.state);
         if (kind == RAYA_KIND_NONE || !(h.state & RAYA_STATE_FRESH)) continue;
         if (kind == RAYA_KIND_RETURN && !(h.state & RAYA_STATE_CHARGED)) continue;
-        const RayName name = name_of(h.pixel, h.path, h.state);
+        const RayId name = id_of(h.pixel, h.path, h.state);
         const std::uint64_t ray = numbers_.number_of(name);
-        const bool is_new = kind != RAYA_KIND_RETURN && kind != RAYA_KIND_PRIMARY && ray_of(ray).message == kNobody;
+        const bool is_new = kind != RAYA_KIND_RETURN && kind != RAYA_KIND_PRIMARY && ray_of(ray).message == kUnset;
         const std::uint32_t task = ray_of(is_new ? numbers_.number_of(name.parent()) : ray).task;
-        if (task == kNobody || task < first_task) continue;
-        made.push_back({{task, goal_of(work.node, h), words_of(kind), static_cast<std::uint16_t>(kind)}, ray});
+        if (task == kUnset || task < first_task) continue;
+        made.push_back({{task, destination_of(work.node, h), words_of(kind), static_cast<std::uint16_t>(kind)}, ray});
     }
     std::ranges::stable_sort(made, {}, [](const Sent& sent) { return sent.message.task; });
     std::size_t next = 0;
@@ -199,10 +198,10 @@ void HistoryRecorder::add_packets(const NodeWork& work, std::size_t first_task) 
 }
 
 History HistoryRecorder::finish() {
-    for (std::uint32_t node = 0; node < in_vain_.size(); ++node)
-        if (in_vain_[node] > 0)
+    for (std::uint32_t node = 0; node < uncharged_cycles_.size(); ++node)
+        if (uncharged_cycles_[node] > 0)
             history_.tasks.push_back(
-                {.node = node, .cycles = in_vain_[node], .first = number_of(history_.messages.size())});
+                {.node = node, .cycles = uncharged_cycles_[node], .first = number_of(history_.messages.size())});
     check_history(history_, raya_nodes(torus_));
     return std::move(history_);
 }

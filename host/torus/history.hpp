@@ -1,6 +1,5 @@
-// The history of a render on the torus: what nodes computed, and the messages by which one thing led to another,
-// without supersteps. What is computed and sent does not depend on when it is: so a history holds for any order in
-// time.
+// History of a render on the torus: the computations of nodes and the messages that caused them, without supersteps.
+// Computations and messages do not depend on their timing, so a history is valid for any schedule.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,29 +12,30 @@
 
 namespace raya {
 
-/// A ray, by its pixel and its place in the pixel's ray tree.
-struct RayName {
+/// Identifies a ray by its pixel and its place in the pixel's ray tree.
+struct RayId {
     std::uint32_t pixel = 0;  // row W + column
-    /// Of the tree's nodes the primary ray is 1, the reflected ray of node n is 2 n, the refracted one 2 n + 1: at
-    /// level l a number of l + 1 bits, so that 31 bounces fit.
+    /// Heap number in the tree: 1 for the primary ray, 2 n for the reflected and 2 n + 1 for the refracted ray of ray
+    /// n. It has l + 1 bits at level l, so that 31 bounces fit.
     std::uint32_t place = 1;
-    std::uint32_t light = 0;  // of a shadow ray its light's number + 1, at most 65,535; 0 for the ray that is shaded
+    std::uint32_t light = 0;  // index of a shadow ray's light + 1, at most 65,535; 0 for other rays
 
-    /// The ray's place from the PATH of a packet and its level, 0..31 (kernels/shared/packet.h).
+    /// The place of the ray with that PATH at that level, 0..31 (kernels/shared/packet.h).
     static std::uint32_t place_of(std::uint32_t path, std::uint32_t level);
 
-    /// The ray that was reflected or refracted into this one, or that this shadow ray shades. Not of a primary ray.
-    RayName parent() const;
+    /// The ray that was reflected or refracted into this one, or whose hit this shadow ray belongs to. Undefined for a
+    /// primary ray.
+    RayId parent() const;
 };
 
-/// An open hash table, as there can be tens of millions: 16 bytes a slot, two thirds of them taken at most, twice as
-/// many slots when there are more. So it takes 24 to 48 bytes a ray, half as much again while it grows.
+/// Numbers rays in the order of first use. An open-addressing hash table, as there may be tens of millions: 16 bytes a
+/// slot, load factor at most 2/3, doubled when full, so 24 to 48 bytes a ray, and half as much again while it grows.
 class RayNumbers {
   public:
-    /// The ray's number; the next one, counted from 0, for a ray that has none. std::logic_error for what is no name.
-    std::uint64_t number_of(const RayName& name);
+    /// Returns the ray's number, or assigns the next one, from 0 on. Throws std::logic_error for an invalid id.
+    std::uint64_t number_of(const RayId& id);
 
-    /// A number for what will never be asked for again.
+    /// Assigns a number to a packet that needs no later look-up.
     std::uint64_t next() { return next_++; }
 
   private:
@@ -51,27 +51,27 @@ class RayNumbers {
     std::uint64_t next_ = 0;
 };
 
-/// Computing of one node without a pause: one packet's treatment, or the making of one primary ray.
+/// An uninterrupted computation of one node: it processes one packet or makes one primary ray.
 struct HistoryTask {
-    static constexpr std::uint32_t kInjection = UINT32_MAX;  // as a cause: the node begins it by itself
+    static constexpr std::uint32_t kInjection = UINT32_MAX;  // cause of a task that no message starts
 
     std::uint32_t node = 0;
     std::uint32_t cause = kInjection;  // the message whose arrival starts it
     std::uint64_t cycles = 0;          // modelled
-    std::uint32_t first = 0;           // of its messages, which lie one after another
+    std::uint32_t first = 0;           // index of its first message; its messages are contiguous
 };
 
-/// A packet that a task has made or changed: a ray for the node that treats it next, which may be the task's own, or a
+/// A packet that a task made or changed: a ray for the node that processes it next, which may be the same node, or a
 /// return for the root.
 struct HistoryMessage {
-    std::uint32_t task = 0;  // that sends it, at its end
+    std::uint32_t task = 0;  // sends it at its end
     std::uint32_t to = 0;    // node
     std::uint16_t words = 0;
     std::uint16_t kind = 0;  // RAYA_KIND_* of kernels/shared/packet.h
 };
 
-/// A task comes behind the message that causes it, messages lie in the order of their tasks; the tasks that a node
-/// begins by itself are in the order in which it does.
+/// Messages are in the order of their tasks, and a task follows its cause: tasks[t].cause < tasks[t].first. Tasks of
+/// one node without a cause are in the order of their execution.
 struct History {
     std::vector<HistoryTask> tasks;
     std::vector<HistoryMessage> messages;
@@ -79,43 +79,43 @@ struct History {
     std::span<const HistoryMessage> sent_by(std::size_t task) const;
 };
 
-/// std::logic_error unless all that is said above holds, every ray causes one task, at the node where it goes, and
-/// every return none, and goes to the root.
+/// Throws std::logic_error unless the orders above hold, every ray causes one task, at its destination, and every
+/// return goes to the root and causes none.
 void check_history(const History& history, std::uint32_t nodes);
 
-/// Of each message the task that it causes; HistoryTask::kInjection for a return.
+/// [message]: the task that it causes; HistoryTask::kInjection for a return.
 std::vector<std::uint32_t> tasks_of_messages(const History& history);
 
-/// Takes the work of all nodes, superstep by superstep, as a NodeWorkSink is given it. Keeps 24 bytes for each ray in
-/// each voxel and 12 for each packet, and the numbers of the rays.
+/// Records a history from the work of all nodes in every superstep (NodeWorkSink). Needs 24 bytes for each ray in each
+/// voxel, 12 for each packet, and the table of ray numbers.
 class HistoryRecorder {
   public:
-    /// `packets`: what messages are charged for. Returns that go with another one for nothing are in no history.
+    /// `packets`: words charged for a message. The history omits returns that travel within another one at no charge.
     explicit HistoryRecorder(const raya_torus& torus, const PacketCharge& packets = {})
-        : torus_(torus), packets_(packets), in_vain_(raya_nodes(torus)) {}
+        : torus_(torus), packets_(packets), uncharged_cycles_(raya_nodes(torus)) {}
 
-    /// std::logic_error for a packet that nobody sent, or more of them than numbers of 32 bits.
+    /// Throws std::logic_error for a packet that no task sent, or for more packets than 32-bit numbers.
     void add(const NodeWork& work);
 
-    /// The whole history, checked; the last that may be asked of the recorder. Its tasks' cycles are those of the
-    /// render: of a node those of its packets and of its injection. What rays that were made in vain cost is part of
-    /// the next one's that the node kept, behind the last one a task of its own.
+    /// Returns the whole history, checked. To be called once, as the last call. The cycles of a node's tasks add up to
+    /// those of the render. The cost of primary rays that a node made and discarded is part of the next ray's task;
+    /// what follows the last ray is a task of its own.
     History finish();
 
   private:
     struct Sent {
         HistoryMessage message;
-        std::uint64_t ray = 0;  // number of the ray that it is or, of a return, comes from
+        std::uint64_t ray = 0;  // number of the ray, or of the ray that the return belongs to
     };
     struct Ray {
-        std::uint32_t message = UINT32_MAX;  // its last one
-        std::uint32_t task = UINT32_MAX;     // its last treatment
+        std::uint32_t message = UINT32_MAX;  // that carried it last
+        std::uint32_t task = UINT32_MAX;     // that processed it last
     };
     Ray& ray_of(std::uint64_t number);
     void add_injection(const NodeWork& work);
-    void add_treated(const NodeWork& work);
+    void add_processed(const NodeWork& work);
     void add_packets(const NodeWork& work, std::size_t first_task);
-    std::uint32_t goal_of(std::uint32_t node, const raya_head& packet) const;
+    std::uint32_t destination_of(std::uint32_t node, const raya_head& packet) const;
     std::uint16_t words_of(std::uint32_t kind) const;
     void send(const Sent& sent);
 
@@ -123,8 +123,8 @@ class HistoryRecorder {
     PacketCharge packets_;
     History history_;
     RayNumbers numbers_;
-    std::vector<Ray> rays_;               // [number]
-    std::vector<std::uint64_t> in_vain_;  // [node]: cycles of injection that no ray has been charged with
+    std::vector<Ray> rays_;                        // [number]
+    std::vector<std::uint64_t> uncharged_cycles_;  // [node]: cycles of injection not charged to a task yet
 };
 
 }  // namespace raya

@@ -26,13 +26,13 @@ std::uint32_t most_corners(const raya_objects& objects, std::span<const std::uin
     return most;
 }
 
-// Looks at rows, and at batches of their pixels, until all primary rays are made (kernels/torus/pixel_rows.clh).
-std::uint64_t looks_of(const raya_node& header, bool root_injects, std::uint64_t batch) {
+// Units of work until all primary rays are made: rows, and batches of their pixels (kernels/torus/pixel_rows.clh).
+std::uint64_t inject_work_of(const raya_node& header, bool root_injects, std::uint64_t batch) {
     const std::uint64_t width = header.job.mapping.width, height = header.job.mapping.height;
-    const auto looks = [&](std::uint64_t rows, std::uint64_t columns) { return rows * (1 + parts(columns, batch)); };
-    if (root_injects) return header.number == RAYA_ROOT ? looks(height, width) : 0;
+    const auto work = [&](std::uint64_t rows, std::uint64_t columns) { return rows * (1 + parts(columns, batch)); };
+    if (root_injects) return header.number == RAYA_ROOT ? work(height, width) : 0;
     const raya_u32* const w = header.window;
-    return looks(w[1] - w[0], w[3] - w[2]) + looks(parts(height, raya_nodes(header.torus)), width);
+    return work(w[1] - w[0], w[3] - w[2]) + work(parts(height, raya_nodes(header.torus)), width);
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ LaunchPlan::LaunchPlan(const TorusSettings& settings, const NodeMemories& memori
       buffers_(buffers),
       lanes_(options.lanes),
       group_(options.group_size),
-      loop_turns_(device.loop_turns),
+      loop_turns_(device.max_loop_iterations),
       work_per_launch_(settings.work_per_launch),
       exact_(options.exact_divide && device.correctly_rounded_divide_sqrt) {
     const bool root_injects = settings.inject == Injection::kRoot || raya_nodes(settings.torus) == 1;
@@ -56,7 +56,7 @@ LaunchPlan::LaunchPlan(const TorusSettings& settings, const NodeMemories& memori
             node.most = std::max(node.most, objects_of(voxel.objects));
             corners_ = std::max(corners_, most_corners(voxel.objects, words));
         }
-        node.looks = looks_of(header, root_injects, std::uint64_t{lanes_} * group_);
+        node.inject_work = inject_work_of(header, root_injects, std::uint64_t{lanes_} * group_);
         nodes_.push_back(node);
     }
 }
@@ -78,8 +78,9 @@ void LaunchPlan::look(const NodeStatus& status) {
 }
 
 LaunchBudget LaunchPlan::budget(const Unit& unit, std::uint64_t most, std::uint64_t all) const {
-    constexpr double kTestsOfLaunch = 1e9, kTestsOfNode = 1e8;  // a second of two CPU cores; of one unit of a slow GPU
-    constexpr double kTurnsOfLaunch = 4096;                     // of what a launch does once
+    // About a second: of two CPU cores, and of one compute unit of a slow GPU.
+    constexpr double kTestsOfLaunch = 1e9, kTestsOfNode = 1e8;
+    constexpr double kTurnsOfLaunch = 4096;  // loop iterations of a launch's fixed part
     constexpr double kMostWork = 1u << 31;
     const auto whole = [&](double work) { return static_cast<std::uint32_t>(std::clamp(work, 1.0, kMostWork)); };
     const double of_launch = unit.of_test * kTestsOfLaunch / lanes_;
@@ -96,18 +97,18 @@ LaunchBudget LaunchPlan::budget(const Unit& unit, std::uint64_t most, std::uint6
 LaunchBudget LaunchPlan::inject() {
     std::uint64_t most = 0, all = 0;
     for (Node& node : nodes_) {
-        most = std::max(most, node.looks);
-        all += node.looks;
+        most = std::max(most, node.inject_work);
+        all += node.inject_work;
         node.packets = std::max<std::uint64_t>(node.packets, std::max(1u, buffers_.queue / 8));
     }
     return budget({.turns = 32, .of_test = 1.0 / 8}, most, all);
 }
 
-// Lanes' packets may be in as many voxels, and each voxel is work of its own.
+// In the worst case the packets of all lanes lie in different voxels, which are processed one by one.
 std::uint64_t LaunchPlan::trace_work(const Node& node, std::uint64_t packets) const {
     const std::uint64_t batches = parts(packets, lanes_);
-    const std::uint64_t treats = std::min(packets, batches * std::min<std::uint64_t>(lanes_, node.voxels + 1));
-    return batches + treats * (node.most + RAYA_WORK_OF_TREATING(lights_));
+    const std::uint64_t steps = std::min(packets, batches * std::min<std::uint64_t>(lanes_, node.voxels + 1));
+    return batches + steps * (node.most + RAYA_WORK_OF_PROCESSING(lights_));
 }
 
 LaunchBudget LaunchPlan::trace_voxel() const {
@@ -118,13 +119,13 @@ LaunchBudget LaunchPlan::trace_voxel() const {
         all += work;
         of_batch = std::max(of_batch, trace_work(node, lanes_));
     }
-    // As many for a ring's tests, measured on llvmpipe. Of a sphere: loops over batches, over what they meet, over what
-    // a filter has dropped. Quotients and roots that are refined take a few turns more, each corner of a polygon three.
+    // Loop iterations of a test, measured on llvmpipe with the ring's tests. A sphere takes loops over batches, over
+    // hits and over spheres that the filter rejects; refined quotients and roots a few more; a polygon's corner three.
     const double turns = (exact_ ? 24 : 32) + 3.0 * corners_;
     return budget({.turns = turns, .beyond = static_cast<double>(group_ * of_batch)}, most, all);
 }
 
-constexpr double kTurnsOfMove = 8;  // of L packets that are moved at once
+constexpr double kTurnsOfMove = 8;  // loop iterations to move one batch of packets
 
 LaunchBudget LaunchPlan::route() const {
     const std::uint64_t batches = parts(buffers_.queue, group_);

@@ -1,4 +1,4 @@
-// How much the nodes do in one launch of a kernel, and whether one launch will do.
+// Work budgets of kernel launches: how much a node may do in one launch, and whether a single launch suffices.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace raya {
 
-/// A kernel of the nodes ends after so much `work` of a node, in the kernel's own units, and is launched again until
-/// nothing is left. `once`: the first launch leaves nothing, whatever it finds.
+/// A launch of a node kernel ends after `work` units of the kernel in a node, and is repeated until no work is left.
+/// `once`: a single launch is certain to be enough, so the host need not read back whether work is left.
 struct LaunchBudget {
     std::uint32_t work = 0;
     bool once = false;
@@ -20,23 +20,23 @@ struct LaunchBudget {
     bool operator==(const LaunchBudget&) const = default;
 };
 
-/// Launches last no longer than about a second, so that Ctrl-C is heard and a GPU's watchdog sleeps, and no longer than
-/// a device lets loops turn. The plan knows what each node holds and how many packets may be in it, so that a host need
-/// not ask after every launch whether something is left.
+/// Limits launches to about a second, so that Ctrl-C takes effect and no GPU watchdog intervenes, and to the loop
+/// iterations that a device allows. Tracks the objects of each node and an upper bound of its packets, so that the host
+/// can skip reading back whether work is left.
 class LaunchPlan {
   public:
-    /// `memories` has the nodes of `share`, in the order of its slots.
+    /// `memories`: of the nodes of `share`, in the order of its slots.
     LaunchPlan(const TorusSettings& settings, const NodeMemories& memories, const NodeShare& share,
                const NodeBuffers& buffers, const KernelOptions& options, const DeviceInfo& device);
 
-    /// Queues and boxes are empty, no ray is made.
+    /// Resets to empty queues and mailboxes.
     void clear();
 
-    /// The nodes say so, after packets were routed or before they are traced. All that waits for a node, in its queue
-    /// or in boxes of links that lead there, may come to be in its queue before the next look.
+    /// Updates the bounds from the nodes' status, read after routing or before tracing. A node's queue may receive
+    /// everything that waits in it and in the mailboxes of links that lead to it before the next update.
     void look(const NodeStatus& status);
 
-    /// Of the next launches. After inject() queues may hold what it may make.
+    /// Budgets of the next launches. inject() raises the bounds by the rays that it may make.
     LaunchBudget inject();
     LaunchBudget trace_voxel() const;
     LaunchBudget route() const;
@@ -44,25 +44,25 @@ class LaunchPlan {
 
   private:
     struct Node {
-        std::uint64_t voxels = 0;   // that it holds
-        std::uint64_t most = 0;     // objects in one of them
-        std::uint64_t looks = 0;    // at rows and pixels of them, as inject counts them, for an image
-        std::uint64_t packets = 0;  // that its queue may hold
+        std::uint64_t voxels = 0;
+        std::uint64_t most = 0;         // maximum number of objects in a voxel
+        std::uint64_t inject_work = 0;  // inject's units of work for an image: rows, and batches of their pixels
+        std::uint64_t packets = 0;      // upper bound of its queue's length
     };
-    /// A kernel's unit of work: how often loops turn for it at most, how many take as long as a test of a packet's ray,
-    /// and how many a launch may do beyond its budget, as it ends what it has begun.
+    /// A kernel's unit of work: maximum loop iterations, units that take as long as a ray-object test, and units by
+    /// which a launch may exceed its budget to complete what it has begun.
     struct Unit {
         double turns, of_test = 1, beyond = 0;
     };
-    /// `most`: that a node may find to do, `all`: that all may.
+    /// `most`, `all`: upper bounds of the work of one node and of all nodes.
     LaunchBudget budget(const Unit& unit, std::uint64_t most, std::uint64_t all) const;
     std::uint64_t trace_work(const Node& node, std::uint64_t packets) const;
 
     const NodeShare& share_;
     const NodeBuffers buffers_;
-    std::uint32_t lanes_, group_, lights_ = 0, corners_ = 0;  // corners: of the polygon that has most
+    std::uint32_t lanes_, group_, lights_ = 0, corners_ = 0;  // corners: maximum of a polygon
     std::uint32_t loop_turns_, work_per_launch_;
-    bool exact_;               // the device rounds quotients and roots correctly, without loops of ours
+    bool exact_;               // the device rounds quotients and roots correctly, without our refinement loops
     std::vector<Node> nodes_;  // [slot]
 };
 

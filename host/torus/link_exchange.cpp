@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// What a command costs beside its bytes, in bytes that could be copied in its time: some microseconds of PoCL.
+// Fixed cost of a command, as the number of bytes that could be copied in its time: some microseconds of PoCL.
 constexpr std::uint64_t kCommandBytes = 100'000;
 
 raya_head head_at(const std::uint32_t* packet) {
@@ -20,13 +20,14 @@ raya_head head_at(const std::uint32_t* packet) {
 
 std::string link_name(std::uint32_t link) { return std::string(link % 2 == 0 ? "+" : "-") + "xyz"[link / 2]; }
 
-LinkExchange::LinkExchange(Session& session, const NodeShare& share, std::uint32_t capacity, const Cargo& cargo)
+LinkExchange::LinkExchange(Session& session, const NodeShare& share, std::uint32_t capacity,
+                           const PacketClass& packet_class)
     : session_(session),
       share_(share),
       torus_(share.torus()),
       nodes_(share.nodes()),
       capacity_(capacity),
-      cargo_(cargo),
+      class_(packet_class),
       outboxes_(session.buffer<std::uint32_t>("outboxes", outbox_at(RAYA_LINKS, 0))),
       inboxes_(session.buffer<std::uint32_t>("inboxes", inbox_at(RAYA_LINKS, 0))),
       sent_(session.buffer<std::uint32_t>("sent boxes", std::size_t{RAYA_LINKS} * share.inboxes())),
@@ -35,9 +36,9 @@ LinkExchange::LinkExchange(Session& session, const NodeShare& share, std::uint32
 void LinkExchange::clear() {
     const std::size_t outboxes = std::size_t{RAYA_LINKS} * nodes_;
     sent_flags_.assign(outboxes, 0);
-    flags_there_ = sent_flags_;
+    device_flags_ = sent_flags_;
     session_.fill("clear boxes", sent_, 0);
-    // Only the word that says how many packets a box holds: boxes are large, and most of their pages are never touched.
+    // Clears only the count of packets: mailboxes are large, and most of their pages are never touched.
     const Session::Blocks zeros{.pitch = 1}, boxes{.pitch = box_words(capacity_)};
     session_.copy_blocks("clear boxes", sent_, zeros, inboxes_, boxes, 1, sent_.size());
     session_.copy_blocks("clear boxes", sent_, zeros, outboxes_, boxes, 1, outboxes);
@@ -50,10 +51,10 @@ void LinkExchange::use_kernel(const ExchangeKernel& kernel, std::uint32_t group,
     std::vector<std::uint32_t> ends;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
         for (const std::uint32_t node : share_.own()) {
-            const bool stays = torus_.sides[link / 2] > 1 && !leads_away(link, node);
+            const bool stays = torus_.sides[link / 2] > 1 && !crosses_ranks(link, node);
             ends.push_back(stays ? share_.slot_of(raya_link_end(torus_, node, link)) : RAYA_NO_SLOT);
         }
-    kernel_.emplace(Launched{kernel, group, status, session_.buffer<std::uint32_t>("ends of links", ends.size())});
+    kernel_.emplace(KernelMove{kernel, group, status, session_.buffer<std::uint32_t>("ends of links", ends.size())});
     session_.write("scatter", kernel_->ends, ends);
 }
 
@@ -64,20 +65,20 @@ void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>
         send(status, link, words);
         if (!kernel_) copy_boxes(status, link);
     }
-    // The kernel itself says what it has sent: all, where no link leads away.
+    // The kernel sets the flags of its own transfers, which are all if no link crosses ranks.
     if (!kernel_ || !crossings_.empty()) write_sent();
     if (kernel_) launch();
 }
 
-// Notes what goes over the links of one direction.
+// Counts the transfers over the links of one direction, and sets their flags.
 void LinkExchange::send(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words) {
     for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
-        const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
-        if (packets == 0 || waits(status, link, node)) continue;
+        const std::uint32_t packets = status.at(node, class_.outbox_status + link);
+        if (packets == 0 || inbox_full(status, link, node)) continue;
         if (share_.has(node)) sent_flags_[std::size_t{link} * nodes_ + share_.slot_of(node)] = 1;
-        const std::uint64_t messages = cargo_.charged_status ? status.at(node, *cargo_.charged_status) : packets;
+        const std::uint64_t messages = class_.charged_status ? status.at(node, *class_.charged_status) : packets;
         packets_[std::size_t{node} * RAYA_LINKS + link] += messages;
-        words[std::size_t{node} * RAYA_LINKS + link] += messages * cargo_.charged_words;
+        words[std::size_t{node} * RAYA_LINKS + link] += messages * class_.charged_words;
         moved_ += packets;
     }
 }
@@ -85,33 +86,33 @@ void LinkExchange::send(const NodeStatus& status, std::uint32_t link, std::vecto
 void LinkExchange::copy_boxes(const NodeStatus& status, std::uint32_t link) {
     const std::size_t pitch = box_words(capacity_);
     for (const Span& span : spans(status, link))
-        session_.copy_blocks(cargo_.label + " " + link_name(link), outboxes_,
+        session_.copy_blocks(class_.label + " " + link_name(link), outboxes_,
                              {.pitch = pitch, .first = outbox_at(link, span.first)}, inboxes_,
                              {.pitch = pitch, .first = inbox_at(link, span.first)}, box_words(span.packets),
                              span.end - span.first);
 }
 
 void LinkExchange::launch() {
-    if (std::find(sent_flags_.begin(), sent_flags_.end(), 1u) == sent_flags_.end() && sent_flags_ == flags_there_)
+    if (std::find(sent_flags_.begin(), sent_flags_.end(), 1u) == sent_flags_.end() && sent_flags_ == device_flags_)
         return;
-    session_.launch(cargo_.label, kernel_->kernel, std::size_t{RAYA_LINKS} * nodes_, kernel_->group, kernel_->ends,
+    session_.launch(class_.label, kernel_->kernel, std::size_t{RAYA_LINKS} * nodes_, kernel_->group, kernel_->ends,
                     Uint<"nodes">{nodes_}, Uint<"inboxes_of_link">{share_.inboxes()}, Uint<"capacity">{capacity_},
-                    Uint<"packet_words">{cargo_.packet_words}, Uint<"outbox_status">{cargo_.outbox_status},
-                    Uint<"inbox_status">{cargo_.inbox_status}, outboxes_, inboxes_, sent_, kernel_->status);
-    flags_there_ = sent_flags_;
+                    Uint<"packet_words">{class_.packet_words}, Uint<"outbox_status">{class_.outbox_status},
+                    Uint<"inbox_status">{class_.inbox_status}, outboxes_, inboxes_, sent_, kernel_->status);
+    device_flags_ = sent_flags_;
 }
 
 void LinkExchange::write_sent() {
-    if (sent_flags_ == flags_there_) return;
-    session_.write(cargo_.label, sent_, sent_flags_);
-    flags_there_ = sent_flags_;
+    if (sent_flags_ == device_flags_) return;
+    session_.write(class_.label, sent_, sent_flags_);
+    device_flags_ = sent_flags_;
 }
 
-bool LinkExchange::waits(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const {
-    return status.at(raya_link_end(torus_, node, link), cargo_.inbox_status + link) > 0;
+bool LinkExchange::inbox_full(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const {
+    return status.at(raya_link_end(torus_, node, link), class_.inbox_status + link) > 0;
 }
 
-bool LinkExchange::leads_away(std::uint32_t link, std::uint32_t node) const {
+bool LinkExchange::crosses_ranks(std::uint32_t link, std::uint32_t node) const {
     return share_.rank_of(raya_link_end(torus_, node, link)) != share_.rank_of(node);
 }
 
@@ -132,14 +133,14 @@ std::vector<LinkExchange::Crossing> LinkExchange::find_crossings() const {
     return found;
 }
 
-// Both ends of a face see from the status how many packets there are in each of its boxes.
-void LinkExchange::leave(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in) {
-    leaving_.clear();
-    coming_.clear();
+// Both ranks of a face know the number of packets in each mailbox from the status.
+void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in) {
+    outgoing_.clear();
+    incoming_.clear();
     for (const auto& [link, node, rank] : crossings_) {
-        const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
-        if (packets == 0 || waits(status, link, node)) continue;
-        Face& f = face(share_.has(node) ? leaving_ : coming_, rank, link);
+        const std::uint32_t packets = status.at(node, class_.outbox_status + link);
+        if (packets == 0 || inbox_full(status, link, node)) continue;
+        Face& f = face(share_.has(node) ? outgoing_ : incoming_, rank, link);
         f.nodes.push_back(node);
         f.packets.push_back(packets);
         f.words += box_words(packets);
@@ -149,43 +150,44 @@ void LinkExchange::leave(const NodeStatus& status, std::vector<Outgoing>& out, s
                                [](std::size_t words, const Face& f) { return words + f.words; });
     };
     const auto tag = [&](const Face& f) {
-        return cargo_.tag * static_cast<int>(RAYA_LINKS) + static_cast<int>(f.link);
+        return class_.tag * static_cast<int>(RAYA_LINKS) + static_cast<int>(f.link);
     };
-    if (const std::size_t words = words_of(leaving_); words > 0 && (!left_ || left_->size() < words))
-        left_.emplace(session_.landing<std::uint32_t>(cargo_.label + " leaves", words));
+    if (const std::size_t words = words_of(outgoing_);
+        words > 0 && (!outgoing_words_ || outgoing_words_->size() < words))
+        outgoing_words_.emplace(session_.readback<std::uint32_t>(class_.label + " leaves", words));
     std::size_t at = 0;
-    for (const Face& f : leaving_) {
+    for (const Face& f : outgoing_) {
         read_face(f, at);
         at += f.words;
-        out.push_back({f.rank, tag(f), std::as_bytes(left_->first(at).last(f.words))});
+        out.push_back({f.rank, tag(f), std::as_bytes(outgoing_words_->first(at).last(f.words))});
     }
-    come_.resize(words_of(coming_));
-    std::span<std::uint32_t> come = come_;
-    for (const Face& f : coming_) {
-        in.push_back({f.rank, tag(f), std::as_writable_bytes(come.first(f.words))});
-        come = come.subspan(f.words);
+    incoming_words_.resize(words_of(incoming_));
+    std::span<std::uint32_t> to = incoming_words_;
+    for (const Face& f : incoming_) {
+        in.push_back({f.rank, tag(f), std::as_writable_bytes(to.first(f.words))});
+        to = to.subspan(f.words);
     }
 }
 
 void LinkExchange::read_face(const Face& f, std::size_t to) {
     for (std::size_t i = 0; i < f.nodes.size(); ++i) {
         const std::size_t words = box_words(f.packets[i]);
-        session_.read(cargo_.label + " leaves", outboxes_, outbox_at(f.link, share_.slot_of(f.nodes[i])), *left_, to,
-                      words);
+        session_.read(class_.label + " leaves", outboxes_, outbox_at(f.link, share_.slot_of(f.nodes[i])),
+                      *outgoing_words_, to, words);
         to += words;
     }
 }
 
-void LinkExchange::wait_for_leaving() {
-    if (left_) session_.wait(cargo_.label + " leaves", *left_);
+void LinkExchange::wait_for_outgoing() {
+    if (outgoing_words_) session_.wait(class_.label + " leaves", *outgoing_words_);
 }
 
-void LinkExchange::arrive() {
-    std::span<const std::uint32_t> from = come_;
-    for (const Face& f : coming_)
+void LinkExchange::write_incoming() {
+    std::span<const std::uint32_t> from = incoming_words_;
+    for (const Face& f : incoming_)
         for (std::size_t i = 0; i < f.nodes.size(); ++i) {
             const std::size_t words = box_words(f.packets[i]);
-            session_.write(cargo_.label + " arrives", inboxes_, from.first(words),
+            session_.write(class_.label + " arrives", inboxes_, from.first(words),
                            inbox_at(f.link, share_.inbox(f.link, f.nodes[i])));
             from = from.subspan(words);
         }
@@ -195,17 +197,17 @@ std::uint64_t LinkExchange::cost(const Span& span) const {
     return kCommandBytes + (span.end - span.first) * box_words(span.packets) * sizeof(std::uint32_t);
 }
 
-// A span grows as long as that costs less than another command. An empty box on the way is copied onto an empty one.
+// Extends a span while that costs less than another command. Empty outboxes in between are copied onto empty inboxes.
 std::vector<LinkExchange::Span> LinkExchange::spans(const NodeStatus& status, std::uint32_t link) const {
     std::vector<Span> found;
     bool closed = true;
     for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
         const std::uint32_t node = share_.own()[slot];
-        if (leads_away(link, node) || waits(status, link, node)) {
+        if (crosses_ranks(link, node) || inbox_full(status, link, node)) {
             closed = true;
             continue;
         }
-        const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
+        const std::uint32_t packets = status.at(node, class_.outbox_status + link);
         if (packets == 0) continue;
         const Span alone{slot, slot + 1, packets};
         if (!closed) {
@@ -221,19 +223,19 @@ std::vector<LinkExchange::Span> LinkExchange::spans(const NodeStatus& status, st
     return found;
 }
 
-void LinkExchange::visit_new(const NodeStatus& status,
-                             const std::function<void(std::uint32_t, const raya_head&)>& visit) {
+void LinkExchange::visit_new_packets(const NodeStatus& status,
+                                     const std::function<void(std::uint32_t, const raya_head&)>& visit) {
     for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
         const std::uint32_t node = share_.own()[slot];
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
-            const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
+            const std::uint32_t packets = status.at(node, class_.outbox_status + link);
             const std::size_t box = std::size_t{link} * nodes_ + slot;
             const std::uint32_t first = sent_flags_[box] ? 0 : visited_[box];
             visited_[box] = packets;
             if (!visit) continue;
-            std::vector<std::uint32_t> words(std::size_t{packets - first} * cargo_.packet_words);
+            std::vector<std::uint32_t> words(std::size_t{packets - first} * class_.packet_words);
             session_.read("record", outboxes_, words, outbox_at(link, slot) + box_words(first));
-            for (std::size_t i = 0; i < words.size(); i += cargo_.packet_words) visit(node, head_at(&words[i]));
+            for (std::size_t i = 0; i < words.size(); i += class_.packet_words) visit(node, head_at(&words[i]));
         }
     }
 }

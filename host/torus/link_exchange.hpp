@@ -1,5 +1,5 @@
-// The links of the torus: what nodes have put into their outboxes is copied into the inboxes of their neighbours, by
-// copies between buffers or by a kernel, or sent there where these are on another rank.
+// Links of the torus: transfers packets from the outboxes of nodes to the inboxes of their neighbours, by buffer copies
+// or by a kernel on the device, or by messages to the neighbour's rank.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -25,60 +25,58 @@ using ExchangeKernel = DescribedKernel<"torus/exchange.cl", "exchange", const Bu
 
 class LinkExchange {
   public:
-    /// What the boxes are for: packets of so many words; where a node's status has its boxes' counts; the labels' first
-    /// word, and what tells its messages from those of other cargo. What the model charges: words of a message, and
-    /// where the status has how many of the outbox's packets are messages, if not all are.
-    struct Cargo {
-        std::string label;
-        std::uint32_t packet_words, outbox_status, inbox_status;
-        std::uint32_t charged_words = packet_words;
-        std::optional<std::uint32_t> charged_status = {};
-        int tag = 0;
+    /// The kind of packet in the mailboxes, and how the model charges for it.
+    struct PacketClass {
+        std::string label;                                        // prefix of command labels
+        std::uint32_t packet_words, outbox_status, inbox_status;  // status words that hold the mailboxes' counts
+        std::uint32_t charged_words = packet_words;               // charged for a message
+        std::optional<std::uint32_t> charged_status = {};  // status word: charged packets of the outbox, if not all
+        int tag = 0;                                       // of messages between ranks
     };
 
-    /// Boxes of `capacity` packets for every link of the nodes that are here (kernels/shared/traffic.h).
-    LinkExchange(Session& session, const NodeShare& share, std::uint32_t capacity, const Cargo& cargo);
+    /// Mailboxes of `capacity` packets for every link of this rank's nodes (kernels/shared/traffic.h).
+    LinkExchange(Session& session, const NodeShare& share, std::uint32_t capacity, const PacketClass& packet_class);
 
-    /// From now on a kernel moves what stays on the device, built for groups of `group` work-items. `status`: the
-    /// nodes' own, which outlives this; it says what exchange() is told. At first, and after use_copies(), copies do.
+    /// Makes a kernel, in work-groups of `group`, transfer the packets that stay on the device, instead of the default,
+    /// buffer copies. `status`: status words of the nodes on the device, the same as exchange() gets; must outlive
+    /// this.
     void use_kernel(const ExchangeKernel& kernel, std::uint32_t group, Buffer<std::uint32_t>& status);
     void use_copies() { kernel_.reset(); }
 
-    /// All inboxes are empty, nothing has been sent.
+    /// Empties the mailboxes and resets the counters.
     void clear();
 
-    /// One exchange: over each link whose inbox at the other end is empty, all packets of the outbox. By a kernel that
-    /// is one launch, "LABEL"; by copies, "LABEL +x" and so on, the links of one direction are one command, or several
-    /// where boxes between must wait or differ so much in length that copying as much of each as the longest needs
-    /// would take longer. Adds the words that each link is charged for to `words`, [node][link]. `status` and `words`
-    /// are of all nodes, as what packets() and moved() say is; copied is what stays on the device.
+    /// Transfers all packets of the outbox of each link whose inbox is empty, if both ends are on this device. With a
+    /// kernel, one launch, "LABEL". With copies, one command for the links of each direction, "LABEL +x" and so on, or
+    /// several where inboxes in between are not empty, or where outboxes differ so much in length that copying the
+    /// longest one's length from all would take longer. Adds the words that each link is charged for to `words`,
+    /// [node][link]. `status`, `words`, packets() and moved() are of all nodes of all ranks.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
-    /// What goes over links that lead to other ranks, or come from there, in one exchange(): adds the messages that
-    /// carry it to `out` and `in`. They may go after wait_for_leaving(); when they are through, arrive() puts them into
-    /// the inboxes.
-    void leave(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in);
-    void wait_for_leaving();
-    void arrive();
+    /// The transfers of the same exchange() between ranks: begin_transfers() appends the messages to `out` and `in`,
+    /// which may start after wait_for_outgoing(). Once they are complete, write_incoming() writes the received packets
+    /// into the inboxes.
+    void begin_transfers(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in);
+    void wait_for_outgoing();
+    void write_incoming();
 
     Buffer<std::uint32_t>& outboxes() { return outboxes_; }
     Buffer<std::uint32_t>& inboxes() { return inboxes_; }
-    const Buffer<std::uint32_t>& sent() const { return sent_; }  // [link][node]: 1 where an outbox was copied or sent
+    const Buffer<std::uint32_t>& sent() const { return sent_; }  // [link][node]: 1 if the outbox was transferred
 
     /// [node][link], since clear(): messages sent.
     const std::vector<std::uint64_t>& packets() const { return packets_; }
 
-    /// Since clear(): packets sent over all links, messages or not.
+    /// Packets sent over all links since clear(), charged or not.
     std::uint64_t moved() const { return moved_; }
 
-    /// Calls `visit`, if there is one, with node and head of every packet that was put into an outbox here since the
-    /// last call.
-    void visit_new(const NodeStatus& status,
-                   const std::function<void(std::uint32_t node, const raya_head& packet)>& visit);
+    /// Calls `visit`, unless it is empty, with node and head of every packet that was put into an outbox of this rank
+    /// since the last call.
+    void visit_new_packets(const NodeStatus& status,
+                           const std::function<void(std::uint32_t node, const raya_head& packet)>& visit);
 
   private:
-    /// Boxes of neighbouring slots that one command copies: the links of nodes in `first` .. `end` - 1, as far as
-    /// `packets` reach.
+    /// Mailboxes that one command copies: of slots `first` .. `end` - 1, the first `packets` packets of each.
     struct Span {
         std::uint32_t first, end, packets;
     };
@@ -87,21 +85,21 @@ class LinkExchange {
     void launch();
     void write_sent();
     std::vector<Span> spans(const NodeStatus& status, std::uint32_t link) const;
-    std::uint64_t cost(const Span& span) const;  // in bytes that could be copied in its time
-    bool waits(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const;  // the inbox is not empty
-    bool leads_away(std::uint32_t link, std::uint32_t node) const;                       // to another rank than its own
+    std::uint64_t cost(const Span& span) const;  // time, as the number of bytes that could be copied in it
+    bool inbox_full(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const;  // not empty
+    bool crosses_ranks(std::uint32_t link, std::uint32_t node) const;
 
-    /// A link that leads from this rank to another one, or from there to here.
+    /// A link between this rank and another one, in either direction.
     struct Crossing {
-        std::uint32_t link, node, rank;  // the node at its start; the other rank
+        std::uint32_t link, node, rank;  // node: its start; rank: the other one
     };
 
-    /// The boxes of one link that go from one rank to another, one after another as far as they are filled.
+    /// Mailboxes of one link direction between two ranks, packed into one message up to their filled length.
     struct Face {
         std::uint32_t rank = 0, link = 0;
-        std::vector<std::uint32_t> nodes;  // where the links start, ascending
-        std::vector<std::uint32_t> packets;
-        std::size_t words = 0;  // of all its boxes
+        std::vector<std::uint32_t> nodes;    // start of each link, ascending
+        std::vector<std::uint32_t> packets;  // in each mailbox
+        std::size_t words = 0;               // of the message
     };
     std::vector<Crossing> find_crossings() const;
     Face& face(std::vector<Face>& faces, std::uint32_t rank, std::uint32_t link) const;
@@ -111,29 +109,29 @@ class LinkExchange {
     const NodeShare& share_;
     const raya_torus torus_;
     std::uint32_t nodes_, capacity_;  // nodes: on this device
-    Cargo cargo_;
+    PacketClass class_;
     Buffer<std::uint32_t> outboxes_, inboxes_, sent_;
-    struct Launched {
+    struct KernelMove {
         ExchangeKernel kernel;
         std::uint32_t group;
         Buffer<std::uint32_t>& status;
-        Buffer<std::uint32_t> ends;  // [link][slot]: slot of the node at the other end, RAYA_NO_SLOT
+        Buffer<std::uint32_t> ends;  // [link][slot]: slot of the node at the other end, or RAYA_NO_SLOT
     };
-    std::optional<Launched> kernel_;
-    std::vector<std::uint32_t> sent_flags_, flags_there_;  // what is to be, and what is, in sent_
-    std::vector<std::uint32_t> visited_;  // [link][node]: packets of the outbox that visit_new() has shown
+    std::optional<KernelMove> kernel_;
+    std::vector<std::uint32_t> sent_flags_, device_flags_;  // new and present contents of sent_
+    std::vector<std::uint32_t> visited_;  // [link][node]: packets of the outbox that visit_new_packets() has visited
     std::vector<std::uint64_t> packets_;
     std::uint64_t moved_ = 0;
     const std::vector<Crossing> crossings_;  // by link, then by node
-    std::vector<Face> leaving_, coming_;
-    std::optional<Landing<std::uint32_t>> left_;  // words of leaving_, one face after another
-    std::vector<std::uint32_t> come_;             // of coming_
-    std::size_t box_words(std::uint32_t packets) const { return std::size_t{1 + packets} * cargo_.packet_words; }
+    std::vector<Face> outgoing_, incoming_;
+    std::optional<Readback<std::uint32_t>> outgoing_words_;  // of outgoing_, one face after another
+    std::vector<std::uint32_t> incoming_words_;              // of incoming_
+    std::size_t box_words(std::uint32_t packets) const { return std::size_t{1 + packets} * class_.packet_words; }
     std::size_t outbox_at(std::uint32_t link, std::uint32_t slot) const {
-        return raya_box_at(link, nodes_, slot, capacity_, cargo_.packet_words);
+        return raya_box_at(link, nodes_, slot, capacity_, class_.packet_words);
     }
     std::size_t inbox_at(std::uint32_t link, std::uint32_t inbox) const {
-        return raya_box_at(link, share_.inboxes(), inbox, capacity_, cargo_.packet_words);
+        return raya_box_at(link, share_.inboxes(), inbox, capacity_, class_.packet_words);
     }
 };
 

@@ -16,28 +16,28 @@ std::uint32_t largest_node(const NodeMemories& memories) {
     return largest;
 }
 
-constexpr std::size_t kRow = 4;  // words; a node's words are moved up to where a row may start
+constexpr std::size_t kRow = 4;  // words; a node's words are aligned to the start of a row
 
-// Kernels copy a node's words into local memory where it has room for them beside what work-items share, and where a
-// device does not count the turns of loops: they are those of a CPU, whose local memory is no faster.
-KernelOptions where_words_fit(KernelOptions options, const NodeMemories& memories, const DeviceInfo& device) {
+// Kernels copy a node's words into local memory if they fit there next to the work-group's own data, and if the device
+// has no limit of loop iterations: devices with one are CPUs, whose local memory is no faster.
+KernelOptions choose_words_local(KernelOptions options, const NodeMemories& memories, const DeviceInfo& device) {
     const std::size_t shared =
         std::max(RAYA_INJECT_WORDS(options.group_size, options.lanes), RAYA_ROUTE_WORDS(options.group_size));
     const std::size_t bytes = sizeof(std::uint32_t) * (shared + kRow + largest_node(memories));
-    options.words_local = options.words_local && bytes <= device.local_memory_bytes && device.loop_turns == 0;
+    options.words_local = options.words_local && bytes <= device.local_memory_bytes && device.max_loop_iterations == 0;
     return options;
 }
 
 constexpr const char* kFewerLoops = "fewer objects in a voxel (--voxels), a shorter --queue";
 
-// Whether the word `which` of any node's status is not 0.
+// Returns true if word `which` of any node's status is not 0.
 bool any_node(std::span<const std::uint32_t> status, std::size_t which) {
     for (std::size_t at = which; at < status.size(); at += RAYA_STATUS_WORDS)
         if (status[at] > 0) return true;
     return false;
 }
 
-// What ranks have of their nodes, `each` words of every one, in the order of ranks and slots: as [node][each].
+// Reorders `each` elements of every node, in the order of ranks and slots, to [node][each].
 template <class T>
 std::vector<T> in_order_of_nodes(const NodeShare& share, std::uint32_t ranks, const std::vector<T>& of_ranks,
                                  std::size_t each) {
@@ -56,7 +56,7 @@ std::vector<T> in_order_of_nodes(const NodeShare& share, std::uint32_t ranks, co
 
 NodeArray::NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories,
                      const NodeBuffers& buffers, const KernelOptions& options, const NodeShare& share, Ranks& ranks)
-    : NodeArray(Kernels(session, where_words_fit(options, memories, session.device()), settings.kernels.sources),
+    : NodeArray(Kernels(session, choose_words_local(options, memories, session.device()), settings.kernels.sources),
                 settings, memories, buffers, share, ranks) {}
 
 NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories,
@@ -75,18 +75,18 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       run_(session_.buffer<raya_run>("run", 1)),
       queues_(session_.buffer<raya_packet>("queues", std::size_t{nodes_} * buffers.queue)),
       status_(session_.buffer<std::uint32_t>("status", std::size_t{nodes_} * RAYA_STATUS_WORDS)),
-      ways_in_(session_.buffer<std::uint32_t>("ways in", std::size_t{nodes_} * RAYA_LINKS)),
+      inbox_of_link_(session_.buffer<std::uint32_t>("ways in", std::size_t{nodes_} * RAYA_LINKS)),
       returns_(session_.buffer<raya_head>("returns", share.has(RAYA_ROOT) ? buffers.queue : 1)),
-      returns_here_(session_.landing<raya_head>("returns", returns_.size())),
+      returns_readback_(session_.readback<raya_head>("returns", returns_.size())),
       events_(session_.buffer<std::uint64_t>("events", std::size_t{nodes_} * RAYA_EVENTS)),
       made_(session_.buffer<std::uint64_t>("packets made", std::size_t{nodes_} * RAYA_KINDS)),
       ended_(session_.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),
-      treated_(session_.buffer<raya_treated>("treated packets", options_.costs ? queues_.size() : 1)),
-      rays_(session_, share, buffers.box,
-            {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX, settings.packets.ray_words}),
-      homeward_(session_, share, buffers.box,
-                {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX,
-                 settings.packets.return_words(), RAYA_STATUS_RETURN_CHARGED, 1}),
+      processed_(session_.buffer<raya_processed>("processed packets", options_.costs ? queues_.size() : 1)),
+      ray_links_(session_, share, buffers.box,
+                 {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX, settings.packets.ray_words}),
+      return_links_(session_, share, buffers.box,
+                    {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX,
+                     settings.packets.return_words(), RAYA_STATUS_RETURN_CHARGED, 1}),
       inject_(kernels.get<node_kernels::Inject>()),
       trace_(kernels.get<node_kernels::TraceVoxel>()),
       route_(kernels.get<node_kernels::Route>()),
@@ -94,17 +94,17 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       build_options_(kernels.program(node_kernels::Accept::kFile).options()) {
     session_.write("scatter", memories_, memories.words);
     session_.write("scatter", starts_, memories.starts);
-    write_ways_in();
+    write_inbox_table();
     set_pixels(settings.pixels);
     choose_link_move(kernels);
 }
 
-void NodeArray::write_ways_in() {
+void NodeArray::write_inbox_table() {
     std::vector<std::uint32_t> ways;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
         for (const std::uint32_t node : share_.own())
             ways.push_back(share_.inbox(link, raya_link_end(settings_.torus, node, link ^ 1u)));
-    session_.write("scatter", ways_in_, ways);
+    session_.write("scatter", inbox_of_link_, ways);
 }
 
 void NodeArray::set_pixels(const PixelSubset& pixels) {
@@ -129,16 +129,16 @@ void NodeArray::clear() {
     session_.fill("clear", events_, 0);
     session_.fill("clear", made_, 0);
     session_.fill("clear", ended_, 0);
-    rays_.clear();
-    homeward_.clear();
+    ray_links_.clear();
+    return_links_.clear();
     plan_.clear();
-    returns_coming_ = 0;
+    returns_pending_ = 0;
 }
 
 template <class Launch>
 void NodeArray::launch_all(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch) {
-    const auto state = std::tie(queues_, rays_.outboxes(), rays_.inboxes(), homeward_.outboxes(), homeward_.inboxes(),
-                                returns_, status_, events_, made_, ended_);
+    const auto state = std::tie(queues_, ray_links_.outboxes(), ray_links_.inboxes(), return_links_.outboxes(),
+                                return_links_.inboxes(), returns_, status_, events_, made_, ended_);
     std::vector<std::uint32_t> status(std::size_t{nodes.count} * RAYA_STATUS_WORDS);
     for (std::uint32_t again = 0;;) {
         const auto begin = [&](auto&... parts) { return guard_.begin(session_, label, budget.work, parts...); };
@@ -146,7 +146,7 @@ void NodeArray::launch_all(const std::string& label, Slots nodes, const LaunchBu
         if (budget.once && !guard_.has_copies()) return;
         session_.read(label, status_, status, std::size_t{nodes.first} * RAYA_STATUS_WORDS);
         if (any_node(status, RAYA_STATUS_CUT)) {
-            std::apply([&](auto&... parts) { guard_.go_back(session_, label, kFewerLoops, parts...); }, state);
+            std::apply([&](auto&... parts) { guard_.restore_state(session_, label, kFewerLoops, parts...); }, state);
             continue;
         }
         if (!any_node(status, RAYA_STATUS_LEFT)) return;
@@ -164,31 +164,32 @@ void NodeArray::inject(Slots nodes) {
     });
 }
 
-void NodeArray::trace_voxel(Slots nodes, Room room) {
+void NodeArray::trace_voxel(Slots nodes, Reserve reserve) {
     if (nodes.count == 0) return;
     launch_all("trace_voxel", nodes, plan_.trace_voxel(), [&](node_kernels::Work work, node_kernels::Again again) {
         session_.launch("trace_voxel", trace_, nodes.count, options_.group_size, memories_, starts_, run_,
-                        node_kernels::First{nodes.first}, room, work, again, local_words(RAYA_COUNT_WORDS), queues_,
-                        status_, events_, made_, ended_, treated_);
+                        node_kernels::First{nodes.first}, reserve, work, again, local_words(RAYA_COUNT_WORDS), queues_,
+                        status_, events_, made_, ended_, processed_);
     });
 }
 
 void NodeArray::route() {
     launch_all("route", all(), plan_.route(), [&](node_kernels::Work work, node_kernels::Again again) {
         session_.launch("route", route_, nodes_, options_.group_size, memories_, starts_, run_, node_kernels::First{0},
-                        work, again, local_words(RAYA_ROUTE_WORDS(options_.group_size)), queues_, rays_.outboxes(),
-                        homeward_.outboxes(), returns_, status_, ended_);
+                        work, again, local_words(RAYA_ROUTE_WORDS(options_.group_size)), queues_, ray_links_.outboxes(),
+                        return_links_.outboxes(), returns_, status_, ended_);
     });
 }
 
-void NodeArray::accept(Slots nodes, Room room, std::uint32_t superstep) {
+void NodeArray::accept(Slots nodes, Reserve reserve, std::uint32_t superstep) {
     if (nodes.count == 0) return;
     launch_all("accept", nodes, plan_.accept(), [&](node_kernels::Work work, node_kernels::Again again) {
-        session_.launch("accept", accept_, nodes.count, options_.group_size, memories_, starts_, run_, room,
-                        Uint<"turn">{superstep}, node_kernels::First{nodes.first}, ways_in_, rays_.sent(),
-                        homeward_.sent(), work, again,
-                        LocalMemory<std::uint32_t>{RAYA_ACCEPT_WORDS(options_.group_size)}, queues_, rays_.inboxes(),
-                        homeward_.inboxes(), homeward_.outboxes(), returns_, status_, ended_);
+        session_.launch("accept", accept_, nodes.count, options_.group_size, memories_, starts_, run_, reserve,
+                        Uint<"turn">{superstep}, node_kernels::First{nodes.first}, inbox_of_link_, ray_links_.sent(),
+                        return_links_.sent(), work, again,
+                        LocalMemory<std::uint32_t>{RAYA_ACCEPT_WORDS(options_.group_size)}, queues_,
+                        ray_links_.inboxes(), return_links_.inboxes(), return_links_.outboxes(), returns_, status_,
+                        ended_);
     });
 }
 
@@ -196,15 +197,15 @@ std::vector<std::uint64_t> NodeArray::exchange(const NodeStatus& status) {
     if (ranks_.many()) {
         std::vector<Outgoing> out;
         std::vector<Incoming> in;
-        rays_.leave(status, out, in);
-        homeward_.leave(status, out, in);
-        rays_.wait_for_leaving();
-        homeward_.wait_for_leaving();
+        ray_links_.begin_transfers(status, out, in);
+        return_links_.begin_transfers(status, out, in);
+        ray_links_.wait_for_outgoing();
+        return_links_.wait_for_outgoing();
         ranks_.start(out, in);
     }
     std::vector<std::uint64_t> words(std::size_t{raya_nodes(settings_.torus)} * RAYA_LINKS);
-    rays_.exchange(status, words);
-    homeward_.exchange(status, words);
+    ray_links_.exchange(status, words);
+    return_links_.exchange(status, words);
     return words;
 }
 
@@ -212,20 +213,20 @@ void NodeArray::arrive() {
     if (!ranks_.many()) return;
     session_.flush();  // the device computes while the host waits
     ranks_.wait();
-    rays_.arrive();
-    homeward_.arrive();
+    ray_links_.write_incoming();
+    return_links_.write_incoming();
 }
 
 std::vector<std::uint64_t> NodeArray::link_packets() const {
-    std::vector<std::uint64_t> packets = rays_.packets();
-    for (std::size_t i = 0; i < packets.size(); ++i) packets[i] += homeward_.packets()[i];
+    std::vector<std::uint64_t> packets = ray_links_.packets();
+    for (std::size_t i = 0; i < packets.size(); ++i) packets[i] += return_links_.packets()[i];
     return packets;
 }
 
 NodeStatus NodeArray::look() {
     std::vector<std::uint32_t> own(status_.size());
     session_.read("look", status_, own);
-    if (any_node(own, RAYA_STATUS_CUT)) throw loops_cut("look", session_.device().name, kFewerLoops);
+    if (any_node(own, RAYA_STATUS_CUT)) throw truncated_loops_error("look", session_.device().name, kFewerLoops);
     const std::vector<std::uint32_t> all =
         ranks_.all_gather(std::span<const std::uint32_t>(own), sizes(RAYA_STATUS_WORDS));
     const NodeStatus status(in_order_of_nodes(share_, ranks_.count(), all, RAYA_STATUS_WORDS));
@@ -239,32 +240,32 @@ std::vector<std::size_t> NodeArray::sizes(std::size_t of_node) const {
     return sizes;
 }
 
-void NodeArray::tell_work(const NodeStatus& injected, const NodeWorkSink& sink) {
+void NodeArray::report_work(const NodeStatus& injected, const NodeWorkSink& sink) {
     const NodeStatus status = look();
     const std::vector<std::uint64_t> cycles = cycles_of_nodes(injected, nodes_);
-    std::vector<raya_treated> treated;
+    std::vector<raya_processed> processed;
     std::vector<raya_packet> queue;
     for (std::uint32_t node = 0; node < nodes_; ++node) {
-        treated.resize(injected.at(node, RAYA_STATUS_QUEUE));
+        processed.resize(injected.at(node, RAYA_STATUS_QUEUE));
         queue.resize(status.at(node, RAYA_STATUS_QUEUE));
-        session_.read("history", treated_, treated, std::size_t{node} * buffers_.queue);
+        session_.read("history", processed_, processed, std::size_t{node} * buffers_.queue);
         session_.read("history", queues_, queue, std::size_t{node} * buffers_.queue);
-        sink({node, cycles[node], treated, queue});
+        sink({node, cycles[node], processed, queue});
     }
 }
 
 void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns) {
-    gather_rest(returns);
+    gather_remaining(returns);
     if (!share_.has(RAYA_ROOT)) return;
-    returns_coming_ = status.at(RAYA_ROOT, RAYA_STATUS_HOST);
-    session_.read("gather", returns_, 0, returns_here_, 0, returns_coming_);
+    returns_pending_ = status.at(RAYA_ROOT, RAYA_STATUS_HOST);
+    session_.read("gather", returns_, 0, returns_readback_, 0, returns_pending_);
 }
 
-// In the next superstep they are here: the look that follows has waited for them too.
-void NodeArray::gather_rest(std::vector<raya_head>& returns) {
-    if (returns_coming_ == 0) return;
-    session_.wait("gather", returns_here_);
-    const std::span<const raya_head> here = returns_here_.first(std::exchange(returns_coming_, 0));
+// Called in the next superstep, when the readback is complete: look() has waited for the queue in the meantime.
+void NodeArray::gather_remaining(std::vector<raya_head>& returns) {
+    if (returns_pending_ == 0) return;
+    session_.wait("gather", returns_readback_);
+    const std::span<const raya_head> here = returns_readback_.first(std::exchange(returns_pending_, 0));
     returns.insert(returns.end(), here.begin(), here.end());
 }
 

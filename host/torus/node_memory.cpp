@@ -1,4 +1,4 @@
-// Cuts a job's words up into the memories of the torus machine's nodes.
+// Divides the words of a job into the memories of the torus's nodes.
 #include "host/torus/node_memory.hpp"
 
 #include <fmt/core.h>
@@ -16,9 +16,7 @@ namespace {
 
 using Numbers = std::span<const std::uint32_t>;  // of objects in the whole scene, ascending
 
-// Of all nodes together: 4 GB, as for a job.
-
-// Where a job keeps its parts.
+// Locates the parts of a job.
 class JobParts {
   public:
     explicit JobParts(const PackedJob& job) : header(job.header()), words_(job.words()) {}
@@ -29,7 +27,7 @@ class JobParts {
     std::uint32_t first_polygon() const { return header.objects.spheres + header.objects.planes; }
     std::uint32_t first_cone() const { return first_polygon() + header.objects.polygons; }
     std::size_t surfaces() const { return surface(header.objects.spheres_at); }
-    // The number of the surface whose words start there.
+    // The number of the surface that starts at `word`.
     std::size_t surface(std::uint32_t word) const { return (word - kWordsOf<raya_job>) / RAYA_SURFACE_WORDS; }
 
     const std::uint32_t* plane(std::uint32_t i) const { return at(header.objects.planes_at + i * RAYA_PLANE_WORDS); }
@@ -41,7 +39,7 @@ class JobParts {
         return at(o.cones_at + (number - first_cone()) * RAYA_CONE_WORDS);
     }
 
-    // Where the surface of an object starts.
+    // First word of the surface of an object.
     std::uint32_t surface_of(std::uint32_t number) const {
         const raya_objects& o = header.objects;
         return number < o.spheres ? *at(raya_sphere_surfaces_at(o.spheres_at, o.spheres) + number)
@@ -75,10 +73,10 @@ class NodePacker {
     NodePacker(const PackedJob& job, const Partition& partition, const raya_torus& torus)
         : job_(job), partition_(partition), torus_(torus), seen_(job_.surfaces(), 0), surface_at_(job_.surfaces(), 0) {
         if (partition.starts.size() != std::size_t{raya_voxels(partition.grid)} + 1)
-            throw std::logic_error("a partition needs one start more than voxels");
+            throw std::logic_error("a partition must have one more start than voxels");
     }
 
-    // Words that a node takes.
+    // Number of words of a node.
     std::uint64_t words(std::uint32_t node) {
         find_surfaces(node);
         const raya_job& h = job_.header;
@@ -88,14 +86,14 @@ class NodePacker {
                               std::uint64_t{h.objects.planes} * RAYA_PLANE_WORDS;
         for (std::uint32_t local = 0; local < voxels; ++local) {
             const VoxelLists lists = lists_of_local(node, local);
-            words = whole_rows(words) + lists.all.size() + lists.spheres.size() * (RAYA_SPHERE_WORDS + 1) +
+            words = padded_to_rows(words) + lists.all.size() + lists.spheres.size() * (RAYA_SPHERE_WORDS + 1) +
                     lists.polygons.size() * RAYA_POLYGON_WORDS + lists.cones.size() * RAYA_CONE_WORDS;
             for (const std::uint32_t number : lists.polygons) words += outline_words(job_.object(number));
         }
-        return whole_rows(words);
+        return padded_to_rows(words);
     }
 
-    // Appends the node's words; returns the number of objects that it holds.
+    // Appends the node's words; returns its number of objects.
     std::uint64_t append(std::uint32_t node, std::vector<std::uint32_t>& to) {
         to_ = &to;
         start_ = to.size();
@@ -103,7 +101,7 @@ class NodePacker {
         header.job = job_.header;
         header.job.objects = {};
         header.job.objects.planes = job_.header.objects.planes;
-        header.job.accel_at = 0;  // the walk of a node goes by its own grid
+        header.job.accel_at = 0;  // a node traverses its own grid
         header.torus = torus_;
         header.grid = partition_.grid;
         header.number = node;
@@ -127,7 +125,7 @@ class NodePacker {
         return lists_of(job_, partition_, raya_voxel_of_node(torus_, partition_.grid, node, local));
     }
 
-    // From the node's first word.
+    // Present offset from the node's first word.
     std::uint32_t here() const { return static_cast<std::uint32_t>(to_->size() - start_); }
 
     void append_words(const std::uint32_t* from, std::size_t words) { to_->insert(to_->end(), from, from + words); }
@@ -138,15 +136,15 @@ class NodePacker {
             surface_at_[job_.surface(object[RAYA_OBJECT_SURFACE_AT])];
     }
 
-    // Rows start at a multiple of four words; so do nodes.
-    void fill_row() { to_->resize(start_ + whole_rows(here())); }
+    // Pads to a whole row of four words; rows and nodes start there.
+    void fill_row() { to_->resize(start_ + padded_to_rows(here())); }
 
     void need_surface(std::uint32_t at) {
         const std::size_t surface = job_.surface(at);
         if (std::exchange(seen_[surface], searches_) != searches_) surfaces_.push_back(surface);
     }
 
-    // The surfaces of the node's objects, in the scene's order.
+    // Finds the surfaces of the node's objects, in the scene's order.
     void find_surfaces(std::uint32_t node) {
         ++searches_;
         surfaces_.clear();
@@ -215,12 +213,12 @@ class NodePacker {
     JobParts job_;
     const Partition& partition_;
     const raya_torus torus_;
-    std::uint32_t searches_ = 0;                // of surfaces, so far
+    std::uint32_t searches_ = 0;                // number of find_surfaces() calls
     std::vector<std::uint32_t> seen_;           // [surface]: the last search that found it
-    std::vector<std::size_t> surfaces_;         // that the last search found
-    std::vector<std::uint32_t> surface_at_;     // [surface]: where it starts in the node that is being packed
-    std::vector<std::uint32_t>* to_ = nullptr;  // where that node goes, and
-    std::size_t start_ = 0;                     // where its first word lies there
+    std::vector<std::size_t> surfaces_;         // found by the last search
+    std::vector<std::uint32_t> surface_at_;     // [surface]: its offset in the node that is being packed
+    std::vector<std::uint32_t>* to_ = nullptr;  // output
+    std::size_t start_ = 0;                     // first word of the node in the output
 };
 
 }  // namespace
@@ -230,17 +228,17 @@ NodeMemories pack_nodes(const PackedJob& job, const Partition& partition, const 
     const std::uint32_t nodes = raya_nodes(torus);
     std::uint64_t total = 0;
     for (std::uint32_t node = 0; node < nodes; ++node) total += packer.words(node);
-    if (total > kMostWords)
+    if (total > kMaxWords)
         throw UserError(
-            fmt::format("{} nodes of {} voxels: their memories take {} words together, more than 32-bit "
-                        "word numbers reach; use fewer nodes or voxels",
-                        nodes, raya_voxels(partition.grid), total));
+            fmt::format("{} nodes, {} voxels: the memories of all nodes need {} words, more than the limit of {}; use "
+                        "fewer nodes or voxels",
+                        nodes, raya_voxels(partition.grid), total, kMaxWords));
     NodeMemories memories;
     memories.words.reserve(total);
     memories.starts.push_back(0);
     for (std::uint32_t node = 0; node < nodes; ++node) {
         const std::uint64_t objects = packer.append(node, memories.words);
-        memories.most_objects = std::max(memories.most_objects, static_cast<std::uint32_t>(objects));
+        memories.max_objects = std::max(memories.max_objects, static_cast<std::uint32_t>(objects));
         memories.starts.push_back(static_cast<std::uint32_t>(memories.words.size()));
     }
     memories.copies = partition.copies();

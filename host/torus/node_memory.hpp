@@ -1,4 +1,4 @@
-// What each node of the torus holds of the scene (kernels/shared/node.h).
+// Memories of the torus's nodes: the part of the scene that each node holds (kernels/shared/node.h).
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,16 +11,16 @@ namespace raya {
 
 struct NodeMemories {
     std::vector<std::uint32_t> words;   // of all nodes, one after another
-    std::vector<std::uint32_t> starts;  // [nodes + 1]: where each node's words start
-    std::uint64_t copies = 0;        // objects in voxels beyond each one's first; planes, which all hold, not counted
-    std::uint32_t most_objects = 0;  // in one node, planes among them
+    std::vector<std::uint32_t> starts;  // [nodes + 1]: first word of each node
+    std::uint64_t copies = 0;       // objects in voxels beyond each one's first; planes, which all hold, not counted
+    std::uint32_t max_objects = 0;  // in one node, planes among them
 };
 
-/// Cuts the job up. Every word that a kernel reads of an object, surface, light or header is the job's, but for "at"
-/// words. UserError where that makes more than 2^30 words.
+/// Divides the job among the nodes. Objects, surfaces, lights and header keep the job's words, except for "at" words
+/// (offsets). Throws UserError for more than 2^30 words in all.
 NodeMemories pack_nodes(const PackedJob& job, const Partition& partition, const raya_torus& torus);
 
-/// Words of the fullest node that pack_nodes would make, without making them.
+/// Words of the fullest node of pack_nodes(), without packing.
 std::uint64_t fullest_node_words(const PackedJob& job, const Partition& partition, const raya_torus& torus);
 
 }  // namespace raya

@@ -21,9 +21,9 @@ class Divider {
   public:
     explicit Divider(const raya_torus& torus) : torus_(torus), rank_of(raya_nodes(torus)) {}
 
-    // Of `ranks` <= its nodes, the first of which is `first`.
+    // Divides a brick among `ranks` ranks, at most one for each node; the first rank is `first`.
     void divide(const Brick& brick, std::uint32_t ranks, std::uint32_t first) {
-        if (ranks == 1) return give(brick, first);
+        if (ranks == 1) return assign(brick, first);
         std::uint32_t axis = 0;
         for (std::uint32_t other : {1, 2})
             if (brick.side(other) > brick.side(axis)) axis = other;
@@ -46,7 +46,7 @@ class Divider {
     std::vector<std::uint32_t> rank_of;
 
   private:
-    // Where the brick is cut, so that the `low` of its ranks below have nearly their part of its nodes, and all one.
+    // The layer at which the brick is cut: the lower `low` ranks get about their share of nodes, and every rank one.
     std::uint32_t layer_for(const Brick& brick, std::uint32_t axis, std::uint32_t low, std::uint32_t ranks) const {
         const std::uint32_t layers = brick.side(axis);
         const std::uint64_t of_layer = brick.nodes() / layers;
@@ -58,7 +58,7 @@ class Divider {
         return brick.first.at[axis] + std::clamp(wanted, std::max(1u, layers_of(low)), most);
     }
 
-    void give(const Brick& brick, std::uint32_t rank) {
+    void assign(const Brick& brick, std::uint32_t rank) {
         raya_place p{};
         for (p.at[2] = brick.first.at[2]; p.at[2] < brick.end.at[2]; ++p.at[2])
             for (p.at[1] = brick.first.at[1]; p.at[1] < brick.end.at[1]; ++p.at[1])
@@ -72,8 +72,8 @@ class Divider {
 std::vector<std::uint32_t> ranks_of_nodes(const raya_torus& torus, std::uint32_t ranks) {
     if (ranks > raya_nodes(torus))
         throw UserError(
-            fmt::format("{} ranks for {} nodes: a rank has one node at least; start {} ranks or fewer, or "
-                        "take more nodes (--nodes)",
+            fmt::format("{} ranks for {} nodes: a rank needs at least one node; start {} ranks or fewer, or use more "
+                        "nodes (--nodes)",
                         ranks, raya_nodes(torus), raya_nodes(torus)));
     Divider divider(torus);
     divider.divide({{{0, 0, 0}}, {{torus.sides[0], torus.sides[1], torus.sides[2]}}}, ranks, 0);
@@ -86,7 +86,7 @@ NodeShare::NodeShare(const raya_torus& torus, std::uint32_t ranks, std::uint32_t
       rank_of_(ranks_of_nodes(torus, ranks)),
       slot_of_(rank_of_.size()),
       nodes_of_(ranks),
-      from_elsewhere_(RAYA_LINKS) {
+      remote_starts_(RAYA_LINKS) {
     for (const bool inner : {true, false})
         for (std::uint32_t node = 0; node < rank_of_.size(); ++node) {
             if (is_inner(node) != inner) continue;
@@ -97,8 +97,8 @@ NodeShare::NodeShare(const raya_torus& torus, std::uint32_t ranks, std::uint32_t
         }
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
         for (std::uint32_t node = 0; node < rank_of_.size(); ++node)
-            if (!has(node) && has(raya_link_end(torus, node, link))) from_elsewhere_[link].push_back(node);
-        inboxes_ = std::max(inboxes_, nodes() + static_cast<std::uint32_t>(from_elsewhere_[link].size()));
+            if (!has(node) && has(raya_link_end(torus, node, link))) remote_starts_[link].push_back(node);
+        inboxes_ = std::max(inboxes_, nodes() + static_cast<std::uint32_t>(remote_starts_[link].size()));
     }
 }
 
@@ -108,7 +108,7 @@ bool NodeShare::is_inner(std::uint32_t node) const {
     return true;
 }
 
-std::uint32_t NodeShare::most_nodes() const {
+std::uint32_t NodeShare::max_nodes_of_rank() const {
     std::size_t most = 0;
     for (const std::vector<std::uint32_t>& nodes : nodes_of_) most = std::max(most, nodes.size());
     return static_cast<std::uint32_t>(most);
@@ -116,7 +116,7 @@ std::uint32_t NodeShare::most_nodes() const {
 
 std::uint32_t NodeShare::inbox(std::uint32_t link, std::uint32_t node) const {
     if (has(node)) return slot_of_[node];
-    const std::vector<std::uint32_t>& from = from_elsewhere_[link];
+    const std::vector<std::uint32_t>& from = remote_starts_[link];
     return nodes() + static_cast<std::uint32_t>(std::lower_bound(from.begin(), from.end(), node) - from.begin());
 }
 

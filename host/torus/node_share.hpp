@@ -1,4 +1,4 @@
-// Which nodes of the torus a rank has, and what each says of itself.
+// Division of the torus's nodes among ranks, and the status words of nodes.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,12 +10,13 @@
 
 namespace raya {
 
-/// [node]: its rank, of `ranks` in all; rank 0 has the root. Bricks are halved along their longest side, as nearly in
-/// the ratio of the ranks that either half gets as whole layers of nodes allow. UserError for more ranks than nodes.
+/// [node]: its rank, 0..ranks - 1; rank 0 has the root. Recursive bisection of bricks along their longest side, in the
+/// ratio of the ranks of either half, as closely as whole layers of nodes allow. Throws UserError for more ranks than
+/// nodes.
 std::vector<std::uint32_t> ranks_of_nodes(const raya_torus& torus, std::uint32_t ranks);
 
-/// What one rank knows of the division. Slots: first of the inner nodes, all of whose links end in the same rank, then
-/// of those at the border; each in the order of their numbers. Of one rank all nodes are inner ones.
+/// One rank's view of the division. Slots number the nodes of a rank: first the inner nodes, whose links all end in the
+/// same rank, then the border nodes; both in the order of their numbers. With one rank all nodes are inner.
 class NodeShare {
   public:
     explicit NodeShare(const raya_torus& torus, std::uint32_t ranks = 1, std::uint32_t rank = 0);
@@ -23,21 +24,21 @@ class NodeShare {
     const raya_torus& torus() const { return torus_; }
     std::uint32_t rank() const { return rank_; }
     std::uint32_t nodes() const { return static_cast<std::uint32_t>(own().size()); }  // of this rank
-    std::uint32_t inner() const { return inner_; }                                    // of them
-    std::uint32_t most_nodes() const;                                                 // of the rank that has most
+    std::uint32_t inner() const { return inner_; }                                    // inner nodes of this rank
+    std::uint32_t max_nodes_of_rank() const;
 
-    /// [slot]: the node there.
+    /// [slot]: node.
     const std::vector<std::uint32_t>& nodes_of(std::uint32_t rank) const { return nodes_of_[rank]; }
     const std::vector<std::uint32_t>& own() const { return nodes_of_[rank_]; }
     std::uint32_t rank_of(std::uint32_t node) const { return rank_of_[node]; }
     bool has(std::uint32_t node) const { return rank_of_[node] == rank_; }
     std::uint32_t slot_of(std::uint32_t node) const { return slot_of_[node]; }  // in its rank
 
-    /// Inboxes of each link on this device: of the links that start in its nodes, by the slots of those; then, as many
-    /// as the link with most needs, of those that come from other ranks.
+    /// Inboxes of each link direction on this device: those of links that start at this rank's nodes, indexed by slot,
+    /// then those of links from other ranks, as many as the direction with most needs.
     std::uint32_t inboxes() const { return inboxes_; }
 
-    /// Of those, the one of the link that starts at `node`, which this rank has or which leads here.
+    /// Index of the inbox of the link that starts at `node`. The link's start or end must be in this rank.
     std::uint32_t inbox(std::uint32_t link, std::uint32_t node) const;
 
   private:
@@ -47,10 +48,11 @@ class NodeShare {
     std::uint32_t rank_, inner_ = 0, inboxes_ = 0;
     std::vector<std::uint32_t> rank_of_, slot_of_;
     std::vector<std::vector<std::uint32_t>> nodes_of_;
-    std::vector<std::vector<std::uint32_t>> from_elsewhere_;  // [link]: nodes of other ranks whose link leads here
+    std::vector<std::vector<std::uint32_t>>
+        remote_starts_;  // [link]: nodes of other ranks whose link ends in this rank
 };
 
-/// What every node says of itself, as the host has read it: [node][RAYA_STATUS_WORDS].
+/// Host copy of the nodes' status words: [node][RAYA_STATUS_WORDS].
 class NodeStatus {
   public:
     explicit NodeStatus(std::uint32_t nodes) : words(std::size_t{nodes} * RAYA_STATUS_WORDS) {}

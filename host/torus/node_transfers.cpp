@@ -1,5 +1,4 @@
-// What nodes tell the host: the census of a superstep, how packets come over links quickest, and messages for a
-// trace.
+// Transfers between nodes and host: status of a superstep, choice of the faster link transfer, packets for a trace.
 #include <algorithm>
 #include <limits>
 
@@ -13,12 +12,12 @@ std::uint64_t cycles_of(const NodeStatus& status, std::uint32_t node) {
     return status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)} << 32;
 }
 
-constexpr std::uint32_t kPackets = 32;  // in each box of a measurement
-constexpr int kTimes = 5;               // of which the shortest counts
+constexpr std::uint32_t kPackets = 32;  // in each mailbox of a measurement
+constexpr int kTimes = 5;               // repetitions, of which the shortest counts
 
 bool is_return(const raya_head& packet) { return raya_state_kind(packet.state) == RAYA_KIND_RETURN; }
 
-// Whether a packet in an outbox is a message that its node has made.
+// Returns true for a packet of an outbox that is a message and was made or changed by that node.
 bool is_new_message(const raya_head& packet) {
     return packet.state & RAYA_STATE_FRESH && (!is_return(packet) || packet.state & RAYA_STATE_CHARGED);
 }
@@ -64,33 +63,33 @@ Census census_of(const NodeStatus& status, std::uint32_t nodes, std::uint32_t ca
         rows += at(RAYA_STATUS_ROWS);
         done += at(RAYA_STATUS_NEXT_ROW);
     }
-    c.looked = rows ? static_cast<double>(done) / static_cast<double>(rows) : 1;
+    c.scanned = rows ? static_cast<double>(done) / static_cast<double>(rows) : 1;
     return c;
 }
 
-// On CPUs the kernel was faster, or as fast (docs/tuning.md has figures): there nothing is measured.
+// On CPUs the kernel is at least as fast (figures in docs/tuning.md), so nothing is measured there.
 void NodeArray::choose_link_move(Kernels& kernels) {
     const LinkMove wanted = settings_.kernels.link_move;
     const bool cpu = session_.device().type == "cpu";
-    links_origin_ = wanted != LinkMove::kOfDevice ? settings_.kernels.link_origin : cpu ? "defaults" : "measured";
+    links_origin_ = wanted != LinkMove::kAutomatic ? settings_.kernels.link_origin : cpu ? "defaults" : "measured";
     if (wanted == LinkMove::kCopies) return;
     const auto kernel = kernels.get<ExchangeKernel>();
     if (wanted == LinkMove::kKernel || cpu) return use_kernel(kernel);
     const double by_copies = exchange_seconds();
     use_kernel(kernel);
     if (exchange_seconds() < by_copies) return;
-    rays_.use_copies();
-    homeward_.use_copies();
+    ray_links_.use_copies();
+    return_links_.use_copies();
     links_by_kernel_ = false;
 }
 
 void NodeArray::use_kernel(const ExchangeKernel& kernel) {
-    rays_.use_kernel(kernel, options_.group_size, status_);
-    homeward_.use_kernel(kernel, options_.group_size, status_);
+    ray_links_.use_kernel(kernel, options_.group_size, status_);
+    return_links_.use_kernel(kernel, options_.group_size, status_);
     links_by_kernel_ = true;
 }
 
-// Of an exchange over all links, with some packets in every outbox. What is counted and moved is forgotten by clear().
+// Time of an exchange over all links, with some packets in every outbox. clear() resets its counts and packets.
 double NodeArray::exchange_seconds() {
     const std::uint32_t packets = std::min(kPackets, buffers_.box);
     NodeStatus status(raya_nodes(settings_.torus));
@@ -100,22 +99,22 @@ double NodeArray::exchange_seconds() {
         };
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             if (settings_.torus.sides[link / 2] > 1) put(RAYA_STATUS_OUTBOX + link);
-        if (node != RAYA_ROOT) put(RAYA_STATUS_RETURN_OUTBOX + raya_home_link(settings_.torus, node));
+        if (node != RAYA_ROOT) put(RAYA_STATUS_RETURN_OUTBOX + raya_return_link(settings_.torus, node));
     }
     for (std::uint32_t slot = 0; slot < nodes_; ++slot)
         session_.write(
             "measure links", status_,
             std::span(status.words).subspan(std::size_t{share_.own()[slot]} * RAYA_STATUS_WORDS, RAYA_STATUS_WORDS),
             std::size_t{slot} * RAYA_STATUS_WORDS);
-    rays_.clear();
-    homeward_.clear();
+    ray_links_.clear();
+    return_links_.clear();
     std::vector<std::uint64_t> words(std::size_t{raya_nodes(settings_.torus)} * RAYA_LINKS);
     double least = std::numeric_limits<double>::max();
     for (int i = 0; i <= kTimes; ++i) {
         session_.finish();
         const Clock::time_point start = Clock::now();
-        rays_.exchange(status, words);
-        homeward_.exchange(status, words);
+        ray_links_.exchange(status, words);
+        return_links_.exchange(status, words);
         session_.finish();
         const double seconds = seconds_since(start);
         if (i > 0) least = std::min(least, seconds);  // the first one may build the kernel
@@ -125,15 +124,15 @@ double NodeArray::exchange_seconds() {
 
 void NodeArray::record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
     if (!sink) {
-        rays_.visit_new(status, {});
-        return homeward_.visit_new(status, {});
+        ray_links_.visit_new_packets(status, {});
+        return return_links_.visit_new_packets(status, {});
     }
     std::vector<PacketRecord> own;
     const auto take = [&](std::uint32_t node, const raya_head& packet) {
         if (is_new_message(packet)) own.push_back(record_of(settings_, superstep, node, packet));
     };
-    rays_.visit_new(status, take);
-    homeward_.visit_new(status, take);
+    ray_links_.visit_new_packets(status, take);
+    return_links_.visit_new_packets(status, take);
     std::vector<PacketRecord> records = ranks_.many() ? records_of_all(own) : std::move(own);
     std::stable_sort(records.begin(), records.end(),
                      [](const PacketRecord& a, const PacketRecord& b) { return a.source < b.source; });

@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-constexpr double kNoTimeBytesPerS = 1e18;  // of a link that takes no time
+constexpr double kNoTimeBytesPerS = 1e18;  // rate of links that take no time
 
 struct Text {
     std::string text;
@@ -20,11 +20,12 @@ struct Text {
     }
 };
 
-std::string way_name(std::uint32_t node, std::uint32_t link) { return fmt::format("{}{}", node, link_name(link)); }
+std::string channel_name(std::uint32_t node, std::uint32_t link) { return fmt::format("{}{}", node, link_name(link)); }
 
-// A wire is named after its way up.
+// A wire is named after its direction of ascending coordinates.
 std::string wire_name(const raya_torus& torus, std::uint32_t node, std::uint32_t link) {
-    return "wire " + (link % 2 == 0 ? way_name(node, link) : way_name(raya_link_end(torus, node, link), link ^ 1u));
+    return "wire " +
+           (link % 2 == 0 ? channel_name(node, link) : channel_name(raya_link_end(torus, node, link), link ^ 1u));
 }
 
 }  // namespace
@@ -35,11 +36,11 @@ std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machin
     Text hosts, links, routes;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
         hosts.add("    <host id=\"{}\" speed=\"{:.17g}f\"/>\n", node, 1e9 / machine.cycle_ns);
-        std::set<std::uint32_t> joined = {node};  // two nodes are joined twice where a side is 2: only one is used
+        std::set<std::uint32_t> joined = {node};  // on a side of 2, two wires join the same nodes: only one is used
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t end = raya_link_end(torus, node, link);
             if (!joined.insert(end).second) continue;
-            const std::string way = way_name(node, link), wire = wire_name(torus, node, link);
+            const std::string way = channel_name(node, link), wire = wire_name(torus, node, link);
             links.add("    <link id=\"{}\" bandwidth=\"{:.17g}Bps\" latency=\"0\"/>\n", way, one_way);
             if (link % 2 == 0)
                 links.add("    <link id=\"{}\" bandwidth=\"{:.17g}Bps\" latency=\"0\"/>\n", wire, both_ways);
@@ -63,10 +64,11 @@ std::string simgrid_replay(const raya_torus& torus, const History& history, cons
         replay.add("t {} {} {}\n", t.node, t.cycles,
                    t.cause == HistoryTask::kInjection ? "-" : std::to_string(t.cause));
         for (const HistoryMessage& message : history.sent_by(task)) {
-            const bool home = message.kind == RAYA_KIND_RETURN;
-            replay.add("m {} {}", message.words, home ? 0 : 1);
+            const bool is_return = message.kind == RAYA_KIND_RETURN;
+            replay.add("m {} {}", message.words, is_return ? 0 : 1);
             for (std::uint32_t node = t.node; node != message.to;) {
-                const std::uint32_t link = home ? raya_home_link(torus, node) : raya_next_link(torus, node, message.to);
+                const std::uint32_t link =
+                    is_return ? raya_return_link(torus, node) : raya_next_link(torus, node, message.to);
                 node = raya_link_end(torus, node, link);
                 replay.add(" {} {}", link, node);
             }

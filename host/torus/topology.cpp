@@ -1,4 +1,4 @@
-// The torus machine's nodes and links: names, and the layout of three sides on a torus of two.
+// Nodes and links of the torus: names, and the layout of three dimensions on a 2-D torus.
 #include "host/torus/topology.hpp"
 
 #include <fmt/core.h>
@@ -11,8 +11,8 @@
 namespace raya {
 namespace {
 
-// C: the divisor of K that makes the sides I C and J K / C most alike, of equals the lower. Their product is the same
-// for every C, so their difference tells as much as their ratio.
+// C: the divisor of K that makes the sides I C and J K / C most alike, the lower one in case of a tie. Their product
+// does not depend on C, so comparing their difference is equivalent to comparing their ratio.
 std::uint32_t slabs_beside(const std::array<std::uint32_t, 3>& nodes) {
     const std::uint32_t i = nodes[0], j = nodes[1], k = nodes[2];
     const auto apart = [&](std::uint32_t c) {
@@ -29,10 +29,11 @@ void check_nodes(const std::array<std::uint32_t, 3>& nodes) {
     std::uint64_t count = 1;
     for (const std::uint32_t side : nodes) {
         if (side == 0)
-            throw UserError(fmt::format("--nodes {}: a side of 0 nodes; use 1 or more each", sides_text(nodes)));
-        count *= side;  // below 2^16 before, so below 2^48 here
-        if (count > kMostNodes)
-            throw UserError(fmt::format("--nodes {}: more than {} nodes; use fewer", sides_text(nodes), kMostNodes));
+            throw UserError(
+                fmt::format("--nodes {}: a side of 0 nodes; use 1 or more on each side", sides_text(nodes)));
+        count *= side;  // cannot overflow: at most 2^16 before
+        if (count > kMaxNodes)
+            throw UserError(fmt::format("--nodes {}: more than {} nodes; use fewer", sides_text(nodes), kMaxNodes));
     }
 }
 

@@ -36,10 +36,10 @@ std::uint64_t fullest_words(const NodeMemories& memories) {
 NodeBuffers buffers_of(const Scene& scene, const NodeMemories& memories, const TorusSettings& s,
                        const NodeTrial& trial) {
     return plan_buffers(scene.name, memories, s.torus, s.memory_bytes, s.queue,
-                        raya_shortest_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces), trial);
+                        raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces), trial);
 }
 
-// The job of a machine on one rank.
+// The job of all nodes.
 TorusJob divide(const Session& session, const Scene& scene, const TorusSettings& s, const NodeShare& share,
                 const DeviceMemory& device) {
     const LengthScale scale = length_scale(scene, s.format);
@@ -47,19 +47,19 @@ TorusJob divide(const Session& session, const Scene& scene, const TorusSettings&
     const StepLog::Step step = session.step("divide scene");
     const Partition partition = raya::partition(job, s.format, s.voxels);
     TorusJob all{outline_of(job.header(), job.has_patches()), pack_nodes(job, partition, s.torus), scale, {}, 0, 0};
-    all.buffers = buffers_of(scene, all.memories, s, trial_of(job, s.format, s.voxels));
-    check_device_memory(scene.name, all.buffers, share.most_nodes(), session.device().name, device);
+    all.buffers = buffers_of(scene, all.memories, s, make_node_trial(job, s.format, s.voxels));
+    check_device_memory(scene.name, all.buffers, share.max_nodes_of_rank(), session.device().name, device);
     set_windows(all.memories, s, job, partition);
     all.words = all.memories.words.size();
     all.fullest_words = fullest_words(all.memories);
     return all;
 }
 
-// The words of one rank's nodes, out of those of all.
+// Extracts the words of one rank's nodes.
 NodeMemories memories_of(const NodeMemories& all, const std::vector<std::uint32_t>& nodes) {
     NodeMemories own;
     own.copies = all.copies;
-    own.most_objects = all.most_objects;
+    own.max_objects = all.max_objects;
     own.starts.push_back(0);
     for (const std::uint32_t node : nodes) {
         own.words.insert(own.words.end(), all.words.begin() + all.starts[node],
@@ -69,21 +69,21 @@ NodeMemories memories_of(const NodeMemories& all, const std::vector<std::uint32_
     return own;
 }
 
-// All of a job but the nodes' words.
+// A job without the nodes' words, as it is sent to other ranks.
 struct TorusFigures {
     raya_job header;
     bool has_patches;
     LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t words, fullest_words, copies;
-    std::uint32_t most_objects;
+    std::uint32_t max_objects;
 };
 
 void send_to_others(const TorusJob& all, const NodeShare& share, Ranks& ranks) {
     const NodeMemories& m = all.memories;
     TorusFigures f{
         all.outline.header(), all.outline.has_patches(), all.scale, all.buffers, all.words, all.fullest_words, m.copies,
-        m.most_objects};
+        m.max_objects};
     ranks.broadcast(f);
     for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) {
         const NodeMemories of_rank = memories_of(m, share.nodes_of(rank));
@@ -97,7 +97,7 @@ TorusJob receive_job(const NodeShare& share, Ranks& ranks) {
     ranks.broadcast(f);
     NodeMemories m;
     m.copies = f.copies;
-    m.most_objects = f.most_objects;
+    m.max_objects = f.max_objects;
     m.starts.resize(share.nodes() + 1);
     ranks.receive(0, std::span(m.starts));
     m.words.resize(m.starts.back());
@@ -107,13 +107,13 @@ TorusJob receive_job(const NodeShare& share, Ranks& ranks) {
 
 }  // namespace
 
-TorusSettings usual_torus(const ImageSize& size) {
+TorusSettings default_torus(const ImageSize& size) {
     TorusSettings s;
     s.machine = machine_named("torus");
     s.width = size.width;
     s.height = size.height;
-    s.torus = make_torus(kUsualNodes, s.links);
-    s.voxels = kUsualNodes;
+    s.torus = make_torus(kDefaultNodes, s.links);
+    s.voxels = kDefaultNodes;
     s.bounces = s.machine.bounces;
     s.format = s.machine.format;
     return s;
@@ -127,9 +127,9 @@ void check_packets(const TorusSettings& s, const Scene& scene) {
     for (std::uint32_t axis = 0; axis < 3; ++axis)
         if (s.voxels[axis] > RAYA_MOST_PLACES)
             throw UserError(
-                fmt::format("--voxels {}: at most {} along an axis", sides_text(s.voxels), RAYA_MOST_PLACES));
+                fmt::format("--voxels {}: must be at most {} along an axis", sides_text(s.voxels), RAYA_MOST_PLACES));
     if (scene.lights.size() > RAYA_MOST_LIGHTS)
-        throw UserError(fmt::format("{}: {} lights; packets of the torus name at most {}", scene.name,
+        throw UserError(fmt::format("{}: {} lights: packets of the torus name at most {}", scene.name,
                                     scene.lights.size(), RAYA_MOST_LIGHTS));
 }
 
@@ -154,7 +154,7 @@ KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job) {
             .exact_fma = s.kernels.exact_arithmetic,
             .words_local = s.kernels.local_words,
             .filter = s.kernels.filter && (job.header().objects.spheres > 0 || job.has_polygons()) &&
-                      filters_hold(s.format, job.header().extent),
+                      filters_are_valid(s.format, job.header().extent),
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones(),
@@ -179,7 +179,7 @@ NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
     return {scale, words, node_bytes(words, buffers, links_of_node(s.torus))};
 }
 
-DeviceMemory least_memory(const DeviceInfo& device, Ranks& ranks) {
+DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks) {
     DeviceMemory least{device.global_memory_bytes, device.max_allocation_bytes};
     for (const DeviceMemory& other : ranks.all_gather(least))
         least = {std::min(least.all, other.all), std::min(least.one_buffer, other.one_buffer)};

@@ -16,28 +16,20 @@
 namespace raya {
 namespace {
 
-// Of what is to be done, by the mean of two measures: packets that are finished beside those that live, which tells the
-// time while all nodes compute, and says too much in the end, when few packets take as many supersteps; and how far the
-// packets have dwindled, which tells that end and says too little before. Of both the pixels that nodes have looked at.
-double share_done(const Census& census, std::size_t returns, std::uint64_t most_live) {
+// Progress, 0..1: the share of rows scanned times the mean of two estimates. The share of finished packets is right
+// while all nodes compute, but too high at the end, when few packets take many supersteps. The logarithmic decrease of
+// live packets is right at the end, but too low before.
+double share_done(const Census& census, std::size_t returns, std::uint64_t max_live) {
     const auto finished = static_cast<double>(returns), live = static_cast<double>(census.live);
-    if (live == 0) return census.looked;
-    const double dwindled = 1 - std::log1p(live) / std::log1p(static_cast<double>(most_live));
-    return census.looked * (finished / (finished + live) + dwindled) / 2;
+    if (live == 0) return census.scanned;
+    const double decrease = 1 - std::log1p(live) / std::log1p(static_cast<double>(max_live));
+    return census.scanned * (finished / (finished + live) + decrease) / 2;
 }
 
 }  // namespace
 
-// Returns that room is made for before they come, at most: 128 MB, of which only what is used is ever touched.
+// Maximum number of returns to reserve memory for in advance: 128 MB, of which only the used pages are touched.
 constexpr std::uint64_t kReservedReturns = 1 << 22;
-
-// Who is told of packets, and in which supersteps, of supersteps and of nodes' work.
-struct Watch {
-    PacketSink packets{};
-    std::uint32_t every = 1;
-    SuperstepSink steps{};
-    NodeWorkSink work{};
-};
 
 struct TorusRenderer::Parts {
     Session& session;
@@ -53,9 +45,9 @@ struct TorusRenderer::Parts {
     double build_s = 0;
 
     void build();
-    std::optional<StandstillFigures> run(TorusResult& result, std::vector<raya_head>& returns,
-                                         const ProgressCallback& progress, const Watch& watch);
-    void compute(NodeArray::Slots slots, Room room, bool injects, const NodeWorkSink& work);
+    std::optional<DeadlockFigures> run(TorusResult& result, std::vector<raya_head>& returns,
+                                       const ProgressCallback& progress, const RenderObservers& observers);
+    void compute(NodeArray::Slots slots, Reserve reserve, bool injects, const NodeWorkSink& work);
     void compose(TorusResult& result, const std::vector<raya_head>& returns);
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
@@ -66,7 +58,7 @@ struct TorusRenderer::Parts {
 TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks) {
     const TorusSettings chosen = checked(settings, scene, session.device());
     const NodeShare share(chosen.torus, ranks.count(), ranks.rank());
-    const DeviceMemory device = least_memory(session.device(), ranks);
+    const DeviceMemory device = smallest_device_memory(session.device(), ranks);
     TorusJob job = make_torus_job(session, scene, chosen, share, device, ranks);
     const KernelOptions options = kernel_options(chosen, job.outline);
     parts_.reset(new Parts{.session = session,
@@ -92,7 +84,7 @@ void TorusRenderer::set_pixels(const PixelSubset& pixels) {
 void TorusRenderer::set_queue(std::uint32_t queue) {
     Parts& p = *parts_;
     const NodeBuffers other = buffers_for(queue);
-    check_device_memory(p.scene, other, p.share.most_nodes(), p.session.device().name, p.device);
+    check_device_memory(p.scene, other, p.share.max_nodes_of_rank(), p.session.device().name, p.device);
     p.job.buffers = other;
     p.build();
 }
@@ -107,7 +99,7 @@ QueueTrial TorusRenderer::queue_trial() {
     Parts& p = *parts_;
     return {.bytes = [&p](const NodeBuffers& b) { return p.node_bytes(b); },
             .limit = p.settings.memory_bytes.value_or(UINT64_MAX),
-            .device_holds = [&p](const NodeBuffers& b) { return device_holds(b, p.share.most_nodes(), p.device); },
+            .fits_device = [&p](const NodeBuffers& b) { return fits_device(b, p.share.max_nodes_of_rank(), p.device); },
             .ends =
                 [this](const NodeBuffers& b) {
                     set_queue(b.queue);
@@ -125,18 +117,18 @@ void TorusRenderer::Parts::build() {
     Kernels kernels(session, one_lane, settings.kernels.sources);
     composer = std::make_unique<Composer>(kernels);
     nodes->clear();
-    nodes->trace_voxel(nodes->all(), Room::kWholeTree);  // of empty queues: PoCL compiles a kernel at its first launch
+    // Launches with empty queues: PoCL compiles a kernel at its first launch.
+    nodes->trace_voxel(nodes->all(), Reserve::kWholeTree);
     nodes->route();
-    nodes->accept(nodes->all(), Room::kWholeTree, 0);
+    nodes->accept(nodes->all(), Reserve::kWholeTree, 0);
     session.finish();
     build_s = seconds_since(start);
 }
 
-TorusResult TorusRenderer::render(const ProgressCallback& progress, const PacketSink& sink,
-                                  const SuperstepSink& step_sink, std::uint32_t packets_every,
-                                  const NodeWorkSink& work_sink) {
+TorusResult TorusRenderer::render(const ProgressCallback& progress, const RenderObservers& observers) {
     Parts& p = *parts_;
-    if (work_sink && !p.settings.history) throw std::logic_error("a history was not asked for in the settings");
+    if (observers.work && !p.settings.history)
+        throw std::logic_error("an observer of work needs TorusSettings::history");
     p.session.clear_profile();
     const Clock::time_point start = Clock::now();
     const StepLog::Step rendering = p.session.step("render");
@@ -144,9 +136,9 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     TorusResult result;
     std::vector<raya_head> returns;
     returns.reserve(std::min<std::uint64_t>(2 * pixels_of(p.settings), kReservedReturns));
-    const SuperstepSink& steps = p.ranks.first() ? step_sink : SuperstepSink{};
-    if (const auto stand = p.run(result, returns, progress, {sink, packets_every, steps, work_sink}))
-        throw Standstill(*stand);
+    RenderObservers own = observers;
+    if (!p.ranks.first()) own.supersteps = {};
+    if (const auto deadlock = p.run(result, returns, progress, own)) throw TorusDeadlock(*deadlock);
     if (p.ranks.first()) p.compose(result, returns);
     p.collect(result);
     result.render_s = seconds_since(start);
@@ -156,60 +148,64 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     return result;
 }
 
-// What nodes do before packets move.
-void TorusRenderer::Parts::compute(NodeArray::Slots slots, Room room, bool injects, const NodeWorkSink& work) {
+// The computing part of a superstep, before packets move.
+void TorusRenderer::Parts::compute(NodeArray::Slots slots, Reserve reserve, bool injects, const NodeWorkSink& work) {
     if (injects) nodes->inject(slots);
-    if (!work) return nodes->trace_voxel(slots, room);
+    if (!work) return nodes->trace_voxel(slots, reserve);
     const NodeStatus injected = nodes->look();
-    nodes->trace_voxel(slots, room);
-    nodes->tell_work(injected, work);
+    nodes->trace_voxel(slots, reserve);
+    nodes->report_work(injected, work);
 }
 
-// To the machine's end, or to a stand. All ranks see the status of all nodes, so they decide alike. While packets
-// travel between ranks the inner nodes go on with the next superstep.
-std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns,
-                                                           const ProgressCallback& progress, const Watch& watch) {
+// Runs supersteps until the image is complete, or returns the state of a deadlock. All ranks know the status of all
+// nodes, so they take the same decisions. While packets travel between ranks, the inner nodes compute the next
+// superstep.
+std::optional<DeadlockFigures> TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns,
+                                                         const ProgressCallback& progress,
+                                                         const RenderObservers& observers) {
     const StepLog::Step step = session.step("supersteps");
     nodes->clear();
     result.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
-    Room room = Room::kWholeTree;
-    int stands = 0;  // supersteps without progress
-    std::uint64_t most_live = 0;
-    compute(nodes->all(), room, true, watch.work);
+    Reserve reserve = Reserve::kWholeTree;
+    int stalled = 0;  // consecutive supersteps without progress
+    std::uint64_t max_live = 0;
+    compute(nodes->all(), reserve, true, observers.work);
     for (std::uint32_t superstep = 0;; ++superstep) {
         nodes->route();
         const NodeStatus status = nodes->look();
         nodes->gather(status, returns);
-        if (watch.packets) nodes->record(status, superstep, superstep % watch.every ? PacketSink{} : watch.packets);
+        if (observers.packets)
+            nodes->record(status, superstep, superstep % observers.packets_every ? PacketSink{} : observers.packets);
         const std::vector<std::uint64_t> words = nodes->exchange(status);
-        nodes->accept(nodes->inner(), room, superstep);
+        nodes->accept(nodes->inner(), reserve, superstep);
 
         const Census census = census_of(status, raya_nodes(settings.torus), job.buffers.queue);
-        const std::uint64_t most_words = *std::max_element(words.begin(), words.end());
-        result.supersteps.push_back({census.cycles, most_words, census.live});
-        if (watch.steps)
-            watch.steps({result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
+        const std::uint64_t max_words = *std::max_element(words.begin(), words.end());
+        result.supersteps.push_back({census.cycles, max_words, census.live});
+        if (observers.supersteps)
+            observers.supersteps(
+                {result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
         for (std::size_t i = 0; i < words.size(); ++i) result.link_words[i] += words[i];
-        most_live = std::max(most_live, census.live);
+        max_live = std::max(max_live, census.live);
         const bool ended = census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made;
-        if (progress) progress(ended ? 1 : share_done(census, returns.size(), most_live));
+        if (progress) progress(ended ? 1 : share_done(census, returns.size(), max_live));
         const bool injects = !census.all_made && census.fullest <= job.buffers.queue / 4;
-        // What a superstep with little room has accepted is seen in the next one.
-        stands = census.progress == 0 && most_words == 0 ? stands + 1 : 0;
-        const Room next = stands > 0 ? Room::kTight : Room::kWholeTree;
-        const bool goes_on = !ended && stands < 3;
-        if (goes_on && nodes->inner().count > 0) compute(nodes->inner(), next, injects, watch.work);
+        // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep.
+        stalled = census.progress == 0 && max_words == 0 ? stalled + 1 : 0;
+        const Reserve next = stalled > 0 ? Reserve::kTight : Reserve::kWholeTree;
+        const bool continues = !ended && stalled < 3;
+        if (continues && nodes->inner().count > 0) compute(nodes->inner(), next, injects, observers.work);
         nodes->arrive();
-        nodes->accept(nodes->border(), room, superstep);
+        nodes->accept(nodes->border(), reserve, superstep);
         if (ended) {
-            nodes->gather_rest(returns);
+            nodes->gather_remaining(returns);
             return {};
         }
-        if (!goes_on)
-            return StandstillFigures{
+        if (!continues)
+            return DeadlockFigures{
                 scene, superstep, census.live, census.full, raya_nodes(settings.torus), job.buffers.queue};
-        if (nodes->border().count > 0) compute(nodes->border(), next, injects, watch.work);
-        room = next;
+        if (nodes->border().count > 0) compute(nodes->border(), next, injects, observers.work);
+        reserve = next;
     }
 }
 
@@ -243,7 +239,7 @@ void TorusRenderer::Parts::collect(TorusResult& result) {
     result.moved_returns = nodes->moved_returns();
 }
 
-// Nothing is lost: a machine that has lost or doubled a packet has no image to show.
+// Checks that no packet was lost or duplicated; otherwise the image would be wrong.
 void TorusRenderer::Parts::check(const TorusResult& result) const {
     for (std::size_t kind = 1; kind < RAYA_KINDS; ++kind)
         if (result.made[kind] != result.ended[kind])
@@ -260,7 +256,7 @@ void TorusRenderer::Parts::check(const TorusResult& result) const {
         throw std::logic_error(fmt::format("{} returns are messages, not {}", result.returns, returns));
 }
 
-// Of the fullest node.
+// Memory of the fullest node.
 std::uint64_t TorusRenderer::Parts::node_bytes(const NodeBuffers& any) const {
     return raya::node_bytes(job.fullest_words, any, links_of_node(settings.torus));
 }

@@ -1,4 +1,4 @@
-// Renders a scene on a model of a torus machine: nodes hold voxels of the scene, rays travel between them as packets.
+// Renders a scene on a model of a torus machine: nodes hold voxels of the scene and exchange rays as packets.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -16,36 +16,31 @@ namespace raya {
 
 class TorusRenderer {
   public:
-    /// Partitions and packs the scene, checks that it fits the nodes, builds the kernels and takes the device memory
-    /// for the nodes of this rank. Only rank 0 looks at the scene. Throws UserError (what does not fit, what is out of
-    /// range, more ranks than nodes), DeviceError.
+    /// Partitions and packs the scene, checks that it fits the nodes, builds the kernels and allocates the device
+    /// memory for the nodes of this rank. Only rank 0 reads the scene. Throws UserError (the scene does not fit, a
+    /// setting is out of range, more ranks than nodes) or DeviceError.
     TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks = Ranks::alone());
     ~TorusRenderer();
 
-    /// One image; may be called again. `sink`, where given, is told of every packet between nodes, in the order of
-    /// supersteps, then sources, or of those of supersteps 0, `packets_every`, ... alone, since telling takes time;
-    /// `step_sink` of every superstep; `work_sink` of what every node did in every superstep, for settings with
-    /// `history` alone (std::logic_error), on one rank. Throws Standstill. In other ranks than 0 the result is without
-    /// image and counts, and sinks are given but not told.
-    TorusResult render(const ProgressCallback& progress = {}, const PacketSink& sink = {},
-                       const SuperstepSink& step_sink = {}, std::uint32_t packets_every = 1,
-                       const NodeWorkSink& work_sink = {});
+    /// Renders one image; may be called again. All ranks must pass the same kinds of observers. In ranks other than 0
+    /// the result has no image and no counts. Throws TorusDeadlock, or std::logic_error for an observer of work without
+    /// TorusSettings::history.
+    TorusResult render(const ProgressCallback& progress = {}, const RenderObservers& observers = {});
 
-    /// By what the scene's lengths are multiplied.
+    /// The factor by which the scene's lengths are multiplied.
     const LengthScale& scale() const;
 
-    /// Other pixels for the images that follow: groups of a machine render in turn without building anew.
+    /// Sets the pixels of the following images, so that groups of a machine can render in turn with the same kernels.
     void set_pixels(const PixelSubset& pixels);
 
-    /// Queues of that many packets for the images that follow, whatever a node's memory holds. UserError where the
-    /// device cannot hold them, DeviceError.
+    /// Sets the queue length of the following images, regardless of a node's memory. Throws UserError if the device
+    /// cannot hold the queues, or DeviceError.
     void set_queue(std::uint32_t queue);
 
-    /// Whether the machine comes to its end: an image's supersteps alone.
+    /// Runs the supersteps of an image; returns true if they complete, false on a deadlock.
     bool ends();
 
-    /// What longer queues than this machine's are weighed against and tried with. It refers to the renderer, which
-    /// keeps the last queue that was tried.
+    /// Limits and callbacks for find_longer_queue(). They refer to the renderer, which keeps the last queue tried.
     QueueTrial queue_trial();
 
   private:

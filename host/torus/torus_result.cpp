@@ -21,7 +21,7 @@ std::uint64_t launches_of(const TorusResult& result, const std::string& label) {
     return launches;
 }
 
-// Bytes of the packets of these counts.
+// Size of the counted packets in bytes.
 std::uint64_t packet_bytes(const PacketCounts& made) {
     std::uint64_t words = 0;
     for (std::uint32_t kind = RAYA_KIND_PRIMARY; kind < RAYA_KINDS; ++kind)
@@ -29,13 +29,13 @@ std::uint64_t packet_bytes(const PacketCounts& made) {
     return kWordBytes * words;
 }
 
-// What stepwise hides: see the header. The shortest packets are the worst case.
+// The stepwise time hides the processors' part of messages (see the header); the shortest packets are the worst case.
 constexpr std::uint32_t kWords = PacketCharge::kWholeReturnWords;
 static_assert(kWords < RAYA_RETURN_WORDS);
 static_assert(2 * RAYA_LINKS * (kT805MessageWordCycles * kWords + kT805MessageCycles) * kT805CycleNs <
               kWords * 1e9 * 2 * 4 / kT805BothWaysBytesPerS);
 
-// Processor's cycles for messages: of each node, what it sends and what it receives.
+// [node]: processor cycles for the messages that it sends and receives.
 std::vector<std::uint64_t> message_cycles(const raya_torus& torus, const TorusResult& result) {
     std::vector<std::uint64_t> cycles(raya_nodes(torus));
     for (std::uint32_t node = 0; node < cycles.size(); ++node)
@@ -48,7 +48,7 @@ std::vector<std::uint64_t> message_cycles(const raya_torus& torus, const TorusRe
     return cycles;
 }
 
-// Link 2 d of a node and link 2 d + 1 of the node at its end are the two ways of one wire.
+// Link 2 d of a node and link 2 d + 1 of the node at its end are the two directions of one wire.
 double busiest_link_ms(const raya_torus& torus, const TorusResult& result) {
     double most = 0;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node)
@@ -63,17 +63,17 @@ double busiest_link_ms(const raya_torus& torus, const TorusResult& result) {
 double stepwise_ms(const std::vector<Superstep>& supersteps) {
     double sum = 0;
     for (const Superstep& step : supersteps)
-        sum += t805_ms(step.most_cycles) + t805_link_ms(step.most_link_words, step.most_link_words);
+        sum += t805_ms(step.max_node_cycles) + t805_link_ms(step.max_link_words, step.max_link_words);
     return sum;
 }
 
 }  // namespace
 
-Standstill::Standstill(const StandstillFigures& stand, const std::string& remedy)
-    : UserError(fmt::format("{}: the machine stands still in superstep {}: {} packets wait for each other, {} of {} "
-                            "queues are full at {} packets; {}",
-                            stand.scene, stand.superstep, stand.live, stand.full, stand.nodes, stand.queue, remedy)),
-      figures(stand) {}
+TorusDeadlock::TorusDeadlock(const DeadlockFigures& state, const std::string& remedy)
+    : UserError(fmt::format("{}: deadlock in superstep {}: {} packets wait for each other, {} of {} queues are full at "
+                            "{} packets; {}",
+                            state.scene, state.superstep, state.live, state.full, state.nodes, state.queue, remedy)),
+      figures(state) {}
 
 std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const TorusResult& r) {
     const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
@@ -87,14 +87,14 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
     inject.bytes = opened("inject") + packet_bytes(rays);
     trace.bytes =
         opened("trace_voxel") + kWordBytes * RAYA_PACKET_WORDS * r.events[RAYA_STEPS] + packet_bytes(followers);
-    trace.rays += primary[RAYA_PRIMARY];  // it traces those, too
+    trace.rays += primary[RAYA_PRIMARY];  // trace_voxel traces primary rays, too
     KernelWork route, accept, compose;
     route.label = "route";
     route.bytes = opened("route") +
                   2 * kWordBytes * (r.moved_rays * RAYA_PACKET_WORDS + r.made[RAYA_KIND_RETURN] * RAYA_RETURN_WORDS);
     accept.label = "accept";
     accept.bytes = 2 * kWordBytes * (r.moved_rays * RAYA_PACKET_WORDS + r.moved_returns * RAYA_RETURN_WORDS);
-    compose.label = "compose";  // of each contribution three multiply-adds
+    compose.label = "compose";  // three multiply-adds for each contribution
     compose.operations = 3 * r.contributions;
     compose.bytes = r.contributions * 4 * sizeof(float) + kWordBytes * (pixels + 1) + 3 * sizeof(float) * pixels;
     return {inject, trace, route, accept, compose};

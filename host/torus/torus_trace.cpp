@@ -21,17 +21,17 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 16;  // bytes of text that are compressed at a time
 
-// A packet's own number and its parent's, which a primary ray lacks.
+// Number of a packet and of its parent; a primary ray has no parent.
 struct Lineage {
     std::uint64_t ray = 0;
     std::optional<std::uint64_t> parent;
 };
 
-// A return packet leaves the node that made it once and is nobody's parent, so its number need not be kept.
+// A return packet is recorded once and has no children, so its number need not be stored.
 Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
     const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
-    const RayName name = {record.head.pixel, RayName::place_of(record.head.path, raya_state_level(state)),
-                          raya_state_light(state)};
+    const RayId name = {record.head.pixel, RayId::place_of(record.head.path, raya_state_level(state)),
+                        raya_state_light(state)};
     Lineage lineage;
     lineage.ray = kind == RAYA_KIND_RETURN ? numbers.next() : numbers.number_of(name);
     if (kind == RAYA_KIND_RETURN)
@@ -41,25 +41,25 @@ Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
     return lineage;
 }
 
-// What only a mistake in a kernel can make; a wrong row would be worse than none.
+// Detects heads that only a defect of a kernel can produce, instead of writing a wrong row.
 void check_head(const PacketRecord& record) {
     const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
     const bool root_of_tree = raya_state_level(state) == 0, has_light = raya_state_light(state) != 0;
     const bool right =
         kind == RAYA_KIND_RETURN || (has_light == (kind == RAYA_KIND_SHADOW) &&
                                      (kind == RAYA_KIND_SHADOW || root_of_tree == (kind == RAYA_KIND_PRIMARY)));
-    if (!right) throw std::logic_error(fmt::format("packet trace: a packet with state {:#x}", state));
+    if (!right) throw std::logic_error(fmt::format("packet trace: invalid packet state {:#x}", state));
 }
 
 constexpr TraceTrack kSupersteps = {kTraceMachine, 1};
 constexpr std::uint32_t kFirstNode = 2;  // track of node 0
 
-double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }  // as torus_time() has it
+double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }  // as in torus_time()
 TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kFirstNode + node}; }
 
-// Links on the way of a packet.
-std::uint32_t way(const raya_torus& torus, std::uint32_t source, std::uint32_t destination) {
-    return raya_node_distance(torus, source, destination);  // returns take the sides in another order, as many links
+// Number of links on the route of a packet. Returns take the axes in another order, but as many links.
+std::uint32_t route_length(const raya_torus& torus, std::uint32_t source, std::uint32_t destination) {
+    return raya_node_distance(torus, source, destination);
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ const char* packet_kind_name(std::uint32_t kind) {
     constexpr std::array<const char*, RAYA_KINDS> kNames = {"",          "primary", "reflected",
                                                             "refracted", "shadow",  "return"};
     if (kind == RAYA_KIND_NONE || kind >= kNames.size())
-        throw std::logic_error(fmt::format("no kind of packet has number {}", kind));
+        throw std::logic_error(fmt::format("invalid packet kind {}", kind));
     return kNames[kind];
 }
 
@@ -112,12 +112,12 @@ void TorusTrace::add_superstep(const SuperstepDetail& step) {
 void TorusTrace::add_packet(const PacketRecord& p) {
     const Sample sample = {p.superstep, p.source, p.destination, p.head.state, p.head.pixel};
     ++packets_seen_;
-    if (packets_.size() < kMostPackets) return packets_.push_back(sample);
+    if (packets_.size() < kMaxPackets) return packets_.push_back(sample);
     const std::uint64_t place = random_.next() % packets_seen_;
-    if (place < kMostPackets) packets_[place] = sample;
+    if (place < kMaxPackets) packets_[place] = sample;
 }
 
-// Supersteps one behind the other.
+// Lays the supersteps out one after another.
 class TorusTrace::Timeline {
   public:
     Timeline(const TorusTrace& seen, TraceFile& trace, const TorusResult& result, std::size_t nodes)
@@ -131,22 +131,22 @@ class TorusTrace::Timeline {
         for (std::size_t step = 0; step < seen_.steps_.size(); ++step) {
             const Superstep& all = result_.supersteps[step];
             begins_.push_back(now_ms_);
-            const double computed = now_ms_ + t805_ms(all.most_cycles);
+            const double computed = now_ms_ + t805_ms(all.max_node_cycles);
             computed_.push_back(computed);
-            const double end = computed + link_ms(all.most_link_words);
+            const double end = computed + link_ms(all.max_link_words);
             add_machine(step, end);
             for (const TracedPe& n : nodes_) add_node(step, n.pe, computed, end);
             now_ms_ = end;
         }
     }
 
-    // Returns their number.
+    // Returns the number of flows.
     std::size_t add_flows() {
         std::set<std::uint32_t> shown;
         for (const TracedPe& n : nodes_) shown.insert(n.pe);
         std::size_t flows = 0;
         for (const Sample& p : seen_.packets_) {
-            const std::size_t arrival = p.superstep + way(seen_.torus_, p.source, p.destination);
+            const std::size_t arrival = p.superstep + route_length(seen_.torus_, p.source, p.destination);
             if (!shown.contains(p.source) || !shown.contains(p.destination) || arrival >= begins_.size()) continue;
             trace_.flow(packet_kind_name(raya_state_kind(p.state)), track_of(p.source),
                         nanoseconds(computed_[p.superstep]), track_of(p.destination), nanoseconds(begins_[arrival]));
@@ -170,14 +170,14 @@ class TorusTrace::Timeline {
         trace_.slice(kSupersteps, fmt::format("superstep {}", step), at, nanoseconds(end),
                      {{"live", all.live},
                       {"u", load.imbalance},
-                      {"busiest_cycles", all.most_cycles},
-                      {"busiest_link_words", all.most_link_words},
+                      {"busiest_cycles", all.max_node_cycles},
+                      {"busiest_link_words", all.max_link_words},
                       {"words", words}});
         trace_.counter(kTraceMachine, "live rays", at, {{"packets", static_cast<double>(all.live)}});
         trace_.counter(kTraceMachine, "u", at, {{"u", load.imbalance}});
         const double links = static_cast<double>(nodes.size()) * links_of_node(seen_.torus_);
         trace_.counter(kTraceMachine, "link words", at,
-                       {{"busiest", static_cast<double>(all.most_link_words)},
+                       {{"busiest", static_cast<double>(all.max_link_words)},
                         {"mean", links > 0 ? static_cast<double>(words) / links : 0}});
     }
 
@@ -206,7 +206,7 @@ class TorusTrace::Timeline {
 
 void TorusTrace::add_to(TraceFile& trace, const TorusResult& result, std::size_t nodes) const {
     if (nodes == 0) {
-        trace.metadata()["machine"] = "left out: no node was asked for";
+        trace.metadata()["machine"] = "left out: the number of nodes to trace is 0";
         return;
     }
     Timeline line(*this, trace, result, nodes);
@@ -219,9 +219,9 @@ void TorusTrace::add_to(TraceFile& trace, const TorusResult& result, std::size_t
         {"packets_sampled", packets_.size()},
         {"flows", flows},
         {"note",
-         "modelled time, from the trace's time 0 on, every superstep waiting for its busiest node and link; it has "
-         "nothing to do with the measured times above it. Packets are told of in every 16th superstep, in all with "
-         "--packets; a flow ends at the earliest superstep in which its packet can arrive"}};
+         "modelled time, from time 0 of the trace; every superstep waits for its busiest node and link. It is "
+         "independent of the measured times above. Packets are recorded in every 16th superstep, with --packets in "
+         "all; a flow ends at the earliest superstep in which its packet can arrive"}};
 }
 
 }  // namespace raya

@@ -1,5 +1,4 @@
-// Traces of the modelled torus: its packets as CSV (docs/packets.md), and what each node does in each superstep, in
-// modelled time.
+// Traces of the modelled torus: packets as CSV (docs/packets.md), and the work of nodes by superstep in modelled time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,19 +14,19 @@
 
 namespace raya {
 
-/// "primary", "reflected", "refracted", "shadow" or "return"; std::logic_error for another kind.
+/// "primary", "reflected", "refracted", "shadow" or "return". Throws std::logic_error for other kinds.
 const char* packet_kind_name(std::uint32_t kind);
 
-/// Takes records one after another, as a PacketSink is given them. Keeps the compressed text and the rays' numbers,
-/// which is most of it: up to 48 bytes for each ray and shadow ray that was sent or whose child was.
+/// Writes packet records as CSV, in the order of a PacketSink. Memory: the compressed text and, dominating, the table
+/// of ray numbers, up to 48 bytes for each ray that was sent or whose child was.
 class PacketTrace {
   public:
     PacketTrace();
 
-    /// One row. std::logic_error for a head that no packet has.
+    /// Adds a row. Throws std::logic_error for an invalid packet head.
     void add(const PacketRecord& record);
 
-    /// The whole file; the last that may be asked of the trace.
+    /// Returns the whole file. To be called once, as the last call.
     std::string finish();
 
     std::uint64_t rows() const { return rows_; }
@@ -39,11 +38,11 @@ class PacketTrace {
     std::uint64_t rows_ = 0;
 };
 
-/// Takes what happens in a render, by its sinks, and keeps 16 bytes for each node and superstep and a sample of at most
-/// kMostPackets packets, each packet that it is told of with the same chance.
+/// Records the supersteps and packets of a render: 16 bytes for each node and superstep, and a uniform random sample of
+/// at most kMaxPackets of the packets added.
 class TorusTrace {
   public:
-    static constexpr std::size_t kMostPackets = 20'000;
+    static constexpr std::size_t kMaxPackets = 20'000;
     static constexpr std::uint32_t kPacketsEvery = 16;  // supersteps: reading all packets takes longer than the render
 
     explicit TorusTrace(const raya_torus& torus) : torus_(torus) {}
@@ -51,12 +50,12 @@ class TorusTrace {
     void add_superstep(const SuperstepDetail& step);
     void add_packet(const PacketRecord& packet);
 
-    /// A track for the supersteps and one for each of `nodes` nodes (report/traced_pes.hpp), from the trace's time 0
-    /// on, in the stepwise time of torus_time(): in each superstep a node computes and waits for the busiest node, then
-    /// its links move and it waits for the busiest link. Counters: packets alive, u of the superstep, words over the
-    /// busiest link and over all links on average. Flows: packets of the sample that went between nodes shown; they
-    /// arrive a superstep for each link on their way later, the earliest that they can. `result` and its load are those
-    /// of the same render. No process where `nodes` is 0; the metadata says so.
+    /// Adds a track for the supersteps and one for each of `nodes` nodes (host/report/trace_file.hpp), from time 0 on,
+    /// in the stepwise time of torus_time(): in each superstep a node computes and waits for the busiest node, then
+    /// sends and waits for the busiest link. Counters: live packets, u of the superstep, words over the busiest link
+    /// and mean words of a link. Flows: sampled packets between nodes that are shown, arriving one superstep later for
+    /// each link of their route, the earliest time possible. `result` must be of the same render. Adds only a remark to
+    /// the metadata if `nodes` is 0.
     void add_to(TraceFile& trace, const TorusResult& result, std::size_t nodes) const;
 
   private:

@@ -12,18 +12,18 @@ namespace {
 
 using Values = std::vector<std::uint32_t>;
 
-// Powers of two from `least` on.
-Values group_sizes(std::uint32_t least, std::uint32_t most) {
+// Powers of two in minimum..maximum, or else `maximum`; `minimum` is a power of two.
+Values group_sizes(std::uint32_t minimum, std::uint32_t maximum) {
     Values all;
-    for (std::uint32_t size = least; size <= most; size *= 2) all.push_back(size);
-    if (all.empty()) all.push_back(most);
+    for (std::uint32_t size = minimum; size <= maximum; size *= 2) all.push_back(size);
+    if (all.empty()) all.push_back(maximum);
     return all;
 }
 
 constexpr auto kByCopies = static_cast<std::uint32_t>(LinkMove::kCopies);
 constexpr auto kByKernel = static_cast<std::uint32_t>(LinkMove::kKernel);
 
-// The default is one of the values, whatever the device.
+// Inserts the default if it is not one of the values.
 void add_default(Values& values, std::uint32_t value) {
     if (std::find(values.begin(), values.end(), value) == values.end())
         values.insert(std::lower_bound(values.begin(), values.end(), value), value);
@@ -36,15 +36,16 @@ std::string value_text(const Knob& knob, std::uint32_t value) {
     return value ? std::to_string(value) : "own";
 }
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kSteep = 1.25;  // of the best's time: further values of the knob will hardly be better
-constexpr double kNear = 1.12;   // of the best's time: what values do to each other may be worth as much
-constexpr double kFar = 1.5;     // likewise, of two neighbouring values
+constexpr double kDropped = std::numeric_limits<double>::infinity();
+// Limits of time over the best time.
+constexpr double kSteep = 1.25;  // measured: beyond it, further values of the knob are unlikely to be better
+constexpr double kNear = 1.12;   // predicted: interactions of knobs may compensate up to this
+constexpr double kFar = 1.5;     // likewise for neighbours in two knobs
 
-class Descent {
+class CoordinateDescent {
   public:
-    Descent(const Space& space, const Judge& judge, const SearchEnd& end)
-        : space_(space), judge_(judge), end_(end), order_(space.knobs.size()), result_{.best = space.start} {
+    CoordinateDescent(const Space& space, const MeasureRatio& measure, const ShouldStop& stop)
+        : space_(space), measure_(measure), stop_(stop), order_(space.knobs.size()), result_{.best = space.start} {
         costs_[space.start] = 1;
         std::iota(order_.begin(), order_.end(), std::size_t{0});
         std::stable_sort(order_.begin(), order_.end(), [&space](std::size_t a, std::size_t b) {
@@ -53,79 +54,79 @@ class Descent {
     }
 
     SearchResult run() {
-        pass();
+        descend();
         while (result_.ended) {
             Candidate next = most_promising();
             if (next.empty()) next = best_step_of_two();
             if (next.empty()) break;
-            if (try_one(next)) pass();
+            if (try_one(next)) descend();
         }
         return result_;
     }
 
   private:
-    // Whether it is better than the best so far, which it then is.
+    // Measures a candidate. Returns true if it is the new best.
     bool try_one(const Candidate& candidate) {
         if (costs_.contains(candidate)) return false;
-        if (end_()) {
+        if (stop_()) {
             result_.ended = false;
             return false;
         }
-        const std::optional<double> ratio = judge_(result_.best, candidate);
+        const std::optional<double> ratio = measure_(result_.best, candidate);
         ++result_.tried;
-        const double cost = ratio ? *ratio * result_.cost : kNever;
+        const double cost = ratio ? *ratio * result_.cost : kDropped;
         costs_[candidate] = cost;
-        if (!ratio || *ratio > kLeastWin) return false;
+        if (!ratio || *ratio > kMaxWinRatio) return false;
         result_.best = candidate;
         result_.cost = cost;
         return true;
     }
 
-    // Knob after knob, until none gains. Those with the fewest values first: where time ends the search, most knobs
-    // have been moved by then.
-    void pass() {
+    // Tries one knob after another until none gains; knobs with few values first, so that most knobs have been tried
+    // if time runs out.
+    void descend() {
         for (bool gained = true; gained && result_.ended;) {
             gained = false;
-            for (const std::size_t knob : order_) gained |= walk(knob);
+            for (const std::size_t knob : order_) gained |= try_values(knob);
         }
     }
 
-    // Upwards from the best one's value, and downwards if that was of no use.
-    bool walk(std::size_t knob) {
+    // Upwards from the best one's value; downwards if that does not gain.
+    bool try_values(std::size_t knob) {
         const Candidate from = result_.best;
-        return walk_from(from, knob, +1) || walk_from(from, knob, -1);
+        return try_direction(from, knob, +1) || try_direction(from, knob, -1);
     }
 
-    bool walk_from(Candidate candidate, std::size_t knob, int direction) {
+    bool try_direction(Candidate candidate, std::size_t knob, int direction) {
         bool gained = false;
         const std::size_t count = space_.knobs[knob].values.size();
-        for (std::size_t& place = candidate[knob]; result_.ended;) {
-            place += static_cast<std::size_t>(direction);  // below 0 it is a large number
-            if (place >= count) break;
+        for (std::size_t& index = candidate[knob]; result_.ended;) {
+            index += static_cast<std::size_t>(direction);  // wraps below 0
+            if (index >= count) break;
             gained |= try_one(candidate);
             if (!result_.ended || costs_[candidate] > kSteep * result_.cost) break;
         }
         return gained;
     }
 
-    // Of each value of each knob the least time that was seen with it.
+    // [knob][value]: the minimum cost measured with that value.
     std::vector<std::vector<double>> least_costs() const {
         std::vector<std::vector<double>> least;
-        for (const Knob& knob : space_.knobs) least.emplace_back(knob.values.size(), kNever);
+        for (const Knob& knob : space_.knobs) least.emplace_back(knob.values.size(), kDropped);
         for (const auto& [candidate, cost] : costs_)
             for (std::size_t k = 0; k < candidate.size(); ++k)
                 least[k][candidate[k]] = std::min(least[k][candidate[k]], cost);
         return least;
     }
 
-    // Of candidates that have not been tried, the one from which least is expected: that each of its values adds what
-    // the best candidate with it has lost.
-    class Hope {
+    // Finds the candidate with the lowest predicted cost among those offered that have not been tried: the cost of the
+    // best times, for each knob, the loss of the best candidate with the same value.
+    class Prediction {
       public:
-        Hope(const Descent& search, double near)
+        Prediction(const CoordinateDescent& search, double near)
             : search_(search), least_(search.least_costs()), lowest_(near * search.result_.cost) {}
 
-        void look_at(const Candidate& candidate) {
+        void offer(const Candidate& candidate) {
             const double best = search_.result_.cost;
             double expected = best;
             for (std::size_t k = 0; k < candidate.size(); ++k) expected *= least_[k][candidate[k]] / best;
@@ -136,39 +137,39 @@ class Descent {
         const Candidate& found() const { return found_; }
 
       private:
-        const Descent& search_;
+        const CoordinateDescent& search_;
         std::vector<std::vector<double>> least_;
         double lowest_;
-        Candidate found_;  // empty where none is near
+        Candidate found_;  // empty: none is near enough
     };
 
     Candidate most_promising() const {
-        Hope hope(*this, kNear);
-        for_each_candidate(space_, [&](const Candidate& candidate) { hope.look_at(candidate); });
-        return hope.found();
+        Prediction prediction(*this, kNear);
+        for_each_candidate(space_, [&](const Candidate& candidate) { prediction.offer(candidate); });
+        return prediction.found();
     }
 
-    // Where knobs share what a device has, such as registers, one gains only as the other gives way.
+    // Knobs that share a resource, such as registers, may gain only if both change.
     Candidate best_step_of_two() const {
-        Hope hope(*this, kFar);
+        Prediction prediction(*this, kFar);
         for (std::size_t a = 0; a < space_.knobs.size(); ++a)
             for (std::size_t b = 0; b < a; ++b)
                 for (const int corner : {0, 1, 2, 3}) {
                     Candidate candidate = result_.best;
-                    candidate[a] += corner & 1 ? 1 : -1;  // below 0 it is a large number
+                    candidate[a] += corner & 1 ? 1 : -1;  // wraps below 0
                     candidate[b] += corner & 2 ? 1 : -1;
                     if (candidate[a] < space_.knobs[a].values.size() && candidate[b] < space_.knobs[b].values.size())
-                        hope.look_at(candidate);
+                        prediction.offer(candidate);
                 }
-        return hope.found();
+        return prediction.found();
     }
 
     const Space& space_;
-    const Judge& judge_;
-    const SearchEnd& end_;
-    std::vector<std::size_t> order_;  // of the knobs
+    const MeasureRatio& measure_;
+    const ShouldStop& stop_;
+    std::vector<std::size_t> order_;  // in which knobs are tried
     SearchResult result_;
-    std::map<Candidate, double> costs_;  // over the start's; of what was dropped kNever
+    std::map<Candidate, double> costs_;  // time over that of the start, or kDropped
 };
 
 }  // namespace
@@ -209,13 +210,14 @@ Space space_of(const DeviceInfo& device, const TunedFor& what) {
         space.start.push_back(static_cast<std::size_t>(at - values.begin()));
         space.knobs.push_back({value, std::move(values)});
     };
-    const std::uint32_t most = most_group_size(device);
-    const bool llvmpipe = device.loop_turns > 0;  // vectors of work-items; minutes and gigabytes for several lanes
+    const std::uint32_t max_group = largest_group_size(device);
+    // It vectorises over work-items; compiling several lanes takes minutes and gigabytes.
+    const bool llvmpipe = device.max_loop_iterations > 0;
     add(&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16});
-    // A CPU's torus nodes keep their default, which keeps the order of packets (docs/packets.md).
-    const std::uint32_t most_on_cpu = what.torus ? space.defaults.group : std::min(llvmpipe ? 16u : 4u, most);
-    add(&TunedValues::group, cpu ? group_sizes(1, most_on_cpu) : group_sizes(16, most));
-    if (takes_register_limit(device)) add(&TunedValues::registers, {0, 64, 96, 128, 168});
+    // Torus nodes on a CPU keep their default, which preserves the order of packets (docs/packets.md).
+    const std::uint32_t max_on_cpu = what.torus ? space.defaults.group : std::min(llvmpipe ? 16u : 4u, max_group);
+    add(&TunedValues::group, cpu ? group_sizes(1, max_on_cpu) : group_sizes(16, max_group));
+    if (supports_register_limit(device)) add(&TunedValues::registers, {0, 64, 96, 128, 168});
     if (all_objects) add(&TunedValues::local_words, {0, 1});
     if (all_objects && what.fp32 && !what.torus)
         add(&TunedValues::batch, cpu ? Values{0, 8, 16} : Values{0, 4, 8, 16, 32});
@@ -223,7 +225,7 @@ Space space_of(const DeviceInfo& device, const TunedFor& what) {
         add(&TunedValues::trees, {0, 1, 2, 4, 8});
         add(&TunedValues::beams, {0, 1, 2, 4, 8});
     }
-    // A CPU's own choice is the kernel.
+    // On a CPU the default, 0, is the kernel.
     if (what.torus) add(&TunedValues::link_exchange, cpu ? Values{0, kByCopies} : Values{0, kByCopies, kByKernel});
     return space;
 }
@@ -239,21 +241,22 @@ std::string change_text(const Space& space, const TunedValues& from, const Tuned
     return text;
 }
 
-SearchResult search(const Space& space, const Judge& judge, const SearchEnd& end) {
-    return Descent(space, judge, end).run();
+SearchResult search(const Space& space, const MeasureRatio& measure, const ShouldStop& stop) {
+    return CoordinateDescent(space, measure, stop).run();
 }
 
-SearchResult search_all(const Space& space, const Candidate& from, const Judge& judge, const SearchEnd& end) {
+SearchResult search_all(const Space& space, const Candidate& from, const MeasureRatio& measure,
+                        const ShouldStop& stop) {
     SearchResult result{.best = from};
     for_each_candidate(space, [&](const Candidate& candidate) {
         if (candidate == from || !result.ended) return;
-        if (end()) {
+        if (stop()) {
             result.ended = false;
             return;
         }
-        const std::optional<double> ratio = judge(result.best, candidate);
+        const std::optional<double> ratio = measure(result.best, candidate);
         ++result.tried;
-        if (!ratio || *ratio > kLeastWin) return;
+        if (!ratio || *ratio > kMaxWinRatio) return;
         result.best = candidate;
         result.cost *= *ratio;
     });

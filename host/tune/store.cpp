@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kKind = "raya tune";
-constexpr std::uint64_t kVersion = 2;                                        // of the file's form
+constexpr std::uint64_t kVersion = 2;                                        // of the file format
 constexpr std::array<const char*, 3> kAccelNames = {"none", "grid", "bvh"};  // by RAYA_ACCEL_*
 
 Json to_json(const TunedEntry& entry) {
@@ -32,11 +32,11 @@ Json to_json(const TunedEntry& entry) {
             {"scene", entry.scene}};
 }
 
-// Which of two or more words a member is.
-std::uint32_t choice_of(const Json& json, const char* key, const std::vector<std::string>& words) {
-    const auto found = std::find(words.begin(), words.end(), json.at(key).text());
-    if (found == words.end()) throw JsonError(fmt::format("{} \"{:.40}\"", key, json.at(key).text()));
-    return static_cast<std::uint32_t>(found - words.begin());
+// Index of the member's text in `names`.
+std::uint32_t choice_of(const Json& json, const char* key, const std::vector<std::string>& names) {
+    const auto found = std::find(names.begin(), names.end(), json.at(key).text());
+    if (found == names.end()) throw JsonError(fmt::format("unknown {} \"{:.40}\"", key, json.at(key).text()));
+    return static_cast<std::uint32_t>(found - names.begin());
 }
 
 TunedEntry entry_of(const Json& json, const DeviceInfo& device) {
@@ -75,29 +75,29 @@ TunedFile file_of(const Json& json, const DeviceInfo& device) {
     return file;
 }
 
-constexpr std::uint64_t kLongestFile = 1 << 20;
+constexpr std::uint64_t kMaxFileBytes = 1 << 20;
 
-std::optional<TunedFile> read_kept(const fs::path& path, const DeviceInfo& device) {
+std::optional<TunedFile> read_stored(const fs::path& path, const DeviceInfo& device) {
     std::error_code none;
     if (!fs::exists(path, none)) return {};
     if (const std::string why = other_writers(fs::canonical(path, none), {::geteuid()}, Sticky::kRefused, path);
         !why.empty())
         throw UserError(why);
-    return read_tuned(json_text(path, {path}, Pipes::kRefused, kLongestFile), path, device);
+    return read_tuned(json_text(path, {path}, Pipes::kRefused, kMaxFileBytes), path, device);
 }
 
-// Of a name what file systems take.
-std::string plain(const std::string& name) {
+// Replaces other characters than letters, digits, '.' and '+' by '-', at most 80 characters.
+std::string file_name_part(const std::string& name) {
     std::string text;
     for (const char c : name) {
         const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '+';
         if (plain || (!text.empty() && text.back() != '-')) text += plain ? c : '-';
     }
-    constexpr std::size_t kMost = 80;
-    return text.substr(0, kMost);
+    constexpr std::size_t kMaxLength = 80;
+    return text.substr(0, kMaxLength);
 }
 
-// A folder that a variable names; the specification of XDG_CACHE_HOME has relative ones ignored.
+// Folder named by an environment variable; relative paths are ignored, as the XDG Base Directory Specification says.
 std::optional<fs::path> folder_in(const char* variable) {
     const char* text = std::getenv(variable);
     if (text == nullptr || !fs::path(text).is_absolute()) return {};
@@ -126,7 +126,8 @@ std::optional<fs::path> tuned_folder() {
 }
 
 std::string tuned_file_name(const DeviceInfo& device) {
-    return fmt::format("tuned-{}-{}-{}.json", plain(device.platform), plain(device.name), plain(device.driver));
+    return fmt::format("tuned-{}-{}-{}.json", file_name_part(device.platform), file_name_part(device.name),
+                       file_name_part(device.driver));
 }
 
 std::string tuned_text(const DeviceInfo& device, const TunedFile& file) {
@@ -142,9 +143,9 @@ TunedFile read_tuned(const std::string& text, const std::string& name, const Dev
     return read_json(text, {name}, [&](const Json& json) { return file_of(json, device); });
 }
 
-fs::path tuned_place(const DeviceInfo& device) {
+fs::path tuned_path(const DeviceInfo& device) {
     const auto folder = tuned_folder();
-    if (!folder) throw UserError("no folder for what was tuned: neither XDG_CACHE_HOME nor HOME names one; set either");
+    if (!folder) throw UserError("no folder for tuned values: set XDG_CACHE_HOME or HOME to an absolute path");
     std::error_code error;
     fs::create_directories(*folder, error);
     if (error)
@@ -155,21 +156,21 @@ fs::path tuned_place(const DeviceInfo& device) {
     return path;
 }
 
-void keep_tuned(const DeviceInfo& device, const TunedFile& now) {
-    const fs::path path = tuned_place(device);
+void save_tuned(const DeviceInfo& device, const TunedFile& now) {
+    const fs::path path = tuned_path(device);
     TunedFile all = now;
     try {
-        if (const auto kept = read_kept(path, device))
-            for (const TunedEntry& entry : kept->entries)
+        if (const auto stored = read_stored(path, device))
+            for (const TunedEntry& entry : stored->entries)
                 if (std::none_of(now.entries.begin(), now.entries.end(),
                                  [&](const TunedEntry& one) { return one.what == entry.what; }))
                     all.entries.push_back(entry);
-    } catch (const UserError&) {  // what cannot be used is not kept
+    } catch (const UserError&) {  // an unusable file is overwritten
     }
     write_whole_file(path, tuned_text(device, all));
 }
 
-TunedSource kept_choices(std::function<void(const std::string&)> warn) {
+TunedSource stored_choices(std::function<void(const std::string&)> warn) {
     const char* const set = std::getenv("RAYA_TUNED");
     const std::string wanted = set != nullptr ? set : "";
     if (!wanted.empty() && wanted != "off")
@@ -181,9 +182,9 @@ TunedSource kept_choices(std::function<void(const std::string&)> warn) {
         const fs::path path = folder / tuned_file_name(device);
         const auto [at, first] = read.try_emplace(path.string());
         try {
-            if (first) at->second = read_kept(path, device);
+            if (first) at->second = read_stored(path, device);
         } catch (const UserError& error) {
-            warn(fmt::format("{}; the file is ignored, remedy: raya tune writes it anew", error.what()));
+            warn(fmt::format("{}; the file is ignored; remedy: run raya tune to write a new one", error.what()));
         }
         if (!at->second) return {};
         for (const TunedEntry& entry : at->second->entries)

@@ -1,4 +1,4 @@
-// What devices were tuned to, kept in a file for each device and driver.
+// Tuned values, stored in one file for each device and driver version.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -11,18 +11,18 @@
 
 namespace raya {
 
-/// In files, and between processes.
+/// For files, and between processes.
 Json to_json(const TunedValues& values);
 
-/// JsonError where a value is missing or no whole number of 32 bits.
+/// Throws JsonError if a value is missing or not an unsigned 32-bit integer.
 TunedValues values_of(const Json& json);
 
-/// What is kept of one kind of kernels.
+/// Tuned values of one kind of kernels.
 struct TunedEntry {
     TunedFor what;
     TunedValues values;
-    double speedup = 1;  // over the defaults, as it was measured
-    std::string scene;   // with which
+    double speedup = 1;  // measured, over the defaults
+    std::string scene;   // that it was measured with
 };
 
 struct TunedFile {
@@ -30,30 +30,29 @@ struct TunedFile {
     std::vector<TunedEntry> entries;
 };
 
-/// Where files lie: raya/ below XDG_CACHE_HOME, else below .cache in HOME; empty where neither names a folder by an
-/// absolute path.
+/// Folder of the files: $XDG_CACHE_HOME/raya, or else $HOME/.cache/raya. Empty if neither variable is an absolute path.
 std::optional<std::filesystem::path> tuned_folder();
 
-/// The name of a device's file in there: of platform, device and driver version.
+/// File name of a device, from the names of platform and device and the driver version.
 std::string tuned_file_name(const DeviceInfo& device);
 
-/// The file's text. It names device, driver and raya's version.
+/// Text of a file, with the names of device and driver and the version of raya.
 std::string tuned_text(const DeviceInfo& device, const TunedFile& file);
 
-/// Reads such a text of the file `name`. UserError where it is another text, damaged, has values that the device does
-/// not take, or is of another device, driver or version of raya.
+/// Reads the text of the file `name`. Throws UserError if it is damaged or another file, has values that the device
+/// does not support, or is for another device, driver or version of raya.
 TunedFile read_tuned(const std::string& text, const std::string& name, const DeviceInfo& device);
 
-/// The file of a device, in a folder that is made. UserError where there is no place, or it cannot be written.
-std::filesystem::path tuned_place(const DeviceInfo& device);
+/// Path of a device's file; creates its folder. Throws UserError if there is no folder or the file is not writable.
+std::filesystem::path tuned_path(const DeviceInfo& device);
 
-/// Adds `now` to what is kept of the device, in place of entries for the same, and writes the file whole; a file that
-/// cannot be used is written over. UserError as tuned_place().
-void keep_tuned(const DeviceInfo& device, const TunedFile& now);
+/// Merges `now` into the device's file, replacing entries for the same kernels, and writes the file atomically. An
+/// unusable file is overwritten. Throws UserError like tuned_path().
+void save_tuned(const DeviceInfo& device, const TunedFile& now);
 
-/// What is kept, for TunedUse: a device's file is read when it is first asked for. One that cannot be used is told to
-/// `warn`, once, and ignored, like one that other users may write. Knows nothing where the environment variable
-/// RAYA_TUNED is "off". UserError where it is anything else.
-TunedSource kept_choices(std::function<void(const std::string&)> warn);
+/// Stored values, for ScopedTunedSource. Reads a device's file at the first request for it. A file that is unusable or
+/// writable by other users is ignored, with one call of `warn`. Empty if the environment variable RAYA_TUNED is "off";
+/// throws UserError for any other value.
+TunedSource stored_choices(std::function<void(const std::string&)> warn);
 
 }  // namespace raya

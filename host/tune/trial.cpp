@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "host/base/own_process.hpp"
+#include "host/base/child_process.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/image/image.hpp"
@@ -22,14 +22,13 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kLeastSamples = 2;  // before a candidate is given up
+constexpr std::size_t kMinSamples = 2;  // before stop_early drops a candidate
 constexpr double kFarSlower = 1.25;
 
-// The rows of a table: the variants there are.
 struct Variant {
     const char* name;
     AccelKind accel;
-    std::uint32_t side;  // of the picture, pixels
+    std::uint32_t side;  // pixels of the default image
 };
 constexpr Variant kVariants[] = {{"none", AccelKind::kNone, 512},
                                  {"grid", AccelKind::kGrid, 256},
@@ -49,37 +48,37 @@ struct TrialPicture {
     ImageSize size;
 };
 
-Scene scene_of(const TrialRenders& render, const Variant& variant) {
+Scene scene_of(const TrialSetup& render, const Variant& variant) {
     constexpr const char* kSpheres = "scenes/spheres.nff";
     constexpr int kLevel = 4;
-    std::vector<NffRemark> remarks;  // which the first process has told
+    std::vector<NffRemark> remarks;  // ignored: the parent process has printed them
     if (!render.scene.empty()) return read_nff(render.scene, render.strict ? nullptr : &remarks);
     if (variant.accel != AccelKind::kNone) return generate_balls(kLevel);
     return parse_nff(embedded_files().at(kSpheres), kSpheres);
 }
 
-TrialPicture picture_of(const TrialOrder& order) {
-    const Variant& variant = variant_named(order.workload.variant);
-    const ImageSize& size = order.render.size;
-    return {scene_of(order.render, variant), size.width ? size : ImageSize{variant.side, variant.side}};
+TrialPicture picture_of(const TrialRequest& request) {
+    const Variant& variant = variant_named(request.workload.variant);
+    const ImageSize& size = request.render.size;
+    return {scene_of(request.render, variant), size.width ? size : ImageSize{variant.side, variant.side}};
 }
 
-RingSettings ring_settings(const TrialOrder& order, const ImageSize& size, const KernelChoice& kernels) {
+RingSettings ring_settings(const TrialRequest& request, const ImageSize& size, const KernelChoice& kernels) {
     RingSettings s;
     s.machine = machine_named("grande");
-    const std::uint32_t pes = std::min(order.render.pes, size.width * size.height);
+    const std::uint32_t pes = std::min(request.render.pes, size.width * size.height);
     s.mapping = make_mapping(cyclic_mapping(16 % size.width, Fold::kCyclic), size, pes);
     s.bounces = kBounces;
-    s.format = order.workload.format;
-    s.accel.kind = variant_named(order.workload.variant).accel;
+    s.format = request.workload.format;
+    s.accel.kind = variant_named(request.workload.variant).accel;
     s.kernels = kernels;
     return s;
 }
 
-TorusSettings torus_settings(const TrialOrder& order, const ImageSize& size, const KernelChoice& kernels) {
-    TorusSettings s = usual_torus(size);
+TorusSettings torus_settings(const TrialRequest& request, const ImageSize& size, const KernelChoice& kernels) {
+    TorusSettings s = default_torus(size);
     s.bounces = kBounces;
-    s.format = order.workload.format;
+    s.format = request.workload.format;
     s.kernels = kernels;
     return s;
 }
@@ -87,8 +86,7 @@ TorusSettings torus_settings(const TrialOrder& order, const ImageSize& size, con
 const EventCounts& events_of(const RingResult& result) { return result.all.events; }
 const EventCounts& events_of(const TorusResult& result) { return result.events; }
 
-/// Of a renderer that has rendered once, so that its kernels are built: how to render once more, and what that takes
-/// from packed scene to image.
+/// Renders one image with built kernels and returns the seconds from packed scene to image.
 using NextImage = std::function<double()>;
 
 template <class Renderer>
@@ -102,31 +100,31 @@ NextImage prepare(int lines, std::size_t number, std::shared_ptr<Renderer> rende
 
 double least(const std::vector<double>& seconds) { return *std::min_element(seconds.begin(), seconds.end()); }
 
-std::vector<std::vector<double>> samples_of(const std::vector<NextImage>& renders, const TrialOrder& order) {
+std::vector<std::vector<double>> samples_of(const std::vector<NextImage>& renders, const TrialRequest& request) {
     std::vector<std::vector<double>> all(renders.size());
-    for (std::uint32_t i = 0; i < order.samples; ++i) {
+    for (std::uint32_t i = 0; i < request.samples; ++i) {
         for (std::size_t n = 0; n < renders.size(); ++n) all[n].push_back(mean_seconds(renders[n]));
-        const bool enough = order.stop_early && all.front().size() >= kLeastSamples;
+        const bool enough = request.stop_early && all.front().size() >= kMinSamples;
         if (enough && least(all.back()) > kFarSlower * least(all.front())) break;
     }
     return all;
 }
 
-TrialOrder order_of(const Json& json) {
+TrialRequest request_of(const Json& json) {
     const auto number = [](const Json& whole) { return static_cast<std::uint32_t>(whole.whole(UINT32_MAX)); };
     const std::vector<Json>& size = json.at("size").elements();
-    TrialOrder order{.render = {.device = json.at("device").text(),
-                                .scene = json.at("scene").text(),
-                                .kernel_dir = json.at("kernel_dir").text(),
-                                .strict = json.at("strict").whole(1) == 1,
-                                .size = {number(size.at(0)), number(size.at(1))},
-                                .pes = number(json.at("pes"))},
-                     .workload = {json.at("variant").text(), parse_format(json.at("format").text())},
-                     .candidates = {},
-                     .samples = number(json.at("samples")),
-                     .stop_early = json.at("stop_early").whole(1) == 1};
-    for (const Json& values : json.at("candidates").elements()) order.candidates.push_back(values_of(values));
-    return order;
+    TrialRequest request{.render = {.device = json.at("device").text(),
+                                    .scene = json.at("scene").text(),
+                                    .kernel_dir = json.at("kernel_dir").text(),
+                                    .strict = json.at("strict").whole(1) == 1,
+                                    .size = {number(size.at(0)), number(size.at(1))},
+                                    .pes = number(json.at("pes"))},
+                         .workload = {json.at("variant").text(), parse_format(json.at("format").text())},
+                         .candidates = {},
+                         .samples = number(json.at("samples")),
+                         .stop_early = json.at("stop_early").whole(1) == 1};
+    for (const Json& values : json.at("candidates").elements()) request.candidates.push_back(values_of(values));
+    return request;
 }
 
 }  // namespace
@@ -140,7 +138,7 @@ std::string Workload::name() const {
     return (variant == "torus" ? "torus " : "ring " + variant + " ") + format_name(format);
 }
 
-std::vector<Workload> usual_workloads() {
+std::vector<Workload> default_workloads() {
     return {{"none", parse_format("fp32")},
             {"none", parse_format("spa22")},
             {"grid", parse_format("fp32")},
@@ -148,21 +146,21 @@ std::vector<Workload> usual_workloads() {
             {"torus", parse_format("fp32")}};
 }
 
-Json to_json(const TrialOrder& order) {
+Json to_json(const TrialRequest& request) {
     Json candidates = Json::list();
-    for (const TunedValues& values : order.candidates) candidates.push_back(to_json(values));
-    const TrialRenders& render = order.render;
+    for (const TunedValues& values : request.candidates) candidates.push_back(to_json(values));
+    const TrialSetup& render = request.render;
     return {{"device", render.device},
             {"scene", render.scene},
             {"kernel_dir", render.kernel_dir},
             {"strict", render.strict ? 1 : 0},
             {"size", std::array{render.size.width, render.size.height}},
             {"pes", render.pes},
-            {"variant", order.workload.variant},
-            {"format", format_name(order.workload.format)},
+            {"variant", request.workload.variant},
+            {"format", format_name(request.workload.format)},
             {"candidates", candidates},
-            {"samples", order.samples},
-            {"stop_early", order.stop_early ? 1 : 0}};
+            {"samples", request.samples},
+            {"stop_early", request.stop_early ? 1 : 0}};
 }
 
 double median_ratio(const std::vector<double>& of, const std::vector<double>& over) {
@@ -180,8 +178,8 @@ double ratio_of(const Trial& trial) {
     return std::max(least(of) / least(over), median_ratio(of, over));
 }
 
-bool wins_surely(const Trial& trial) {
-    if (trial.fate != Fate::kCorrect || ratio_of(trial) > kLeastWin) return false;
+bool wins_significantly(const Trial& trial) {
+    if (trial.status != TrialStatus::kCorrect || ratio_of(trial) > kMaxWinRatio) return false;
     const std::vector<double>&of = trial.samples.back(), &over = trial.samples.front();
     std::size_t lost = 0;
     for (std::size_t i = 0; i < of.size(); ++i) lost += of[i] >= over[i];
@@ -189,31 +187,31 @@ bool wins_surely(const Trial& trial) {
 }
 
 double mean_seconds(const std::function<double()>& seconds) {
-    constexpr double kLeastSeconds = 0.02;
+    constexpr double kMinSeconds = 0.02;
     double sum = 0;
     int calls = 0;
-    for (; sum < kLeastSeconds; ++calls) sum += seconds();
+    for (; sum < kMinSeconds; ++calls) sum += seconds();
     return sum / calls;
 }
 
 void run_trial(int lines, const Json& json) {
-    const TrialOrder order = order_of(json);
-    const TrialPicture picture = picture_of(order);
-    Session session(choose_device(order.render.device));
+    const TrialRequest request = request_of(json);
+    const TrialPicture picture = picture_of(request);
+    Session session(choose_device(request.render.device));
     std::vector<NextImage> renders;
-    for (const TunedValues& values : order.candidates) {
-        const KernelChoice kernels = with_values({.sources = {.folder = order.render.kernel_dir}}, values);
+    for (const TunedValues& values : request.candidates) {
+        const KernelChoice kernels = with_values({.sources = {.folder = request.render.kernel_dir}}, values);
         const std::size_t number = renders.size();
-        if (order.workload.what().torus)
-            renders.push_back(prepare(
-                lines, number,
-                std::make_shared<TorusRenderer>(session, picture.scene, torus_settings(order, picture.size, kernels))));
+        if (request.workload.what().torus)
+            renders.push_back(prepare(lines, number,
+                                      std::make_shared<TorusRenderer>(session, picture.scene,
+                                                                      torus_settings(request, picture.size, kernels))));
         else
             renders.push_back(prepare(
                 lines, number,
-                std::make_shared<RingRenderer>(session, picture.scene, ring_settings(order, picture.size, kernels))));
+                std::make_shared<RingRenderer>(session, picture.scene, ring_settings(request, picture.size, kernels))));
     }
-    send_line(lines, {{"samples", samples_of(renders, order)}});
+    send_line(lines, {{"samples", samples_of(renders, request)}});
 }
 
 }  // namespace raya

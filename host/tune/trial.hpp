@@ -1,4 +1,4 @@
-// A trial: a few candidates that are rendered side by side in a process of their own, and what came of it.
+// A trial: renders a few candidates side by side in a child process.
 #pragma once
 #include <functional>
 #include <string>
@@ -11,86 +11,83 @@
 
 namespace raya {
 
-/// A variant of rendering (none, grid, bvh: the ring machine with that accelerator; torus: 4 x 4 x 4 nodes) in a
-/// format.
+/// A variant in a number format. Variants: none, grid, bvh (ring machine with that accelerator), torus (4 x 4 x 4
+/// nodes).
 struct Workload {
     std::string variant;
     NumberFormat format{};
 
-    TunedFor what() const;     // UserError for a variant that there is not
+    TunedFor what() const;     // throws UserError for an unknown variant
     std::string name() const;  // "ring none fp32", "torus fp32"
 };
 
-/// What is tuned where nothing else is asked for: the ring without accelerator in fp32 and e6m15, with either
-/// accelerator in fp32, and the torus in fp32.
-std::vector<Workload> usual_workloads();
+/// The ring without accelerator in fp32 and e6m15, with each accelerator in fp32, and the torus in fp32.
+std::vector<Workload> default_workloads();
 
-/// What a workload renders, and on which device: `scene`, a file, where a user brings one; else 30 spheres and a plane
-/// for variants that test all objects, and SPD's balls of 7,381 spheres for those that do not. No size: 512 pixels a
-/// side, with an accelerator and on the torus 256.
-struct TrialRenders {
-    std::string device, scene, kernel_dir;  // see choose_device(); empty: own scene, own kernels
-    bool strict = false;                    // of the scene
+/// Device, scene and image size of trials. Without a scene file: 30 spheres and a plane, or with an accelerator SPD's
+/// balls of 7,381 spheres. Without a size: 512 pixels a side, with an accelerator and on the torus 256.
+struct TrialSetup {
+    std::string device, scene, kernel_dir;  // see choose_device(); empty: built-in scene, built-in kernels
+    bool strict = false;                    // read the scene strictly
     ImageSize size{};
-    std::uint32_t pes = 256;  // of the ring
+    std::uint32_t pes = 256;  // on the ring
 };
 
-/// What the process is to do.
-struct TrialOrder {
-    TrialRenders render;
+/// Task of a trial's process.
+struct TrialRequest {
+    TrialSetup render;
     Workload workload;
-    std::vector<TunedValues> candidates;  // the best so far, and what is held against it
-    std::uint32_t samples = 5;            // of each, in turn
-    bool stop_early = true;               // once the last one is far slower than the first
+    std::vector<TunedValues> candidates;  // the best so far, and the one to compare with it
+    std::uint32_t samples = 5;            // of each candidate, in turn
+    bool stop_early = true;               // stop when the last candidate is far slower than the first
 };
-Json to_json(const TrialOrder& order);
+Json to_json(const TrialRequest& request);
 
-/// How it ended. The names are those of the T4 format (t4_text() in tune.hpp).
-enum class Fate {
+/// Result of a trial. The names are those of the T4 format (t4_text() in tune.hpp).
+enum class TrialStatus {
     kCorrect,
-    kCompile,      // a driver did not build the kernels, or ended the program while it did
-    kRuntime,      // it failed, or ended the program, while it rendered
+    kCompile,      // building the kernels failed or crashed
+    kRuntime,      // rendering failed or crashed
     kCorrectness,  // another image, or another number of rays
-    kTimeout,      // it was not done in time
-    kUnfinished    // the search's own time was over: nothing is known
+    kTimeout,      // exceeded the time limit of a candidate
+    kUnfinished    // stopped at the time limit of the search: no result
 };
 
 struct Trial {
     TunedValues values;  // of the last candidate
-    Fate fate = Fate::kUnfinished;
-    std::string told;                          // what was wrong, in a line
-    std::string check;                         // of the last candidate
+    TrialStatus status = TrialStatus::kUnfinished;
+    std::string error;                         // one line; empty for kCorrect
+    std::string check;                         // hash and number of rays of the last candidate
     double build_s = 0;                        // of the last candidate
     double wall_s = 0;                         // of the whole process
-    std::vector<std::vector<double>> samples;  // of each candidate the seconds of one image
-    std::string when;                          // it ended: "2026-11-22T23:59:59Z"
+    std::vector<std::vector<double>> samples;  // [candidate][sample]: seconds for one image
+    std::string when;                          // end of the trial: "2026-11-22T23:59:59Z"
 };
 
-/// The last candidate's time over the first one's: of the ratio of the least times and the median of the ratios of
-/// samples that were taken one after the other, the larger; what is to count as a win must win by both. 1 where there
-/// is no sample.
+/// Time of the last candidate over that of the first: the larger of the ratio of minimum times and the median ratio of
+/// consecutive samples, so that a win needs both. 1 without samples.
 double ratio_of(const Trial& trial);
 
-/// Whether the last candidate is better than the first beyond chance: by both figures of ratio_of(), and in all pairs
-/// of samples but one in nine, which happens once in fifty times where both are alike.
-bool wins_surely(const Trial& trial);
+/// Returns true if the last candidate is significantly faster than the first: ratio_of() is at most kMaxWinRatio, and
+/// it wins at least 8 of 9 pairs of samples, which has a probability of 2 % for equal candidates.
+bool wins_significantly(const Trial& trial);
 
-/// The median ratio of two candidates' samples alone, for figures that are told.
+/// Median ratio of two candidates' samples, for reports.
 double median_ratio(const std::vector<double>& of, const std::vector<double>& over);
 
-/// Mean seconds of one call, of as many as take 20 ms together: what lasts less, clock and launch would count in.
+/// Mean seconds of one call, over enough calls for 20 ms, so that the clock and launches do not matter.
 double mean_seconds(const std::function<double()>& seconds);
 
-/// The task of a trial's process (host/base/own_process.hpp), and what it does: writes to the file `lines`, a JSON
-/// object a line
+/// Task of a trial's process (host/base/child_process.hpp). run_trial() writes to the file descriptor `lines`, one JSON
+/// object per line:
 ///
-///     {"built": N}                                       candidate N can render
-///     {"check": TEXT, "build_s": S}                      and has rendered once
-///     {"samples": [[S, ...], ...]}                       of each candidate; that was all
-///     {"error": TEXT, "kind": "user" or "device" or "internal"}      nothing more comes
+///     {"built": N}                                       the renderer of candidate N is built
+///     {"check": TEXT, "build_s": S}                      it has rendered once
+///     {"samples": [[S, ...], ...]}                       of each candidate; the trial is done
+///     {"error": TEXT, "kind": "user" or "device" or "internal"}      the last line
 ///
-/// but for the last: what goes wrong is thrown.
+/// except "error": it throws instead.
 inline constexpr const char* kTrialTask = "tune";
-void run_trial(int lines, const Json& order);
+void run_trial(int lines, const Json& request);
 
 }  // namespace raya

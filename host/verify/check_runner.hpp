@@ -1,4 +1,4 @@
-// A program of kernels that are checked, and the buffers that they take.
+// Runs kernels of one program on filled buffers and reads their results.
 #pragma once
 #include <cstdint>
 #include <stdexcept>
@@ -12,19 +12,20 @@
 
 namespace raya {
 
-/// Rows of a check are a multiple of this, so that all widths of lanes take the same rows.
-inline constexpr std::size_t kMostLanes = 16;
+/// The largest number of lanes. Checks pad their rows to a multiple of it, so that every number of lanes takes the same
+/// rows.
+inline constexpr std::size_t kMaxLanes = 16;
 
 class CheckRunner {
   public:
-    /// `lanes`: V of the build.
+    /// `lanes`: lanes V of the program's build.
     CheckRunner(Session& session, Program program, std::uint32_t lanes = 1)
         : session_(session), program_(std::move(program)), lanes_(lanes) {}
 
     /// The program's build options.
     const std::string& options() const { return program_.options(); }
 
-    /// A buffer that holds `values`.
+    /// Returns a buffer with `values`.
     template <class T>
     Buffer<T> filled(const std::string& name, const std::vector<T>& values) {
         Buffer<T> buffer = session_.buffer<T>(name, values.size());
@@ -32,7 +33,7 @@ class CheckRunner {
         return buffer;
     }
 
-    /// A buffer of `count` elements that are all `value`.
+    /// Returns a buffer of `count` elements equal to `value`.
     template <class T>
     Buffer<T> constant(const std::string& name, std::size_t count, T value) {
         Buffer<T> buffer = session_.buffer<T>(name, count);
@@ -40,7 +41,7 @@ class CheckRunner {
         return buffer;
     }
 
-    /// A buffer for results, in which a kernel that does nothing leaves no answer.
+    /// Returns a result buffer filled with kPoison.
     Buffer<std::uint32_t> poisoned(const std::string& name, std::size_t count) {
         return constant(name, count, kPoison);
     }
@@ -52,7 +53,7 @@ class CheckRunner {
         return values;
     }
 
-    /// Launches a kernel, of which `Args` are the arguments' types.
+    /// Launches a kernel with arguments of types `Args`.
     template <class... Args>
     void run(const std::string& kernel, std::size_t groups, std::size_t group_size,
              std::type_identity_t<Args>... args) {
@@ -60,10 +61,11 @@ class CheckRunner {
         session_.launch(kernel, function, groups, group_size, args...);
     }
 
-    /// The same for one that takes V rows of `rows` in each work-group of one work-item.
+    /// Launches a kernel that takes V of `rows` rows in each work-group of one work-item. Throws std::invalid_argument
+    /// unless `rows` is a multiple of kMaxLanes.
     template <class... Args>
     void run_rows(const std::string& kernel, std::size_t rows, std::type_identity_t<Args>... args) {
-        if (rows % kMostLanes != 0) throw std::invalid_argument("rows must be a multiple of the widest lanes");
+        if (rows % kMaxLanes != 0) throw std::invalid_argument("rows must be a multiple of the widest lanes");
         run<Args...>(kernel, rows / lanes_, 1, args...);
     }
 

@@ -34,7 +34,7 @@ PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
     return job;
 }
 
-// From around the scene towards its middle, with a direction that is normalised as well as the format can.
+// Rays from around the scene towards its middle, with directions normalised and rounded to the format.
 Rays random_rays(const NumberFormat& format, double extent, std::size_t count) {
     constexpr std::uint64_t kSeed = 1986;
     SplitMix random(kSeed);
@@ -51,13 +51,13 @@ Rays random_rays(const NumberFormat& format, double extent, std::size_t count) {
         }
         to.normalize();
         for (int axis = 0; axis < 3; ++axis) direction[std::size_t(axis)] = rounded(to[axis]);
-        rays.add(origin, direction, kUsualLimit);
+        rays.add(origin, direction, kDefaultRayLimit);
     }
     return rays;
 }
 
 std::vector<std::string> remedies(const std::vector<std::string>& of_lanes) {
-    std::vector<std::string> all = {"are checks of \"number\" wrong too? then those first"};
+    std::vector<std::string> all = {"if checks of \"number\" fail too, start with those"};
     all.insert(all.end(), of_lanes.begin(), of_lanes.end());
     all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
     return all;
@@ -74,7 +74,9 @@ void verify_hits(Verification& v, const HitBuild& build) {
         check("known hits of " + known.name, [&](HitRunner& runner) { return check_known_hits(runner, known); });
     const std::size_t rays = v.depth() == Depth::kBrief ? 128 : 4096;  // in each scene
     if (build.grid)
-        check("grid", [&](HitRunner& runner) { return check_walk(runner, {"polygons", "cones", "spheres"}, rays); });
+        check("grid", [&](HitRunner& runner) {
+            return check_grid_walk(runner, {"polygons", "cones", "spheres"}, rays);
+        });
 }
 
 }  // namespace
@@ -86,7 +88,7 @@ void Rays::add(const std::array<float, 3>& origin, const std::array<float, 3>& d
 }
 
 void Rays::pad() {
-    while (count() % kMostLanes != 0) add({0, 0, 0}, {0, 0, 1}, 0);
+    while (count() % kMaxLanes != 0) add({0, 0, 0}, {0, 0, 1}, 0);
 }
 
 std::string Rays::text(std::size_t ray) const {
@@ -158,8 +160,8 @@ Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
     return verdict;
 }
 
-Verdict check_walk(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_each) {
-    std::size_t struck = 0;
+Verdict check_grid_walk(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_each) {
+    std::size_t hits = 0;
     for (const std::string& name : scenes) {
         const std::string file = fmt::format("scenes/{}.nff", name);
         const Scene scene = parse_nff(embedded_files().at(file), file);
@@ -170,18 +172,18 @@ Verdict check_walk(HitRunner& runner, const std::vector<std::string>& scenes, st
         const auto what = [&](std::size_t i) { return fmt::format("ray {} through {}, by the grid", i, file); };
         const Verdict verdict = compare_hits(all, walked, rays, rays_each, what, "");
         if (verdict.outcome != Outcome::kPass) return verdict;
-        for (const std::uint32_t object : all.objects) struck += object != kNoObject;
+        for (const std::uint32_t object : all.objects) hits += object != kNoObject;
     }
     const std::size_t all = scenes.size() * rays_each;
-    if (struck < rays_each) return failed(fmt::format("only {} of {} rays hit anything", struck, all), {});
-    return passed(fmt::format("{} rays, {} hits, with and without grid", all, struck));
+    if (hits < rays_each) return failed(fmt::format("only {} of {} rays hit an object", hits, all), {});
+    return passed(fmt::format("{} rays, {} hits, with and without grid", all, hits));
 }
 
 void verify_geometry(Verification& v) {
     for (const std::uint32_t lanes : v.lanes())
         for (const char* format : {"fp32", "spa22"}) {
             HitBuild build{.format = parse_format(format), .lanes = lanes, .sources = v.sources()};
-            // The walk computes in fp32 whatever the format is.
+            // The grid traversal computes in fp32 for every format.
             build.grid = v.depth() != Depth::kBrief || build.format.is_fp32();
             verify_hits(v, build);
             if (!v.full() || build.format.is_fp32()) continue;

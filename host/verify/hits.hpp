@@ -1,5 +1,5 @@
-// Rays against objects: hits that can be worked out by hand, the kernels of kernels/checks/hits.cl, and the walk
-// through the grid against testing all objects.
+// Checks of intersections by kernels/checks/hits.cl: hits calculated by hand, and the grid traversal compared with
+// tests of all objects.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -18,14 +18,14 @@
 namespace raya {
 
 inline constexpr std::uint32_t kNoObject = 0xffffffffu;  // RAYA_NO_OBJECT of the kernels
-inline constexpr float kUsualLimit = 4096;               // of rays: beyond all of the scenes
+inline constexpr float kDefaultRayLimit = 4096;          // of a ray; beyond all objects of the scenes
 
 struct KnownHit {
     const char* what;
     std::array<float, 3> origin, direction;
-    std::uint32_t object;  // number in the job, kNoObject
-    float t;               // where the ray hits; of a miss without a meaning
-    float limit = kUsualLimit;
+    std::uint32_t object;  // number in the job, or kNoObject
+    float t;               // distance of the hit; undefined for a miss
+    float limit = kDefaultRayLimit;
 };
 
 struct KnownScene {
@@ -34,38 +34,39 @@ struct KnownScene {
     std::vector<KnownHit> hits;
 };
 
-/// Spheres, planes, polygons and patches, cones: hit from outside and from inside, touched, missed, at equal distances.
-/// Exact in any format with 12 fraction bits or more.
+/// Scenes of spheres, planes, polygons and patches, and cones, with hits from outside and inside, tangents, misses and
+/// equal distances. All numbers are exact in formats with at least 12 fraction bits.
 std::vector<KnownScene> known_scenes();
 
-/// Rays for kernels.
+/// Rays in the kernels' layout.
 struct Rays {
     static constexpr std::size_t kWords = 7;
     std::vector<float> words;  // [ray][kWords]: origin, direction, limit
 
     std::size_t count() const { return words.size() / kWords; }
     void add(const std::array<float, 3>& origin, const std::array<float, 3>& direction, float limit);
-    /// Adds rays of limit 0, which hit nothing, until their number is a multiple of kMostLanes.
+    /// Appends rays of limit 0, which hit nothing, up to a multiple of kMaxLanes.
     void pad();
     std::string text(std::size_t ray) const;
 };
 
-/// What they hit.
+/// Results of rays: [ray].
 struct Hits {
-    std::vector<std::uint32_t> objects, distances;  // [ray]: number or kNoObject; bits, the limit of a miss
+    std::vector<std::uint32_t> objects;    // number, or kNoObject
+    std::vector<std::uint32_t> distances;  // bits of t; the ray's limit for a miss
 
     std::string text(std::size_t ray) const;
 };
 
-/// By `kernel`, hits_of_all or hits_by_search, of a job's words. The number of rays is a multiple of kMostLanes.
+/// Runs `kernel`, hits_of_all or hits_by_search, on the words of a job. The number of rays is a multiple of kMaxLanes.
 Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector<std::uint32_t>& job, const Rays& rays);
 
-/// How the kernels are built.
+/// Build options of the kernels.
 struct HitBuild {
     NumberFormat format;
     std::uint32_t lanes = 1;
-    bool filter = false;  // of spheres
-    bool grid = true;     // false: without the search by a grid, of which the kernel is the longer part
+    bool filter = false;  // fp32 filter for spheres
+    bool grid = true;     // false: without the grid traversal, which takes most of the build time
     KernelSources sources{};
 
     /// "e6m15 filtered, 16 lanes"
@@ -83,16 +84,16 @@ class HitRunner : public CheckRunner {
     bool grid_;
 };
 
-/// Of the first `count` rays: how many are wrong, with the first of them, of which `what` tells the name; else `done`.
+/// Compares the first `count` rays. Fails with the number of wrong rays and details of the first; `what` returns the
+/// description of a ray. Passes with `done`.
 Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
                      const std::function<std::string(std::size_t)>& what, const std::string& done);
 
-/// All kernels of the build find the known hits.
+/// Checks that all kernels of the build find the known hits.
 Verdict check_known_hits(HitRunner& runner, const KnownScene& known);
 
-/// What the grid finds is what testing all objects finds, on the same device: the walk decides nothing. In a build with
-/// the grid, by `rays` rays
-/// in each of the scenes of scenes/ that are named; a multiple of kMostLanes.
-Verdict check_walk(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays);
+/// Checks that the grid traversal finds the same hits as tests of all objects on the same device, for `rays` random
+/// rays (a multiple of kMaxLanes) in each of the named scenes of scenes/. The build must have the grid.
+Verdict check_grid_walk(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays);
 
 }  // namespace raya

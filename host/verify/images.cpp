@@ -1,4 +1,4 @@
-// Whole images, bit by bit: pictures that are known, rendered in ways that must not change them.
+// Checks of layer `image`: renders known pictures with settings that must not change any bit of them.
 #include <fmt/core.h>
 
 #include <bit>
@@ -14,32 +14,31 @@
 namespace raya {
 namespace {
 
-// As the checks are called, shorter than mapping_text().
+// Short name for names of checks.
 std::string mapping_name(const MappingRule& mapping) {
     if (mapping == column_mapping()) return "column";
     return mapping.kind == RAYA_RANDOM ? "random" : mapping_text(mapping);
 }
 
-// What decides how a picture is made, and no bit of it.
+// Settings of a rendering that must not change any bit of the picture.
 struct Rendering {
     std::string picture;
-    Depth from = Depth::kFull;                // and deeper
-    std::uint32_t lanes = 0, group_size = 0;  // 0: the device's own
-    MappingRule mapping = cyclic_mapping(8);  // of the ring
+    Depth from = Depth::kFull;                // the least depth that includes it
+    std::uint32_t lanes = 0, group_size = 0;  // 0: the device's default
+    MappingRule mapping = cyclic_mapping(8);  // on the ring
     std::uint32_t pes = kPictureSide;
-    std::uint32_t work_per_launch =
-        0;  // tests and steps of a lane, of a node what its kernels count; 0: about a second
+    std::uint32_t work_per_launch = 0;  // see RingSettings and TorusSettings; 0: about a second
     AccelKind accel = AccelKind::kNone;
     bool torus = false;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     LinkMove link_move = LinkMove::kCopies;
-    bool global_words = false;  // as where local memory is too small for them
-    bool refined = false;       // as where division, square root and a b + c are not rounded correctly
+    bool global_words = false;  // job words in global memory, as if local memory were too small
+    bool refined = false;       // as if division, square root and a b + c were not rounded correctly
 
-    // Of such a ring or torus all renderings of a picture count the same.
-    std::string counted_as() const {
+    // Variant in KnownPicture::counts; all renderings of a picture and variant have equal counts.
+    std::string variant() const {
         if (torus)
             return fmt::format("{} {}{}", links_name(links), sides_text(nodes),
                                inject == Injection::kRoot ? " root" : "");
@@ -47,16 +46,16 @@ struct Rendering {
     }
 
     std::string name() const {
-        std::string way = torus ? counted_as()
-                                : fmt::format("{} on {}{}", mapping_name(mapping), pes,
-                                              accel == AccelKind::kNone ? "" : ", " + counted_as());
-        if (mapping.kind == RAYA_FOLD_BLOCK) way += ", block fold";
-        if (work_per_launch) way += fmt::format(", launches of {} {}", work_per_launch, torus ? "units" : "tests");
-        if (link_move == LinkMove::kKernel) way += ", links by a kernel";
-        if (global_words) way += ", global words";
-        if (refined) way += ", division refined";
-        if (lanes) way += fmt::format(", {}x{}", lanes, group_size);
-        return fmt::format("{}: {}", picture, way);
+        std::string text = torus ? variant()
+                                 : fmt::format("{} on {}{}", mapping_name(mapping), pes,
+                                               accel == AccelKind::kNone ? "" : ", " + variant());
+        if (mapping.kind == RAYA_FOLD_BLOCK) text += ", block fold";
+        if (work_per_launch) text += fmt::format(", launches of {} {}", work_per_launch, torus ? "units" : "tests");
+        if (link_move == LinkMove::kKernel) text += ", links by a kernel";
+        if (global_words) text += ", global words";
+        if (refined) text += ", division refined";
+        if (lanes) text += fmt::format(", {}x{}", lanes, group_size);
+        return fmt::format("{}: {}", picture, text);
     }
 };
 
@@ -77,7 +76,7 @@ std::uint64_t sum(std::span<const std::uint64_t> numbers) {
 
 Rendered render_on_ring(const KernelChoice& kernels, Session& session, const Rendering& r) {
     const Picture& picture = picture_named(r.picture);
-    RingSettings settings = plain_settings(picture);
+    RingSettings settings = reference_settings(picture);
     settings.mapping = make_mapping(r.mapping, {kPictureSide, kPictureSide}, r.pes);
     settings.accel.kind = r.accel;
     settings.work_per_launch = r.work_per_launch;
@@ -96,9 +95,9 @@ Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Re
     s.width = s.height = kPictureSide;
     s.torus = make_torus(r.nodes, r.links);
     s.links = r.links;
-    s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // unlike the nodes: some hold several, in turn
+    s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // more than nodes: some hold several
     s.inject = r.inject;
-    s.packets.return_a_ray = r.inject == Injection::kRoot;  // both kinds of returns, too
+    s.packets.return_a_ray = r.inject == Injection::kRoot;  // covers both kinds of returns
     s.bounces = kPictureBounces;
     s.format = parse_format(picture.format);
     s.sampling = picture.sampling;
@@ -127,9 +126,9 @@ std::array<std::uint32_t, 3> pixel_bits(const Image& image, std::size_t pixel) {
     return bits;
 }
 
-// The picture made plainly on the same device, without the compiler's optimiser; nothing where that is refused.
-std::optional<Image> plain_image(const Verification& v, Session& session, const Picture& picture) {
-    RingSettings settings = plain_settings(picture);
+// Renders the picture with reference_settings() and without compiler optimisation; empty where that fails.
+std::optional<Image> unoptimised_image(const Verification& v, Session& session, const Picture& picture) {
+    RingSettings settings = reference_settings(picture);
     settings.kernels.sources = v.kernels(1, 1).sources;
     settings.kernels.sources.more_options = {"-cl-opt-disable"};
     try {
@@ -139,28 +138,28 @@ std::optional<Image> plain_image(const Verification& v, Session& session, const 
     }
 }
 
-// What to try, by what the plainest way of all gives on this device.
+// Chooses remedies by the result of unoptimised_image() on this device.
 std::vector<std::string> remedies(const Verification& v, Session& session, const Picture& picture) {
-    const std::optional<Image> plain = plain_image(v, session, picture);
-    if (plain && pixel_hash(*plain) == known_picture(picture).hash)
+    const std::optional<Image> image = unoptimised_image(v, session, picture);
+    if (image && pixel_hash(*image) == known_picture(picture).hash)
         return {
-            "with one lane, groups of one and -cl-opt-disable this device makes the right image: render with\n"
-            "RAYA_BUILD_OPTIONS=-cl-opt-disable --lanes 1 --group 1, and tell the driver's makers",
+            "with one lane, groups of one and -cl-opt-disable the image is right: render with\n"
+            "RAYA_BUILD_OPTIONS=-cl-opt-disable --lanes 1 --group 1, and report the error to the driver's vendor",
             "a newer driver"};
-    return {"are checks of \"number\" or \"geometry\" wrong too? then those first",
-            "made plainly (one lane, -cl-opt-disable) the image is wrong as well: another driver, or another OpenCL\n"
+    return {"if checks of \"number\" or \"geometry\" fail too, start with those",
+            "the image is also wrong with one lane and -cl-opt-disable: try another driver, or another OpenCL\n"
             "implementation for this device (raya devices)"};
 }
 
 Verdict check_rendering(const Verification& v, Session& session, const Rendering& r) {
     if (r.group_size > v.device().max_group_size)
-        return skipped(
-            fmt::format("{} work-items wanted, the device has {} in a group", r.group_size, v.device().max_group_size));
+        return skipped(fmt::format("needs groups of {} work-items, the device allows {}", r.group_size,
+                                   v.device().max_group_size));
     const Picture& picture = picture_named(r.picture);
     const KnownPicture& known = known_picture(picture);
     const Rendered got = render(v.kernels(r.lanes, r.group_size), session, r);
     if (pixel_hash(got.image) == known.hash)
-        return check_counts(known.counts.at(r.counted_as()), got.counts, known.hash.substr(0, 8), got.options);
+        return check_counts(known.counts.at(r.variant()), got.counts, known.hash.substr(0, 8), got.options);
     std::size_t wrong = 0, first = 0;
     const std::size_t pixels = known.image.rgb.size() / 3;
     for (std::size_t i = pixels; i-- > 0;) {
@@ -177,11 +176,10 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
          .remedies = remedies(v, session, picture)});
 }
 
-// Every kernel and every option at least once; renderings of equal build options follow each other, as they share a
-// build. The quick ones take what kernels do without local memory or exact division along with what they are there for:
-// a build is most of a rendering's time. The brief ones are what one build of each machine shows, and one of a reduced
-// format.
-std::vector<Rendering> usual_renderings() {
+// Every kernel and option at least once. Renderings with equal build options are adjacent and share a build, which
+// takes most of a rendering's time. For the same reason some quick ones combine several features (global words, refined
+// division). Brief ones need one build of each machine and one of a reduced format.
+std::vector<Rendering> standard_renderings() {
     constexpr auto k2d = Links::kTorus2d;
     constexpr auto kRoot = Injection::kRoot;
     return {
@@ -246,7 +244,7 @@ std::vector<Rendering> usual_renderings() {
         {.picture = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};
 }
 
-// Every width of lanes with groups of one and of 32 work-items, on both machines, in both usual formats.
+// Every number of lanes with groups of 1 and 32 work-items, on both machines, in fp32 and reduced formats.
 std::vector<Rendering> all_builds() {
     std::vector<Rendering> all;
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
@@ -267,18 +265,18 @@ std::vector<Rendering> all_builds() {
 
 }  // namespace
 
-std::map<std::string, std::string> counts_of_ways(Session& session, const Picture& picture) {
+std::map<std::string, std::string> counts_by_variant(Session& session, const Picture& picture) {
     std::map<std::string, std::string> counts;
-    std::vector<Rendering> all = usual_renderings();
+    std::vector<Rendering> all = standard_renderings();
     all.push_back({.picture = picture.name});  // every picture on a ring
     for (const Rendering& r : all)
-        if (r.picture == picture.name && !counts.contains(r.counted_as()))
-            counts[r.counted_as()] = render({.lanes = 1, .group_size = 1}, session, r).counts;
+        if (r.picture == picture.name && !counts.contains(r.variant()))
+            counts[r.variant()] = render({.lanes = 1, .group_size = 1}, session, r).counts;
     return counts;
 }
 
 void verify_images(Verification& v) {
-    std::vector<Rendering> renderings = usual_renderings();
+    std::vector<Rendering> renderings = standard_renderings();
     if (v.full()) {
         const std::vector<Rendering> more = all_builds();
         renderings.insert(renderings.end(), more.begin(), more.end());

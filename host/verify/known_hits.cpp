@@ -13,21 +13,21 @@ Scene empty_scene() {
     return scene;
 }
 
-// Sphere of radius 5 about (x, 0, 16): at height h above its middle a ray ahead is sqrt(25 - h^2) within it.
+// Sphere of radius 5 about (x, 0, 16). A ray ahead at height h above the centre hits at t = 16 - sqrt(25 - h^2).
 Sphere ball(double x, double z = 16, double radius = 5) { return {{x, 0, z}, radius, 0}; }
 
 KnownScene spheres() {
     Scene scene = empty_scene();
     scene.spheres = {ball(0), ball(32, 16, -5), ball(64), ball(64), ball(96), ball(96, 4, 2)};
     for (int i = 0; i < 5; ++i) scene.spheres.push_back(ball(200 + 16 * i));  // more than a batch of 8
-    scene.spheres.push_back(ball(264, 12));  // in front of the last one, in the batch's rest
+    scene.spheres.push_back(ball(264, 12));  // in front of the last one, in the incomplete last batch
     return {"spheres",
             scene,
-            {{"through the middle", {0, 0, 0}, kAhead, 0, 11},
-             {"beside the middle", {3, 0, 0}, kAhead, 0, 12},
-             {"touching", {0, 5, 0}, kAhead, 0, 16},
+            {{"through the centre", {0, 0, 0}, kAhead, 0, 11},
+             {"off the centre", {3, 0, 0}, kAhead, 0, 12},
+             {"tangent", {0, 5, 0}, kAhead, 0, 16},
              {"passing by", {0, 5.25, 0}, kAhead, kNoObject, 0},
-             {"from the middle outward", {0, 0, 16}, kAhead, 0, 5},
+             {"from the centre outward", {0, 0, 16}, kAhead, 0, 5},
              {"from the surface inward", {0, 3, 12}, kAhead, 0, 8},
              {"from the surface outward", {0, 3, 20}, kAhead, kNoObject, 0},
              {"behind the ray", {0, 0, 32}, kAhead, kNoObject, 0},
@@ -38,7 +38,7 @@ KnownScene spheres() {
              {"only the inside is visible", {35, 0, 0}, kAhead, 1, 20},
              {"equal distances: the lower number", {64, 4, 0}, kAhead, 2, 13},
              {"the nearer one has the higher number", {96, 0, 0}, kAhead, 5, 2},
-             {"the nearer one is touched", {96, 2, 0}, kAhead, 5, 4},
+             {"tangent to the nearer one", {96, 2, 0}, kAhead, 5, 4},
              {"the nearer one is missed", {96, 3, 0}, kAhead, 4, 12},
              {"nearest of two in different batches", {264, 3, 0}, kAhead, 11, 8}}};
 }
@@ -93,7 +93,7 @@ KnownScene polygons() {
              {"a wall across x; equal distances: the lower number", {120, 4, 4}, kRight, 4, 8},
              {"from the other side", {136, 4, 4}, kLeft, 4, 8},
              {"parallel to the wall", {128, 4, -4}, kAhead, kNoObject, 0},
-             {"beside the wall", {120, 9, 4}, kRight, kNoObject, 0}}};
+             {"past the wall", {120, 9, 4}, kRight, kNoObject, 0}}};
 }
 
 // Cylinders of radius 5 along y from (x, 0, 16), 16 high; a cone that narrows from radius 8 to 0 over a height of 8,
@@ -107,8 +107,8 @@ KnownScene cones() {
     return {"cones",
             scene,
             {{"through the axis", {0, 4, 0}, kAhead, 0, 11},
-             {"beside the axis", {3, 4, 0}, kAhead, 0, 12},
-             {"touching: a miss", {5, 4, 0}, kAhead, kNoObject, 0},
+             {"off the axis", {3, 4, 0}, kAhead, 0, 12},
+             {"tangent: a miss", {5, 4, 0}, kAhead, kNoObject, 0},
              {"passing by", {5.25, 4, 0}, kAhead, kNoObject, 0},
              {"at the height of the base", {0, 0, 0}, kAhead, 0, 11},
              {"at the height of the apex", {0, 16, 0}, kAhead, 0, 11},

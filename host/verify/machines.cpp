@@ -1,5 +1,5 @@
-// What the machines rest on beside numbers, by kernels/checks/machine.cl: whole-number arithmetic, local memory,
-// barriers and atomics. All of it is exact: the host computes the same with the same headers.
+// Checks of layer `machine`: integer arithmetic, local memory, barriers and atomics by kernels/checks/machine.cl, and
+// transfers. All results are exact; the host computes the expected ones with the same headers.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -17,15 +17,15 @@
 #include "host/verify/check_runner.hpp"
 #include "host/verify/transfers.hpp"
 #include "host/verify/verify.hpp"
-#include "kernels/shared/mapping.h"
 #include "kernels/shared/neighbours.h"
+#include "kernels/shared/share_pixels.h"
 
 namespace raya {
 namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-// Cases are drawn with a fixed seed, the ends of the ranges among them.
+// Random number in 0..end - 1. Seeds are fixed.
 std::uint32_t below(SplitMix& random, std::uint32_t end) { return static_cast<std::uint32_t>(random.next() % end); }
 
 std::uint32_t divisor_of(SplitMix& random, std::uint32_t side) {
@@ -34,13 +34,13 @@ std::uint32_t divisor_of(SplitMix& random, std::uint32_t side) {
     return divisor;
 }
 
-// A side of an image: small, any, the largest.
+// Random side of an image: small, any, or the largest.
 std::uint32_t side(SplitMix& random) {
     const std::uint32_t kinds[] = {1 + below(random, 40), 1 + below(random, kLargestSide), kLargestSide};
     return kinds[below(random, 3)];
 }
 
-raya_mapping drawn_mapping(SplitMix& random, std::uint32_t kind) {
+raya_mapping random_case(SplitMix& random, std::uint32_t kind) {
     raya_mapping m{side(random), side(random), 1, 0, kind};
     const std::uint32_t pixels = m.width * m.height;
     const std::uint32_t pes[] = {1 + below(random, m.width), 1 + below(random, pixels), m.width, pixels};
@@ -56,7 +56,7 @@ raya_mapping drawn_mapping(SplitMix& random, std::uint32_t kind) {
     return m;
 }
 
-// `count` legal mappings of a kind (RAYA_FOLD_CYCLIC..RAYA_RANDOM), up to the largest images and arrays, and a pixel
+// `count` valid mappings of a kind (RAYA_FOLD_CYCLIC..RAYA_RANDOM), up to the largest images and arrays, and one pixel
 // of each.
 std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std::uint32_t kind, std::size_t count) {
     constexpr std::uint64_t kSeed = 1993;
@@ -64,7 +64,7 @@ std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std:
     std::vector<raya_mapping> mappings;
     std::vector<raya_pixel> pixels;
     for (std::size_t i = 0; i < count; ++i) {
-        const raya_mapping m = drawn_mapping(random, kind);
+        const raya_mapping m = random_case(random, kind);
         mappings.push_back(m);
         pixels.push_back(
             {i % 8 ? below(random, m.height) : m.height - 1, i % 4 ? below(random, m.width) : m.width - 1});
@@ -72,7 +72,7 @@ std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std:
     return {mappings, pixels};
 }
 
-// `count` toruses of either kind, and two nodes of each: [case][2].
+// `count` toruses, 2-D and 3-D in turn, and two nodes of each: [case][2].
 std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::size_t count) {
     constexpr std::uint64_t kSeed = 805;
     SplitMix random(kSeed);
@@ -87,7 +87,7 @@ std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::
     return {toruses, nodes};
 }
 
-// Compares cases of `stride` words each; `what` tells a case, `names` its words.
+// Compares cases of names.size() words each. `what(i)` describes case i; `names` are the names of its words.
 template <class What>
 Verdict compare_cases(const Words& expected, const Words& got, const std::vector<std::string>& names, const What& what,
                       const std::string& done) {
@@ -104,7 +104,7 @@ Verdict compare_cases(const Words& expected, const Words& got, const std::vector
                    .got = fmt::format("{0} = 0x{0:08x}", got[at])});
 }
 
-// By the same functions as kernels/checks/machine.cl's find_owners.
+// The expected words of find_owners in kernels/checks/machine.cl.
 void add_owner(Words& to, const raya_mapping& m, const raya_pixel& pixel) {
     const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
     const raya_share share = raya_share_of(m, owner);
@@ -116,13 +116,13 @@ void add_owner(Words& to, const raya_mapping& m, const raya_pixel& pixel) {
     to.insert(to.end(), {owner, raya_share_size(share), number, back.row, back.column, sides});
 }
 
-// The program; `group_size`: L of its kernel turn_round, 1..1024.
+// `group_size`: work-items in a group of kernel turn_round, 1..1024.
 CheckRunner machine_runner(Session& session, const KernelSources& sources, std::uint32_t group_size = 1) {
     return {session, Kernels(session, {.group_size = group_size}, sources).program("checks/machine.cl")};
 }
 
-// Owners of pixels, their numbers and neighbours, in so many cases of a kind of mapping
-// (RAYA_FOLD_CYCLIC..RAYA_RANDOM).
+// Checks owners of pixels, numbers in their shares, and neighbours for a kind of mapping (RAYA_FOLD_CYCLIC..
+// RAYA_RANDOM).
 Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases) {
     const auto [mappings, pixels] = mapping_cases(kind, cases);
     Words expected;
@@ -141,37 +141,37 @@ Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases)
                          fmt::format("{} pixels", cases));
 }
 
-// The first links of so many ways through toruses of either kind, and the ends of links.
-Verdict check_ways(CheckRunner& runner, std::size_t cases) {
+// Checks the first link of routes between nodes, the first link of returns, and the ends of links.
+Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
     const auto [toruses, nodes] = torus_cases(cases);
     Words expected;
     for (std::size_t i = 0; i < cases; ++i) {
         expected.push_back(raya_next_link(toruses[i], nodes[2 * i], nodes[2 * i + 1]));
-        expected.push_back(raya_home_link(toruses[i], nodes[2 * i]));
+        expected.push_back(raya_return_link(toruses[i], nodes[2 * i]));
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             expected.push_back(raya_link_end(toruses[i], nodes[2 * i], link));
     }
     const auto from = runner.filled("toruses", toruses);
     const auto at = runner.filled("nodes", nodes);
-    auto ways = runner.poisoned("ways", expected.size());
+    auto routes = runner.poisoned("routes", expected.size());
     runner.run<const Buffer<raya_torus>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<std::uint32_t>&>(
-        "find_ways", cases, 1, from, at, static_cast<cl_uint>(cases), ways);
+        "find_ways", cases, 1, from, at, static_cast<cl_uint>(cases), routes);
     const auto what = [&, &t = toruses, &n = nodes](std::size_t i) {
         return fmt::format("node {} to {} on {}", n[2 * i], n[2 * i + 1],
                            sides_text({t[i].sides[0], t[i].sides[1], t[i].sides[2]}));
     };
-    return compare_cases(expected, runner.read(ways),
-                         {"next link", "link home", "end of +x", "of -x", "of +y", "of -y", "of +z", "of -z"}, what,
-                         fmt::format("{} pairs of nodes", cases));
+    return compare_cases(expected, runner.read(routes),
+                         {"next link", "link of the return", "end of +x", "of -x", "of +y", "of -y", "of +z", "of -z"},
+                         what, fmt::format("{} pairs of nodes", cases));
 }
 
-// Words that work-groups turn round in local memory, several times, and numbers that their work-items draw.
+// Work-groups reverse words in local memory kTimes times; their work-items take numbers from an atomic counter.
 Verdict check_local_memory(CheckRunner& runner, std::uint32_t group_size) {
     constexpr std::uint32_t kGroups = 64, kTimes = 9;
-    const std::uint32_t words = 2000;  // 2 x 2000 words are half of the 32 KB that OpenCL promises
+    const std::uint32_t words = 2000;  // 2 x 2000 words: half of the 32 KB that OpenCL guarantees
     Words from(std::size_t{kGroups} * words), expected(from.size());
     std::iota(from.begin(), from.end(), 0u);
-    for (std::size_t i = 0; i < from.size(); ++i)  // an odd number of times: turned round
+    for (std::size_t i = 0; i < from.size(); ++i)  // kTimes is odd, so the words end up reversed
         expected[i] = from[i / words * words + (words - 1 - i % words)] + kTimes;
     const auto given = runner.filled("from", from);
     auto turned = runner.poisoned("to", from.size());
@@ -184,22 +184,20 @@ Verdict check_local_memory(CheckRunner& runner, std::uint32_t group_size) {
     const std::string done = fmt::format("{} groups of {} words", kGroups, words);
     const Verdict verdict = compare_cases(expected, runner.read(turned), {"local memory"}, what, done);
     if (verdict.outcome != Outcome::kPass) return verdict;
-    return compare_cases(Words(from.size(), 1), runner.read(drawn), {"draws of a number from the counter"}, what, done);
+    return compare_cases(Words(from.size(), 1), runner.read(drawn), {"times that a number was taken from the counter"},
+                         what, done);
 }
 
-// What the machines rest on beside numbers: whole-number arithmetic in kernels, local memory and barriers, and copies
-// between buffers. All of it is exact.
-std::vector<std::string> compiler_at_fault() {
+std::vector<std::string> integer_remedies() {
     return {
-        "the compiler is wrong about whole numbers or barriers, not about fp32: look for a switch of the driver that\n"
-        "turns its optimiser off, and tell its makers",
+        "the compiler makes errors with integers or barriers, not with fp32: look for an option of the driver that\n"
+        "disables its optimiser, and report the error to its vendor",
         "a newer driver, or another OpenCL implementation for this device (raya devices)"};
 }
 
-std::vector<std::string> driver_at_fault() {
-    return {
-        "a newer driver: copies between buffers on the device are wrong, or not in the order in which they were given",
-        "another OpenCL implementation for this device (raya devices)"};
+std::vector<std::string> copy_remedies() {
+    return {"a newer driver: copies between buffers on the device are wrong, or do not run in order",
+            "another OpenCL implementation for this device (raya devices)"};
 }
 
 const char* kind_name(std::uint32_t kind) {
@@ -214,16 +212,16 @@ void verify_kernels(Verification& v) {
                            const std::function<Verdict(CheckRunner&)>& body) {
         v.check("machine", name, [&](Session& session) {
             if (group > v.device().max_group_size)
-                return skipped(fmt::format("{} work-items wanted, the device has {} in a group", group,
+                return skipped(fmt::format("needs groups of {} work-items, the device allows {}", group,
                                            v.device().max_group_size));
             CheckRunner runner = machine_runner(session, v.sources(), group);
-            return with_remedies(body(runner), runner.options(), compiler_at_fault());
+            return with_remedies(body(runner), runner.options(), integer_remedies());
         });
     };
     for (std::uint32_t kind = 0; kind <= RAYA_RANDOM; ++kind)
         check(fmt::format("mapping: {}", kind_name(kind)), 1,
               [&](CheckRunner& runner) { return check_owners(runner, kind, cases); });
-    check("ways through the torus", 1, [&](CheckRunner& runner) { return check_ways(runner, cases); });
+    check("torus routes", 1, [&](CheckRunner& runner) { return check_torus_routes(runner, cases); });
     for (const std::uint32_t group : v.full() ? std::vector{1u, 2u, 8u, 32u, 64u} : std::vector{1u, 32u})
         check("local memory and barriers, " + counted(group, "work-item"), group,
               [&](CheckRunner& runner) { return check_local_memory(runner, group); });
@@ -231,7 +229,7 @@ void verify_kernels(Verification& v) {
 
 void verify_transfers(Verification& v) {
     const auto check = [&](const std::string& name, const std::function<Verdict(Session&)>& body) {
-        v.check("machine", name, [&](Session& session) { return with_remedies(body(session), "", driver_at_fault()); });
+        v.check("machine", name, [&](Session& session) { return with_remedies(body(session), "", copy_remedies()); });
     };
     const std::vector<BlockCopy> copies = {{{3, 17, 0}, {0, 5, 2}, 5, 40},
                                            {{0, 8, 1}, {4, 31, 0}, 8, 33},
@@ -247,13 +245,13 @@ void verify_transfers(Verification& v) {
     for (const Links links : {Links::kTorus3d, Links::kTorus2d})
         for (const std::uint32_t every : {1u, 50u}) {
             const std::string name =
-                fmt::format("{}: exchange of {}", links_name(links), every == 1 ? "all boxes" : "few boxes");
+                fmt::format("{}: exchange of {}", links_name(links), every == 1 ? "all mailboxes" : "few mailboxes");
             const raya_torus torus = make_torus({3, 2, 4}, links);
             check(name, [&](Session& s) { return check_links(s, torus, every); });
             v.check("machine", name + " by a kernel", [&](Session& s) {
-                // Boxes of up to 12 units of 8 words: some work-items have one, some none.
-                Kernels kernels(s, {.group_size = std::min(8u, most_group_size(v.device()))}, v.sources());
-                return with_remedies(check_links(s, torus, every, &kernels), "", compiler_at_fault());
+                // Mailboxes of up to 12 units of 8 words: some work-items have one unit, some none.
+                Kernels kernels(s, {.group_size = std::min(8u, largest_group_size(v.device()))}, v.sources());
+                return with_remedies(check_links(s, torus, every, &kernels), "", integer_remedies());
             });
         }
 }

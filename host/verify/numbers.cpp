@@ -26,8 +26,8 @@ std::array<std::uint32_t, 3> operands_of(const NumberRows& rows, std::size_t row
             std::bit_cast<std::uint32_t>(rows.c[row])};
 }
 
-// Whether an operation meets a denormal number.
-bool is_free(std::size_t operation, const std::array<std::uint32_t, 3>& operands, std::uint32_t expected) {
+// Returns true if an operand or the result is denormal.
+bool has_denormal(std::size_t operation, const std::array<std::uint32_t, 3>& operands, std::uint32_t expected) {
     bool some = is_denormal(expected);
     if (operation != kFromIndex)
         for (std::size_t k = 0; k < kNumberOperations[operation].operands; ++k) some = some || is_denormal(operands[k]);
@@ -76,11 +76,11 @@ std::size_t operation_number(const std::string& name) {
     throw std::logic_error("known answers: no operation " + name);
 }
 
-KnownAnswer answer_of(const std::vector<std::string>& words, const NumberOperation& operation) {
-    if (words.size() != operation.operands + 1)
-        throw std::logic_error(fmt::format("known answers: {} words for {}", words.size(), operation.name));
-    KnownAnswer answer{{kOne, kOne, kOne}, word_of(words.back())};
-    for (std::size_t k = 0; k < operation.operands; ++k) answer.operands[k] = word_of(words[k]);
+KnownAnswer answer_of(const std::vector<std::string>& fields, const NumberOperation& operation) {
+    if (fields.size() != operation.operands + 1)
+        throw std::logic_error(fmt::format("known answers: {} fields for {}", fields.size(), operation.name));
+    KnownAnswer answer{{kOne, kOne, kOne}, word_of(fields.back())};
+    for (std::size_t k = 0; k < operation.operands; ++k) answer.operands[k] = word_of(fields[k]);
     return answer;
 }
 
@@ -93,7 +93,7 @@ void NumberRows::add(float x, float y, float z) {
 }
 
 void NumberRows::pad() {
-    while (count() % kMostLanes != 0) add(1, 1, 1);
+    while (count() % kMaxLanes != 0) add(1, 1, 1);
 }
 
 std::string NumberBuild::name() const {
@@ -139,7 +139,7 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
         for (std::size_t i = 0; i < of.results.size(); ++i) {
             const std::size_t row = of.first_row + i;
             const std::uint32_t got = results[of.operation].at(row);
-            const bool free = !has_denormals_ && is_free(of.operation, operands_of(rows, row), of.results[i]);
+            const bool free = !has_denormals_ && has_denormal(of.operation, operands_of(rows, row), of.results[i]);
             (free ? left_out : compared) += 1;
             if (free || agrees(got, of.results[i])) continue;
             if (wrong++ == 0) fault = fault_of(format_, of.operation, operands_of(rows, row), of.results[i], got);
@@ -150,11 +150,11 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
                                       kNumberOperations[of.operation].name);
     }
     if (wrong) return failed("wrong: " + operations, fault);
-    const std::string denormals = left_out ? fmt::format(", {} denormal ones left out", left_out) : "";
+    const std::string denormals = left_out ? fmt::format(", {} with denormal numbers skipped", left_out) : "";
     return passed(fmt::format("{} answers{}", compared, denormals));
 }
 
-// The number layer against its known answers: every operation, format and rounding, bit by bit.
+// --- Checks of the layer `number`: all operations and formats against the known answers
 namespace {
 
 std::vector<std::string> remedies_for(const NumberBuild& build, const DeviceInfo& device,
@@ -162,17 +162,18 @@ std::vector<std::string> remedies_for(const NumberBuild& build, const DeviceInfo
     std::vector<std::string> all;
     if (build.format.is_fp32() && build.trusted && device.correctly_rounded_divide_sqrt)
         all.emplace_back(
-            "if only div, sqrt or power is wrong: the device promises correctly rounded division and does not keep it");
+            "if only div, sqrt or power is wrong: the device promises correctly rounded division but does not round "
+            "correctly");
     if (build.format.is_fp32())
         all.emplace_back(
             "if only mul_add is wrong: the compiler contracts a b + c in spite of FP_CONTRACT OFF; look for an option "
-            "of the driver that forbids it");
+            "of the driver that disables contraction");
     all.insert(all.end(), of_lanes.begin(), of_lanes.end());
     all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
     return all;
 }
 
-// The rows of all operations below each other, each operation's answers for its own alone.
+// Runs the rows of all operations in one launch; each operation has answers only for its own rows.
 Verdict check_answers(Session& session, const NumberBuild& build, const FormatAnswers& answers,
                       const std::vector<std::string>& remedies) {
     NumberRows rows;
@@ -197,8 +198,8 @@ void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t 
     });
 }
 
-// One format for each way of the layer: fp32, fewer exponent bits or fp32's own, either rounding.
-bool is_usual(const NumberFormat& format) {
+// One format for each code path of the layer: fp32; fewer exponent bits than fp32, or as many; either rounding.
+bool is_representative(const NumberFormat& format) {
     for (const char* name : {"fp32", "e6m15", "e6m15t", "e5m10", "e8m12", "e8m21t"})
         if (format == parse_format(name)) return true;
     return false;
@@ -208,7 +209,7 @@ bool is_usual(const NumberFormat& format) {
 
 void verify_numbers(Verification& v) {
     for (const FormatAnswers& answers : known_answers()) {
-        if (!v.full() && !is_usual(answers.format)) continue;
+        if (!v.full() && !is_representative(answers.format)) continue;
         for (const std::uint32_t lanes : v.lanes()) verify_format(v, answers, lanes, true);
         const bool promises = v.device().correctly_rounded_divide_sqrt || v.device().fused_multiply_add;
         if (v.full() && promises) verify_format(v, answers, v.own_lanes(), false);
@@ -221,18 +222,18 @@ std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
         if (line.empty() || line[0] == '#') continue;
-        std::vector<std::string> words;
+        std::vector<std::string> fields;
         std::istringstream in(line);
-        for (std::string word; in >> word;) words.push_back(word);
-        // A format's name has a letter that is no hexadecimal digit: "fp32", or the m of eXmY.
-        if (words[0].find_first_of("mp") != std::string::npos && words.size() == 2) {
-            const NumberFormat format = parse_format(words[0]);
+        for (std::string field; in >> field;) fields.push_back(field);
+        // A format's name has a letter that is not a hexadecimal digit: "fp32", or the m of eXmY.
+        if (fields[0].find_first_of("mp") != std::string::npos && fields.size() == 2) {
+            const NumberFormat format = parse_format(fields[0]);
             if (all.empty() || all.back().format != format) all.push_back({format, {}});
-            operation = operation_number(words[1]);
+            operation = operation_number(fields[1]);
             continue;
         }
         if (all.empty()) throw std::logic_error("known answers: a line before the first section");
-        all.back().operations[operation].push_back(answer_of(words, kNumberOperations[operation]));
+        all.back().operations[operation].push_back(answer_of(fields, kNumberOperations[operation]));
     }
     return all;
 }

@@ -1,6 +1,5 @@
-// The number layer, operation by operation: rows of operands, the kernels that take them (kernels/checks/numbers.cl),
-// and the comparison of results with expected ones, bit by bit. Where those come from is the caller's business: known
-// answers, MPFR, the host.
+// Runs the operations of the number layer on rows of operands (kernels/checks/numbers.cl) and compares the results bit
+// by bit with expected ones. The caller provides those: known answers, MPFR, or the host's arithmetic.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -20,7 +19,7 @@ struct NumberOperation {
     std::size_t operands;  // 1..3
 };
 
-/// In the order of the results in kernels/checks/numbers.cl.
+/// In the order of results in kernels/checks/numbers.cl.
 inline constexpr std::array<NumberOperation, 16> kNumberOperations = {{{"add", 2},
                                                                        {"sub", 2},
                                                                        {"mul", 2},
@@ -37,7 +36,7 @@ inline constexpr std::array<NumberOperation, 16> kNumberOperations = {{{"add", 2
                                                                        {"abs", 1},
                                                                        {"log2", 1},
                                                                        {"exp2", 3}}};
-/// Numbers of operations; exp2 is of the third operand.
+/// Indices into kNumberOperations; exp2 takes the third operand.
 enum NumberOperationNumber : std::size_t {
     kAdd,
     kSub,
@@ -56,28 +55,28 @@ enum NumberOperationNumber : std::size_t {
     kLog2,
     kExp2
 };
-/// The first ones, which kernel `operations` does; `functions` does the others.
+/// Number of operations of kernel `operations`, which come first; kernel `functions` does the others.
 inline constexpr std::size_t kAnsweredOperations = kPower + 1;
 
-/// Operands a, b, c, column by column. What an operation does not take is there all the same; of from_index, a is the
-/// bits of a whole number.
+/// Operands a, b, c, one column each; operations ignore those that they do not take. For from_index, a has the bits of
+/// an integer.
 struct NumberRows {
     std::vector<float> a, b, c;
 
     std::size_t count() const { return a.size(); }
     void add(float x, float y, float z);
-    /// Adds rows of ones until their number is a multiple of kMostLanes.
+    /// Appends rows of ones up to a multiple of kMaxLanes.
     void pad();
 };
 
-/// [operation][row]: bits.
+/// Bits of results: [operation][row].
 using NumberResults = std::vector<std::vector<std::uint32_t>>;
 
-/// One way to build the layer.
+/// Build options of the number layer.
 struct NumberBuild {
     NumberFormat format;
     std::uint32_t lanes = 1;
-    bool trusted = true;  // the device's own division, square root and fma are taken as it promises; else refined
+    bool trusted = true;  // use the device's division, square root and fma where it promises them; false: refine
     bool optimised = true;
     KernelSources sources{};
 
@@ -85,7 +84,7 @@ struct NumberBuild {
     std::string name() const;
 };
 
-/// What an operation must give in rows that follow each other.
+/// Expected results of an operation in consecutive rows, from `first_row` on.
 struct ExpectedNumbers {
     std::size_t operation;
     std::vector<std::uint32_t> results{};
@@ -98,11 +97,13 @@ class NumberRunner {
 
     const std::string& options() const { return runner_.options(); }
 
-    /// All results, or only those of the first kAnsweredOperations. The number of rows is a multiple of kMostLanes.
+    /// Returns the results of all operations, or only of the first kAnsweredOperations. The number of rows is a
+    /// multiple of kMaxLanes.
     NumberResults run(const NumberRows& rows, bool all);
 
-    /// "357 answers", or how many of each operation are wrong, and the first of them. Any NaN is as good as another; a
-    /// device without denormal numbers may make of them what it likes.
+    /// Passes with "357 answers", or fails with the number of wrong results of each operation and the first of them.
+    /// Any NaN matches any NaN. On devices without denormal numbers, rows with a denormal operand or result are
+    /// skipped.
     Verdict check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected);
 
   private:
@@ -113,9 +114,8 @@ class NumberRunner {
     CheckRunner runner_;
 };
 
-/// What an operation must give for operands that lead into its corners: made by tests/verify/make_known_answers.cpp
-/// with MPFR, kept in known_answers.csv beside this file. Bits of fp32 numbers; the operand of from_index is a whole
-/// number. Operands that the operation has not are 1. Any NaN will do where the result is one.
+/// Operands of a corner case and the correct result, as bits of fp32 numbers; the operand of from_index is an integer.
+/// Unused operands are 1. tests/verify/make_known_answers.cpp generates them with MPFR into known_answers.csv.
 struct KnownAnswer {
     std::array<std::uint32_t, 3> operands{};
     std::uint32_t result = 0;
@@ -127,15 +127,15 @@ struct FormatAnswers {
     std::array<std::vector<KnownAnswer>, kAnsweredOperations> operations;  // in the order of kNumberOperations
 };
 
-/// Reads the file: a line "FORMAT OPERATION" opens a section, each further line has the operands' and the result's
-/// bits, 8 hexadecimal digits of which zeros at the end are left out; # opens a comment. std::logic_error for what is
-/// not so: the file is the project's own.
+/// Parses known_answers.csv: a line "FORMAT OPERATION" opens a section; each further line has the bits of the operands
+/// and of the result, in hexadecimal without trailing zeros; # starts a comment. Throws std::logic_error for any other
+/// text: the file is generated.
 std::vector<FormatAnswers> parse_known_answers(const std::string& text);
 
-/// The inverse.
+/// Inverse of parse_known_answers().
 std::string known_answers_text(const std::vector<FormatAnswers>& all);
 
-/// Those that the program carries.
+/// The answers embedded in the program.
 const std::vector<FormatAnswers>& known_answers();
 
 }  // namespace raya

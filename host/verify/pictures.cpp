@@ -17,17 +17,16 @@ namespace {
 
 constexpr const char* kPicturesHeading =
     "# Hashes, counts and pixels of pictures, made by tests/verify/make_pictures.cpp: do not edit.\n"
-    "# \"NAME: HASH\"; \"counts WAY: COUNTER NUMBER ...\"; then a line a row: bits of RED/GREEN/BLUE, "
-    "hexadecimal\n"
-    "# digits of fp32 numbers without the zeros at their ends; .: the same as on the left, =: as in the picture "
-    "before.\n";
+    "# \"NAME: HASH\"; \"counts VARIANT: COUNTER NUMBER ...\"; then a line for each row: RED/GREEN/BLUE, bits of "
+    "fp32\n"
+    "# numbers in hexadecimal without trailing zeros; .: as on the left, =: as in the previous picture.\n";
 
-// The numbers of "3f8/3f8/0"; std::logic_error where it is not so.
+// Parses "3f8/3f8/0". Throws std::logic_error unless it has three numbers.
 std::vector<float> colour_of(const std::string& text) {
     std::vector<float> rgb;
     std::istringstream in(text);
     for (std::string digits; std::getline(in, digits, '/');) rgb.push_back(std::bit_cast<float>(word_of(digits)));
-    if (rgb.size() != 3) throw std::logic_error("known pictures: '" + text + "' is no colour");
+    if (rgb.size() != 3) throw std::logic_error("known pictures: '" + text + "' is not a colour");
     return rgb;
 }
 
@@ -88,7 +87,7 @@ Scene scene_of(const Picture& picture) {
     return parse_nff(embedded_files().at(file), file);
 }
 
-RingSettings plain_settings(const Picture& picture) {
+RingSettings reference_settings(const Picture& picture) {
     RingSettings settings;
     settings.machine = machine_named("grande");
     settings.mapping = make_mapping(column_mapping(), {kPictureSide, kPictureSide}, 1);
@@ -118,7 +117,7 @@ std::vector<KnownPicture> parse_pictures(const std::string& text) {
     }
     for (const KnownPicture& picture : all)
         if (pixel_hash(picture.image) != picture.hash)
-            throw std::logic_error("known pictures: '" + picture.name + "' has another hash");
+            throw std::logic_error("known pictures: '" + picture.name + "': pixels do not match the hash");
     return all;
 }
 
@@ -127,7 +126,7 @@ std::string pictures_text(const std::vector<KnownPicture>& all) {
     std::vector<std::string> before(kPictureSide * kPictureSide);
     for (const KnownPicture& picture : all) {
         text += fmt::format("{}: {}\n", picture.name, picture.hash);
-        for (const auto& [way, counts] : picture.counts) text += fmt::format("counts {}: {}\n", way, counts);
+        for (const auto& [variant, counts] : picture.counts) text += fmt::format("counts {}: {}\n", variant, counts);
         std::string left;
         for (std::size_t i = 0; i < before.size(); ++i) {
             const std::string own = colour_text(&picture.image.rgb.at(3 * i));
@@ -158,14 +157,14 @@ std::string counts_text(const EventCounts& events, const std::vector<std::pair<c
     return text;
 }
 
-Verdict check_counts(const std::string& known, const std::string& counted, const std::string& told,
+Verdict check_counts(const std::string& known, const std::string& counted, const std::string& result,
                      const std::string& options) {
-    if (counted == known) return passed(told);
+    if (counted == known) return passed(result);
     Fault fault{
-        .where = "sums over a right image",
+        .where = "sums over the image, whose pixels are right",
         .options = options,
-        .remedies = {"are checks of \"number\" or \"geometry\" wrong too? then those first",
-                     "RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: are the counts right? tell raya's authors"}};
+        .remedies = {"if checks of \"number\" or \"geometry\" fail too, start with those",
+                     "run RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify, and report to raya whether it passes"}};
     std::istringstream right(known), got(counted);
     std::string names;
     for (std::string name, expected, found; right >> name >> expected && got >> name >> found;) {

@@ -7,16 +7,16 @@
 #include <csignal>
 #include <optional>
 
+#include "host/base/child_process.hpp"
 #include "host/base/clock.hpp"
 #include "host/base/json.hpp"
-#include "host/base/own_process.hpp"
 #include "host/cl/driver.hpp"
 #include "host/error.hpp"
 
 namespace raya {
 namespace {
 
-// In the process of the checks.
+// --- In the child process
 
 Json settings_json(const VerifySettings& s, const std::string& wanted, std::size_t index) {
     return {{"device", wanted},
@@ -42,10 +42,10 @@ VerifySettings settings_of(const Json& json) {
 
 struct NamedDevices {
     std::vector<cl::Device> devices;
-    std::vector<std::string> left_out;  // lines about those that cannot be used
+    std::vector<std::string> left_out;  // one line for each unusable device
 };
 
-// "all": the usable ones, else one as choose_device() has it. DeviceError as there.
+// See supervise(). Throws DeviceError if no device fits.
 NamedDevices named_devices(const std::string& wanted) {
     if (wanted != "all") return {{choose_device(wanted)}, {}};
     NamedDevices named;
@@ -55,14 +55,14 @@ NamedDevices named_devices(const std::string& wanted) {
             named.devices.push_back(device);
         else
             named.left_out.push_back(
-                fmt::format("{} ({}): not available, or without a compiler; left out", info.name, info.platform));
+                fmt::format("{} ({}): skipped: not available, or without a compiler", info.name, info.platform));
     }
     if (named.devices.empty()) choose_device("");  // throws, with the remedy
     return named;
 }
 
-// Names from which somebody sees what --only takes: the first of each layer.
-std::string some_names(const std::vector<std::string>& names) {
+// The first check of each layer, as examples for --only.
+std::string example_names(const std::vector<std::string>& names) {
     std::string text, layer;
     for (const std::string& name : names) {
         const std::string own = name.substr(0, name.find(' '));
@@ -77,48 +77,49 @@ void refuse_no_checks(const cl::Device& device, const VerifySettings& settings) 
     VerifySettings any = settings;
     any.only.clear();
     throw UserError(fmt::format(
-        "--only \"{}\": no check of {} has this in \"LAYER NAME\"; the layers are number, geometry, machine and image, "
-        "checks are{}{}",
-        settings.only, device_info(device).name, some_names(check_names(device, any)),
+        "--only \"{}\": no check of {} has this text in \"LAYER NAME\"; the layers are number, geometry, machine and "
+        "image; checks are, for example:{}{}",
+        settings.only, device_info(device).name, example_names(check_names(device, any)),
         settings.depth == Depth::kFull ? "" : "\n  ... and --full has more"));
 }
 
-// In the process that starts it.
+// --- In the parent process
 
 std::vector<std::string> remedies(const std::string& full_name, int status, const VerifySettings& settings) {
     std::vector<std::string> all;
     const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    if (signal == SIGKILL) all.emplace_back("is memory short? the system ends what takes most: see dmesg");
+    if (signal == SIGKILL) all.emplace_back("the system may have run out of memory and ended the process: see dmesg");
     if (signal == SIGILL)
-        all.emplace_back("kernels are compiled for another processor than this: look for an option of the driver");
+        all.emplace_back("the kernels were compiled for another processor: look for an option of the driver");
     if (!full_name.empty() && settings.only != full_name)
-        all.push_back(fmt::format("raya verify --only \"{}\": does it end by itself too?", full_name));
-    if (settings.lanes != 1) all.emplace_back("raya verify --lanes 1: compilers end less often with one lane");
+        all.push_back(
+            fmt::format("raya verify --only \"{}\": checks whether it also crashes when it runs alone", full_name));
+    if (settings.lanes != 1) all.emplace_back("raya verify --lanes 1: compilers crash less often with one lane");
     for (const std::string& remedy : compiler_remedies()) all.push_back(remedy);
     return all;
 }
 
-// The checks of one device, of as many processes as it takes.
+// The checks of one device, in as many processes as needed.
 class Supervision {
   public:
     Supervision(const VerifySettings& settings, const SupervisorSink& sink) : settings_(settings), sink_(sink) {}
 
-    /// Runs the checks that are left. Whether another process may end more of them.
-    bool run_rest(const std::string& wanted, std::size_t index) {
+    /// Runs the remaining checks in a new process. Returns true if another process should continue.
+    bool run_remaining(const std::string& wanted, std::size_t index) {
         const std::size_t before = settings_.done;
         ended_ = false;
-        OwnProcess process(kVerifyTask, settings_json(settings_, wanted, index));
+        ChildProcess process(kVerifyTask, settings_json(settings_, wanted, index));
         for (std::string line;;) {
-            const OwnProcess::Read read = process.read(line, std::chrono::seconds(1));
-            if (read == OwnProcess::Read::kEnd) break;
-            if (read == OwnProcess::Read::kLine)
+            const ChildProcess::Read read = process.read(line, std::chrono::seconds(1));
+            if (read == ChildProcess::Read::kEnd) break;
+            if (read == ChildProcess::Read::kLine)
                 take(Json::parse(line, {"the process of the checks"}));
             else if (sink_.running && running_)
                 sink_.running(running_->layer, running_->name, seconds());
         }
         const int status = process.wait();
         if (ended_ && status == 0) return false;
-        finish(broken(status));
+        finish(crashed_check(status));
         return !ended_ && settings_.done > before;
     }
 
@@ -150,7 +151,7 @@ class Supervision {
     }
 
     void take_device(const Json& line) {
-        if (devices_ > 0) return;  // of the processes after the first
+        if (devices_ > 0) return;  // known from the first process
         devices_ = line.at("devices").whole();
         all_.name = line.at("name").text();
         all_.platform = line.at("platform").text();
@@ -162,7 +163,7 @@ class Supervision {
     void finish(Check check) {
         if (!settings_.sources.folder.empty())
             check.verdict.fault.remedies = {
-                "raya verify without --kernel-dir: does it pass? then these kernels are wrong"};
+                "run raya verify without --kernel-dir; if it passes, these kernels are wrong"};
         settings_.done += running_.has_value();
         running_.reset();
         all_.seconds += check.seconds;
@@ -170,15 +171,15 @@ class Supervision {
         if (sink_.finished) sink_.finished(check);
     }
 
-    // The check that a process which has ended too soon takes with it.
-    Check broken(int status) const {
-        const std::string told = "ended by " + ending_text(status);
+    // The failed check of a process that ended too early with `status`.
+    Check crashed_check(int status) const {
+        const std::string result = "ended by " + ending_text(status);
         if (devices_ == 0 && WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)
-            throw std::runtime_error("this program cannot be started again for the checks: is there a /proc?");
+            throw std::runtime_error("cannot start this program again for the checks: /proc may be missing");
         if (devices_ == 0)
             throw DeviceError(fmt::format(
-                "looking for devices: a driver has ended the program by {}; remedy: leave it out (OCL_ICD_VENDORS), or "
-                "a newer one",
+                "looking for devices: a driver ended the program by {}; remedy: exclude it (OCL_ICD_VENDORS), or "
+                "install a newer one",
                 ending_text(status)));
         Check check{"device", ended_ ? "the end of the program" : "between checks", 0, {}};
         std::string where = "in the driver, with no check running", full_name;
@@ -187,17 +188,17 @@ class Supervision {
             full_name = check.layer + " " + check.name;
             where = "in the driver or its compiler, while this check ran";
         }
-        check.verdict = failed(told, {.where = where, .remedies = remedies(full_name, status, settings_)});
+        check.verdict = failed(result, {.where = where, .remedies = remedies(full_name, status, settings_)});
         return check;
     }
 
-    VerifySettings settings_;  // `done`: the checks that have ended
+    VerifySettings settings_;  // `done`: number of finished checks
     const SupervisorSink& sink_;
     DeviceChecks all_;
     std::size_t devices_ = 0;
     std::optional<Running> running_;
     Clock::time_point start_;
-    bool ended_ = false;  // the process has told the end
+    bool ended_ = false;  // {"ended": true} was read
 };
 
 }  // namespace
@@ -205,7 +206,7 @@ class Supervision {
 DeviceChecks supervise(const std::string& wanted, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink, std::size_t& devices) {
     Supervision supervision(settings, sink);
-    while (supervision.run_rest(wanted, index)) continue;
+    while (supervision.run_remaining(wanted, index)) continue;
     devices = supervision.devices();
     return supervision.take_checks();
 }

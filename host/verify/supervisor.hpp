@@ -1,11 +1,11 @@
-// Runs a device's checks in a process of its own, since a driver that crashes takes its process with it, and once more
-// from where it ended if a driver ends it. What that process writes, a JSON object a line:
+// Runs a device's checks in a child process, because a driver that crashes ends its process. After a crash another
+// child continues with the next check. Protocol: one JSON object per line:
 //
 //     {"devices": N, "left_out": [TEXT, ...], "name": ..., "platform": ..., "version": ..., "driver": ...}
-//     {"started": {"layer": LAYER, "name": NAME}}    a check begins
-//     {"check": {...}}      and has ended: to_json() of check.hpp
-//     {"ended": true}       that was all
-//     {"error": TEXT, "kind": "user" or "device" or "internal"}      nothing more comes
+//     {"started": {"layer": LAYER, "name": NAME}}    a check starts
+//     {"check": {...}}      it is done: to_json() of verify.hpp
+//     {"ended": true}       all checks are done
+//     {"error": TEXT, "kind": "user" or "device" or "internal"}      the last line
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -16,31 +16,32 @@
 
 namespace raya {
 
-/// What a device says of itself, and what came of its checks.
+/// A device and the results of its checks.
 struct DeviceChecks {
     std::string name, platform, version, driver;
     std::vector<Check> checks;
     double seconds = 0;
 
-    bool is_right() const { return count_of(checks, Outcome::kFail) == 0 && count_of(checks, Outcome::kPass) > 0; }
+    bool all_passed() const { return count_of(checks, Outcome::kFail) == 0 && count_of(checks, Outcome::kPass) > 0; }
 };
 
 struct SupervisorSink {
-    /// Before a device's first check; `left_out`: lines about devices that cannot be used.
+    /// Called before a device's first check; `left_out`: one line for each unusable device.
     std::function<void(const DeviceChecks&, const std::vector<std::string>& left_out)> device{};
-    /// A check has been running for so many seconds; told about once a second.
+    /// Called about once a second while a check runs, with its run time in seconds.
     std::function<void(const std::string& layer, const std::string& name, double seconds)> running{};
     std::function<void(const Check&)> finished{};
 };
 
-/// Checks device number `index` of those that `wanted` names: "all" the usable ones, else one as choose_device() has
-/// it. A process that ends before it has told the end is a check that failed, the one that ran; the checks after it
-/// follow in another process, as long as each ends at least one. `devices` becomes how many devices are named.
-/// UserError, DeviceError as the process itself met them, and DeviceError if the driver ends it before any check.
+/// Checks device number `index` of the devices that `wanted` selects: "all" for every usable one, otherwise one by the
+/// rules of choose_device(). If the process ends early, the running check has failed, and the next checks run in a new
+/// process, as long as each process completes at least one. Sets `devices` to the number of selected devices. Throws
+/// the process's UserError or DeviceError, and DeviceError if the driver ends it before the first check.
 DeviceChecks supervise(const std::string& wanted, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink, std::size_t& devices);
 
-/// The task of that process (host/base/own_process.hpp), and what it does: writes all lines but the last.
+/// Task of the child process (host/base/child_process.hpp). run_checks() writes all lines except "error"; it throws
+/// instead.
 inline constexpr const char* kVerifyTask = "verify";
 void run_checks(int lines, const Json& order);
 

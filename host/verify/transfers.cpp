@@ -17,7 +17,7 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-// Every word another one, so that none can stand in for another; as fp32 numbers they are normal and no NaN.
+// Distinct words, so that no word can be mistaken for another; as fp32 numbers they are normal.
 Words numbered(std::size_t count, std::uint32_t first = 0) {
     Words words(count);
     std::iota(words.begin(), words.end(), 0x3f000000u + first);
@@ -39,7 +39,7 @@ std::optional<Verdict> difference(const Words& expected, const Words& got, const
     const auto differ = std::mismatch(expected.begin(), expected.end(), got.begin());
     if (differ.first == expected.end()) return {};
     const auto at = static_cast<std::size_t>(differ.first - expected.begin());
-    return failed(what + ": words are not where they should be",
+    return failed(what + ": words at wrong places",
                   {.where = fmt::format("{}, {} {}, word {}", what, one, at / words_of_one, at % words_of_one),
                    .expected = fmt::format("0x{:08x}", expected[at]),
                    .got = fmt::format("0x{:08x}", got[at])});
@@ -62,11 +62,11 @@ Verdict check_bus(Session& session) {
     std::vector<float> gathered(words.size());
     bus.gather(blocks, gathered, words.size());
     if (auto verdict = difference(words, as_words(gathered), "gather", words.size(), "gather")) return *verdict;
-    return passed(fmt::format("{} words each way", words.size()));
+    return passed(fmt::format("{} words in each direction", words.size()));
 }
 
-// Where word `w` of the blocks [PE][kRows][words] is in the PEs' own memory [PE][kRows][pitch], `distance` PEs further
-// up, if blocks begin at word `offset` of each row.
+// Maps word `w` of the blocks [PE][kRows][words] to its index in the PEs' own memory [PE][kRows][pitch], `distance` PEs
+// further up; blocks start at word `offset` of each row.
 constexpr std::size_t kRows = 3;
 struct OwnWords {
     std::size_t pes, words, pitch, offset;
@@ -78,7 +78,7 @@ struct OwnWords {
     std::size_t size() const { return pes * kRows * pitch; }
 };
 
-// Every PE's block has words of its own in each round, and comes from the middle of its rows.
+// In each round every PE's block has distinct words, taken from the middle of its rows.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Bus bus(session, counted, static_cast<std::uint32_t>(pes));
@@ -86,7 +86,7 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     auto memory = session.buffer<float>("own words", place.size()),
          blocks = session.buffer<float>("blocks", pes * kRows * words);
     for (std::uint32_t round = 0; round < 6; ++round) {
-        const bool to_all = round == 5;  // a block in its own PE's place is what all have heard
+        const bool to_all = round == 5;  // broadcasts; the model is distance 0
         const std::size_t distance = to_all ? 0 : 1 + round * (pes - 1) / 5;
         const Words own = numbered(place.size(), round * static_cast<std::uint32_t>(place.size()));
         session.write("own words", memory, as_floats(own));
@@ -105,8 +105,8 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
                               kRows * words));
 }
 
-// Blocks of all PEs after a turn: PE i has what PE (i + turned) mod P had. Every turn has words of its own: with two
-// PEs, those of the turn before the last would be where these belong.
+// After a rotation PE i has the block of PE (i + turned) mod P. Every rotation has distinct words: with two PEs, stale
+// words of the rotation before the last would be in the right places.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Ring ring(session, counted, static_cast<std::uint32_t>(pes), kRows, words);
@@ -151,24 +151,24 @@ Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t eve
                 out[at + kWords + w] = expected[at + kWords + w] = number << 12 | (w + 1);
             packets_sent += packets;
         }
-    for (std::size_t at = 0; at < in.size(); ++at) in[at] = at % box ? kPoison : 0;  // empty, whatever clear() has done
+    for (std::size_t at = 0; at < in.size(); ++at) in[at] = at % box ? kPoison : 0;  // empty, independent of clear()
     session.write("inboxes", links.inboxes(), in);
     session.write("outboxes", links.outboxes(), out);
-    auto nodes_say = session.buffer<std::uint32_t>("status", status.words.size());
-    session.write("status", nodes_say, status.words);
-    if (kernels) links.use_kernel(kernels->get<ExchangeKernel>(), kernels->options().group_size, nodes_say);
+    auto status_buffer = session.buffer<std::uint32_t>("status", status.words.size());
+    session.write("status", status_buffer, status.words);
+    if (kernels) links.use_kernel(kernels->get<ExchangeKernel>(), kernels->options().group_size, status_buffer);
     std::vector<std::uint64_t> words(std::size_t{nodes} * RAYA_LINKS);
     links.exchange(status, words);
     session.read("inboxes", links.inboxes(), in);
     session.read("sent boxes", links.sent(), sent);
-    // What lies behind a box's packets has no meaning.
+    // Words after a box's packets are undefined.
     for (std::size_t at = 0; at < in.size(); at += box)
         for (std::size_t w = 1; w < box; ++w)
             if (w < kWords || w >= (1 + expected[at]) * kWords) in[at + w] = expected[at + w] = 0;
     const std::string what =
         fmt::format("exchange on {}", sides_text({torus.sides[0], torus.sides[1], torus.sides[2]}));
     if (auto verdict = difference(expected, in, what, box, "inbox")) return *verdict;
-    if (auto verdict = difference(expected_sent, sent, what + ", boxes that were sent", nodes, "link")) return *verdict;
+    if (auto verdict = difference(expected_sent, sent, what + ", flags of sent boxes", nodes, "link")) return *verdict;
     return passed(fmt::format("{} packets over {} links", packets_sent, RAYA_LINKS * nodes));
 }
 

@@ -1,4 +1,4 @@
-// Words on their way: bus, ring and links, and the copies that they are made of, each against a model on the host.
+// Checks of transfers: bus, ring, links, and the buffer copies that implement them, each against a model on the host.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,29 +11,29 @@
 
 namespace raya {
 
-/// Words that are broadcast, and others that are gathered.
+/// Checks one broadcast and one gather.
 Verdict check_bus(Session& session);
 
-/// Blocks of so many words from every PE to another one, at five distances, and from each PE to all.
+/// Checks blocks of `words` words from every PE to another PE, at five distances, and from each PE to all.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words);
 
-/// 12 rotations, in both directions, of P blocks of so many words.
+/// Checks 12 rotations, in both directions, of `pes` blocks of `words` words.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words);
 
-/// Some nodes' outboxes filled, one exchange, all inboxes compared, and which boxes are said to have been sent.
-/// `every`: a box in so many has packets. By the kernel that `kernels` builds; without them by copies.
+/// Fills some outboxes, exchanges once, and compares all inboxes and the flags of sent boxes. `every`: one box in this
+/// many has packets. `kernels`: exchange with the kernel that it builds; null: with copies.
 Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every, Kernels* kernels = nullptr);
 
-/// `count` words of each of `blocks` blocks, from one pitch to another.
+/// Copy of `count` words of each of `blocks` blocks, between layouts of different pitch.
 struct BlockCopy {
     Session::Blocks from, to;
     std::size_t count, blocks;
 };
 
-/// Words below this number are copied to words below it.
+/// Size in words of check_copies()' two buffers.
 inline constexpr std::size_t kCopiedWords = 4096;
 
-/// Copies within kCopiedWords; all other words stay as they were.
+/// Checks each copy; the remaining words of the destination must not change.
 Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies);
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// What came of a check, and what is wrong where it failed; and 32-bit words as the files of known answers have them.
+// Result of a check, details of a failure, and the text form of 32-bit words in the files of known answers.
 #pragma once
 #include <fmt/core.h>
 
@@ -12,26 +12,26 @@ namespace raya {
 
 enum class Outcome { kPass, kFail, kSkip };
 
-/// What is wrong, for somebody who has to find out why. What is not known is empty.
+/// Details of a failed check. Unknown members are empty.
 struct Fault {
-    std::string where{};                  // the first operation, ray, word or pixel that is wrong
-    std::string expected{}, got{};        // of it: bits, and what they mean
+    std::string where{};                  // the first wrong operation, ray, word or pixel
+    std::string expected{}, got{};        // its bits and their meaning
     std::string options{};                // build options of the kernel
-    std::vector<std::string> remedies{};  // what to try, the likeliest first
+    std::vector<std::string> remedies{};  // what to try, most promising first
 };
 
-/// How a check ended, in a line: what was compared, why it is skipped, or what is wrong.
+/// Outcome of a check.
 struct Verdict {
     Outcome outcome = Outcome::kPass;
-    std::string told;
-    Fault fault{};  // of kFail
+    std::string result;  // one line: what was compared, the reason for a skip, or what is wrong
+    Fault fault{};       // for kFail
 };
 
-inline Verdict passed(std::string told) { return {Outcome::kPass, std::move(told)}; }
+inline Verdict passed(std::string result) { return {Outcome::kPass, std::move(result)}; }
 inline Verdict skipped(std::string reason) { return {Outcome::kSkip, std::move(reason)}; }
-inline Verdict failed(std::string told, Fault fault) { return {Outcome::kFail, std::move(told), std::move(fault)}; }
+inline Verdict failed(std::string result, Fault fault) { return {Outcome::kFail, std::move(result), std::move(fault)}; }
 
-/// A failure with what is known beside its place; any other verdict as it is.
+/// Adds build options and remedies to a failure; returns any other verdict unchanged.
 inline Verdict with_remedies(Verdict verdict, const std::string& options, const std::vector<std::string>& remedies) {
     if (verdict.outcome != Outcome::kFail) return verdict;
     verdict.fault.options = options;
@@ -39,20 +39,20 @@ inline Verdict with_remedies(Verdict verdict, const std::string& options, const 
     return verdict;
 }
 
-/// What results hold before a kernel runs, so that one that does nothing does not find the right ones there, left by
-/// another: the answer of no check.
+/// Fill value of result buffers before a launch. No check expects it, so a kernel that writes nothing fails even where
+/// an earlier kernel left the right results in the same memory.
 inline constexpr std::uint32_t kPoison = 0xdeadbeef;
 
-/// 8 hexadecimal digits of which zeros at the end are left out: "3f8" is 0x3f800000. std::logic_error for anything
-/// else.
+/// Reads a word written as 8 hexadecimal digits without trailing zeros: "3f8" is 0x3f800000. Throws std::logic_error
+/// for any other text.
 inline std::uint32_t word_of(std::string digits) {
     if (digits.empty() || digits.size() > 8 || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
-        throw std::logic_error("'" + digits + "' is no word");
+        throw std::logic_error("'" + digits + "' is not 1 to 8 hexadecimal digits");
     digits.resize(8, '0');
     return static_cast<std::uint32_t>(std::stoul(digits, nullptr, 16));
 }
 
-/// The inverse.
+/// Inverse of word_of().
 inline std::string digits_of(std::uint32_t word) {
     std::string digits = fmt::format("{:08x}", word);
     while (digits.size() > 1 && digits.back() == '0') digits.pop_back();

@@ -13,35 +13,36 @@
 namespace raya {
 namespace {
 
-bool says_any(const std::string& message, const std::vector<const char*>& words) {
-    return std::any_of(words.begin(), words.end(),
-                       [&](const char* word) { return message.find(word) != std::string::npos; });
+bool contains_any(const std::string& message, const std::vector<const char*>& texts) {
+    return std::any_of(texts.begin(), texts.end(),
+                       [&](const char* text) { return message.find(text) != std::string::npos; });
 }
 
-// What to try after a failure that was thrown, by what the message says; `by_device`: a DeviceError.
+// Remedies for a check that threw, chosen by the message; `by_device`: a DeviceError.
 std::vector<std::string> remedies_for(const std::string& message, bool by_device) {
     const std::string newer = "a newer driver, or another OpenCL implementation for this device (raya devices)";
-    if (says_any(message, {"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE",
-                           "CL_OUT_OF_", "bad_alloc"}))
-        return {"memory is short: end other programs that use this device or this machine, and run verify again",
-                newer};
-    if (says_any(message, {"CL_DEVICE_NOT_AVAILABLE", "CL_CONTEXT_TERMINATED", "CL_COMMAND_TERMINATED",
-                           "CL_EXEC_STATUS_ERROR", "illegal read or write"}))
-        return {"the device was lost: does raya devices still list it? does the system's log (dmesg) tell why?",
-                "another program, or a limit on how long a kernel may run, may have ended it", newer};
-    if (says_any(message, {"building program", "CL_INVALID_BUILD_OPTIONS"})) {
-        std::vector<std::string> all = {"the build log above says what the compiler refuses: tell its makers"};
+    if (contains_any(message, {"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE",
+                               "CL_OUT_OF_", "bad_alloc"}))
+        return {"out of memory: end other programs that use this device or this machine, and run verify again", newer};
+    if (contains_any(message, {"CL_DEVICE_NOT_AVAILABLE", "CL_CONTEXT_TERMINATED", "CL_COMMAND_TERMINATED",
+                               "CL_EXEC_STATUS_ERROR", "illegal read or write"}))
+        return {
+            "the device was lost: check whether raya devices still lists it, and look for the cause in the "
+            "system's log (dmesg)",
+            "another program, or a limit on the run time of a kernel, may have caused it", newer};
+    if (contains_any(message, {"building program", "CL_INVALID_BUILD_OPTIONS"})) {
+        std::vector<std::string> all = {"see the build log above; report the error to the compiler's vendor"};
         const std::vector<std::string> more = compiler_remedies();
         all.insert(all.end(), more.begin(), more.end());
         return all;
     }
-    if (by_device) return {"raya devices: is this the device that you mean?", newer};
-    return {"are checks of \"number\", \"geometry\" or \"machine\" wrong too? then those first",
-            "else this is an error in raya: tell its authors"};
+    if (by_device) return {"run raya devices, and check that this is the intended device", newer};
+    return {"if checks of \"number\", \"geometry\" or \"machine\" fail too, start with those",
+            "otherwise this is an error in raya: report it"};
 }
 
 Verdict verdict_of(const std::function<Verdict()>& body) {
-    const auto broken = [](const std::string& message, bool by_device) {
+    const auto failure = [](const std::string& message, bool by_device) {
         const std::size_t end = message.find('\n');
         Fault fault;
         if (end != std::string::npos) fault.where = message.substr(end + 1);
@@ -51,13 +52,13 @@ Verdict verdict_of(const std::function<Verdict()>& body) {
     try {
         return body();
     } catch (const DeviceError& error) {
-        return broken(error.what(), true);
+        return failure(error.what(), true);
     } catch (const std::exception& error) {
-        return broken(std::string("the check could not be done: ") + error.what(), false);
+        return failure(std::string("the check stopped with an error: ") + error.what(), false);
     }
 }
 
-// "    label: text", the text's further lines below its first.
+// "      label         text"; further lines of the text are aligned below its first.
 std::string indented(const std::string& label, const std::string& text) {
     constexpr int kLabel = 14;
     if (text.empty()) return {};
@@ -94,7 +95,7 @@ std::size_t count_of(const std::vector<Check>& checks, Outcome outcome) {
 
 std::string check_lines(const Check& c) {
     std::string lines = fmt::format("{}  {:<9} {:<46} {:6.2f} s  {}\n", outcome_name(c.verdict.outcome), c.layer,
-                                    c.name, c.seconds, c.verdict.told);
+                                    c.name, c.seconds, c.verdict.result);
     if (c.verdict.outcome != Outcome::kFail) return lines;
     const Fault& f = c.verdict.fault;
     lines += indented("where", f.where) + indented("expected", f.expected) + indented("got", f.got) +
@@ -108,7 +109,7 @@ Json to_json(const Check& c) {
                  {"name", c.name},
                  {"status", outcome_name(c.verdict.outcome)},
                  {"seconds", c.seconds},
-                 {"told", c.verdict.told}};
+                 {"result", c.verdict.result}};
     if (c.verdict.outcome != Outcome::kFail) return json;
     const Fault& f = c.verdict.fault;
     json["where"] = f.where;
@@ -122,7 +123,7 @@ Json to_json(const Check& c) {
 std::vector<std::string> compiler_remedies() {
     std::vector<std::string> all;
     if (user_build_options().find("-cl-opt-disable") == std::string::npos)
-        all.emplace_back("RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: the compiler without its optimiser");
+        all.emplace_back("RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: compiles without optimisation");
     all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
     return all;
 }
@@ -130,7 +131,7 @@ std::vector<std::string> compiler_remedies() {
 Check check_of(const Json& json) {
     const auto text = [&](const char* key) { return json.at(key).text(); };
     const std::string status = text("status");
-    Check check{text("layer"), text("name"), json.at("seconds").number(), {Outcome::kPass, text("told"), {}}};
+    Check check{text("layer"), text("name"), json.at("seconds").number(), {Outcome::kPass, text("result"), {}}};
     if (status == outcome_name(Outcome::kSkip)) check.verdict.outcome = Outcome::kSkip;
     if (status != outcome_name(Outcome::kFail)) return check;
     check.verdict.outcome = Outcome::kFail;
@@ -156,7 +157,7 @@ const char* depth_name(Depth depth) {
 
 Verification::Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs)
     : device_(device), info_(device_info(device)), settings_(settings), sink_(sink), runs_(runs) {
-    check_patches(settings.sources);  // else one that does not fit would look like a fault seen
+    check_patches(settings.sources);  // one that does not apply would look like a detected fault
 }
 
 void Verification::check(const std::string& layer, const std::string& name,
@@ -186,8 +187,8 @@ std::vector<std::uint32_t> Verification::lanes() const {
 
 std::vector<std::string> Verification::lanes_remedies(std::uint32_t lanes) const {
     if (lanes <= 1) return {};
-    if (full() && settings_.lanes == 0) return {"are checks with fewer lanes right? then give --lanes"};
-    return {"raya verify --lanes 1: are fewer lanes right? then give --lanes"};
+    if (full() && settings_.lanes == 0) return {"if checks with fewer lanes pass, use --lanes with that number"};
+    return {"run raya verify --lanes 1; if it passes, render with --lanes 1"};
 }
 
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {

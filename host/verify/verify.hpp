@@ -1,5 +1,4 @@
-// Is this device, with its driver and its compiler, right? Known answers from the number layer up to whole images;
-// each check measured, with what came of it.
+// Checks of a device with its driver and compiler against known answers, from the number layer up to whole images.
 #pragma once
 #include <functional>
 #include <string>
@@ -18,38 +17,37 @@ const char* outcome_name(Outcome outcome);
 
 struct Check {
     std::string layer, name;  // "number", "e6m15, 16 lanes"
-    double seconds = 0;       // measured
+    double seconds = 0;       // wall-clock time
     Verdict verdict;
 };
 
-/// Runs `body` and measures it. What it throws is a check that failed with that message, not the end of the others:
-/// drivers refuse, and a machine whose arithmetic is wrong may lose packets, which the torus reports as a fault of
-/// ours.
+/// Runs and times `body`. An exception becomes a failed check with its message, so that the remaining checks run:
+/// drivers reject kernels, and with wrong arithmetic the torus may lose packets, which it reports as an internal error.
 Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body);
 
-/// What to try where the compiler or the driver may be at fault, without what is tried already.
+/// Remedies for errors of the compiler or driver, except those that this run already applies.
 std::vector<std::string> compiler_remedies();
 
-/// How many of `checks` ended so.
+/// Number of checks with this outcome.
 std::size_t count_of(const std::vector<Check>& checks, Outcome outcome);
 
-/// "PASS  number    e6m15, 16 lanes  310 answers  0.41 s", and indented lines for a fault.
+/// "PASS  number    e6m15, 16 lanes  0.41 s  310 answers"; a failure adds indented lines with its details.
 std::string check_lines(const Check& check);
 
-/// An object with layer, name, status, seconds and told; of a failure also where, expected, got, build_options and
+/// An object with layer, name, status, seconds and result; a failure also has where, expected, got, build_options and
 /// remedies.
 Json to_json(const Check& check);
 
-/// The inverse.
+/// Inverse of to_json(Check).
 Check check_of(const Json& json);
 
 enum class Depth {
-    kBrief,  // of kQuick what few kernels and few rays show: for simulators, and compilers that take a minute a kernel
-    kQuick,  // one width of lanes, the usual formats, a dozen images: seconds
-    kFull    // every format, lanes and group size: minutes
+    kBrief,  // few kernels and few rays: for simulators, and for compilers that take a minute a kernel
+    kQuick,  // one number of lanes, the common formats, a dozen images: seconds
+    kFull    // every format, number of lanes and group size: minutes
 };
 
-/// By which a report is known again: its member "kind".
+/// Member "kind" of a report, which identifies it.
 inline constexpr const char* kVerifyReportKind = "raya verify";
 
 /// "quick"
@@ -57,50 +55,50 @@ const char* depth_name(Depth depth);
 
 struct VerifySettings {
     Depth depth = Depth::kQuick;
-    KernelSources sources{};  // of the kernels
-    std::string only{};       // checks with this in "LAYER NAME" alone; empty: all
-    std::uint32_t lanes = 0;  // this width alone, 1, 4, 8 or 16; 0: the device's own, with kFull all
-    std::size_t done = 0;     // so many checks, the first ones, are left out
+    KernelSources sources{};
+    std::string only{};       // run only checks whose "LAYER NAME" contains this text; empty: all
+    std::uint32_t lanes = 0;  // the only number of lanes: 1, 4, 8 or 16; 0: the device's default, with kFull all
+    std::size_t done = 0;     // skip this many checks at the beginning
 };
 
-/// Is told of every check as it begins, by layer and name, and as it ends.
+/// Callbacks at the start (layer, name) and at the end of every check.
 struct CheckSink {
     std::function<void(const std::string&, const std::string&)> started{};
     std::function<void(const Check&)> finished{};
 };
 
-/// Checks `device` from the number layer to the images, layer by layer, so that the first failure is nearest to the
-/// fault. DeviceError if the device says nothing of itself; std::logic_error for patches that do not fit.
+/// Checks `device` layer by layer, from the number layer to the images, so that the first failure is nearest to the
+/// cause. Throws DeviceError if the device's properties cannot be read, std::logic_error for patches that do not apply.
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink = {});
 
-/// "LAYER NAME" of every check that verify() would run, in their order.
+/// "LAYER NAME" of every check that verify() would run, in the same order.
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);
 
-/// What the layers' checks have in common: the device, the depth, and how a check is run.
+/// Device, settings and results of a run; the layers register their checks with check().
 class Verification {
   public:
-    /// `runs`: checks are run; else they are named alone.
+    /// `runs`: run the checks; false: only collect their names.
     Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs = true);
 
     const DeviceInfo& device() const { return info_; }
     Depth depth() const { return settings_.depth; }
     bool full() const { return depth() == Depth::kFull; }
 
-    /// Runs one check in a session of its own: a failed command may leave a context of no use.
+    /// Runs one check in its own session: a failed command may make a context unusable.
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
 
     const KernelSources& sources() const { return settings_.sources; }
-    /// The same for a renderer's kernels.
+    /// Sources and options of a renderer's kernels; 0 lanes: given_lanes().
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
 
-    /// The only width of lanes to try; 0: none is given.
+    /// VerifySettings::lanes: the only number of lanes to check, 0: not set.
     std::uint32_t given_lanes() const { return settings_.lanes; }
-    /// Lanes that are asked for, or the device's own.
+    /// given_lanes(), or the device's default.
     std::uint32_t own_lanes() const { return settings_.lanes ? settings_.lanes : default_lanes(info_); }
-    /// All widths of lanes to try.
+    /// Every number of lanes to check.
     std::vector<std::uint32_t> lanes() const;
 
-    /// What to try where a width of lanes may be at fault; nothing where that has been tried.
+    /// Remedies for failures that may depend on the number of lanes; empty for one lane.
     std::vector<std::string> lanes_remedies(std::uint32_t lanes) const;
 
     std::vector<Check> take_checks() { return std::move(checks_); }
@@ -113,10 +111,10 @@ class Verification {
     CheckSink sink_;
     bool runs_;
     std::vector<Check> checks_;
-    std::vector<std::string> names_;  // of those and of settings_.done before them
+    std::vector<std::string> names_;  // of checks_ and of the skipped settings_.done before them
 };
 
-// The layers, in the order in which they rest on each other.
+// The layers; each relies on those before it.
 void verify_numbers(Verification& verification);
 void verify_geometry(Verification& verification);
 void verify_machines(Verification& verification);

@@ -1,14 +1,14 @@
-// What kernels compute of the machines beside numbers: owners of pixels, ways through the torus, words in local memory.
-// The host computes the same with the same headers; all of it is exact.
-#include "kernels/shared/mapping.h"
+// Checks of integer computations: owners of pixels, routes on the torus, transfers through local memory. The host
+// computes the same results with the same headers and compares them exactly.
 #include "kernels/shared/neighbours.h"
+#include "kernels/shared/share_pixels.h"
 #include "kernels/shared/torus.h"
 
 #ifndef RAYA_GROUP
 #define RAYA_GROUP 1  // L: work-items in a work-group of `turn_round`, 1..1024
 #endif
 
-// Who owns a pixel and where it lies in its owner's share, both ways. A work-item takes one pixel.
+// The owner of a pixel and its number in the owner's share, both ways. A work-item takes one pixel.
 __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [case]
                           __global const raya_pixel* restrict pixels,      // [case]
                           const uint cases,
@@ -35,8 +35,8 @@ __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [c
     to[5] = sides;
 }
 
-// The first link of a packet's way and of a return's, and where the links of its node lead. A
-// work-item takes one pair of nodes.
+// The first link of a packet's route and of a return's route, and the ends of its node's links. A work-item takes one
+// pair of nodes.
 __kernel void find_ways(__global const raya_torus* restrict toruses,  // [case]
                         __global const uint* restrict nodes,          // [case][2]: where the packet is, where it goes
                         const uint cases,
@@ -48,13 +48,13 @@ __kernel void find_ways(__global const raya_torus* restrict toruses,  // [case]
     const uint node = nodes[2 * i];
     __global uint* to = results + i * (2 + RAYA_LINKS);
     to[0] = raya_next_link(t, node, nodes[2 * i + 1]);
-    to[1] = raya_home_link(t, node);
+    to[1] = raya_return_link(t, node);
     for (uint link = 0; link < RAYA_LINKS; ++link) to[2 + link] = raya_link_end(t, node, link);
 }
 
-// Every work-group takes its words into local memory, then takes them out again the other way round,
-// several times, with a number that its work-items have drawn from a counter: what the trace kernel asks of
-// local memory, barriers and atomics.
+// Exercises local memory, barriers and atomics as the trace kernel uses them. Every work-group copies its words to
+// local memory, reverses them and adds 1 `times` times, and writes them; its work-items draw the numbers 0 .. words - 1
+// from a shared counter.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void turn_round(__global const uint* restrict from,  // [group][words]
                 const uint words,
@@ -62,7 +62,7 @@ void turn_round(__global const uint* restrict from,  // [group][words]
                 __local uint* restrict own,          // [2][words]
                 __local uint* restrict next,         // [1]
                 __global uint* restrict to,          // [group][words]
-                __global uint* restrict drawn)       // [group][words]: how often each number was drawn
+                __global uint* restrict drawn)       // [group][words]: how often each number was drawn, added to
 {
     const uint group = get_group_id(0);
     if (get_local_id(0) == 0) *next = 0;

@@ -1,8 +1,8 @@
-// Every operation of the number layer on rows of operands.
+// Checks of the number layer: every operation on rows of operands.
 //
-// A work-group is one work-item, which takes the next V rows; their number is a multiple of V. Everything lies column
-// by column: operand k of row i at k * rows + i, the bits of result k of row i likewise. Every operation is done on
-// every row; the host looks at those that the row is for (host/verify/numbers.hpp).
+// A work-group is one work-item, which takes the next V rows; their number is a multiple of V. Arrays are column-major:
+// operand k of row i at k * rows + i, the bits of result k of row i likewise. Every operation is done on every row; the
+// host compares those that the row is for (host/verify/numbers.hpp).
 #include "kernels/checks/rows.clh"
 #include "kernels/number/power.clh"
 
@@ -24,7 +24,7 @@ RAYA_KERNEL_BODY void do_operations(real a, real b, real c, __global uint* to, u
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void operations(__global const float* restrict operands,  // [3][rows]: a, b, c; from_index takes a's bits
                 const uint rows,
-                __global uint* restrict results)          // [12][rows], in the order below
+                __global uint* restrict results)          // [12][rows], in the order of do_operations()
 {
     const uint first = get_group_id(0) * RAYA_LANES;
     const real a = load_lanes(operands + first, 1), b = load_lanes(operands + rows + first, 1);
@@ -32,11 +32,11 @@ void operations(__global const float* restrict operands,  // [3][rows]: a, b, c;
     do_operations(a, b, c, results + first, rows);
 }
 
-// What has no known answers: a kernel of its own, as its compilation takes time.
+// Operations without known answers; a kernel of its own, as compiling it takes time.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void functions(__global const float* restrict operands,  // as above
                const uint rows,
-               __global uint* restrict results)          // [4][rows], in the order below
+               __global uint* restrict results)          // [4][rows], in the order of the stores
 {
     const uint first = get_group_id(0) * RAYA_LANES;
     const real a = load_lanes(operands + first, 1);

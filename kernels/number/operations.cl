@@ -1,8 +1,7 @@
-// operations: how long each operation of the number layer takes. A benchmark, it computes nothing of use.
+// operations: a benchmark of the operations of the number layer; its results have no meaning.
 //
-// Every work-item repeats one operation `rounds` times on eight independent chains of V lanes, so that
-// what is measured is how many the device can do, not how long one takes. The results are stored so that
-// no compiler leaves the work out.
+// Every work-item repeats one operation `rounds` times on eight independent chains of V lanes, so that it measures
+// throughput, not latency. The results are stored so that no compiler removes the work.
 #include "number.clh"
 #include "kernels/shared/chains.h"
 
@@ -10,7 +9,7 @@
 #define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
 #endif
 
-// Written out, chain by chain: an array with a loop would stay in memory.
+// Unrolled by macros: compilers would keep an array indexed in a loop in memory.
 #define RAYA_ALL_CHAINS(step) step(0) step(1) step(2) step(3) step(4) step(5) step(6) step(7)
 #define RAYA_REPEAT(step) \
     for (uint i = 0; i < rounds; ++i) { RAYA_ALL_CHAINS(step) }

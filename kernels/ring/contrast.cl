@@ -1,9 +1,9 @@
-// Where to supersample: a pixel is marked where one of its four neighbours differs from it by the threshold or
-// more in red, green or blue, each clamped to 0..1 (Kohata & Ito 1993, anti-aliasing). The difference is a
-// number of the machine, rounded once.
+// mark_contrasts: marks the pixels to supersample. A pixel is marked if one of its four neighbours differs from it by
+// the threshold or more in red, green or blue, each clamped to 0..1 (Kohata & Ito 1993, anti-aliasing). The difference
+// is a number of the format, rounded once.
 //
-// The host rotates the blocks of pixels as for the filter, and launches mark_contrasts whenever a block has
-// arrived that holds neighbours.
+// The host rotates the blocks of pixels as for the filter, and launches mark_contrasts after each rotation that brings
+// neighbours.
 //
 // One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has
 // arrived in its memory, and nothing else.
@@ -15,7 +15,7 @@ static inline mask differs(real a, real b, real threshold) {
     return num_abs(num_sub(clamped(a), clamped(b))) >= threshold;
 }
 
-// mark |= differs, for the PE's pixels whose neighbour on `side` is in the block that has arrived.
+// mark |= differs, for the PE's pixels whose neighbour on `side` is in the arrived block.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void mark_contrasts(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
                     const uint side,                          // RAYA_LEFT..RAYA_BELOW

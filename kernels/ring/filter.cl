@@ -2,16 +2,16 @@
 //
 //     rows:     sum = (own + left) + right          of the pixels, each brought by rotations
 //     columns:  sum = (own + above) + below         of those sums
-//     pixel = sum / 9                               at the border, by as many pixels as there are: 6, 4, ...
+//     pixel = sum / 9                               at the border divided by the number of pixels: 6, 4, ...
 //
-// Sums and quotient are the machine's own numbers. The host copies `own` to `sum`, rotates the blocks, and launches
-// add_neighbours whenever a block has arrived that holds neighbours; take_means comes last.
+// Sums and quotient are numbers of the format. The host copies `own` to `sum`, rotates the blocks, and launches
+// add_neighbours after each rotation that brings neighbours; take_means comes last.
 //
 // One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has
 // arrived in its memory, and nothing else.
 #include "kernels/ring/arrived.clh"
 
-// sum += neighbour, for the PE's pixels whose neighbour on `side` is in the block that has arrived.
+// sum += neighbour, for the PE's pixels whose neighbour on `side` is in the arrived block.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void add_neighbours(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
                     const uint side,                          // RAYA_LEFT..RAYA_BELOW
@@ -38,7 +38,7 @@ void add_neighbours(__global const uint* restrict broadcast,  // the job's words
     }
 }
 
-// sum / (pixels of the neighbourhood that lie in the image)
+// sum / number of pixels of the neighbourhood that lie in the image
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void take_means(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
                 const uint capacity,                      // pixels in a PE's memory; 0: do nothing

@@ -1,24 +1,24 @@
 // trace: every PE traces points of its own pixels, without communication (Kohata & Ito 1993, ray
 // tracing, step 2, and supersampling).
 //
-// One work-group is one PE. It first takes the broadcast words into its own memory; then each of its work-items
-// walks V ray trees at once, one in each lane, and a lane takes the pixel's next point, or the PE's next pixel, as
-// soon as its last walk is done:
+// One work-group is one PE. It copies the broadcast words to its own memory; then each of its work-items traces V ray
+// trees at once, one in each lane. A lane takes the pixel's next point, or the PE's next pixel, as soon as its last
+// tree is done:
 //
 //     copy the job's words to local memory, barrier
 //     while a lane has a pixel:
-//         lanes without a walk add what they saw to their pixel; where that was its last point they store it and take
-//         the PE's next pixel; they make the primary ray of the next point                (ring/pixel_store.clh)
-//         test all objects for the rays of all lanes                                      (geometry/)
-//         where nothing was hit add the background; else add the ambient term, put the
-//         refracted ray aside, and add each light that a shadow ray reaches                (shading/)
-//         go on with the reflected ray, else with the deepest waiting refracted one, else without a walk
-//         end the launch where a lane has spent its work, and keep the trees for the next one  (ring/kept_trees.clh)
+//         a lane whose tree is done adds its sum to its pixel; after the last point it stores the pixel and takes the
+//             PE's next one; then it makes the primary ray of the next point               (ring/pixel_store.clh)
+//         test all objects for the rays of all lanes                                       (geometry/)
+//         add the background if nothing was hit; else add the ambient term, push the refracted ray on the stack, and
+//             add each light that a shadow ray reaches                                     (shading/)
+//         continue with the reflected ray, else with the deepest refracted ray on the stack; else the tree is done
+//         end the launch if a lane has done its work, and save the trees for the next one  (ring/saved_trees.clh)
 //
-// A point's colour is summed in the order of its own ray tree, a pixel's in the order of its points, so the bits do
-// not depend on V, group size, mapping or device.
+// A point's colour is summed in the order of its ray tree, a pixel's in the order of its points, so the bits do not
+// depend on V, group size, mapping or device.
 // Limits: a PE's share < 2^32 pixels; the cost of one pixel < 2^64 cycles; its events < 2^32 each.
-#include "kernels/ring/kept_trees.clh"
+#include "kernels/ring/saved_trees.clh"
 #include "kernels/shading/camera.clh"
 #include "kernels/shading/shade.clh"
 #include "kernels/shared/loop_canary.clh"
@@ -27,8 +27,8 @@
 #define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
 #endif
 
-// Starts the walk of a point in the lanes `fresh`, `row` down and `column` to the right of the first pixel's own.
-static inline void start_walk(words scene, tree* t, mask fresh, real row, real column) {
+// Starts the tree of a point in the lanes `fresh`, `row` down and `column` to the right of the first pixel's own point.
+static inline void start_tree(words scene, tree* t, mask fresh, real row, real column) {
     const job_words job = (job_words)scene;
     const vec zero = vec_of(num_const(0.0f), num_const(0.0f), num_const(0.0f));
     set_lanes(&t->ray.origin, fresh, vec_all(job->eye));
@@ -40,7 +40,7 @@ static inline void start_walk(words scene, tree* t, mask fresh, real row, real c
     count_event(t, RAYA_PRIMARY, fresh);
 }
 
-// Lanes whose walk is done go on to the next point of their pixel, or store it and take the PE's next one.
+// Lanes whose tree is done take the next point of their pixel, or store the pixel and take the PE's next one.
 static inline void next_points(words scene, tree* t, pixel_store* store, tree_pixels* p, volatile __local uint* next) {
     const mask idle = mask_not(t->walking), traced = idle & (p->pixel.all != RAYA_NO_PIXEL);
     add_points(t, store, p, traced);
@@ -50,10 +50,10 @@ static inline void next_points(words scene, tree* t, pixel_store* store, tree_pi
     take_pixels(store, p, next, done | (idle & mask_not(traced)));
     const mask fresh = idle & (p->pixel.all != RAYA_NO_PIXEL);
     if (!mask_any(fresh)) return;
-    start_walk(scene, t, fresh, point_rows(store, p), point_columns(store, p));
+    start_tree(scene, t, fresh, point_rows(store, p), point_columns(store, p));
 }
 
-// Follows the trees to their ends, or until a lane has spent its `work`. Returns whether anything is left to do.
+// Traces the trees until no pixels are left or a lane has done its `work`. Returns true if anything is left to do.
 static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree_pixels* pixels,
                               volatile __local uint* next, uint work) {
     ray_pool pool;
@@ -70,52 +70,51 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
     }
 }
 
-// As trace_trees(); where it `goes_on`, it takes the trees that the last launch has kept from `taken`, and it puts those
-// that are left into `put`.
-RAYA_KERNEL_BODY int trace_share(words scene, pixel_store* store, volatile __local uint* next, uint work, keeper taken,
-                                 keeper put, int goes_on) {
+// As trace_trees(). If it `resumes`, it first restores the trees of the last launch from `from`; it saves those that
+// are left to `to`.
+RAYA_KERNEL_BODY int trace_share(words scene, pixel_store* store, volatile __local uint* next, uint work,
+                                 save_cursor from, save_cursor to, int resumes) {
     tree trees[RAYA_TREES];
     tree_pixels pixels[RAYA_TREES];
     index left = (index)(0);
-    if (goes_on) keep_index(&taken, &left);
+    if (resumes) save_index(&from, &left);
     for (uint i = 0; i < RAYA_TREES; ++i) {
         clear_tree(&trees[i]);
         clear_pixels(&pixels[i]);
     }
-    if (mask_any(left != (index)(0))) keep_trees(taken, trees, pixels);
+    if (mask_any(left != (index)(0))) save_trees(from, trees, pixels);
     left = (index)(trace_trees(scene, store, trees, pixels, next, work));
-    keep_index(&put, &left);
+    save_index(&to, &left);
     if (!mask_any(left != (index)(0))) return 0;
-    keep_trees(put, trees, pixels);
+    save_trees(to, trees, pixels);
     return 1;
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void trace(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h), the same for all PEs
-           const uint word_count,                    // how many
+           const uint word_count,                    // number of words
            const uint block,                         // number in the share of the first pixel of a PE's block
            const uint capacity,                      // pixels in a block
            const uint end,                           // pixels of each share up to `end` - 1 are traced; they lie in the
                                                      // block
-           const uint points,                        // RAYA_POINTS_*: which points of them
+           const uint points,                        // RAYA_POINTS_*: their points that are traced
            const uint first_pe,                      // number of the PE that is work-group 0
-           const uint work,                          // tests and steps of a lane's rays after which the launch ends, or
-                                                     // pixels looked at for their marks
-           __global const uchar* restrict marks,     // [PE][capacity]: not 0 where a pixel gets new points; of no use
-                                                     // for RAYA_POINTS_OWN
+           const uint work,                          // limit of a launch: tests and steps of a lane's rays, or marks
+                                                     // examined
+           __global const uchar* restrict marks,     // [PE][capacity]: not 0 where a pixel gets new points; unused for
+                                                     // RAYA_POINTS_OWN
            __local raya_trace_progress* shared,      // by the work-items of a PE
-           __local uint4* memory,                    // where RAYA_WORDS_LOCAL is 1, word_count words, in whole rows
+           __local uint4* memory,                    // if RAYA_WORDS_LOCAL is 1, word_count words, in whole rows
            __global float* restrict pixels,          // [PE][3][capacity]: linear rgb; read where points are new
            __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels traced now
            __global ulong* restrict events,          // [PE][work-item][RAYA_EVENTS], added to
            __global raya_trace_progress* restrict progress,  // [PE]: of the last launch, then of this one
-           __global uint* restrict kept)             // what work-items go on with (kernels/ring/kept_trees.clh)
+           __global uint* restrict saved)            // state of unfinished trees (kernels/ring/saved_trees.clh)
 {
-    // An argument, not a __local variable: with PoCL 3.1 pixels were lost where a function that
-    // took its address was not inlined.
+    // An argument, not a __local variable: PoCL 3.1 lost pixels if a function that took its address was not inlined.
     volatile __local raya_trace_progress* mine = shared;
     const uint group = get_group_id(0), item = get_local_id(0);
-    const int goes_on = progress[group].left > 0;
+    const int resumes = progress[group].left > 0;
     if (item == 0) {
         mine->next = progress[group].next;
         mine->left = mine->cut = 0;
@@ -140,12 +139,12 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     store.marks = marks + (size_t)group * capacity;
     store.cycles = cycles + (size_t)group * capacity;
     open_store(&store);
-    const keeper taken = open_keeper(kept, 1), put = open_keeper(kept, 0);
-    if (trace_share(scene, &store, &mine->next, work, taken, put, goes_on)) atomic_inc(&mine->left);
+    const save_cursor from = open_save_cursor(saved, 1), to = open_save_cursor(saved, 0);
+    if (trace_share(scene, &store, &mine->next, work, from, to, resumes)) atomic_inc(&mine->left);
     __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
     for (uint e = 0; e < RAYA_EVENTS; ++e) counted[e] += sum_of(store.totals[e]);
     if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);
-    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);  // all have seen whether they go on
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);  // all have read progress[group]
     if (item) return;
     progress[group].next = min((uint)mine->next, store.end);
     progress[group].left = mine->left;

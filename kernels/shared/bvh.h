@@ -1,39 +1,39 @@
-// A tree of boxes over a scene's finite objects, as it lies behind a job's words.
+// The BVH (bounding volume hierarchy) over a scene's finite objects: its layout behind a job's words.
 //
-// Rows of 16 words: what sixteen lanes read at once. A node is RAYA_BVH_NODE rows, one column for each child: its box,
-// and a link to what it holds. In fp32 that is another node, or a leaf of objects of one kind:
+// The BVH consists of rows of 16 words; up to sixteen lanes load a row at once. A node is RAYA_BVH_NODE rows, one
+// column for each child: the child's box, and a link to the child. In fp32 a child is another node or a leaf of objects
+// of one kind:
 //
 //     spheres, cones     one in each column, RAYA_BVH_SPHERES or RAYA_BVH_CONES rows
 //     faces              polygons of three or four corners, one in each column: RAYA_BVH_FACES rows, RAYA_BVH_TRIANGLES
 //                        where none has four
-//     a polygon          of more corners: a row of what is said once, then its corners, one in each column
+//     a polygon          of more corners: a row for the polygon, then its corners, one in each column
 //
-// In a reduced format a test costs ten times what it costs in fp32, and a box still what it does: links lead to other
-// nodes or to single objects by their numbers, and V rays test an object each; a polygon of more than 16 corners has its
-// leaf.
+// In a reduced format an object test costs ten times as much as in fp32, a box test no more. So there a link leads to
+// another node or, by its number, to a single object, and V rays test one object each. A polygon of more than 16
+// corners still has a leaf.
 //
-// Columns of a node that no child has hold a box that no ray meets; columns of a leaf beyond its last object repeat the
-// first.
+// Unused columns of a node hold a box that no ray meets. Columns of a leaf beyond its last object repeat the first.
 #ifndef RAYA_SHARED_BVH_H
 #define RAYA_SHARED_BVH_H
 #include "kernels/shared/portable.h"
 
 typedef struct {
-    // Largest coordinate of a ray's origin for which a hit is sure to lie in the boxes that its object is in; a ray
-    // from farther away has to be tested against all objects. Below 0: every ray has to.
+    // Largest coordinate of a ray's origin for which every hit lies in the boxes of its object. A ray from farther away
+    // must be tested against all objects. Below 0: every ray must.
     float reach;
-    raya_u32 root;      // link
-    raya_u32 apart;     // finite objects that are not in the tree, as every ray is tested against them
-    raya_u32 apart_at;  // their numbers, ascending: distance from the job's first word
-    raya_u32 rows_at;   // of row 0, a multiple of 16
+    raya_u32 root;      // link to the root; RAYA_NO_TREE without objects
+    raya_u32 apart;     // separate objects: finite, in no leaf, tested for every ray
+    raya_u32 apart_at;  // where their numbers start, ascending: distance from the job's first word
+    raya_u32 rows_at;   // where row 0 starts: distance from the job's first word, a multiple of 16
 } raya_bvh;
 RAYA_SHARED_SIZE(raya_bvh, 4 * 5);
 
 #define RAYA_BVH_WIDTH 16  // children of a node, objects of a leaf, words of a row
 
 enum {                  // rows of a node
-    RAYA_BVH_LOW = 0,   // x, y, z: the corners of the boxes with the lowest coordinates
-    RAYA_BVH_HIGH = 3,  // x, y, z: with the highest
+    RAYA_BVH_LOW = 0,   // lowest x, y, z of the boxes
+    RAYA_BVH_HIGH = 3,  // highest x, y, z of the boxes
     RAYA_BVH_LINKS = 6,
     RAYA_BVH_NODE = 7
 };
@@ -55,9 +55,9 @@ enum {  // rows of a leaf of faces: x, y, z of their first three corners, their 
 #define RAYA_BVH_MOST_CORNERS 4
 enum {  // words of a polygon's first row
     RAYA_BVH_OUTLINE_NUMBER = 0,
-    RAYA_BVH_OUTLINE_CORNERS = 1,  // how many
+    RAYA_BVH_OUTLINE_CORNERS = 1,  // number of corners
     RAYA_BVH_OUTLINE_PLANE = 2,
-    RAYA_BVH_OUTLINE_LOW = 6,  // x, y, z: what the corners span
+    RAYA_BVH_OUTLINE_LOW = 6,  // x, y, z: bounding box of the corners
     RAYA_BVH_OUTLINE_HIGH = 9
 };
 enum {  // rows of a leaf of cones: the words of their objects, and their numbers
@@ -71,14 +71,15 @@ enum {  // rows of a leaf of cones: the words of their objects, and their number
     RAYA_BVH_CONES = 11
 };
 
-// Behind a polygon's first row x of all corners, then y, then z, so many rows each: the first corner once more behind
-// the last one and in all columns to the end, and at least one column more than there are edges in whole rows.
+// Rows of each coordinate of a polygon's corners. Behind the polygon's first row come x of all corners, then y, then z.
+// The first corner is repeated behind the last one, in all columns up to the end; there is at least one column more
+// than edges rounded up to whole rows.
 RAYA_SHARED_FUNCTION raya_u32 raya_outline_rows(raya_u32 corners) {
     return (corners + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH + 1;
 }
 
-// A link: the kind of what it leads to in bits 29..31; of an object its number in the others; else a leaf's objects - 1
-// in bits 25..28, the first row in bits 0..24.
+// A link: the kind of its target in bits 29..31. For an object, the other bits are its number. Else bits 25..28 are a
+// leaf's objects - 1, bits 0..24 the target's first row.
 #define RAYA_LINK_ROW 0x01ffffffu
 #define RAYA_LINK_OBJECTS_SHIFT 25u
 #define RAYA_LINK_KIND_SHIFT 29u
@@ -92,7 +93,7 @@ enum {
     RAYA_LINK_CONES,
     RAYA_LINK_OBJECT
 };
-#define RAYA_NO_TREE 0xffffffffu  // of a tree without objects
+#define RAYA_NO_TREE 0xffffffffu  // root of a tree without objects
 
 RAYA_SHARED_FUNCTION raya_u32 raya_link(raya_u32 kind, raya_u32 objects, raya_u32 row) {
     return kind << RAYA_LINK_KIND_SHIFT | (objects - 1) << RAYA_LINK_OBJECTS_SHIFT | row;

@@ -1,5 +1,4 @@
-// How many chains of operations each work-item of number/operations.cl follows at once: the
-// kernel repeats, the host counts.
+// Independent chains of operations in each work-item of number/operations.cl; the host multiplies by it to count them.
 #ifndef RAYA_SHARED_CHAINS_H
 #define RAYA_SHARED_CHAINS_H
 #define RAYA_CHAINS 8

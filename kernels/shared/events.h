@@ -1,9 +1,9 @@
-// What the kernels count, one number each. Every count is per ray, hit or test, whatever lanes, groups and mapping are.
+// Events that the kernels count. Each count is of rays, hits or tests, independent of lanes, groups and mapping.
 #ifndef RAYA_SHARED_EVENTS_H
 #define RAYA_SHARED_EVENTS_H
 
 enum {
-    RAYA_PRIMARY,        // primary rays, one a pixel
+    RAYA_PRIMARY,        // primary rays, one per pixel
     RAYA_PRIMARY_HITS,   // ... that hit an object
     RAYA_REFLECTED,      // reflected rays, total reflection included
     RAYA_REFRACTED,      // refracted rays
@@ -16,10 +16,10 @@ enum {
     RAYA_SHADED,         // hits of primary, reflected and refracted rays: a normal, a surface, an ambient term
     RAYA_LIT,            // contributions of a light: diffuse term and, where Ks > 0, a highlight
     RAYA_HIGHLIGHTS,     // powers for a highlight
-    RAYA_WALKS,          // rays that met the box of the voxels, or went down the tree of boxes
-    RAYA_STEPS,          // voxels that rays entered, the first one among them; nodes of the tree
-    RAYA_DISCARDED,      // primary rays that a node of the torus made and threw away, as they are other nodes'
-    RAYA_EVENTS          // how many kinds there are
+    RAYA_WALKS,          // rays that entered the grid's box, or descended the BVH
+    RAYA_STEPS,          // voxels that rays entered, the first one included; nodes of the BVH
+    RAYA_DISCARDED,      // primary rays that a torus node made and discarded, as they belong to other nodes
+    RAYA_EVENTS          // number of kinds
 };
 
 #endif

@@ -1,11 +1,11 @@
-// The four neighbours of a pixel in the image, and the points of a pixel through which primary rays go.
+// The four neighbours of a pixel in the image, and the sample points of a pixel.
 #ifndef RAYA_SHARED_NEIGHBOURS_H
 #define RAYA_SHARED_NEIGHBOURS_H
 #include "kernels/shared/mapping.h"
 
 enum { RAYA_LEFT, RAYA_RIGHT, RAYA_ABOVE, RAYA_BELOW, RAYA_SIDES };
 
-// False at the image's border: nothing lies beyond it.
+// Returns false where the neighbour would lie outside the image.
 RAYA_SHARED_FUNCTION int raya_has_neighbour(raya_mapping m, raya_pixel pixel, raya_u32 side) {
     if (side == RAYA_LEFT) return pixel.column > 0;
     if (side == RAYA_RIGHT) return pixel.column + 1 < m.width;
@@ -13,7 +13,7 @@ RAYA_SHARED_FUNCTION int raya_has_neighbour(raya_mapping m, raya_pixel pixel, ra
     return pixel.row + 1 < m.height;
 }
 
-// The pixel on that side, where there is one.
+// Returns the pixel on that side; there must be one.
 RAYA_SHARED_FUNCTION raya_pixel raya_neighbour(raya_pixel pixel, raya_u32 side) {
     if (side == RAYA_LEFT) pixel.column -= 1;
     if (side == RAYA_RIGHT) pixel.column += 1;
@@ -22,8 +22,8 @@ RAYA_SHARED_FUNCTION raya_pixel raya_neighbour(raya_pixel pixel, raya_u32 side) 
     return pixel;
 }
 
-// Which points of a pixel are traced: its own, or four new ones half a pixel away from it
-// (Kohata & Ito 1993, supersampling).
+// The points of a pixel that are traced: its own, or four new ones half a pixel away from it (Kohata & Ito 1993,
+// supersampling).
 enum {
     RAYA_POINTS_OWN,       // one: the sample point of kernels/README.md, Camera
     RAYA_POINTS_AXES,      // four: to the left, right, above, below
@@ -34,7 +34,7 @@ enum {
 
 RAYA_SHARED_FUNCTION raya_u32 raya_points(raya_u32 points) { return points == RAYA_POINTS_OWN ? 1u : RAYA_NEW_POINTS; }
 
-// Where point n < raya_points(points) lies, seen from the pixel's own: pixels to the right and down.
+// Return the offset of point n < raya_points(points) from the pixel's own point, in pixels to the right and down.
 RAYA_SHARED_FUNCTION float raya_point_right(raya_u32 points, raya_u32 n) {
     if (points == RAYA_POINTS_DIAGONALS) return n & 1u ? 0.5f : -0.5f;
     return points == RAYA_POINTS_OWN || n > 1u ? 0.0f : n == 1u ? 0.5f : -0.5f;

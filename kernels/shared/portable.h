@@ -1,8 +1,8 @@
-// Lets one header serve the C++ host and the OpenCL C kernels: sized types under one name, and no other difference.
+// Makes the shared headers valid C++ and OpenCL C: sized types and declarations under one name.
 #ifndef RAYA_SHARED_PORTABLE_H
 #define RAYA_SHARED_PORTABLE_H
 
-#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)  // the second alone: clang without a driver around it
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)  // clang without a driver defines only the second
 typedef uint raya_u32;
 typedef ulong raya_u64;
 #define RAYA_SHARED_SIZE(type, bytes)  // checked once, on the host

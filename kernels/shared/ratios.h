@@ -1,4 +1,4 @@
-// Whole numbers divided up, where products need more than 32 bits: the mapping's arithmetic.
+// Integer ratios whose products need more than 32 bits, as mappings use them.
 #ifndef RAYA_SHARED_RATIOS_H
 #define RAYA_SHARED_RATIOS_H
 #include "kernels/shared/portable.h"
@@ -13,7 +13,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_floor_ratio(raya_u32 a, raya_u32 b, raya_u32 
     return (raya_u32)((raya_u64)a * b / c);
 }
 
-// How many of first, first + step, first + 2 step, ... lie below end.
+// Returns how many of first, first + step, first + 2 step, ... lie below end.
 RAYA_SHARED_FUNCTION raya_u32 raya_steps_below(raya_u32 first, raya_u32 step, raya_u32 end) {
     return first < end ? (end - first - 1) / step + 1 : 0;
 }

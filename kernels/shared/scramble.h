@@ -1,9 +1,9 @@
-// A seeded bijection of the numbers 0 .. count - 1 that leaves no order to be seen: the random mapping's.
+// A seeded pseudo-random permutation of the numbers 0 .. count - 1, for the random mapping.
 //
 // A Feistel network on the fewest bits that hold count - 1, split into a high and a low half: each round xors one half
-// with a hash of the other, so the same rounds backwards undo it, whatever the hash. What falls outside 0 .. count - 1
-// goes through the network again until it falls inside (cycle walking): under two passes on average, since at least
-// half of the network's numbers lie inside. 1 <= count <= 2^28.
+// with a hash of the other, so the rounds in reverse order are the inverse, whatever the hash. A result outside 0 ..
+// count - 1 goes through the network again until it falls inside (cycle walking): under two passes on average, since at
+// least half of the network's numbers lie inside. 1 <= count <= 2^28.
 #ifndef RAYA_SHARED_SCRAMBLE_H
 #define RAYA_SHARED_SCRAMBLE_H
 #include "kernels/shared/portable.h"
@@ -26,13 +26,13 @@ RAYA_SHARED_FUNCTION raya_u32 raya_scramble_bits(raya_u32 count) {
 // One round of the network on `bits` bits; its own inverse.
 RAYA_SHARED_FUNCTION raya_u32 raya_scramble_round(raya_u32 number, raya_u32 bits, raya_u32 seed, raya_u32 round) {
     const raya_u32 low = bits - bits / 2, low_mask = (1u << low) - 1, high_mask = (1u << bits / 2) - 1;
-    // Mixed, so that near seeds have nothing in common.
+    // Mixed, so that neighbouring seeds give unrelated permutations.
     const raya_u32 key = raya_mix(seed + (round + 1) * 0x9e3779b9u);
     if (round & 1u) return number ^ (raya_mix(key ^ number >> low) & low_mask);
     return number ^ (raya_mix(key ^ (number & low_mask)) & high_mask) << low;
 }
 
-// Where `number` < count goes.
+// Returns the image of `number` < count.
 RAYA_SHARED_FUNCTION raya_u32 raya_scramble(raya_u32 number, raya_u32 count, raya_u32 seed) {
     const raya_u32 bits = raya_scramble_bits(count);
     do {
@@ -42,7 +42,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_scramble(raya_u32 number, raya_u32 count, ray
     return number;
 }
 
-// What goes to `number` < count; the inverse of raya_scramble.
+// Returns the number whose image is `number` < count; the inverse of raya_scramble.
 RAYA_SHARED_FUNCTION raya_u32 raya_unscramble(raya_u32 number, raya_u32 count, raya_u32 seed) {
     const raya_u32 bits = raya_scramble_bits(count);
     do {

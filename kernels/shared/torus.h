@@ -1,24 +1,24 @@
-// Which nodes there are, which voxels each holds, and how they are joined.
+// The topology of the torus: its nodes, the voxels of each node, and its links.
 //
-// Nodes (i, j, k) hold the voxels (x, y, z) with x mod I = i, y mod J = j, z mod K = k: with as many voxels as nodes
-// one each, with more laid out cyclically. A node's number is its place on the torus, counted along the torus's first
-// side, then the second, then the third.
+// Node (i, j, k) holds the voxels (x, y, z) with x mod I = i, y mod J = j, z mod K = k: one voxel per node if there are
+// as many voxels as nodes, else a cyclic layout. A node's number is its place on the torus, counted along the first
+// side of the torus, then the second, then the third.
 //
 //   3-D torus  sides I x J x K, six links a node, node (i, j, k) at (i, j, k)
-//   2-D torus  sides (I C) x (J K / C), four links a node, C = slabs of equal k beside one another, a divisor of K:
-//              node (i, j, k) at (i + I (k mod C), j + J (k div C)). The T805 has four links; 4 x 4 x 4 nodes are an
-//              8 x 8 torus.
+//   2-D torus  sides (I C) x (J K / C), four links a node, C slabs of equal k side by side, a divisor of K: node
+//              (i, j, k) at (i + I (k mod C), j + J (k div C)). The T805 has four links; 4 x 4 x 4 nodes are an 8 x 8
+//              torus.
 //
-// Rays go along the first side until they are in the right column, then along the second, then the third, the shorter
-// way round each; of two ways of equal length, the one towards higher numbers. Returns go by raya_home_link.
+// Rays are routed in dimension order: along the first side of the torus, then the second, then the third, in the
+// shorter direction on each; on a tie towards higher numbers. Returns take the links of raya_return_link.
 #ifndef RAYA_SHARED_TORUS_H
 #define RAYA_SHARED_TORUS_H
 #include "kernels/shared/grid.h"
 
 // Links of a node: link 2 d leads to the next higher number along side d, link 2 d + 1 to the next lower one.
 #define RAYA_LINKS 6u
-#define RAYA_NO_LINK RAYA_LINKS  // a packet that has arrived
-#define RAYA_ROOT 0u             // the node that the host is joined to
+#define RAYA_NO_LINK RAYA_LINKS  // of a packet that is in its destination
+#define RAYA_ROOT 0u             // the node that is connected to the host
 
 typedef struct {
     raya_u32 nodes[3];  // I, J, K
@@ -29,11 +29,11 @@ RAYA_SHARED_SIZE(raya_torus, 4 * 7);
 
 typedef struct {
     raya_u32 at[3];
-} raya_place;  // of a node on the torus, of a node among the voxels, or of a voxel
+} raya_place;  // of a node on the torus, (i, j, k) of a node, or (x, y, z) of a voxel
 
 RAYA_SHARED_FUNCTION raya_u32 raya_nodes(raya_torus t) { return t.nodes[0] * t.nodes[1] * t.nodes[2]; }
 
-// A number that counts along sides[0] first, as a place, and back.
+// Return the place of a number that counts along the first side first, and the number of a place.
 RAYA_SHARED_FUNCTION raya_place raya_place_of(raya_u32 number, raya_u32 side0, raya_u32 side1) {
     raya_place p;
     p.at[0] = number % side0;
@@ -50,7 +50,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_node_at(raya_torus t, raya_place p) {
     return p.at[0] + t.sides[0] * (p.at[1] + t.sides[1] * p.at[2]);
 }
 
-// The node (i, j, k).
+// Returns the number of node (i, j, k).
 RAYA_SHARED_FUNCTION raya_u32 raya_node_of(raya_torus t, raya_u32 i, raya_u32 j, raya_u32 k) {
     raya_place p;
     p.at[0] = i + t.nodes[0] * (t.sides[2] == 1 ? k % t.slabs : 0);
@@ -59,7 +59,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_node_of(raya_torus t, raya_u32 i, raya_u32 j,
     return raya_node_at(t, p);
 }
 
-// (i, j, k) of a node.
+// Returns (i, j, k) of a node.
 RAYA_SHARED_FUNCTION raya_place raya_node_place(raya_torus t, raya_u32 node) {
     raya_place p = raya_torus_place(t, node);
     if (t.sides[2] != 1) return p;
@@ -70,13 +70,13 @@ RAYA_SHARED_FUNCTION raya_place raya_node_place(raya_torus t, raya_u32 node) {
     return n;
 }
 
-// The node that holds a voxel.
+// Returns the node that holds a voxel.
 RAYA_SHARED_FUNCTION raya_u32 raya_node_of_voxel(raya_torus t, raya_grid g, raya_u32 voxel) {
     const raya_place v = raya_place_of(voxel, g.divisions[0], g.divisions[1]);
     return raya_node_of(t, v.at[0] % t.nodes[0], v.at[1] % t.nodes[1], v.at[2] % t.nodes[2]);
 }
 
-// How many voxels a node holds along an axis: those of first, first + nodes, ... below the number of divisions.
+// Returns how many voxels a node holds along an axis: first, first + nodes, ... below the number of divisions.
 RAYA_SHARED_FUNCTION raya_u32 raya_node_voxels_along(raya_torus t, raya_grid g, raya_place node, raya_u32 axis) {
     const raya_u32 first = node.at[axis], step = t.nodes[axis], end = g.divisions[axis];
     return first < end ? (end - first - 1) / step + 1 : 0;
@@ -87,7 +87,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_node_voxels(raya_torus t, raya_grid g, raya_u
     return raya_node_voxels_along(t, g, n, 0) * raya_node_voxels_along(t, g, n, 1) * raya_node_voxels_along(t, g, n, 2);
 }
 
-// A voxel's number among those of its node, 0 .. raya_node_voxels - 1.
+// Returns a voxel's number among those of its node, 0 .. raya_node_voxels - 1.
 RAYA_SHARED_FUNCTION raya_u32 raya_local_voxel(raya_torus t, raya_grid g, raya_u32 voxel) {
     const raya_place v = raya_place_of(voxel, g.divisions[0], g.divisions[1]);
     raya_place n;
@@ -98,7 +98,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_local_voxel(raya_torus t, raya_grid g, raya_u
     return v.at[0] / t.nodes[0] + along_x * (v.at[1] / t.nodes[1] + along_y * (v.at[2] / t.nodes[2]));
 }
 
-// The voxel of that number among those of a node: the inverse of raya_local_voxel.
+// Returns the voxel with number `within` among those of a node; the inverse of raya_local_voxel.
 RAYA_SHARED_FUNCTION raya_u32 raya_voxel_of_node(raya_torus t, raya_grid g, raya_u32 node, raya_u32 within) {
     const raya_place n = raya_node_place(t, node);
     const raya_place l = raya_place_of(within, raya_node_voxels_along(t, g, n, 0), raya_node_voxels_along(t, g, n, 1));
@@ -106,15 +106,15 @@ RAYA_SHARED_FUNCTION raya_u32 raya_voxel_of_node(raya_torus t, raya_grid g, raya
                       n.at[2] + t.nodes[2] * l.at[2]);
 }
 
-// Steps from one place along a side of the torus to another by the shorter way; `up` is set
-// where that leads to higher numbers.
+// Returns the distance between two places along a side of the torus in the shorter direction; sets `up` if that leads
+// to higher numbers.
 RAYA_SHARED_FUNCTION raya_u32 raya_side_distance(raya_u32 from, raya_u32 to, raya_u32 side, int* up) {
     const raya_u32 higher = to >= from ? to - from : to + side - from;
     *up = higher <= side - higher;
     return *up ? higher : side - higher;
 }
 
-// The link by which a packet leaves `from` on its way to `to`; RAYA_NO_LINK where it is there.
+// Returns the link by which a packet leaves `from` on its route to `to`; RAYA_NO_LINK if they are the same node.
 RAYA_SHARED_FUNCTION raya_u32 raya_next_link(raya_torus t, raya_u32 from, raya_u32 to) {
     const raya_place a = raya_torus_place(t, from), b = raya_torus_place(t, to);
     for (raya_u32 d = 0; d < 3; ++d) {
@@ -124,9 +124,9 @@ RAYA_SHARED_FUNCTION raya_u32 raya_next_link(raya_torus t, raya_u32 from, raya_u
     return RAYA_NO_LINK;
 }
 
-// The link by which a node sends returns towards the root: as raya_next_link, but nodes take the sides that they are
-// away from the root in different orders, so that all links of the root carry their part. RAYA_NO_LINK in the root.
-RAYA_SHARED_FUNCTION raya_u32 raya_home_link(raya_torus t, raya_u32 node) {
+// Returns the link by which a node sends returns towards the root; RAYA_NO_LINK in the root. As raya_next_link, but
+// nodes take the sides of the torus in different orders, so that all links of the root share the load.
+RAYA_SHARED_FUNCTION raya_u32 raya_return_link(raya_torus t, raya_u32 node) {
     const raya_place a = raya_torus_place(t, node), b = raya_torus_place(t, RAYA_ROOT);
     const raya_u32 first = a.at[0] + a.at[1] + a.at[2];
     for (raya_u32 i = 0; i < 3; ++i) {
@@ -137,7 +137,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_home_link(raya_torus t, raya_u32 node) {
     return RAYA_NO_LINK;
 }
 
-// The node at the other end of a link.
+// Returns the node at the other end of a link.
 RAYA_SHARED_FUNCTION raya_u32 raya_link_end(raya_torus t, raya_u32 node, raya_u32 link) {
     raya_place p = raya_torus_place(t, node);
     const raya_u32 d = link / 2, side = t.sides[d];
@@ -145,7 +145,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_link_end(raya_torus t, raya_u32 node, raya_u3
     return raya_node_at(t, p);
 }
 
-// Links on the way from one node to another.
+// Returns the number of links on the route from one node to another.
 RAYA_SHARED_FUNCTION raya_u32 raya_node_distance(raya_torus t, raya_u32 from, raya_u32 to) {
     const raya_place a = raya_torus_place(t, from), b = raya_torus_place(t, to);
     raya_u32 distance = 0;

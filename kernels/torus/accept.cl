@@ -1,22 +1,28 @@
-// accept: rays that have come over the links go into the queue of their node, as far as there is room
-// (raya_room_of_packet); returns go straight into the outbox of the link home, in the root to the host. What has no
-// room stays in the inbox, and nothing more comes over that link until it is empty.
+// accept: moves the packets that have arrived over the links out of the inboxes. Rays go into the node's queue if it
+// has the free slots that they need (raya_slots_for_packet). Returns go straight to the outbox of the link towards the
+// root, in the root to the host. A packet without free slots stays in its inbox; the link carries no more until that is
+// empty.
 //
-// One work-group is one node. The inboxes are looked through one after another, another one first in every superstep;
-// of each, L packets at a time. After its `work` a launch begins with no other inbox, and the next one goes on
-// (`again`) with those that are left.
+// One work-group is one node. It empties one inbox after another, L packets at a time; the first one rotates with the
+// supersteps:
+//
+//     for each link, from `turn` mod 6 on, while `work` is left:
+//         move the rays that fit to the end of the queue, close the gaps in the inbox           (empty_inbox)
+//         move the returns that fit to the outbox towards the root, close the gaps in the inbox (pass_returns)
+//         note what stays in the node's status
+//
+// A launch that has done its `work` starts no other inbox; the next one (`again`) continues with those that are left.
 #include "kernels/torus/moves.clh"
 
-// The queue of the node, while rays are put into it.
+// The queue of the node, while rays are appended to it.
 typedef struct {
     __global raya_packet* packets;
     uint used, capacity;  // packets
-    uint new_packets;     // that a hit may turn into (raya_most_new_packets)
-    uint tight;           // 1: any free slot will do
+    uint new_packets;     // maximum that a hit may turn into (raya_max_new_packets)
+    uint tight;           // 1: one free slot suffices for any ray
 } open_queue;
 
-// Moves the rays that have room from an inbox to the queue and returns how many stay, at the inbox's front. Has
-// barriers.
+// Moves the rays that fit from an inbox to the queue. Returns how many stay, at the inbox's front. Has barriers.
 static inline uint empty_inbox(__global uint* inbox, open_queue* queue, vote_words votes) {
     __global raya_packet* const rays = rays_in(inbox);
     const uint item = get_local_id(0), waiting = inbox[0];
@@ -24,7 +30,7 @@ static inline uint empty_inbox(__global uint* inbox, open_queue* queue, vote_wor
     for (uint first = 0; first < waiting; first += RAYA_GROUP) {
         const uint slot = first + item;
         raya_packet packet = rays[min(slot, waiting - 1)];
-        const uint room = queue->tight ? 0 : raya_room_of_packet(queue->new_packets, RAYA_BOUNCES, packet.head.state);
+        const uint room = queue->tight ? 0 : raya_slots_for_packet(queue->new_packets, RAYA_BOUNCES, packet.head.state);
         const int fits = queue->used + taken + item + 1 + room <= queue->capacity;
         const uint goal = slot >= waiting ? RAYA_NOTHING : fits ? RAYA_TAKEN : RAYA_LEFT_THERE;
         vote(votes, goal);
@@ -44,8 +50,8 @@ static inline uint empty_inbox(__global uint* inbox, open_queue* queue, vote_wor
     return left;
 }
 
-// Moves returns from an inbox to `to`, which holds `used` of at most `capacity`, and returns their number. `left`
-// returns stay, at the inbox's front. Adds those that are messages of their own to `charged`. Has barriers.
+// Moves returns from an inbox to `to`, which holds `used` of at most `capacity`. Returns their number; `left` returns
+// stay, at the inbox's front. Adds those that the model charges as messages to `charged`. Has barriers.
 static inline uint pass_returns(__global uint* inbox, __global raya_head* to, uint used, uint capacity, uint* left,
                                 volatile __local uint* charged) {
     __global raya_head* const returns = returns_in(inbox);
@@ -71,14 +77,14 @@ __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void accept(__global const uint* restrict memories,     // nodes' words, one after another (kernels/shared/node.h)
             __global const uint* restrict starts,       // [node]: where its words start
             __global const raya_run* restrict run,
-            const uint tight,                           // 1: any free slot will do
-            const uint turn,                            // number of the superstep: which link comes first
+            const uint tight,                           // 1: one free slot suffices for any ray
+            const uint turn,                            // number of the superstep, which decides the first link
             const uint first_node,                      // slot of the node that is work-group 0
-            __global const uint* restrict ways_in,      // [link][node]: slot of the inbox of the link that leads there
+            __global const uint* restrict inbox_slots,  // [link][node]: slot of the inbox of the link that leads there
             __global const uint* restrict sent,         // [link][node]: 1 where its outbox of rays has been copied
             __global const uint* restrict return_sent,  // [link][node]: ... of returns
-            const uint work,                            // of a node, batches of L packets, > 0: then the launch ends
-            const uint again,
+            const uint work,                            // limit of a node's work in a launch, batches of L packets, > 0
+            const uint again,                           // 1: continues where the last launch ended
             __local uint* local_words,                  // RAYA_ACCEPT_WORDS
             __global raya_packet* restrict queues,      // [node][queue]
             __global uint* restrict inboxes,            // of rays (kernels/shared/traffic.h)
@@ -91,15 +97,15 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
     const uint slot = node_slot(first_node), item = get_local_id(0), nodes = run->nodes, box = run->box;
     __global const raya_node* const header = (__global const raya_node*)(memories + starts[slot]);
     const int root = header->number == RAYA_ROOT;
-    const uint home = raya_home_link(header->torus, header->number);
+    const uint home = raya_return_link(header->torus, header->number);
     __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, slot, box, RAYA_RETURN_WORDS);
     __global raya_head* const homeward = root ? returns : returns_in(home_box);
     status += (size_t)slot * RAYA_STATUS_WORDS;
     if (again && !status[RAYA_STATUS_LEFT]) return;
     const uint before = status[RAYA_STATUS_QUEUE], done = again ? RAYA_LINKS - status[RAYA_STATUS_LEFT] : 0;
     open_queue queue = {queues + (size_t)slot * run->queue, before, run->queue,
-                        raya_most_new_packets(header->job.lights), tight};
-    // The host has taken what was there, or copied it.
+                        raya_max_new_packets(header->job.lights), tight};
+    // The host has read or copied the returns that were there.
     const int gone = !again && (root || return_sent[(size_t)home * nodes + slot]);
     const uint home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
     const uint home_before = gone ? 0 : status[home_status];
@@ -111,7 +117,7 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
     node_barrier();
     for (; i < RAYA_LINKS && spent < work; ++i) {
         const uint link = (i + turn) % RAYA_LINKS;
-        const uint way = ways_in[(size_t)link * nodes + slot];
+        const uint way = inbox_slots[(size_t)link * nodes + slot];
         __global uint* inbox = inboxes + raya_box_at(link, run->inboxes, way, box, RAYA_PACKET_WORDS);
         __global uint* return_inbox = return_inboxes + raya_box_at(link, run->inboxes, way, box, RAYA_RETURN_WORDS);
         spent += 1 + (inbox[0] + return_inbox[0]) / RAYA_GROUP;
@@ -135,7 +141,7 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
     status[RAYA_STATUS_QUEUE] = queue.used;
     status[RAYA_STATUS_QUEUE_MAX] = max(status[RAYA_STATUS_QUEUE_MAX], queue.used);
     status[RAYA_STATUS_LEFT] = RAYA_LINKS - i;
-    // The host has looked before this kernel: what is counted from here on is for its next look.
+    // The host has read the status before this kernel; counts from here on are for its next read.
     const uint progress = again ? status[RAYA_STATUS_PROGRESS] : 0;
     status[RAYA_STATUS_PROGRESS] = progress + queue.used - before + home_used - home_before;
     status[RAYA_STATUS_CYCLES] = status[RAYA_STATUS_CYCLES + 1] = 0;

@@ -1,10 +1,9 @@
-// compose: adds up each pixel's contributions, which came to the root in any order and were put into that of
-// the pixel's ray tree by the host:
+// compose: adds up the contributions of each pixel. They reach the root in any order; the host has sorted them into the
+// order of the pixel's ray tree:
 //
 //     pixel = c1 w1, then c2 w2 + pixel, and so on, each step rounded once
 //
-// as the ring machine adds them (kernels/README.md, Shading).
-// Work-item i of n takes pixels i, i + n, ... One lane.
+// as the ring machine adds them (kernels/README.md, Shading). Work-item i of n takes the pixels i, i + n, ... One lane.
 #include "kernels/geometry/vec.clh"
 #include "kernels/shared/loop_canary.clh"
 
@@ -17,7 +16,7 @@ void compose(__global const float* restrict contributions,  // [contribution][4]
              __global const uint* restrict starts,          // [pixels + 1]: where those of each pixel start
              const uint pixels,
              __global float* restrict image,                // [pixels][3]: linear red, green, blue
-             __global uint* restrict cut)                   // [1]: set where the device has ended loops early
+             __global uint* restrict cut)                   // [1]: set to 1 if the device has ended loops early
 {
     for (uint pixel = get_global_id(0); pixel < pixels; pixel += get_global_size(0)) {
         vec sum = vec_of(num_const(0.0f), num_const(0.0f), num_const(0.0f));

@@ -1,30 +1,29 @@
-// exchange: what nodes have put into their outboxes comes into the inboxes at the other ends of their links: all boxes
-// of one cargo, rays or returns, in one launch. It does what copies between the two buffers do
-// (host/torus/link_exchange.cpp), where a device takes longer to begin a copy than to move a box.
+// exchange: copies the outboxes to the inboxes at the other ends of their links, all mailboxes of rays or of returns in
+// one launch. It replaces buffer copies (host/torus/link_exchange.cpp) on devices that take longer to start a copy than
+// to move a mailbox.
 //
-// One work-group is one box, of link g / nodes and slot g mod nodes. Where the outbox holds packets and the inbox at
-// the link's other end is empty:
+// One work-group is one outbox: work-group g that of link g / nodes and slot g mod nodes. If the outbox holds packets
+// and the inbox at the link's other end is empty, it sets `sent` and copies, else it clears `sent`:
 //
 //     work-item i copies units i, i + L, ... of header and packets, 8 words each
-//     `sent` is set; else it is cleared
 //
-// Links that lead to another rank's device, or back to their own node, are left out: the host sends what goes over the
-// former, and says so in `sent` itself.
+// Links that lead to another rank's device or back to their own node are skipped. The host moves the packets of the
+// former and sets their `sent`.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/shared/traffic.h"
 
 #ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in the work-group of a box, 1..1024
+#define RAYA_GROUP 1  // L: work-items in the work-group of a mailbox, 1..1024
 #endif
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void exchange(__global const uint* restrict ends,      // [link][node]: slot of the node at the link's other end;
-                                                       // RAYA_NO_SLOT: left out
+                                                       // RAYA_NO_SLOT: skipped
               const uint nodes,                        // on the device
-              const uint inboxes_of_link,              // on the device, of each link
-              const uint capacity,                     // packets that a box holds
-              const uint packet_words,                 // of one: 8 or 16
-              const uint outbox_status,                // where a node's status has the counts of its outboxes,
+              const uint inboxes_of_link,              // on the device, for each link
+              const uint capacity,                     // of a mailbox, packets
+              const uint packet_words,                 // words of a packet: 8 or 16
+              const uint outbox_status,                // index in a node's status of the counts of its outboxes
               const uint inbox_status,                 // ... of its inboxes
               __global const uint* restrict outboxes,  // (kernels/shared/traffic.h)
               __global uint* restrict inboxes,

@@ -1,34 +1,34 @@
-// inject: nodes make the packets of primary rays, as long as their queues are short.
+// inject: nodes make packets of primary rays, up to a limit of their queues.
 //
-// One work-group is one node. Where the root makes all rays, it takes all pixels in turn and the other nodes do
-// nothing. Else every node makes the rays that enter the box at one of its voxels: it looks at the window of
-// pixels where they must lie, which the host has given it, and keeps those that do. Rays that miss the box belong
-// to the row's node: row mod nodes. A ray that is made and thrown away is work too, and counted (RAYA_DISCARDED).
+// One work-group is one node. If the root makes all rays, it takes all pixels in turn and the other nodes do nothing.
+// Else every node makes the rays that enter the box at one of its voxels: it makes those of the window of pixels that
+// the host has given it, and discards those that enter elsewhere. Rays that miss the box belong to node row mod nodes.
+// A discarded ray costs work too and is counted (RAYA_DISCARDED).
 //
 //     from the node's next pixel on, L x V pixels of a row at a time:
 //         make their rays and find their first voxels                      (shading/camera.clh, grid/walk.clh)
-//         count the node's own; where they do not all fit, keep the first that do
-//         put them into the queue; the next pixel is the first that has to wait
+//         count the node's own; if not all of them fit, keep the first that do
+//         append them to the queue; the next pixel is the first whose ray did not fit
 //
-// Rays are made until an eighth of the queue is in use, and never in the room that a ray's tree asks for: packets that
-// arrive and packets that hits turn into find room. A launch ends after its `work` too, and the next one goes on
-// (`again`) where it has stopped.
+// Rays are made until an eighth of the queue is in use, and never in the slots that a ray's tree needs, so that there
+// are free slots for packets that arrive and for those that hits turn into. A launch ends after its `work` too; the
+// next one (`again`) continues there.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/torus/primaries.clh"
 
 #define RAYA_STEP (RAYA_GROUP * RAYA_LANES)
 
-// Where a node puts its primary rays, and what its work-items share while they do.
+// The queue that a node appends primary rays to, and the state that its work-items share.
 typedef struct {
-    __global raya_packet* packets;  // its queue
-    uint most;                      // packets that may be in it
+    __global raya_packet* packets;  // the queue
+    uint most;                      // maximum number of packets in it
     shared_words shared;            // RAYA_COUNT_WORDS
-    shared_words next;              // the row's next pixel to look at
+    shared_words next;              // next pixel of the row
     shared_words own;               // RAYA_VOTE_WORDS(L V): a bit for each lane's pixel, set for the node's own rays
-    uint work, spent;               // of this launch: a batch of L V pixels at most, or a row
+    uint work, spent;               // of this launch, in batches of up to L V pixels, or rows
 } injection;
 
-// Each lane's pixel has a bit: lane l of work-item i has bit i V + l. A work-item alone needs none.
+// Votes for the lanes with own rays: lane l of work-item i has bit i V + l. With one work-item no votes are needed.
 static inline void vote_own(const injection* to, const primaries* p) {
 #if RAYA_GROUP > 1
     const uint bit = get_local_id(0) * RAYA_LANES;
@@ -36,7 +36,7 @@ static inline void vote_own(const injection* to, const primaries* p) {
 #endif
 }
 
-// The node's rays in the lanes of the work-items before this one.
+// Returns how many of the node's rays are in the lanes of the work-items before this one.
 static inline uint own_before(const injection* to) {
     uint number = 0;
 #if RAYA_GROUP > 1
@@ -51,8 +51,8 @@ static inline void clear_votes(const injection* to) {
     for (uint i = get_local_id(0); i < RAYA_VOTE_WORDS(RAYA_STEP); i += RAYA_GROUP) to->own[i] = 0;
 }
 
-// Puts the lanes' own rays, of pixels `first` to `end` - 1 of the row, into the queue from slot `at` on, as many as
-// there is room for. Returns the number in the row of the first pixel that has to wait, `end` if none does.
+// Appends the lanes' own rays, of pixels `first` to `end` - 1 of the row, to the queue from slot `at` on, as many as
+// fit. Returns the number in the row of the first pixel whose ray did not fit, `end` if all did.
 static inline uint put_primaries(const primaries* p, const injection* to, uint at, uint first, uint end) {
     lanes_index own, meets;
     own.truth = p->own;
@@ -76,7 +76,7 @@ static inline uint put_primaries(const primaries* p, const injection* to, uint a
     return waits;
 }
 
-// How many rays of the lanes are not the node's, of the pixels before `next`: those behind are made again.
+// Returns how many rays of the lanes are not the node's. Only pixels before `next` count; the others are made again.
 static inline uint discarded(const primaries* p, uint first, uint next) {
     lanes_index own;
     own.truth = p->own;
@@ -85,8 +85,8 @@ static inline uint discarded(const primaries* p, uint first, uint next) {
     return number;
 }
 
-// Makes rays of the row from its pixel `at` on until the queue has `most` packets, or the work is done; returns the
-// next pixel to look at. Has barriers.
+// Makes rays of the row from its pixel `at` on until the queue has `most` packets or the work is done. Returns the next
+// pixel. Has barriers.
 static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, injection* to) {
     const uint item = get_local_id(0);
     shared_words used = to->shared + RAYA_COUNT_USED, next = to->next;
@@ -108,11 +108,11 @@ static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, 
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
-void inject(__global const uint* restrict memories,  // as for trace_voxel, and all that is not explained here
+void inject(__global const uint* restrict memories,  // parameters without a comment: as for trace_voxel
             __global const uint* restrict starts,
             __global const raya_run* restrict run,
             const uint first_node,
-            const uint work,                         // of a node, > 0: then the launch ends
+            const uint work,                         // limit of a node's work in a launch, > 0
             const uint again,
             __local uint* local_words,               // RAYA_INJECT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
                                                      // of a node
@@ -135,7 +135,7 @@ void inject(__global const uint* restrict memories,  // as for trace_voxel, and 
     open_shared(to.shared, status[RAYA_STATUS_QUEUE]);
     clear_votes(&to);
     const node n = open_node(memories, starts, slot, local_words + RAYA_INJECT_WORDS(RAYA_GROUP, RAYA_LANES));
-    const uint room = raya_room_of_ray(raya_most_new_packets(((job_words)n.memory)->lights), RAYA_BOUNCES, 0);
+    const uint room = raya_slots_for_ray(raya_max_new_packets(((job_words)n.memory)->lights), RAYA_BOUNCES, 0);
     to.most = min(max(capacity / 8, 1u), capacity - room);
     const uint root = run->root_injects, stride = run->stride, rows = rows_of(&n, root);
     uint i = status[RAYA_STATUS_NEXT_ROW], at = status[RAYA_STATUS_NEXT_COLUMN];

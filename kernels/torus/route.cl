@@ -1,23 +1,24 @@
-// route: rays that are in voxels of other nodes go into the outbox of the link that leads towards them; returns go into
-// that of the link home, in the root to the host (Yoshitani & Yamazaki, method: the communication task).
+// route: moves packets from the queue to the outboxes. Rays in voxels of other nodes go to the outbox of the link on
+// their route; returns go to that of the link towards the root, in the root to the host (Yoshitani & Yamazaki, method:
+// the communication task).
 //
 // One work-group is one node. L packets at a time, in the order of the queue:
 //
-//     find each packet's goal: the outbox of a link, the way home, or this node's queue
-//     a packet for which there is no room stays in the queue until the next superstep
-//     close the gaps that were left in the queue
+//     find each packet's goal: the outbox of a link, the outbox towards the root, or this node's queue
+//     a packet whose outbox is full stays in the queue until the next superstep
+//     close the gaps in the queue
 //
-// A launch ends after `work` batches of L packets, and the next one goes on (`again`) with those that are left; the gap
-// between them and the packets that stay is closed by the last.
+// A launch ends after `work` batches of L packets; the next one (`again`) continues with those that are left. The last
+// launch closes the gap between them and the packets that stay.
 //
-// The rules of the ways are raya_next_link's and raya_home_link's (kernels/shared/torus.h).
+// Routes are those of raya_next_link and raya_return_link (kernels/shared/torus.h).
 #include "kernels/torus/moves.clh"
 
-// Where a packet of this node goes.
+// Returns the goal of a packet of this node.
 static inline uint goal_of(const node* n, const raya_head* packet) {
     const uint kind = raya_state_kind(packet->state);
     if (kind == RAYA_KIND_NONE) return RAYA_GONE;
-    if (kind == RAYA_KIND_RETURN) return RAYA_HOME;
+    if (kind == RAYA_KIND_RETURN) return RAYA_TO_ROOT;
     if (packet->voxel == RAYA_NO_VOXEL) return RAYA_STAYS;
     const raya_place voxel = raya_unpack_place(packet->voxel);
     if (is_own(n, voxel)) return RAYA_STAYS;
@@ -25,8 +26,8 @@ static inline uint goal_of(const node* n, const raya_head* packet) {
     return raya_next_link(n->torus, n->number, raya_node_of(n->torus, to.at[0], to.at[1], to.at[2]));
 }
 
-// Adds the goals of L packets to those `used` so far. Packets that had no room have voted twice: what is more than a
-// limit counts as the limit.
+// Adds the goals of L packets to those `used` so far. Packets whose outbox was full have voted twice, so the caller
+// limits each count to the outbox's capacity.
 static inline void count_votes(volatile __local uint* used, vote_words votes, uint goal) {
 #if RAYA_GROUP == 1
     ++used[goal];
@@ -40,8 +41,8 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
            __global const uint* restrict starts,
            __global const raya_run* restrict run,
            const uint first_node,
-           const uint work,                          // of a node, batches, > 0: then the launch ends
-           const uint again,
+           const uint work,                          // limit of a node's work in a launch, batches, > 0
+           const uint again,                         // 1: continues where the last launch ended
            __local uint* local_words,                // RAYA_ROUTE_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
                                                      // of a node
            __global raya_packet* restrict queues,    // [node][queue]
@@ -62,14 +63,14 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
     const uint end = work < (count - start) / RAYA_GROUP ? start + work * RAYA_GROUP : count;
     const node n = open_node(memories, starts, slot, local_words + RAYA_ROUTE_WORDS(RAYA_GROUP));
     const int root = n.number == RAYA_ROOT;
-    const uint home = raya_home_link(n.torus, n.number);
+    const uint home = raya_return_link(n.torus, n.number);
     const uint home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
     const uint home_before = status[home_status], home_limit = root ? run->host : box;
     __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, slot, box, RAYA_RETURN_WORDS);
     __global raya_head* const homeward = root ? returns : returns_in(home_box);
     if (item == 0) {
         for (uint link = 0; link < RAYA_LINKS; ++link) used[link] = status[RAYA_STATUS_OUTBOX + link];
-        used[RAYA_HOME] = home_before;
+        used[RAYA_TO_ROOT] = home_before;
         used[RAYA_STAYS] = again ? status[RAYA_STATUS_KEPT] : 0;
         used[RAYA_GONE] = 0;
         *charged = status[RAYA_STATUS_RETURN_CHARGED];
@@ -81,7 +82,7 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
         uint goal = at < end ? goal_of(&n, &packet.head) : RAYA_GONE;
         vote(votes, goal);
         node_barrier();
-        const uint limit = goal < RAYA_HOME ? box : goal == RAYA_HOME ? home_limit : UINT_MAX;
+        const uint limit = goal < RAYA_TO_ROOT ? box : goal == RAYA_TO_ROOT ? home_limit : UINT_MAX;
         if (used[goal] + votes_before(votes, goal) >= limit) goal = RAYA_STAYS;
         node_barrier();
         vote(votes, goal);
@@ -89,8 +90,8 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
         const uint place = used[goal] + votes_before(votes, goal);
         // Packets that stay move to a slot that this loop has read already.
         if (goal == RAYA_STAYS) queue[place] = packet;
-        if (goal == RAYA_HOME) homeward[place] = packet.head;
-        if (goal == RAYA_HOME && packet.head.state & RAYA_STATE_CHARGED) shared_add(charged, 1);
+        if (goal == RAYA_TO_ROOT) homeward[place] = packet.head;
+        if (goal == RAYA_TO_ROOT && packet.head.state & RAYA_STATE_CHARGED) shared_add(charged, 1);
         if (goal < RAYA_LINKS)
             rays_in(outboxes + raya_box_at(goal, nodes, slot, box, RAYA_PACKET_WORDS))[place] = packet;
         node_barrier();
@@ -101,7 +102,7 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
     }
     if (loops_were_cut(min(run->queue, 2u))) status[RAYA_STATUS_CUT] = 1;
     if (item) return;
-    const uint home_used = min(used[RAYA_HOME], home_limit);
+    const uint home_used = min(used[RAYA_TO_ROOT], home_limit);
     uint moved = home_used - home_before;
     for (uint link = 0; link < RAYA_LINKS; ++link) {
         const uint link_used = min(used[link], box);

@@ -3,40 +3,41 @@
 //
 // One work-group is one node. Its work-items take V packets of the queue at a time, one in each lane:
 //
-//     for each voxel of this node that lanes are in:
-//         reserve room for what these packets may turn into (raya_room_of_ray); packets without room wait for the
-//             next superstep
-//         test the voxel's objects for the rays of these lanes                            (geometry/)
-//         a ray whose nearest hit lies before its way out of the voxel, or that has left the box, is done: it turns
-//             into a return packet and the packets of the rays that follow (torus/shade_packets.clh), or a return
-//             packet with the background
-//         a shadow ray that meets an object ends; one that comes to its light turns into a return packet; one that its
-//         ray waits for does so either way (raya_run.return_a_ray)
-//         all others go on to the next voxel                                              (grid/walk.clh)
+//     for each voxel of this node that holds packets of the lanes:
+//         reserve slots for the packets that these may turn into (raya_slots_for_ray); packets without free slots wait
+//             for the next superstep
+//         test the rays of these lanes against the voxel's objects                        (geometry/)
+//         a ray is done if its nearest hit lies before it leaves the voxel, or if it has left the box: it turns into a
+//             return packet and the packets of its secondary rays (torus/shade_packets.clh), or into a return packet
+//             with the background
+//         a shadow ray ends at a hit, and turns into a return packet at its light; the last one of a ray turns into a
+//             return packet either way (raya_run.return_a_ray)
+//         all others move to the next voxel                                               (grid/walk.clh)
 //
-// Wide rays must be tested against all objects: they start so far away that rounding could carry a hit across
-// a voxel's side (kernels/grid/walk.clh). They visit all voxels in the order of their numbers, remember where
-// their nearest hit was found, and are shaded there.
+// Wide rays must be tested against all objects: they start so far away that rounding could move a hit across a voxel's
+// side (kernels/grid/walk.clh). They visit all voxels in the order of their numbers, store where their nearest hit was
+// found, and are shaded there.
 //
-// A node that has done its `work` takes up no more packets and ends what it has taken up. Those that are left lie in
-// the queue's first slots: launches that go on (`again`) treat them, as one launch would have.
-// Limits: packets of a node < 2^31; events of one kind, in a node and a superstep, < 2^64; where costs are told, cycles
-// for one packet in one voxel < 2^32.
+// A node that has done its `work` takes no more packets. Those that are left lie in the queue's first slots; the next
+// launch (`again`) processes them, with the result of a single launch.
+// Limits: packets of a node < 2^31; events of one kind, in a node and a superstep, < 2^64; where costs are recorded,
+// cycles for one packet in one voxel < 2^32.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/torus/outcome.clh"
 #include "kernels/torus/shade_packets.clh"
 
-// The lanes of m whose packets have room for what they may turn into, and how much is reserved for them.
+// Reserves slots for the packets that those of the lanes m may turn into. Returns the lanes that got them; `reserved`
+// is the number of slots.
 static inline mask reserve(const node* n, const flight* f, mask m, uint* reserved) {
     lanes_index chosen, level;
     chosen.truth = m & mask_not(is_shadow(f));
     level.all = levels_of(f);
-    const uint each = raya_most_new_packets(((job_words)n->memory)->lights);
+    const uint each = raya_max_new_packets(((job_words)n->memory)->lights);
     shared_words all = &f->shared[RAYA_COUNT_RESERVED];
     *reserved = 0;
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!chosen.lane[lane]) continue;
-        const uint need = f->tight ? each : raya_room_of_ray(each, RAYA_BOUNCES, level.lane[lane]);
+        const uint need = f->tight ? each : raya_slots_for_ray(each, RAYA_BOUNCES, level.lane[lane]);
         chosen.lane[lane] = 0;
         if (*all + need > f->capacity) continue;
         if (shared_add(all, each) + need > f->capacity) {
@@ -61,7 +62,7 @@ static inline void count_tests(flight* f, mask m, objects_words all) {
     count_tests_of(f, RAYA_CONE_TESTS, m, all->cones);
 }
 
-// The packets of the lanes m go on to the voxels `place`.
+// Moves the packets of the lanes m to the voxels `place`.
 static inline void move_packets(flight* f, mask m, index place) {
     lanes_index chosen, to;
     chosen.truth = m;
@@ -73,14 +74,14 @@ static inline void move_packets(flight* f, mask m, index place) {
     }
 }
 
-// Treats the packets of the lanes m, all in the voxel `place` of this node or all outside the box.
-static inline void treat(const node* n, flight* f, mask m, uint place) {
+// Processes the packets of the lanes m, all in the voxel `place` of this node or all outside the box.
+static inline void process(const node* n, flight* f, mask m, uint place) {
     const uint before = f->appended;
     uint reserved;
     m = reserve(n, f, m, &reserved);
     if (!mask_any(m)) return;
 #if RAYA_COSTS
-    f->treated.truth |= m;
+    f->processed.truth |= m;
 #endif
     const int outside = place == RAYA_NO_VOXEL;
     const voxel_words voxel = own_voxel(n, outside ? n->place : raya_unpack_place(place));
@@ -90,12 +91,12 @@ static inline void treat(const node* n, flight* f, mask m, uint place) {
     const hit h = closest_hit(n->memory, all, r, 0);
     count_tests(f, m, all);
     count_shared(f->shared, RAYA_COUNT_WORK, all->spheres + all->planes + all->polygons + all->cones +
-                                                 RAYA_WORK_OF_TREATING(((job_words)n->memory)->lights));
+                                                 RAYA_WORK_OF_PROCESSING(((job_words)n->memory)->lights));
     count_shared(f->shared, RAYA_COUNT_PROGRESS, mask_count(m));
     if (!outside) count_event(f, RAYA_STEPS, m & mask_not(has_flag(f, RAYA_STATE_FOUND)));
     const mask wide = m & has_flag(f, RAYA_STATE_WIDE);
     outcome o = walk_on(n, f, r, m & mask_not(wide), place, h);
-    if (mask_any(wide)) o = both(o, tour_on(n, f, voxel, wide, place, h), wide);
+    if (mask_any(wide)) o = merge_outcomes(o, tour_on(n, f, voxel, wide, place, h), wide);
     move_packets(f, o.moves, o.place);
     const vec background = vec_all(((job_words)n->memory)->background);
     if (mask_any(o.missed))
@@ -107,21 +108,21 @@ static inline void treat(const node* n, flight* f, mask m, uint place) {
 }
 
 #if RAYA_COSTS
-// Tells what the packets of the slots up to `end` - 1 have cost.
-static inline void tell_costs(const flight* f, uint end, __global raya_treated* treated) {
+// Records the costs of the packets of the slots up to `end` - 1.
+static inline void record_costs(const flight* f, uint end, __global raya_processed* processed) {
     for (uint lane = 0; lane < RAYA_LANES && f->first + lane < end; ++lane) {
-        __global raya_treated* t = treated + f->first + lane;
+        __global raya_processed* t = processed + f->first + lane;
         t->pixel = f->pixel.lane[lane];
-        t->state = f->treated.lane[lane] ? f->state.lane[lane] : RAYA_KIND_NONE;
+        t->state = f->processed.lane[lane] ? f->state.lane[lane] : RAYA_KIND_NONE;
         t->path = f->path.lane[lane];
         t->cycles = f->cycles.lane[lane];
     }
 }
 #endif
 
-// Treats the packets of the queue's slots first .. end - 1, at most V, that are in voxels
-// of this node or outside the box.
-RAYA_KERNEL_BODY void treat_slots(const node* n, flight* f, uint first, uint end) {
+// Processes the packets of the queue's slots first .. end - 1, at most V, that are in voxels of this node or outside
+// the box.
+RAYA_KERNEL_BODY void process_slots(const node* n, flight* f, uint first, uint end) {
     load_flight(f, first, end);
     lanes_index waiting;
     const index kind = kinds_of(f);
@@ -131,7 +132,7 @@ RAYA_KERNEL_BODY void treat_slots(const node* n, flight* f, uint first, uint end
         const uint place = f->voxel.lane[lane];
         const mask here = waiting.truth & (f->voxel.all == (index)(place));
         waiting.truth &= mask_not(here);
-        if (place == RAYA_NO_VOXEL || is_own(n, raya_unpack_place(place))) treat(n, f, here, place);
+        if (place == RAYA_NO_VOXEL || is_own(n, raya_unpack_place(place))) process(n, f, here, place);
     }
 }
 
@@ -140,10 +141,10 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
                  __global const uint* restrict starts,    // [nodes + 1]: where each node's words start
                  __global const raya_run* restrict run,   // (kernels/shared/traffic.h)
                  const uint first_node,                   // slot of the node that is work-group 0
-                 const uint tight,                        // 1: rays need room for what they turn into at once, not for
-                                                          // all their tree
-                 const uint work,                         // of a node, RAYA_COUNT_WORK, > 0: then the launch ends
-                 const uint again,                        // 1: goes on with what the last launch has left
+                 const uint tight,                        // 1: rays need slots for the packets that they turn into at
+                                                          // once, not for their tree
+                 const uint work,                         // limit of a node's RAYA_COUNT_WORK in a launch, > 0
+                 const uint again,                        // 1: continues where the last launch ended
                  __local uint* local_words,               // RAYA_COUNT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the
                                                           // words of a node
                  __global raya_packet* restrict queues,   // [node][queue]
@@ -151,7 +152,7 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
                  __global ulong* restrict events,         // [node][RAYA_EVENTS], added to
                  __global ulong* restrict made,           // [node][RAYA_KINDS]: packets, added to
                  __global ulong* restrict ended,          // [node][RAYA_KINDS], added to
-                 __global raya_treated* restrict treated) // [node][queue], where RAYA_COSTS is 1; else not touched
+                 __global raya_processed* restrict processed) // [node][queue], where RAYA_COSTS is 1; else not touched
 {
     const uint slot = node_slot(first_node), item = get_local_id(0);
     status += (size_t)slot * RAYA_STATUS_WORDS;
@@ -167,17 +168,17 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
     const node n = open_node(memories, starts, slot, local_words + RAYA_COUNT_WORDS);
 #if RAYA_COSTS
     f.job = (job_words)n.memory;
-    treated += (size_t)slot * run->queue;
+    processed += (size_t)slot * run->queue;
 #endif
     while (shared_add(&f.shared[RAYA_COUNT_WORK], 0) < work) {
-        // The packets that came last first: among them are the deepest rays, which ask for the least room.
+        // The newest packets first: among them are the deepest rays, which need the fewest slots.
         const uint taken = shared_add(&f.shared[RAYA_COUNT_NEXT], RAYA_LANES);
         if (taken >= count) break;
         count_shared(f.shared, RAYA_COUNT_WORK, 1);
         const uint end = count - taken;
-        treat_slots(&n, &f, end > RAYA_LANES ? end - RAYA_LANES : 0, end);
+        process_slots(&n, &f, end > RAYA_LANES ? end - RAYA_LANES : 0, end);
 #if RAYA_COSTS
-        tell_costs(&f, end, treated);
+        record_costs(&f, end, processed);
 #endif
     }
     if (loops_were_cut(min(f.capacity, 2u))) status[RAYA_STATUS_CUT] = 1;

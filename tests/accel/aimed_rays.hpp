@@ -1,5 +1,5 @@
-// Rays at objects, most of them at silhouettes, edges, rims and points, where a kernel's rounding decides whether there
-// is a hit.
+// Rays aimed at objects, most of them at silhouettes, edges, rims and points, where a kernel's rounding decides whether
+// there is a hit.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace raya {
 
-/// How rays may be in a format: coordinates of origins up to `reach`, | |D|^2 - 1 | up to RAYA_STRETCH.
+/// The legal rays of a format: coordinates of origins up to `reach`, | |D|^2 - 1 | up to RAYA_STRETCH.
 struct RayBounds {
     NumberFormat format;
     double reach = 0;
@@ -29,8 +29,7 @@ struct RayBounds {
     }
 };
 
-/// Puts everything of the scene at `scale` times its place, each object at a size of its own, 2^-9 to twice what that
-/// makes it, and some cones along axes.
+/// Scales the scene by `scale` and each object further by a random factor, 2^-9 to 2; turns some cones along axes.
 inline Scene of_all_sizes(Scene scene, SplitMix& random, double scale) {
     const auto size = [&] { return std::exp2(random.uniform(-9, 1)); };
     scene.view.from *= scale;
@@ -50,7 +49,7 @@ inline Scene of_all_sizes(Scene scene, SplitMix& random, double scale) {
     return scene;
 }
 
-/// Where a ray is to touch an object: a point of it, and a direction in which rays there graze it; 0: any.
+/// The target of a ray: a point of an object, and a direction in which rays there graze it; 0: any.
 struct Aim {
     Vec3 point{0}, tangent{0};
 };
@@ -95,7 +94,7 @@ inline Aim aim_at(SplitMix& random, const Scene& scene, std::size_t number) {
     return aim_at(random, scene.cones[number - scene.polygons.size()]);
 }
 
-/// As far as origins go in a direction.
+/// Returns the distance from a point along a direction to the border of the cube of origins.
 inline double way_out(const RayBounds& bounds, const Vec3& from, const Vec3& direction) {
     double way = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
@@ -115,7 +114,7 @@ inline Vec3 random_start(SplitMix& random, const RayBounds& bounds, const Aim& a
             return aim.point + random.uniform(0, way) * away;
         case 2:
             return aim.point + way * std::exp2(random.uniform(-12, 0)) * away;
-        default: {  // a corner of the cube that origins lie in
+        default: {  // a corner of the cube of origins
             Vec3 corner;
             for (int axis = 0; axis < 3; ++axis) corner[axis] = (below(random, 2) == 0 ? 1 : -1) * bounds.reach;
             return grazes ? aim.point + way * away : corner;
@@ -123,7 +122,8 @@ inline Vec3 random_start(SplitMix& random, const RayBounds& bounds, const Aim& a
     }
 }
 
-/// Towards the aim but for a few units in the last place, as long or short as RAYA_STRETCH lets it be, or of length 1.
+/// Returns a direction towards the aim, up to a few units in the last place, as long or short as RAYA_STRETCH allows,
+/// or of length 1.
 inline reference::Ray random_aimed_ray(SplitMix& random, const RayBounds& bounds, Aim aim) {
     if (below(random, 2) == 0) aim.point = bounds.rounded(aim.point);
     const double stretch = bounds.format.is_fp32() ? 0x1p-18 : 16 * bounds.unit();  // RAYA_STRETCH

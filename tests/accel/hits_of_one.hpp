@@ -1,4 +1,4 @@
-// Hits of a scene's objects, each alone, by rays aimed at them.
+// Hits of single objects of a scene by rays aimed at them.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -17,7 +17,7 @@ inline PackedJob job_in(const Scene& scene, const NumberFormat& format) {
     return pack_job(scene, settings);
 }
 
-/// A hit as the kernel computed it, and where it is exactly.
+/// A hit as the kernel computed it, with its ray.
 struct FoundHit {
     std::uint32_t object;  // number in the job
     reference::Ray ray;
@@ -25,13 +25,13 @@ struct FoundHit {
     Vec3 point() const { return ray.origin + t * ray.direction; }
 };
 
-/// Rays for objects, sixteen for each entry.
+/// Rays and their objects, sixteen rays for each entry of `objects`.
 struct AimedRays {
     std::vector<std::uint32_t> objects;  // numbers in the job
     std::vector<reference::Ray> rays;
 };
 
-/// `turns` times sixteen rays for each finite object.
+/// Returns `turns` times sixteen rays for each finite object.
 inline AimedRays aim_at_all(SplitMix& random, const Scene& scene, const RayBounds& bounds, int turns) {
     AimedRays aimed;
     const std::vector<int> numbers = object_numbers(scene);
@@ -40,7 +40,7 @@ inline AimedRays aim_at_all(SplitMix& random, const Scene& scene, const RayBound
             const auto number = static_cast<std::size_t>(numbers[object]);
             if (number >= scene.spheres.size() && number < scene.spheres.size() + scene.planes.size()) continue;
             aimed.objects.push_back(object);
-            for (std::size_t i = 0; i < kMostLanes; ++i)
+            for (std::size_t i = 0; i < kMaxLanes; ++i)
                 aimed.rays.push_back(random_aimed_ray(random, bounds, aim_at(random, scene, number)));
         }
     return aimed;
@@ -56,7 +56,7 @@ inline std::vector<FoundHit> hits_of_one(KernelRunner& runner, const PackedJob& 
     const std::vector<float> t = runner.read(distances);
     std::vector<FoundHit> hits;
     for (std::size_t i = 0; i < t.size(); ++i)
-        if (t[i] != kFarLimit) hits.push_back({aimed.objects[i / kMostLanes], aimed.rays[i], t[i]});
+        if (t[i] != kFarLimit) hits.push_back({aimed.objects[i / kMaxLanes], aimed.rays[i], t[i]});
     return hits;
 }
 

@@ -1,4 +1,4 @@
-// Partitions of random scenes, and what is in their lists.
+// Partitions of random scenes and their lists.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace raya {
 
-/// The last has no bounds: every object is in every list.
+/// For the last one no bounds are known: every object is in every list.
 inline const std::vector<std::string> kFormats = {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10", "e7m20t", "e5m6"};
 
 inline bool lists(const Partition& p, std::uint32_t voxel, std::uint32_t object) {
@@ -36,7 +36,7 @@ inline Partition partition_of(const Scene& scene, const std::string& format, con
     return partition(job_in(scene, parse_format(format)), parse_format(format), divisions);
 }
 
-/// Half of what the partition allows for, of a ray from the edge of the reach: the walk's tests hold it to a quarter.
+/// Half of the error that the partition allows for a ray from the edge of the reach; tests of the walk allow a quarter.
 inline double walk_error(const raya_grid& grid) {
     double largest = grid.reach;
     for (std::uint32_t axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(double{grid.low[axis]})});
@@ -49,7 +49,7 @@ inline Divisions random_divisions(SplitMix& random) {
     return {x, y, along()};
 }
 
-/// As large and small as coordinates and sizes may be in the format.
+/// Returns a scale up to the largest and down to the smallest coordinates and sizes of the format.
 inline double random_scale(SplitMix& random, const NumberFormat& format) {
     const double room = format.exponent_bits == 5 ? 2 : format.exponent_bits == 6 ? 8 : 16;
     return std::exp2(random.uniform(-room, room));

@@ -1,4 +1,4 @@
-// Grids and rays for the walk: the usual ones, and those at which walks go wrong.
+// Random grids and rays for the walk: typical ones, and those that are hard for walks.
 #pragma once
 #include <array>
 #include <cmath>
@@ -18,13 +18,13 @@ inline std::uint32_t below(SplitMix& random, std::uint32_t end) {
     return static_cast<std::uint32_t>(random.next() % end);
 }
 
-/// Boxes of all sizes and proportions, about the origin and far from it.
+/// Boxes of all sizes and proportions, around the origin and far from it.
 inline raya_grid random_grid(SplitMix& random) {
     static const std::vector<Divisions> kinds = {{1, 1, 1},   {1, 7, 3}, {64, 64, 64}, {2, 2, 2},   {4, 4, 4},
                                                  {16, 1, 16}, {5, 8, 3}, {1, 1, 200},  {30, 20, 10}};
     const Divisions divisions = kinds[below(random, static_cast<std::uint32_t>(kinds.size()))];
     const double scale = std::exp2(random.uniform(-20, 20));
-    const double away = below(random, 3) == 0 ? random.uniform(0, 1000) : 1;  // of the box from the origin, in its size
+    const double away = below(random, 3) == 0 ? random.uniform(0, 1000) : 1;  // from the origin, in box sizes
     raya_grid grid{};
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const double side = scale * (below(random, 5) == 0 ? random.uniform(1e-3, 1) : 1);
@@ -116,7 +116,7 @@ inline reference::Ray random_walk_ray(SplitMix& random, const raya_grid& grid) {
     }
 }
 
-/// The most voxels that a ray goes through.
+/// The maximum number of voxels on a ray.
 inline std::uint32_t most_voxels(const raya_grid& g) { return g.divisions[0] + g.divisions[1] + g.divisions[2] + 1; }
 
 }  // namespace raya

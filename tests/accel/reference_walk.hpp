@@ -1,5 +1,5 @@
-// Which voxels a ray crosses, in double precision and without walking: the box is halved until single voxels are left.
-// The oracle of kernels/grid/walk.clh.
+// The voxels that a ray crosses, in double precision, found by halving the box down to single voxels. The oracle of
+// kernels/grid/walk.clh.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -30,13 +30,13 @@ inline VoxelBlock one_voxel(const raya_grid& g, std::uint32_t voxel) {
     return b;
 }
 
-/// Where a ray is in a block: from in to out, empty where in > out.
+/// The part of a ray in a block: t from in to out, empty if in > out.
 struct Passage {
     double in = 0, out = std::numeric_limits<double>::infinity();
     bool empty() const { return in > out; }
 };
 
-/// t >= 0 at which the ray is in the block, its planes moved outward by `slack` (inward where it is negative).
+/// Returns t >= 0 at which the ray is in the block, its planes moved outward by `slack` (inward if it is negative).
 inline Passage passage(const raya_grid& g, const VoxelBlock& block, const reference::Ray& ray, double slack) {
     Passage p;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -54,7 +54,7 @@ inline Passage passage(const raya_grid& g, const VoxelBlock& block, const refere
     return p;
 }
 
-/// Voxels that the ray crosses more than `slack` inside their planes, in no order.
+/// Adds the voxels that the ray crosses more than `slack` inside their planes, in no particular order.
 inline void add_crossed(const raya_grid& g, const VoxelBlock& block, const reference::Ray& ray, double slack,
                         std::vector<std::uint32_t>& voxels) {
     if (passage(g, block, ray, -slack).empty()) return;

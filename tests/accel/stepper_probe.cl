@@ -1,4 +1,4 @@
-// The walk through a grid as the ring's lanes take it (kernels/grid/stepper.clh), voxel by voxel; buffers as in
+// Test kernel: the grid walk of the ring machine's lanes (kernels/grid/stepper.clh), voxel by voxel; buffers as in
 // walk_probe.cl.
 #include "kernels/checks/rays.clh"
 #include "kernels/grid/stepper.clh"

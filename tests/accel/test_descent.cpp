@@ -1,10 +1,10 @@
-// The descent down the tree of boxes: rays aimed at silhouettes, edges, rims and points, and rays along axes, find the
-// hits that testing all objects finds, bit for bit.
+// BVH traversal: rays aimed at silhouettes, edges, rims and points, and rays along axes, have the same hits as by
+// testing all objects, bit for bit.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "host/accel/tree.hpp"
+#include "host/accel/bvh.hpp"
 #include "host/verify/hits.hpp"
 #include "tests/accel/hits_of_one.hpp"
 #include "tests/accel/partition_lists.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 const std::vector<std::string> kKernelFormats = {"fp32", "e6m15", "e5m10", "e8m12", "e6m15t"};
 
-// A flat polygon of many corners, every second one nearer to its middle.
+// Adds a flat polygon of many corners, every second one nearer to its middle.
 void add_star(Scene& scene, SplitMix& random) {
     const Vec3 middle = random_direction(random), normal = random_direction(random);
     const Vec3 u = perpendicular(random, normal), v = normal.cross(u);
@@ -28,7 +28,7 @@ void add_star(Scene& scene, SplitMix& random) {
     scene.polygons.push_back(star);
 }
 
-// Objects of all kinds in one crowd, so that boxes overlap.
+// Returns objects of all kinds close together, so that boxes overlap.
 Scene crowd(SplitMix& random, int of_each) {
     Scene scene = empty_scene();
     for (int i = 0; i < of_each; ++i) {
@@ -39,7 +39,7 @@ Scene crowd(SplitMix& random, int of_each) {
     return scene;
 }
 
-// Every fourth ray along an axis, from where it was, and with a limit that is near what it hits.
+// Returns aimed rays, every fourth turned along an axis, every third with a limit of the scene's size.
 Rays rays_at(SplitMix& random, const Scene& scene, const RayBounds& bounds, int turns) {
     Rays rays;
     for (const reference::Ray& aimed : aim_at_all(random, scene, bounds, turns).rays) {
@@ -51,7 +51,7 @@ Rays rays_at(SplitMix& random, const Scene& scene, const RayBounds& bounds, int 
             const double d = aimed.direction[static_cast<int>(a)];
             direction[a] = along_axis ? (a == axis ? std::copysign(1.0F, float(d)) : 0.0F) : static_cast<float>(d);
         }
-        const double limit = below(random, 3) == 0 ? bounds.reach * random.uniform(0, 2) : kUsualLimit;
+        const double limit = below(random, 3) == 0 ? bounds.reach * random.uniform(0, 2) : kDefaultRayLimit;
         rays.add(origin, direction, static_cast<float>(round_to_format(limit, bounds.format)));
     }
     rays.pad();
@@ -70,7 +70,7 @@ Tally compare(const Variant& variant, unsigned cases) {
         const double scale = random_scale(random, variant.format);
         const Scene scene = of_all_sizes(crowd(random, 12), random, scale);
         PackedJob job = job_in(scene, variant.format);
-        append_tree(job, variant.format);
+        append_bvh(job, variant.format);
         const RayBounds bounds{variant.format, 2.0 * job.header().extent};
         const Rays rays = rays_at(random, scene, bounds, 1);
         const Hits all = find_hits(runner, "hits_of_all", job.words(), rays);
@@ -95,7 +95,7 @@ std::vector<std::string> tree_options(bool filter) {
 
 }  // namespace
 
-TEST_CASE("aimed rays hit down a tree what they hit of all objects, in every format", "[descent]") {
+TEST_CASE("BVH traversal finds the hits of testing all objects, in every format", "[descent]") {
     for (const std::string& name : quick_of(2, kKernelFormats))
         for (const std::uint32_t lanes : quick(1, {16u, 1u, 4u, 8u})) {
             const NumberFormat format = parse_format(name);
@@ -106,13 +106,13 @@ TEST_CASE("aimed rays hit down a tree what they hit of all objects, in every for
         }
 }
 
-TEST_CASE("boxes without room for rounding, outlines without an edge and filters without a bound are seen",
+TEST_CASE("boxes without a margin, a missing edge and filters without a bound are detected",
           "[descent]") {
-    struct Planted {
+    struct Mutant {
         const char* format;
         SourcePatch patch;
     };
-    const std::vector<Planted> faults = {
+    const std::vector<Mutant> faults = {
         {"spa22", {"geometry/outline_filter.clh", "5.0f * RAYA_ERROR", "0.1f * RAYA_ERROR"}},
         {"fp32",
          {"bvh/leaves.clh", "edge < edges; edge += RAYA_LANES)\n        crossed",

@@ -1,4 +1,4 @@
-// A grid's words: gone through as kernels do, they give the lists of the partition.
+// The words of a grid, traversed as kernels do, give the lists of the partition.
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -11,7 +11,7 @@ namespace {
 
 raya_grid_words grid_of(const PackedJob& job) { return record_at<raya_grid_words>(job.words(), job.header().accel_at); }
 
-/// Numbers of the objects that the voxel word leads to. Checks that every sphere's row holds its words.
+/// Returns the numbers of the objects in a voxel word's list. Checks that every sphere's row holds its words.
 std::vector<std::uint32_t> objects_behind(const PackedJob& job, std::uint32_t word) {
     const raya_grid_words grid = grid_of(job);
     const raya_objects objects = job.header().objects;
@@ -50,7 +50,7 @@ void check_lists(const PackedJob& job, const Partition& p) {
     }
 }
 
-/// Spheres and other objects in one place, so many of each, all in every list.
+/// Spheres and other objects in one place, so that all are in every list.
 Scene heap(std::size_t spheres, std::size_t others) {
     Scene scene = empty_scene();
     SplitMix random(spheres * 1000 + others);
@@ -61,7 +61,7 @@ Scene heap(std::size_t spheres, std::size_t others) {
 
 }  // namespace
 
-TEST_CASE("a grid's words hold the lists of the partition, and the job's words stay") {
+TEST_CASE("a grid's words hold the lists of the partition, and the job's words do not change") {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         SplitMix random(seed);
         const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);
@@ -91,7 +91,7 @@ TEST_CASE("a grid's words hold the lists of the partition, and the job's words s
     }
 }
 
-TEST_CASE("lists of every length are whole: several voxel words, links to other objects") {
+TEST_CASE("lists of every length are complete, across several voxel words and links to other objects") {
     for (const std::size_t spheres : {0u, 1u, 30u, 31u, 32u, 61u, 62u, 63u, 93u, 94u, 200u})
         for (const std::size_t others : {0u, 1u, 2u, 40u}) {
             PackedJob job = job_in(heap(spheres, others), {});

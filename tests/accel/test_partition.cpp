@@ -1,4 +1,4 @@
-// The partition: lists that hold each object wherever a kernel can find a hit of it, and hardly anywhere else.
+// The partition: each object is in the lists of all voxels where a kernel can find a hit of it, and in few others.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace raya {
 namespace {
 
-// Spheres at the two ends of a cube's diagonal, so that all that lies between does not change the box.
+// Spheres at the two ends of a cube's diagonal, so that objects between them do not change the box.
 Scene cornered_scene() {
     Scene scene = empty_scene();
     scene.view.from = Vec3(1);
@@ -48,7 +48,7 @@ std::size_t touched_voxels(const raya_grid& g, const Sphere& s) {
 
 }  // namespace
 
-TEST_CASE("lists are ascending, hold finite objects alone, each at least once, and copies are the rest") {
+TEST_CASE("lists are ascending and hold all finite objects and no planes; copies counts the further entries") {
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
         SplitMix random(seed);
         const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);
@@ -71,7 +71,7 @@ TEST_CASE("lists are ascending, hold finite objects alone, each at least once, a
     }
 }
 
-TEST_CASE("an object well inside a voxel is registered there alone") {
+TEST_CASE("an object well inside a voxel is registered only there") {
     for (const std::string format : {"fp32", "e6m15", "e6m15t", "e7m20t"}) {
         const raya_grid grid = partition_of(cornered_scene(), format, {4, 4, 4}).grid;
         for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -81,7 +81,7 @@ TEST_CASE("an object well inside a voxel is registered there alone") {
             if (kind.name == "plane") continue;
             Scene scene = cornered_scene(), object;
             kind.add(object, random);
-            // Within about 2 of its own place, of which 0.05 makes less than half a voxel.
+            // Within about 2 of its place, scaled by 0.05: less than half a voxel.
             const Vec3 middle = middle_of(grid, voxel);
             for (const Sphere& s : object.spheres) scene.spheres.push_back({middle, 0.1 * s.radius, 0});
             for (Polygon q : object.polygons) {
@@ -102,7 +102,7 @@ TEST_CASE("an object well inside a voxel is registered there alone") {
     }
 }
 
-TEST_CASE("spheres are registered where their surfaces are and hardly anywhere else") {
+TEST_CASE("spheres are registered in the voxels of their surfaces and in few others") {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         SplitMix random(seed);
         Scene scene = cornered_scene();
@@ -118,7 +118,7 @@ TEST_CASE("spheres are registered where their surfaces are and hardly anywhere e
     }
 }
 
-// The walk may have a ray on the other side of the plane when it is at the sphere's border.
+// Rounding may put the walk on the other side of the plane where the ray touches the sphere.
 TEST_CASE("an object that ends just before a plane is registered on both sides") {
     Scene scene = cornered_scene();
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -142,7 +142,7 @@ TEST_CASE("an object that ends just before a plane is registered on both sides")
     }
 }
 
-TEST_CASE("large slanted objects are not everywhere") {
+TEST_CASE("large slanted objects are not in all voxels") {
     constexpr double kSide = 16;
     Scene scene = cornered_scene();
     scene.polygons = {{{{-1, -1, -1}, {1, -1, 0.5}, {1, 1, 1}, {-1, 1, -0.5}}, {}, 0}};
@@ -152,7 +152,7 @@ TEST_CASE("large slanted objects are not everywhere") {
     CHECK(double(lists_with(p, 3)) < 14 * kSide);
 }
 
-TEST_CASE("the box holds everything, and its sides are never 0") {
+TEST_CASE("the box contains all finite objects, and its sides are never 0") {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         SplitMix random(seed);
         const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);
@@ -177,7 +177,7 @@ TEST_CASE("the box holds everything, and its sides are never 0") {
     }
 }
 
-TEST_CASE("a scene in a plane has a box with three sides") {
+TEST_CASE("the box of a flat scene has three sides above 0") {
     Scene scene = empty_scene();
     scene.polygons = {{{{0, 0, 2}, {1, 0, 2}, {0, 1, 2}}, {}, 0}};
     const Partition p = partition_of(scene, "fp32", {3, 3, 3});
@@ -200,7 +200,7 @@ TEST_CASE("a scene without finite objects has a box with side 1 and empty lists"
     }
 }
 
-TEST_CASE("where no bound is known every object is in every list") {
+TEST_CASE("if no bound is known every object is in every list") {
     Scene coarse = mixed_scene(1), huge = random_scene(object_kinds()[0], 2), steep = mixed_scene(3);
     huge.spheres[0].centre.x = 100;
     steep.cones.push_back({{0, 0, 0}, 1, {0, 0, 0.01}, 0, 0});
@@ -221,7 +221,7 @@ TEST_CASE("where no bound is known every object is in every list") {
     CHECK(divisions_for(job_in(coarse, parse_format("e8m9")), parse_format("e8m9"), 1000) == Divisions{1, 1, 1});
 }
 
-TEST_CASE("the reach is twice the scene's extent; with planes, on which rays start anywhere, as far as voxels allow") {
+TEST_CASE("the reach is twice the scene's extent, with planes as far as the voxels' size allows") {
     Scene scene = mixed_scene(1);
     REQUIRE(!scene.planes.empty());
     for (const std::string format : {"fp32", "e6m15", "e8m12"}) {
@@ -240,7 +240,7 @@ TEST_CASE("the reach is twice the scene's extent; with planes, on which rays sta
               2 * job_in(scene, parse_format(format)).header().extent);
 }
 
-TEST_CASE("divisions that cannot be are refused") {
+TEST_CASE("illegal divisions are refused") {
     const Scene scene = mixed_scene(1);
     using Catch::Contains;
     CHECK_THROWS_WITH(partition_of(scene, "fp32", {0, 1, 1}), Contains("0x1x1 voxels"));
@@ -254,7 +254,7 @@ TEST_CASE("divisions that cannot be are refused") {
     CHECK(partition_of(scene, "fp32", {1, 1u << 20, 1}).starts.size() == (1u << 20) + 1);
 }
 
-TEST_CASE("divisions for an accelerating grid are as many as asked for, and their voxels near cubes") {
+TEST_CASE("an accelerating grid has about the requested number of voxels, which are nearly cubes") {
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
         SplitMix random(seed);
         Scene scene = cornered_scene();
@@ -279,7 +279,7 @@ TEST_CASE("divisions for an accelerating grid are as many as asked for, and thei
     CHECK(divisions_for(job, {}, std::uint64_t{1} << 40) == Divisions{256, 256, 256});
 }
 
-TEST_CASE("divisions for an accelerating grid are fewer where rounding spreads objects over many voxels") {
+TEST_CASE("an accelerating grid has fewer voxels if rounding would spread objects over many") {
     Scene scene = cornered_scene();
     SplitMix random(1);
     for (int i = 0; i < 20000; ++i) scene.spheres.push_back({random_point(random, 1), 0.02, 0});

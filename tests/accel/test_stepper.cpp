@@ -1,5 +1,5 @@
-// The walk as the ring's lanes take it, against the walk of one step at a time: the same voxels at the same t, bit for
-// bit, up to where the ray leaves the box.
+// Compares the walk of the ring machine's lanes (stepper.clh) with walk.clh: the same voxels at the same t, bit for
+// bit, until the ray leaves the box.
 #include <catch2/catch.hpp>
 
 #include "host/scene/packer.hpp"
@@ -50,7 +50,8 @@ Walks stepped_walks(KernelRunner& runner, const raya_grid& grid, const std::vect
     return {runner.read(voxels), runner.read(leaves)};
 }
 
-/// Where the steps end: a ray that leaves the box through an edge touches voxels for no length, which they pass over.
+/// Returns the number of voxels that steps visit. They skip voxels that a ray touches with length 0 where it leaves the
+/// box through an edge.
 std::size_t end_of_walk(const Walks& w, std::size_t ray, std::uint32_t most) {
     std::size_t count = 0;
     while (count < most && w.voxels[ray * most + count] != RAYA_NO_VOXEL) ++count;
@@ -60,7 +61,7 @@ std::size_t end_of_walk(const Walks& w, std::size_t ray, std::uint32_t most) {
 
 }  // namespace
 
-TEST_CASE("lanes step through the voxels of the walk, at the same t, whatever their number") {
+TEST_CASE("for every number of lanes, steps visit the voxels of the walk at the same t") {
     std::size_t steps = 0;
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
         KernelRunner plain("tests/accel/walk_probe.cl", {lanes, true}),

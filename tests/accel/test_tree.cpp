@@ -1,20 +1,20 @@
-// The tree of boxes: what every tree must hold to, whatever it is built over.
+// The BVH: invariants of every tree.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
-#include "host/accel/tree.hpp"
+#include "host/accel/bvh.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
 
-TreeItem item_at(SplitMix& random, std::uint32_t number, double size, int way) {
+BvhItem item_at(SplitMix& random, std::uint32_t number, double size, int way) {
     constexpr std::array<std::uint32_t, 4> kinds = {RAYA_LINK_SPHERES, RAYA_LINK_FACES, RAYA_LINK_POLYGON,
                                                     RAYA_LINK_OBJECT};
-    TreeItem item{{}, number, kinds[number % kinds.size()]};
+    BvhItem item{{}, number, kinds[number % kinds.size()]};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double at = way == 0   ? random.uniform(-1, 1)
                           : way == 1 ? 0.25                                               // all in one place
@@ -26,7 +26,7 @@ TreeItem item_at(SplitMix& random, std::uint32_t number, double size, int way) {
     return item;
 }
 
-/// Whether a box is the smallest that holds all of those.
+/// Returns true if `outer` is the smallest box that contains all boxes.
 template <class Boxed>
 bool fits(const Bounds& outer, const Boxed* first, const Boxed* end) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -39,11 +39,11 @@ bool fits(const Bounds& outer, const Boxed* first, const Boxed* end) {
     return true;
 }
 
-/// Goes down the tree, and complains. Returns the nodes on the longest way.
-std::uint32_t check_child(const Tree& tree, const TreeChild& child, std::multiset<std::uint32_t>& numbers) {
+/// Checks a subtree and collects its items' numbers. Returns its depth in nodes.
+std::uint32_t check_child(const Bvh& tree, const BvhChild& child, std::multiset<std::uint32_t>& numbers) {
     if (child.kind != RAYA_LINK_NODE) {
         REQUIRE(child.items >= 1);
-        REQUIRE(child.items <= most_in_leaf(child.kind));
+        REQUIRE(child.items <= max_leaf_items(child.kind));
         CHECK(fits(child.box, &tree.items[child.first], &tree.items[child.first] + child.items));
         for (std::uint32_t i = child.first; i < child.first + child.items; ++i) {
             CHECK(tree.items[i].kind == child.kind);
@@ -52,42 +52,42 @@ std::uint32_t check_child(const Tree& tree, const TreeChild& child, std::multise
         }
         return 0;
     }
-    const TreeNode& node = tree.nodes.at(child.first);
+    const BvhNode& node = tree.nodes.at(child.first);
     REQUIRE(node.count >= 2);
     CHECK(fits(child.box, node.children.data(), node.children.data() + node.count));
     std::uint32_t depth = 0;
     for (std::uint32_t i = 0; i < node.count; ++i) {
-        const TreeChild& below = node.children[i];
+        const BvhChild& below = node.children[i];
         if (below.kind == RAYA_LINK_NODE) CHECK(below.first > child.first);
         depth = std::max(depth, check_child(tree, below, numbers));
     }
     return depth + 1;
 }
 
-TEST_CASE("every item is in one leaf of its kind, in boxes that fit", "[tree]") {
+TEST_CASE("BVH: every item is in one leaf of its kind, and boxes are tight", "[tree]") {
     for (unsigned seed = 1; seed <= quick_cases(60, 600); ++seed) {
         SplitMix random(seed);
         const int way = static_cast<int>(seed % 4);
         const auto count = static_cast<std::uint32_t>(1 + random.next() % (seed % 5 == 0 ? 3000 : 100));
-        std::vector<TreeItem> items;
+        std::vector<BvhItem> items;
         for (std::uint32_t i = 0; i < count; ++i) items.push_back(item_at(random, i, 0.01, way));
-        const Tree tree = build_tree(items);
+        const Bvh tree = build_bvh(items);
         CAPTURE(seed, count, way);
         std::multiset<std::uint32_t> numbers;
         CHECK(check_child(tree, tree.root, numbers) == tree.depth);
         CHECK(numbers.size() == count);
         CHECK(std::set<std::uint32_t>(numbers.begin(), numbers.end()).size() == count);
         CHECK(tree.depth <= 40);
-        // The order in which items come is of no matter.
+        // The tree does not depend on the order of the items.
         std::reverse(items.begin(), items.end());
-        const Tree again = build_tree(items);
+        const Bvh again = build_bvh(items);
         REQUIRE(again.items.size() == tree.items.size());
         for (std::size_t i = 0; i < count; ++i) CHECK(again.items[i].number == tree.items[i].number);
     }
 }
 
-TEST_CASE("a tree over nothing is empty", "[tree]") {
-    const Tree tree = build_tree({});
+TEST_CASE("a BVH without items is empty", "[tree]") {
+    const Bvh tree = build_bvh({});
     CHECK(tree.items.empty());
     CHECK(tree.nodes.empty());
     CHECK(tree.depth == 0);

@@ -1,5 +1,5 @@
-// The walk of rays through grids against a reference that does not walk: every voxel in its turn, none missed, none
-// visited from afar.
+// Compares the walk of rays through grids with a reference that does not walk: voxels in order, none missed, none far
+// from the ray.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr std::size_t kWalkedGrids = 50, kWalkedRays = 2048;  // in each grid
 struct VoxelWalks {
     std::vector<std::uint32_t> wide, voxels;  // [ray], [ray][most]
     std::vector<float> leaves;                // [ray][most]
-    std::vector<float> resumed_leaves;        // [ray][most]: of walks taken up anew in each voxel
+    std::vector<float> resumed_leaves;        // [ray][most]: of walks resumed in each voxel
     std::vector<std::uint32_t> resumed_nexts;
 };
 
@@ -48,7 +48,7 @@ VoxelWalks walk(KernelRunner& runner, const raya_grid& grid, const std::vector<f
     return {runner.read(wide), runner.read(voxels), runner.read(leaves), runner.read(again), runner.read(nexts)};
 }
 
-/// One walk, as it came out.
+/// The result of a walk.
 struct Path {
     std::vector<std::uint32_t> voxels;
     std::vector<float> leaves;
@@ -63,7 +63,7 @@ Path path_of(const VoxelWalks& walks, std::size_t ray, std::uint32_t most) {
     return path;
 }
 
-/// How far a ray can be from its voxel: a quarter of what host/accel/partition.cpp allows for.
+/// The largest allowed distance of a ray from its voxel: a quarter of what host/accel/partition.cpp allows for.
 double walk_error(const raya_grid& grid, const reference::Ray& ray) {
     double box = 0, origin = 0;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -74,7 +74,7 @@ double walk_error(const raya_grid& grid, const reference::Ray& ray) {
     return 4 * 0x1p-24 * (origin + box);
 }
 
-/// Steps lead to a neighbour, the way in which the ray goes, and t never falls.
+/// Returns true if each step leads to a neighbour in the direction of the ray and t never decreases.
 bool steps_forward(const raya_grid& grid, const reference::Ray& ray, const Path& path) {
     for (std::size_t i = 1; i < path.voxels.size(); ++i) {
         const VoxelBlock from = one_voxel(grid, path.voxels[i - 1]), to = one_voxel(grid, path.voxels[i]);
@@ -89,7 +89,7 @@ bool steps_forward(const raya_grid& grid, const reference::Ray& ray, const Path&
     return true;
 }
 
-/// In every voxel, from when the walk enters it to when it leaves it, the ray is no farther from it than `error`.
+/// Returns true if the ray is never farther than `error` from the voxel that the walk is in.
 bool keeps_near(const raya_grid& grid, const reference::Ray& ray, const Path& path, double error) {
     const Passage box = passage(grid, all_voxels(grid), ray, -error);
     for (std::size_t i = 0; i < path.voxels.size(); ++i) {
@@ -100,7 +100,7 @@ bool keeps_near(const raya_grid& grid, const reference::Ray& ray, const Path& pa
     return true;
 }
 
-/// The voxels that the ray crosses by more than `error` are on its path.
+/// Returns true if all voxels that the ray crosses by more than `error` are on its path.
 bool misses_none(const raya_grid& grid, const reference::Ray& ray, const Path& path, double error) {
     std::vector<std::uint32_t> crossed;
     add_crossed(grid, all_voxels(grid), ray, error, crossed);
@@ -108,7 +108,7 @@ bool misses_none(const raya_grid& grid, const reference::Ray& ray, const Path& p
     return std::all_of(crossed.begin(), crossed.end(), [&](std::uint32_t v) { return visited.count(v) == 1; });
 }
 
-/// A ray may visit the box only if it comes near to it before its limit, and must if it crosses it before then.
+/// A ray may visit the box only if it comes near the box before its limit, and must if it crosses it before then.
 enum class Entry { kMust, kMay, kMustNot };
 
 Entry entry(const raya_grid& grid, const reference::Ray& ray, double limit, double error) {
@@ -146,7 +146,7 @@ struct WalkCase {
     std::vector<double> limits;
 };
 
-void check_walk(const raya_grid& grid, const reference::Ray& ray, double limit, const Path& path) {
+void check_grid_walk(const raya_grid& grid, const reference::Ray& ray, double limit, const Path& path) {
     const double error = walk_error(grid, ray);
     const Entry expected = entry(grid, ray, limit, error);
     CAPTURE(ray.origin, ray.direction, limit, path.voxels, path.leaves, error);
@@ -159,7 +159,7 @@ void check_walk(const raya_grid& grid, const reference::Ray& ray, double limit, 
 
 }  // namespace
 
-TEST_CASE("a walk visits the voxels that the ray crosses, one after another") {
+TEST_CASE("a walk visits the voxels that the ray crosses, in order") {
     KernelRunner runner("tests/accel/walk_probe.cl", {1, true, {}});
     std::size_t visits = 0, empty = 0;
     for (std::size_t seed = 0; seed < kWalkedGrids; ++seed) {
@@ -168,7 +168,7 @@ TEST_CASE("a walk visits the voxels that the ray crosses, one after another") {
         CAPTURE(seed, c.grid.divisions, c.grid.low, c.grid.cell);
         for (std::size_t i = 0; i < kWalkedRays; ++i) {
             const Path path = path_of(walks, i, most_voxels(c.grid));
-            check_walk(c.grid, c.rays[i], c.limits[i], path);
+            check_grid_walk(c.grid, c.rays[i], c.limits[i], path);
             visits += path.voxels.size();
             empty += path.voxels.empty();
         }
@@ -177,7 +177,7 @@ TEST_CASE("a walk visits the voxels that the ray crosses, one after another") {
     CHECK(visits > kWalkedGrids * kWalkedRays * 10);
 }
 
-TEST_CASE("a walk that is taken up in any of its voxels goes on as before") {
+TEST_CASE("a walk that is resumed in any of its voxels continues in the same way") {
     KernelRunner runner("tests/accel/walk_probe.cl", {16, true, {}});
     for (std::size_t seed = 0; seed < kWalkedGrids / 2; ++seed) {
         const WalkCase c(seed);
@@ -191,7 +191,7 @@ TEST_CASE("a walk that is taken up in any of its voxels goes on as before") {
     }
 }
 
-TEST_CASE("walks of all widths of lanes are the same to the bit") {
+TEST_CASE("walks have the same bits for all numbers of lanes") {
     std::vector<VoxelWalks> first;
     for (const Variant& variant : variants()) {
         CAPTURE(variant.name());
@@ -209,8 +209,7 @@ TEST_CASE("walks of all widths of lanes are the same to the bit") {
     }
 }
 
-// A ray from beyond the reach, or of a direction that is too long or too short, and nothing else.
-TEST_CASE("rays whose hits may lie elsewhere are wide") {
+TEST_CASE("a ray is wide only if it starts beyond the reach or its direction is not of length 1") {
     KernelRunner runner("tests/accel/walk_probe.cl", {16, true, {}});
     constexpr float kBeyond = 0x1.000002p3F, kLong = 1 + 0x1.8p-20F, kTooLong = 1 + 0x1.4p-19F,
                     kTooShort = 1 - 0x1.4p-19F;
@@ -227,7 +226,7 @@ TEST_CASE("rays whose hits may lie elsewhere are wide") {
             words.push_back(kFarLimit);
         }
     const std::size_t rays = words.size() / 7;
-    words.resize(kMostLanes * 7, 0);
+    words.resize(kMaxLanes * 7, 0);
     const std::vector<std::uint32_t> found = walk(runner, grid, words).wide;
     for (std::size_t i = 0; i < rays; ++i) {
         CAPTURE(i);
@@ -235,8 +234,8 @@ TEST_CASE("rays whose hits may lie elsewhere are wide") {
     }
 }
 
-// The kernels make no other directions; a ray that is reflected several times may be wide.
-TEST_CASE("rays of normalised directions, and those reflected once, are hardly ever wide") {
+// Kernels make only such directions, but a ray that is reflected several times may be wide.
+TEST_CASE("rays of normalised directions are never wide, those reflected once hardly ever") {
     const raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
     constexpr std::size_t kCount = 1 << 16;
     for (const char* format : {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10t"}) {

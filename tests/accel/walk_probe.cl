@@ -1,13 +1,14 @@
-// The walk of given rays (kernels/checks/rays.clh) through a grid (kernels/grid/walk.clh), voxel by voxel.
+// Test kernels: the walk of given rays (kernels/checks/rays.clh) through a grid (kernels/grid/walk.clh), voxel by
+// voxel.
 #include "kernels/checks/rays.clh"
 #include "kernels/grid/walk.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void walks(__global const raya_grid* restrict grid,
            __global const float* restrict rays,
-           const uint most,               // voxels that a ray can visit
+           const uint most,               // maximum number of voxels on a ray
            __global uint* restrict wide,    // [ray]: 0 or 1
-           __global uint* restrict voxels,  // [ray][most]: those that the walk is in, in order, then RAYA_NO_VOXEL
+           __global uint* restrict voxels,  // [ray][most]: voxels of the walk in order, then RAYA_NO_VOXEL
            __global float* restrict leaves) // [ray][most]: t at which it leaves each of them
 {
     const uint first = first_ray();
@@ -24,12 +25,12 @@ void walks(__global const raya_grid* restrict grid,
     }
 }
 
-// Takes each ray's walk up anew in every voxel of it.
+// Resumes each ray's walk in each of its voxels.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void resumes(__global const raya_grid* restrict grid,
              __global const float* restrict rays,
              const uint most,
-             __global const uint* restrict voxels,  // [ray][most], as `walks` makes them
+             __global const uint* restrict voxels,  // [ray][most], results of `walks`
              __global float* restrict leaves,       // [ray][most]: t at which the ray leaves each voxel
              __global uint* restrict nexts)         // [ray][most]: the voxel after each
 {

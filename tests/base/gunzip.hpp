@@ -1,4 +1,4 @@
-// Unpacks gzip by the program of that name, which knows nothing of how the bytes were made.
+// Unpacks gzip with the gzip program, which is independent of raya's encoder.
 #pragma once
 #include <cstdio>
 #include <stdexcept>
@@ -10,7 +10,7 @@
 
 namespace raya {
 
-/// The text in a gzip file of these bytes; std::runtime_error where gzip finds fault with it.
+/// Unpacks the bytes of a gzip file; throws std::runtime_error if gzip reports an error.
 inline std::string gunzip(std::string_view bytes) {
     const ScratchFolder folder;
     write_whole_file(folder / "text.gz", bytes);

@@ -1,4 +1,4 @@
-// A fresh folder for one test case, gone when it ends.
+// A new folder for a test case, removed at its end.
 #pragma once
 #include <filesystem>
 #include <iterator>
@@ -11,7 +11,7 @@ class ScratchFolder : public TemporaryFolder {
   public:
     ScratchFolder() : TemporaryFolder("raya-test") {}
 
-    /// How many entries the folder has.
+    /// The number of entries of the folder.
     long entries() const {
         return std::distance(std::filesystem::directory_iterator(path()), std::filesystem::directory_iterator());
     }

@@ -1,4 +1,4 @@
-// A fresh folder among the system's temporary files, gone with all in it when it goes out of scope.
+// A new folder among the system's temporary files, removed with its contents by the destructor.
 #pragma once
 #include <cerrno>
 #include <cstdlib>
@@ -10,12 +10,12 @@ namespace raya {
 
 class TemporaryFolder {
   public:
-    /// Its name starts with `name`. std::system_error where none can be made.
+    /// Its name starts with `name`. Throws std::system_error if the folder cannot be created.
     explicit TemporaryFolder(const std::string& name) {
-        const std::string open_end(6, 'X');  // which mkdtemp fills in
+        const std::string open_end(6, 'X');  // mkdtemp fills it in
         std::string made = (std::filesystem::temp_directory_path() / (name + "-" + open_end)).string();
         if (::mkdtemp(made.data()) == nullptr)
-            throw std::system_error(errno, std::generic_category(), "no folder for temporary files, " + made);
+            throw std::system_error(errno, std::generic_category(), "cannot create a temporary folder: " + made);
         path_ = made;
     }
     TemporaryFolder(const TemporaryFolder&) = delete;

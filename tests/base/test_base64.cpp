@@ -1,4 +1,4 @@
-// RFC 4648's own examples.
+// Base64: the examples of RFC 4648.
 #include <catch2/catch.hpp>
 
 #include "host/base/encoding.hpp"
@@ -6,7 +6,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("bytes become the text that RFC 4648 says", "[base64]") {
+TEST_CASE("base64() encodes the examples of RFC 4648", "[base64]") {
     CHECK(base64("") == "");
     CHECK(base64("f") == "Zg==");
     CHECK(base64("fo") == "Zm8=");

@@ -1,4 +1,4 @@
-// Text that is compressed piece by piece comes back whole.
+// Text compressed piece by piece is unpacked unchanged.
 #include <catch2/catch.hpp>
 #include <stdexcept>
 #include <string>
@@ -16,7 +16,7 @@ std::string packed(const std::string& text) {
     return file.finish();
 }
 
-TEST_CASE("what was appended comes back from gzip, however it was cut", "[report]") {
+TEST_CASE("gzip unpacks the appended text, whatever its pieces", "[report]") {
     constexpr std::uint64_t kSeed = 41;
     SplitMix random(kSeed);
     for (int i = 0; i < 40; ++i) {
@@ -49,7 +49,7 @@ TEST_CASE("the same text gives the same bytes, without a date or a name", "[repo
     CHECK(gunzip(packed("")).empty());
 }
 
-TEST_CASE("nothing can follow the end", "[report]") {
+TEST_CASE("append() after finish() is an error", "[report]") {
     GzipText file;
     file.finish();
     CHECK_THROWS_AS(file.append("more"), std::logic_error);

@@ -1,4 +1,4 @@
-// An interruption ends the process by its signal, says so, and leaves no half-written file.
+// An interruption ends the process with its signal, prints a message, and leaves no partly written file.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,19 +22,19 @@ namespace raya {
 namespace {
 
 struct End {
-    int status = 0;  // as waitpid gives it
-    std::string said;
+    int status = 0;  // of waitpid()
+    std::string output;
 };
 
-/// Runs `work` in a process of its own, with stderr in hand.
+/// Runs `work` in a child process; returns its status and its output on stderr.
 template <class Work>
-End in_a_process(const Work& work) {
+End in_child_process(const Work& work) {
     std::array<int, 2> ends{};
     if (::pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
     const pid_t child = ::fork();
     if (child == 0) {
         ::dup2(ends[1], STDERR_FILENO);
-        // Catch's own handlers end here; what a signal does by itself is what a program finds.
+        // Replaces Catch's handlers by the defaults that a program starts with.
         for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_DFL);
         work();
         ::_exit(99);
@@ -43,42 +43,42 @@ End in_a_process(const Work& work) {
     End end;
     std::array<char, 256> block{};
     for (ssize_t read = 0; (read = ::read(ends[0], block.data(), block.size())) > 0;)
-        end.said.append(block.data(), static_cast<std::size_t>(read));
+        end.output.append(block.data(), static_cast<std::size_t>(read));
     ::close(ends[0]);
     ::waitpid(child, &end.status, 0);
     return end;
 }
 
-/// Interrupts the process once a file of it has grown to `bytes`: half way through a write, always at the same byte.
+/// Interrupts the process when one of its files reaches `bytes`: in the middle of a write, always at the same byte.
 void interrupt_at(rlim_t bytes, void (*interrupt)(int)) {
     std::signal(SIGXFSZ, interrupt);
     const rlimit limit{bytes, RLIM_INFINITY};
     ::setrlimit(RLIMIT_FSIZE, &limit);
 }
 
-TEST_CASE("an interruption half way through a file removes what is there of it", "[interruption]") {
+TEST_CASE("an interruption in the middle of a file removes its written part", "[interruption]") {
     const ScratchFolder folder;
     std::ofstream(folder / "old") << "as it was";
     const std::string bytes(100'000, 'x');
     for (const char* name : {"new", "old"}) {
         CAPTURE(name);
-        const End end = in_a_process([&] {
-            end_cleanly_when_interrupted();
+        const End end = in_child_process([&] {
+            install_interrupt_handlers();
             interrupt_at(50'000, [](int) { ::raise(SIGINT); });
             write_whole_file(folder / name, bytes);
         });
         CHECK(WIFSIGNALED(end.status));
         CHECK(WTERMSIG(end.status) == SIGINT);
-        CHECK(end.said == "raya: interrupted\n");
+        CHECK(end.output == "raya: interrupted\n");
         CHECK(folder.entries() == 1);  // the old one
         std::ifstream old(folder / "old");
         CHECK(std::string(std::istreambuf_iterator<char>(old), {}) == "as it was");
     }
 }
 
-TEST_CASE("without the handler the half-written file would stay: the test above can fail", "[interruption]") {
+TEST_CASE("without the handler the partly written file remains: the test above can fail", "[interruption]") {
     const ScratchFolder folder;
-    const End end = in_a_process([&] {
+    const End end = in_child_process([&] {
         interrupt_at(50'000, [](int) { ::raise(SIGINT); });
         write_whole_file(folder / "new", std::string(100'000, 'x'));
     });
@@ -86,50 +86,50 @@ TEST_CASE("without the handler the half-written file would stay: the test above 
     CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("each signal ends the process as it would by itself", "[interruption]") {
+TEST_CASE("each signal ends the process with the signal's own status", "[interruption]") {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         CAPTURE(signal);
-        const End end = in_a_process([&] {
-            end_cleanly_when_interrupted();
+        const End end = in_child_process([&] {
+            install_interrupt_handlers();
             ::raise(signal);
         });
         CHECK(WIFSIGNALED(end.status));
         CHECK(WTERMSIG(end.status) == signal);
-        CHECK(end.said == "raya: interrupted\n");
+        CHECK(end.output == "raya: interrupted\n");
     }
 }
 
-TEST_CASE("a library that installs a handler gets it called, and the process ends all the same", "[interruption]") {
+TEST_CASE("a library's handler is called, and the process ends nevertheless", "[interruption]") {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         CAPTURE(signal);
-        const End end = in_a_process([&] {
-            end_cleanly_when_interrupted();
+        const End end = in_child_process([&] {
+            install_interrupt_handlers();
             struct sigaction action {};
             action.sa_handler = [](int) { (void)!::write(STDERR_FILENO, "theirs\n", 7); };
             ::sigaction(signal, &action, nullptr);
             ::raise(signal);
         });
-        CHECK(end.said == "raya: interrupted\ntheirs\n");
+        CHECK(end.output == "raya: interrupted\ntheirs\n");
         CHECK(WTERMSIG(end.status) == signal);
     }
 }
 
 TEST_CASE("a signal that the caller ignores stays ignored, as under nohup", "[interruption]") {
-    const End end = in_a_process([] {
+    const End end = in_child_process([] {
         std::signal(SIGHUP, SIG_IGN);
-        end_cleanly_when_interrupted();
+        install_interrupt_handlers();
         ::raise(SIGHUP);
     });
     CHECK(WIFEXITED(end.status));
     CHECK(WEXITSTATUS(end.status) == 99);
-    CHECK(end.said.empty());
+    CHECK(end.output.empty());
 }
 
-TEST_CASE("only files in progress are removed, more of them than there is room for too", "[interruption]") {
+TEST_CASE("an interruption removes only files in progress, up to the maximum of 16", "[interruption]") {
     const ScratchFolder folder;
-    const End end = in_a_process([&] {
-        end_cleanly_when_interrupted();
-        for (int i = 0; i < 100; ++i) {  // done with: their slots are free again
+    const End end = in_child_process([&] {
+        install_interrupt_handlers();
+        for (int i = 0; i < 100; ++i) {  // finished files free their slots
             const FileInProgress done(folder / "done");
             std::ofstream(folder / "done") << i;
         }
@@ -146,7 +146,7 @@ TEST_CASE("only files in progress are removed, more of them than there is room f
     CHECK(std::filesystem::exists(folder / "done"));
     CHECK(std::filesystem::exists(folder / "file 0"));
     for (int i = 1; i < 16; ++i) CHECK_FALSE(std::filesystem::exists(folder / ("file " + std::to_string(i))));
-    CHECK(folder.entries() == 2 + 4);  // the 17th and later ones are nobody's
+    CHECK(folder.entries() == 2 + 4);  // the 17th and later files are not tracked
 }
 
 }  // namespace

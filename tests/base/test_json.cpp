@@ -1,4 +1,4 @@
-// Our JSON documents compared with the library's own, and how damaged ones are refused.
+// raya's JSON documents compared with those of nlohmann/json, and errors of damaged ones.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -12,7 +12,7 @@ namespace {
 
 Json parsed(const std::string& text) { return Json::parse(text, {"x.json"}); }
 
-TEST_CASE("a document says what was put into it, in that order") {
+TEST_CASE("a document contains the given members in the given order") {
     const Json json = {{"z", nullptr},
                        {"truth", true},
                        {"small", -3},
@@ -32,7 +32,7 @@ TEST_CASE("a document says what was put into it, in that order") {
     CHECK(Json("f\xfcr").dump() == "\"f\xef\xbf\xbdr\"");  // Latin-1
 }
 
-TEST_CASE("members are added once, lists grow from nothing") {
+TEST_CASE("members are added once, and a null becomes an object or a list on first use") {
     Json json;
     CHECK(json.is_null());
     json["a"] = 1;
@@ -48,7 +48,7 @@ TEST_CASE("members are added once, lists grow from nothing") {
     CHECK_THROWS_AS(json.push_back(1), JsonError);
 }
 
-TEST_CASE("what is read is of the kind that is asked for") {
+TEST_CASE("reading a value as another kind is an error") {
     const Json json = parsed(R"({"n": 3, "x": 2.5, "m": -1, "t": "word", "l": ["a", "b"]})");
     CHECK(json.at("n").whole() == 3);
     CHECK(json.at("n").number() == 3.0);
@@ -67,7 +67,7 @@ TEST_CASE("what is read is of the kind that is asked for") {
     CHECK(copy.dump() == json.dump());
 }
 
-TEST_CASE("what is wrong with a text names file, line and member") {
+TEST_CASE("a syntax error names file, line and member") {
     const auto refusal = [](const std::string& text) -> std::string {
         try {
             parsed(text);
@@ -94,7 +94,7 @@ TEST_CASE("what is wrong with a text names file, line and member") {
     CHECK(parsed("\xEF\xBB\xBF[1e-400]").elements()[0].number() == 0);
 }
 
-TEST_CASE("what a reader finds wrong names file, line, member and remedy") {
+TEST_CASE("an error of a reader names file, line, member and remedy") {
     const auto refusal = [](const std::string& text, const auto& read) -> std::string {
         try {
             read_json(text, {"x.json", "write it anew"}, read);
@@ -127,7 +127,7 @@ TEST_CASE("a file of more than 64 MB is refused before it is parsed") {
     CHECK_THROWS_WITH(json_text("/dev/zero", {"z"}), "z: cannot be read: not a regular file");
 }
 
-TEST_CASE("a number of a document takes 24 bytes") { CHECK(sizeof(Json) <= 24); }
+TEST_CASE("a value of a document takes at most 24 bytes") { CHECK(sizeof(Json) <= 24); }
 
 }  // namespace
 }  // namespace raya

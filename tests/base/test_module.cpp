@@ -1,4 +1,4 @@
-// Modules that are there, that are not, and functions that they do not have.
+// Loadable modules: existing ones, missing ones and missing functions.
 #include <catch2/catch.hpp>
 
 #include "host/base/module.hpp"
@@ -8,7 +8,7 @@ namespace raya {
 namespace {
 using Catch::Matchers::Contains;
 
-TEST_CASE("a module's function is found, and what is missing is named", "[module]") {
+TEST_CASE("a module's function is found, and errors name the missing file or function", "[module]") {
     CHECK(module_function(kEncoderModule, kEncoderFunction) == module_function(kEncoderModule, kEncoderFunction));
     CHECK_THROWS_WITH(module_function("raya_none", kEncoderFunction),
                       Contains("there is no file '") && Contains("/raya_none.so"));

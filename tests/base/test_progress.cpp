@@ -1,4 +1,4 @@
-// What a person at a terminal is shown of how far a command has come.
+// Progress of a command on a terminal.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -10,29 +10,29 @@
 namespace raya {
 namespace {
 
-TEST_CASE("a stage of which no share is known shows how long it runs", "[progress]") {
+TEST_CASE("a stage of unknown length shows its time so far", "[progress]") {
     CHECK(progress_line("building kernels", {}, 0) == "building kernels ... 0 s");
     CHECK(progress_line("building kernels", {}, 12.4) == "building kernels ... 12 s");
     CHECK(progress_line("rendering", Done{0.0009, 3}, 3) == "rendering ... 3 s");
 }
 
-TEST_CASE("a share is a bar, and what is left is told from it", "[progress]") {
+TEST_CASE("a known share shows a bar and the estimated time left", "[progress]") {
     CHECK(progress_line("rendering", Done{0.25, 10}, 10) ==
           "[" + std::string(10, '#') + std::string(30, '.') + "]  25 %  30 s left");
     CHECK(progress_line("rendering", Done{0.001, 1}, 1) == "[" + std::string(40, '.') + "]   0 %  999 s left");
 }
 
-TEST_CASE("while nothing new is known, what is left grows less, and then nothing is said of it", "[progress]") {
+TEST_CASE("without a new share the time left counts down, and then the time so far is shown", "[progress]") {
     const std::string quarter = "[" + std::string(10, '#') + std::string(30, '.') + "]  25 %  ";
     CHECK(progress_line("rendering", Done{0.25, 10}, 25) == quarter + "15 s left");
     CHECK(progress_line("rendering", Done{0.25, 10}, 60) == quarter + "60 s so far");
 }
 
-TEST_CASE("all of the work is no more than 99 percent while it runs", "[progress]") {
+TEST_CASE("a running command shows at most 99 percent", "[progress]") {
     CHECK(progress_line("rendering", Done{1, 10}, 10) == "[" + std::string(40, '#') + "]  99 %  10 s so far");
 }
 
-TEST_CASE("compiling that takes long says so, and what may help", "[progress]") {
+TEST_CASE("slow compiling prints its time and a remedy", "[progress]") {
     using namespace std::chrono_literals;
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), &std::fclose);
     const int own = ::dup(STDERR_FILENO);
@@ -46,8 +46,10 @@ TEST_CASE("compiling that takes long says so, and what may help", "[progress]") 
     std::string text(1000, ' ');
     std::rewind(file.get());
     text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-    CHECK_THAT(text, Catch::StartsWith("raya: compiling kernels for toy (first run only) ...\nraya: still compiling after "));
-    CHECK_THAT(text, Catch::Contains("POCL_WORK_GROUP_METHOD=loops") && Catch::Contains("raya: compiling kernels took "));
+    CHECK_THAT(
+        text, Catch::StartsWith("raya: compiling kernels for toy (first run only) ...\nraya: still compiling after "));
+    CHECK_THAT(text,
+               Catch::Contains("POCL_WORK_GROUP_METHOD=loops") && Catch::Contains("raya: compiling kernels took "));
 }
 
 TEST_CASE("a bar without a terminal is not active", "[progress]") {

@@ -1,4 +1,4 @@
-// Files that are read whole, and everything that is no such file.
+// Reading whole files, and refusing everything else.
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -12,7 +12,7 @@ namespace raya {
 namespace {
 using Catch::Matchers::Contains;
 
-TEST_CASE("all bytes of a file are read, those of one that does not tell its size too", "[read_file]") {
+TEST_CASE("all bytes of a file are read, even if its size is not known", "[read_file]") {
     const ScratchFolder folder;
     std::string bytes(300'001, 'x');
     bytes[7] = '\0';
@@ -20,10 +20,10 @@ TEST_CASE("all bytes of a file are read, those of one that does not tell its siz
     CHECK(read_file(folder / "a") == bytes);
     std::ofstream(folder / "empty");
     CHECK(read_file(folder / "empty").empty());
-    CHECK_THAT(read_file("/proc/self/status"), Contains("Name:"));  // whose size is 0
+    CHECK_THAT(read_file("/proc/self/status"), Contains("Name:"));  // its size is reported as 0
 }
 
-TEST_CASE("a pipe is read where that is wanted, and refused at once elsewhere", "[read_file]") {
+TEST_CASE("a pipe is read if allowed, and else refused without waiting", "[read_file]") {
     const ScratchFolder folder;
     const auto pipe = folder / "pipe";
     REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
@@ -33,7 +33,7 @@ TEST_CASE("a pipe is read where that is wanted, and refused at once elsewhere", 
     writer.join();
 }
 
-TEST_CASE("what is no file, or cannot be read to its end, is refused with the reason", "[read_file]") {
+TEST_CASE("paths that are not files, and files that cannot be read, are refused with the reason", "[read_file]") {
     const ScratchFolder folder;
     std::ofstream(folder / "long") << std::string(1000, 'x');
     CHECK_THROWS_WITH(read_file(folder / "none"), "No such file or directory");

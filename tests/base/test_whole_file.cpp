@@ -1,4 +1,4 @@
-// Files appear whole or not at all: every way in which writing can fail leaves the folder as it was.
+// Files are written completely or not at all: every failure leaves the folder as it was.
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -26,7 +26,7 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Lets no file of this process grow beyond `bytes` while it lives: a disk that fills up half way.
+/// Limits the size of this process's files to `bytes` during its lifetime, to simulate a full disk.
 class FileSizeLimit {
   public:
     explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -46,7 +46,7 @@ class FileSizeLimit {
     void (*handler_)(int);
 };
 
-/// Root may write anywhere; as `nobody` permissions count. For any other user this does nothing.
+/// Drops root's privileges by becoming `nobody`, so that permissions apply. Does nothing for other users.
 class WithoutRoot {
   public:
     WithoutRoot() : changed_(::geteuid() == 0 && ::seteuid(kNobody) == 0) {}
@@ -69,7 +69,7 @@ TEST_CASE("write_whole_file writes all bytes and nothing else", "[whole_file]") 
     CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("write_whole_file takes a file in pieces", "[whole_file]") {
+TEST_CASE("write_whole_file writes a file given in pieces", "[whole_file]") {
     const ScratchFolder folder;
     int pieces = 0;
     std::string piece;
@@ -85,7 +85,7 @@ TEST_CASE("write_whole_file takes a file in pieces", "[whole_file]") {
     CHECK(contents(folder / "a").empty());
 }
 
-TEST_CASE("pieces that cannot be made leave the old file and no temporary one", "[whole_file]") {
+TEST_CASE("an exception while making a piece leaves the old file and no temporary one", "[whole_file]") {
     const ScratchFolder folder;
     const fs::path file = folder / "x";
     write_whole_file(file, "old");
@@ -99,24 +99,24 @@ TEST_CASE("pieces that cannot be made leave the old file and no temporary one", 
     CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("write_whole_file gives the permissions that any new file gets", "[whole_file]") {
+TEST_CASE("write_whole_file creates files with the default permissions", "[whole_file]") {
     const ScratchFolder folder;
     std::ofstream(folder / "other") << "x";
     write_whole_file(folder / "report", "x");
     CHECK(fs::status(folder / "report").permissions() == fs::status(folder / "other").permissions());
 }
 
-TEST_CASE("write_whole_file replaces an old file, longer or shorter, by a new one", "[whole_file]") {
+TEST_CASE("write_whole_file replaces an old file and does not change it for its readers", "[whole_file]") {
     const ScratchFolder folder;
     write_whole_file(folder / "f", std::string(100'000, 'x'));
-    std::ifstream reader(folder / "f");  // holds the old file, as a program that is reading it would
+    std::ifstream reader(folder / "f");  // a reader of the old file
     write_whole_file(folder / "f", "short");
     CHECK(contents(folder / "f") == "short");
     CHECK(std::string(std::istreambuf_iterator<char>(reader), {}).size() == 100'000);
     CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("write_whole_file takes names relative to the working folder", "[whole_file]") {
+TEST_CASE("write_whole_file accepts names relative to the working folder", "[whole_file]") {
     const ScratchFolder folder;
     const fs::path before = fs::current_path();
     fs::current_path(folder.path());
@@ -135,7 +135,7 @@ TEST_CASE("write_whole_file follows symbolic links", "[whole_file]") {
     CHECK(contents(folder / "elsewhere/real") == "new");
 }
 
-TEST_CASE("write_whole_file writes through a link to a file that is not there yet", "[whole_file]") {
+TEST_CASE("write_whole_file writes through a link to a file that does not exist yet", "[whole_file]") {
     const ScratchFolder folder;
     fs::create_directory(folder / "there");
     fs::create_symlink("there/new", folder / "link");
@@ -148,10 +148,10 @@ TEST_CASE("write_whole_file writes through a link to a file that is not there ye
     CHECK_THROWS_WITH(write_whole_file(folder / "lost", "x"), Contains("nowhere' does not exist"));
 }
 
-TEST_CASE("file_identity is the same for all names of a file, whether it exists or not", "[whole_file]") {
+TEST_CASE("file_identity is equal for all names of a file, existing or not", "[whole_file]") {
     const ScratchFolder folder;
     fs::create_directory(folder / "there");
-    fs::create_directory_symlink("there", folder / "way");
+    fs::create_directory_symlink("there", folder / "alias");
     fs::create_symlink("there/new", folder / "link");
     const fs::path before = fs::current_path();
     for (const bool exists : {false, true}) {
@@ -159,7 +159,7 @@ TEST_CASE("file_identity is the same for all names of a file, whether it exists 
         if (exists) write_whole_file(folder / "there/new", "x");
         const std::string file = file_identity(folder / "there/new");
         for (const char* other :
-             {"there/./new", "way/new", "link", "there/../there/new", "way/../link", "there//new"}) {
+             {"there/./new", "alias/new", "link", "there/../there/new", "alias/../link", "there//new"}) {
             CAPTURE(other);
             CHECK(file_identity(folder / other) == file);
         }
@@ -185,7 +185,7 @@ TEST_CASE("write_whole_file writes a device or a pipe directly", "[whole_file]")
     CHECK(fs::is_character_file("/dev/full"));
 }
 
-TEST_CASE("a disk that fills up leaves the old file and no temporary one", "[whole_file]") {
+TEST_CASE("a full disk leaves the old file and no temporary one", "[whole_file]") {
     const ScratchFolder folder;
     write_whole_file(folder / "f", "old");
     {
@@ -198,7 +198,7 @@ TEST_CASE("a disk that fills up leaves the old file and no temporary one", "[who
     CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("a target that cannot be written is refused with file, reason and remedy", "[whole_file]") {
+TEST_CASE("an output file that cannot be written is refused with file, reason and remedy", "[whole_file]") {
     const ScratchFolder folder;
     std::ofstream(folder / "file") << "x";
     const auto refused = [](const fs::path& path, const std::string& reason, const std::string& remedy) {
@@ -215,7 +215,7 @@ TEST_CASE("a target that cannot be written is refused with file, reason and reme
     CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("names that no file can have are refused with the reason", "[whole_file]") {
+TEST_CASE("invalid file names are refused with the reason", "[whole_file]") {
     const ScratchFolder folder;
     fs::create_symlink("loop", folder / "loop");
     for (const auto& [name, reason] : {std::pair<std::string, std::string>{std::string(300, 'n'), "File name too long"},
@@ -227,7 +227,7 @@ TEST_CASE("names that no file can have are refused with the reason", "[whole_fil
     }
 }
 
-TEST_CASE("missing permissions are refused and nothing is touched", "[whole_file]") {
+TEST_CASE("missing permissions are an error and change nothing", "[whole_file]") {
     const ScratchFolder folder;
     std::ofstream(folder / "old") << "old";
     fs::permissions(folder / "old", fs::perms(0444));

@@ -1,4 +1,4 @@
-// Labelled commands, their range checks and their profile. Needs an OpenCL device: none is a failure.
+// Labelled commands, their range checks and their profile. These tests fail without an OpenCL device.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
@@ -37,7 +37,7 @@ std::vector<cl_uint> contents(Session& session, const Buffer<cl_uint>& buffer) {
 
 TEST_CASE("copies rotate the blocks of a ring exactly", "[cl]") {
     Session session(choose_device(""));
-    constexpr std::size_t kPes = 7, kBlock = 13;  // odd sizes: no alignment helps
+    constexpr std::size_t kPes = 7, kBlock = 13;  // odd sizes: not aligned
     const std::vector<cl_uint> before = counting(kPes * kBlock, 1000);
     Buffer<cl_uint> from = session.buffer<cl_uint>("from", before.size());
     Buffer<cl_uint> to = session.buffer<cl_uint>("to", before.size());
@@ -55,7 +55,7 @@ TEST_CASE("copies rotate the blocks of a ring exactly", "[cl]") {
     CHECK(contents(session, from) == before);
 }
 
-TEST_CASE("copies of blocks move their elements and touch no others", "[cl]") {
+TEST_CASE("block copies move their elements and change no others", "[cl]") {
     constexpr std::uint64_t kSeed = 1;
     SplitMix random(kSeed);
     const auto below = [&](std::size_t end) { return std::size_t(random.next() % end); };
@@ -70,7 +70,7 @@ TEST_CASE("copies of blocks move their elements and touch no others", "[cl]") {
         CAPTURE(kSeed, i, blocks, count, copy.from.offset, copy.from.pitch, copy.to.offset, copy.to.pitch);
         session.clear_profile();
         const Verdict verdict = check_copies(session, {copy});
-        INFO(verdict.told << verdict.fault.where);
+        INFO(verdict.result << verdict.fault.where);
         CHECK(verdict.outcome == Outcome::kPass);
         std::uint64_t bytes = 0;
         for (const CommandRecord& command : session.profile().commands())
@@ -79,7 +79,7 @@ TEST_CASE("copies of blocks move their elements and touch no others", "[cl]") {
     }
 }
 
-TEST_CASE("copies of blocks beyond a block or a buffer are refused and nothing is done", "[cl]") {
+TEST_CASE("block copies beyond a block or a buffer are refused before any command", "[cl]") {
     Session session(choose_device(""));
     Buffer<cl_uint> a = session.buffer<cl_uint>("a", 12), b = session.buffer<cl_uint>("b", 20);
     const auto copy = [&](Session::Blocks from, Session::Blocks to, std::size_t count, std::size_t blocks) {
@@ -89,7 +89,7 @@ TEST_CASE("copies of blocks beyond a block or a buffer are refused and nothing i
     CHECK_THROWS_AS(copy({0, 4}, {2, 5}, 4, 3), std::out_of_range);  // the target's
     CHECK_THROWS_AS(copy({5, 4}, {0, 5}, 0, 3), std::out_of_range);
     CHECK_THROWS_AS(copy({0, 4}, {0, 5}, 4, 4), std::out_of_range);  // more blocks than the source has
-    CHECK_THROWS_AS(copy({0, 2}, {0, 5}, 2, 5), std::out_of_range);  // than the target has
+    CHECK_THROWS_AS(copy({0, 2}, {0, 5}, 2, 5), std::out_of_range);  // more blocks than the target has
     CHECK_THROWS_AS(copy({0, 4}, {kMost, 5}, 4, 3), std::out_of_range);
     CHECK_THROWS_AS(copy({2, 4}, {0, 5}, kMost, 3), std::out_of_range);
     CHECK_THROWS_WITH(session.copy_blocks("band", a, {1, 4}, b, {0, 5}, 4, 3), Contains("'band'") && Contains("'a'"));
@@ -101,7 +101,7 @@ TEST_CASE("copies of blocks beyond a block or a buffer are refused and nothing i
     CHECK(session.profile().commands().empty());
 }
 
-TEST_CASE("write and read with an offset touch only their range", "[cl]") {
+TEST_CASE("write and read with an offset access only their range", "[cl]") {
     Session session(choose_device(""));
     Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 6);
     CHECK(buffer.size() == 6);
@@ -114,7 +114,7 @@ TEST_CASE("write and read with an offset touch only their range", "[cl]") {
     CHECK(part == std::vector<cl_uint>{9, 1, 2});
 }
 
-TEST_CASE("ranges beyond a buffer are refused and nothing is done", "[cl]") {
+TEST_CASE("ranges beyond a buffer are refused before any command", "[cl]") {
     Session session(choose_device(""));
     Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 4);
     std::vector<cl_uint> words(4), more(5);
@@ -137,7 +137,7 @@ TEST_CASE("overlapping copies are refused with label and buffers", "[cl]") {
                       Contains("'slide'") && Contains("'words'") && Contains("CL_MEM_COPY_OVERLAP"));
 }
 
-TEST_CASE("buffers that cannot be are refused", "[cl]") {
+TEST_CASE("buffers of no or too many elements are refused", "[cl]") {
     const Session session(choose_device(""));
     CHECK_THROWS_AS(session.buffer<float>("empty", 0), std::invalid_argument);
     const std::uint64_t most = session.device().max_allocation_bytes;
@@ -148,7 +148,7 @@ TEST_CASE("buffers that cannot be are refused", "[cl]") {
     CHECK_THROWS_AS(session.buffer<double>("endless", kMost), DeviceError);  // its size in bytes overflows
 }
 
-TEST_CASE("the profile counts every command in order, with times that grow", "[cl]") {
+TEST_CASE("the profile contains every command in order, with increasing times", "[cl]") {
     Session session(choose_device(""));
     auto add = session.build("add", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint>("add");
     Buffer<cl_uint> a = session.buffer<cl_uint>("a", 64), b = session.buffer<cl_uint>("b", 64);
@@ -156,7 +156,7 @@ TEST_CASE("the profile counts every command in order, with times that grow", "[c
     for (cl_uint i = 0; i < 5; ++i) session.launch("add", add, 8, 8, a, i);
     session.copy("move", a, 0, b, 0, 64);
     session.launch("add", add, 4, 16, b, 1U);
-    session.copy("load", a, 0, b, 0, 1);  // a label of two kinds
+    session.copy("load", a, 0, b, 0, 1);  // one label, two kinds of command
     CHECK(contents(session, b)[1] == 1 + 0 + 1 + 2 + 3 + 4 + 1);
 
     const Profile& profile = session.profile();
@@ -189,7 +189,7 @@ TEST_CASE("the profile counts every command in order, with times that grow", "[c
     CHECK(session.profile().commands().empty());
 }
 
-TEST_CASE("a summary adds up its commands", "[cl]") {
+TEST_CASE("a summary has count, total, minimum, mean and maximum of each label", "[cl]") {
     Profile profile(true);
     profile.add({"a", "kernel", 1, 2, 10, 40, 0});
     profile.add({"b", "read", 1, 2, 50, 51, 8});
@@ -206,7 +206,7 @@ TEST_CASE("a summary adds up its commands", "[cl]") {
     CHECK(lines[1].min_ns == 1);
 }
 
-TEST_CASE("without timing everything else works and times are zero", "[cl]") {
+TEST_CASE("without timing commands work and their times are zero", "[cl]") {
     Session session(choose_device(""), Timing::kOff);
     Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 4);
     session.fill("fill", buffer, 5);
@@ -218,7 +218,7 @@ TEST_CASE("without timing everything else works and times are zero", "[cl]") {
     CHECK(session.profile().summary()[0].total_ns == 0);
 }
 
-TEST_CASE("transfers through pinned memory move the same bytes, however large", "[cl]") {
+TEST_CASE("transfers of any size through pinned memory move the same bytes", "[cl]") {
     constexpr std::uint64_t kSeed = 20261123;
     SplitMix random(kSeed);
     Session session(choose_device(""), Timing::kOn, Transfers::kStaged);
@@ -227,7 +227,7 @@ TEST_CASE("transfers through pinned memory move the same bytes, however large", 
     session.fill("clear", buffer, 0);
     std::vector<cl_uint> expected(buffer.size());
     for (int i = 0; i < 200; ++i) {
-        // some of them a whole number of halves, or one more or less
+        // some sizes are a multiple of the half, or one more or less
         const std::size_t most = i % 8 ? 1000 : 3 * kHalf,
                           edge = i % 16 ? 0 : kHalf * (random.next() % 4) + random.next() % 3;
         const std::size_t count = edge ? edge - 1 : random.next() % (most + 1),
@@ -236,7 +236,7 @@ TEST_CASE("transfers through pinned memory move the same bytes, however large", 
         std::vector<cl_uint> words = counting(count, static_cast<cl_uint>(random.next()));
         std::copy(words.begin(), words.end(), expected.begin() + static_cast<std::ptrdiff_t>(offset));
         session.write("there", buffer, words, offset);
-        std::fill(words.begin(), words.end(), 0xdeadbeef);  // at once: it may be on its way still
+        std::fill(words.begin(), words.end(), 0xdeadbeef);  // the transfer may still be running
         std::vector<cl_uint> back(random.next() % 2 ? count : 7);
         session.read("back", buffer, back, offset + back.size() <= buffer.size() ? offset : 0);
         const auto from =
@@ -250,41 +250,40 @@ TEST_CASE("transfers through pinned memory move the same bytes, however large", 
     CHECK(bytes == buffer.bytes());
 }
 
-TEST_CASE("what is read while the host goes on is what there was then, and small writes leave their words alone",
-          "[cl]") {
+TEST_CASE("an asynchronous read returns the contents at its place in the queue, despite later writes", "[cl]") {
     constexpr std::uint64_t kSeed = 20261124;
     SplitMix random(kSeed);
     for (const Transfers transfers : {Transfers::kDirect, Transfers::kStaged}) {
         Session session(choose_device(""), Timing::kOn, transfers);
-        // Of plain memory's halves several are filled, without a wait between.
+        // Fills several halves of plain memory without waiting.
         constexpr std::size_t kWords = kPlainHalf / sizeof(cl_uint);
         Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", kWords);
-        Landing<cl_uint> landing = session.landing<cl_uint>("words", 4 * kWords);
+        Readback<cl_uint> readback = session.readback<cl_uint>("words", 4 * kWords);
         std::vector<cl_uint> there(kWords), expected;
         session.write("there", buffer, there);
-        while (expected.size() < landing.size()) {
+        while (expected.size() < readback.size()) {
             const std::size_t count = random.next() % 16 ? 1 + random.next() % 200 : kWords - random.next() % 2,
                               offset = random.next() % (kWords - count + 1);
             std::vector<cl_uint> words = counting(count, static_cast<cl_uint>(random.next()));
             session.write("there", buffer, words, offset);
             std::copy(words.begin(), words.end(), there.begin() + static_cast<std::ptrdiff_t>(offset));
             std::fill(words.begin(), words.end(), 0xdeadbeef);
-            const std::size_t back = std::min(1 + random.next() % 300, landing.size() - expected.size()),
+            const std::size_t back = std::min(1 + random.next() % 300, readback.size() - expected.size()),
                               from = random.next() % (kWords - back + 1);
-            session.read("back", buffer, from, landing, expected.size(), back);
+            session.read("back", buffer, from, readback, expected.size(), back);
             expected.insert(expected.end(), there.begin() + static_cast<std::ptrdiff_t>(from),
                             there.begin() + static_cast<std::ptrdiff_t>(from + back));
         }
-        session.wait("back", landing);
-        const std::span<const cl_uint> got = landing.first(landing.size());
+        session.wait("back", readback);
+        const std::span<const cl_uint> got = readback.first(readback.size());
         CAPTURE(kSeed, transfers == Transfers::kStaged);
         CHECK(std::equal(got.begin(), got.end(), expected.begin(), expected.end()));
-        CHECK_THROWS_AS(session.read("back", buffer, 0, landing, landing.size(), 1), std::out_of_range);
-        CHECK_THROWS_AS(session.read("back", buffer, kWords, landing, 0, 1), std::out_of_range);
+        CHECK_THROWS_AS(session.read("back", buffer, 0, readback, readback.size(), 1), std::out_of_range);
+        CHECK_THROWS_AS(session.read("back", buffer, kWords, readback, 0, 1), std::out_of_range);
     }
 }
 
-TEST_CASE("thousands of commands in one go are all recorded", "[cl]") {
+TEST_CASE("thousands of commands without a wait are all recorded", "[cl]") {
     Session session(choose_device(""));
     Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 1);
     for (cl_uint i = 0; i < 5000; ++i) session.fill("fill", buffer, i);
@@ -292,7 +291,7 @@ TEST_CASE("thousands of commands in one go are all recorded", "[cl]") {
     CHECK(session.profile().commands().size() == 5001);
 }
 
-TEST_CASE("a launch that cannot be is refused with label, kernel and error", "[cl]") {
+TEST_CASE("an invalid launch is refused with label, kernel and error", "[cl]") {
     Session session(choose_device(""));
     auto add = session.build("add", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint>("add");
     Buffer<cl_uint> a = session.buffer<cl_uint>("a", 1);

@@ -1,4 +1,4 @@
-// Which device is chosen, what it says of itself, and errors in words. Needs an OpenCL device: none is a failure.
+// Choice of a device, its properties, and texts of errors. These tests fail without an OpenCL device.
 #include <catch2/catch.hpp>
 #include <cctype>
 #include <string>
@@ -40,7 +40,7 @@ std::string refusal(const std::string& wanted, const std::vector<DeviceInfo>& de
 
 }  // namespace
 
-TEST_CASE("there is an OpenCL device and it describes itself", "[cl]") {
+TEST_CASE("there is an OpenCL device, and every device has valid properties", "[cl]") {
     const std::vector<cl::Device> devices = all_devices();
     REQUIRE_FALSE(devices.empty());
     for (const cl::Device& device : devices) {
@@ -55,7 +55,7 @@ TEST_CASE("there is an OpenCL device and it describes itself", "[cl]") {
         CHECK(info.native_float_width >= 1);
         CHECK(info.preferred_float_width >= 1);
         CHECK(info.max_allocation_bytes <= info.global_memory_bytes);
-        // What OpenCL 1.2 promises of every device of the full profile.
+        // Minimum requirements of OpenCL 1.2 for the full profile.
         CHECK(info.local_memory_bytes >= 32 * 1024);
         CHECK(info.max_allocation_bytes >= 128 * 1024 * 1024);
         CHECK(info.profiling);
@@ -63,7 +63,7 @@ TEST_CASE("there is an OpenCL device and it describes itself", "[cl]") {
     }
 }
 
-TEST_CASE("a real device is found by number and by any part of its name in any case", "[cl]") {
+TEST_CASE("a real device is found by number and by any part of its name, ignoring case", "[cl]") {
     const std::vector<cl::Device> devices = all_devices();
     REQUIRE_FALSE(devices.empty());
     CHECK(choose_device("0")() == devices[0]());
@@ -72,8 +72,8 @@ TEST_CASE("a real device is found by number and by any part of its name in any c
     CHECK(device_info(choose_device(part)).name == device_info(devices[0]).name);
 }
 
-TEST_CASE("a device is chosen by name over all platforms", "[cl]") {
-    CHECK(device_index("", kDevices) == 2);  // the first GPU that can be used, not the first device
+TEST_CASE("a device is chosen by name across all platforms", "[cl]") {
+    CHECK(device_index("", kDevices) == 2);  // the first usable GPU, not the first device
     CHECK(device_index("", {kDevices[0], kDevices[1]}) == 1);
     CHECK(device_index("", {made_up("Vendor", "FPGA", "other")}) == 0);
     CHECK(device_index("arc", kDevices) == 2);
@@ -83,12 +83,12 @@ TEST_CASE("a device is chosen by name over all platforms", "[cl]") {
     CHECK(device_index("380", kDevices) == 3);  // no such number, so a part of a name
 }
 
-TEST_CASE("a device is chosen by type, version and driver, and one after another of a list", "[cl]") {
+TEST_CASE("a device is chosen by type, version and driver, and in turn from a list", "[cl]") {
     std::vector<DeviceInfo> devices = kDevices;
     devices[1].version = "OpenCL 3.0 PoCL HSTR: skylake-avx512";
     devices[3].driver = "23.17";
     CHECK(device_index("CPU", devices) == 1);
-    CHECK(device_index("gpu", devices) == 2);  // the first that can be used
+    CHECK(device_index("gpu", devices) == 2);  // the first usable one
     CHECK(device_index("avx512", devices) == 1);
     CHECK(device_index("23.17", devices) == 3);
     const std::vector<std::size_t> expected = {1, 3, 2, 1, 3};
@@ -102,12 +102,12 @@ TEST_CASE("a device is chosen by type, version and driver, and one after another
     CHECK_THROWS_AS(device_index("other", devices), DeviceError);
 }
 
-TEST_CASE("a device that does not exist is refused with the list of those that do", "[cl]") {
+TEST_CASE("a device that does not exist is refused with the list of devices", "[cl]") {
     const std::string text = refusal("Radeon", kDevices);
     CHECK_THAT(text, Contains("'Radeon'") && Contains("remedy"));
     CHECK_THAT(text, Contains("0: Broken Old GPU (gpu, not usable)") && Contains("3: Vendor Arc 380 (gpu)"));
     CHECK_THAT(refusal("old", kDevices), Contains("without a compiler") && Contains("2: Vendor Arc 770"));
-    CHECK_THAT(refusal("", {kDevices[0]}), Contains("no OpenCL device is available") && Contains("Old GPU"));
+    CHECK_THAT(refusal("", {kDevices[0]}), Contains("no available OpenCL device") && Contains("Old GPU"));
     CHECK_THAT(refusal("", {}), Contains("pocl-opencl-icd") && Contains("OCL_ICD_VENDORS") && Contains("clinfo"));
 
     REQUIRE_FALSE(all_devices().empty());

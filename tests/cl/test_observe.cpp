@@ -1,4 +1,4 @@
-// What a session tells an observer: builds, arguments of launches, and how the device's clock lies.
+// Observed sessions: builds, arguments of launches, and the offset of the device's clock.
 #include <catch2/catch.hpp>
 
 #include "host/cl/commands.hpp"
@@ -15,7 +15,7 @@ constexpr const char* kSource =
 
 }  // namespace
 
-TEST_CASE("an observed session notes builds, and the arguments of so many launches", "[cl]") {
+TEST_CASE("an observed session records builds, and the arguments of the given number of launches", "[cl]") {
     Session session(choose_device(""));
     StepLog log;
     session.observe(log, 2);
@@ -28,7 +28,7 @@ TEST_CASE("an observed session notes builds, and the arguments of so many launch
     REQUIRE(commands.size() == 4);
     const auto& arguments = commands[1].arguments;
     REQUIRE(arguments.size() == 4);
-    CHECK((arguments[0].name == "to" || arguments[0].name == "0"));  // not every driver keeps names
+    CHECK((arguments[0].name == "to" || arguments[0].name == "0"));  // not every driver stores names
     CHECK(arguments[0].value == "numbers, 8 x 4 bytes");
     CHECK(arguments[1].value == "8");
     CHECK(arguments[2].value == "0.5");
@@ -43,7 +43,7 @@ TEST_CASE("an observed session notes builds, and the arguments of so many launch
     CHECK(log.steps()[0].name == "build put.cl");
 }
 
-TEST_CASE("nobody asks, nothing is noted", "[cl]") {
+TEST_CASE("a session without an observer records no arguments", "[cl]") {
     Session session(choose_device(""));
     auto put =
         session.build("put.cl", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint, cl_float, LocalMemory<cl_uint>>("put");
@@ -53,7 +53,7 @@ TEST_CASE("nobody asks, nothing is noted", "[cl]") {
     CHECK(session.profile().commands()[0].arguments.empty());
 }
 
-TEST_CASE("the anchor of a clock brings a command's time between the host's", "[cl]") {
+TEST_CASE("a clock anchor maps a command's time between the host's two times", "[cl]") {
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
         SplitMix random(seed);
         const std::uint64_t before = random.next() >> 8, after = before + random.next() % 1000,
@@ -68,7 +68,7 @@ TEST_CASE("the anchor of a clock brings a command's time between the host's", "[
     }
 }
 
-TEST_CASE("a command lies between the host's times around it", "[cl]") {
+TEST_CASE("a command's times lie between the host's times around it", "[cl]") {
     Session session(choose_device(""));
     const ClockAnchor anchor = clock_anchor(session);
     CHECK(session.profile().commands().empty());

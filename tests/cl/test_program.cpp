@@ -1,4 +1,4 @@
-// Programs and typed kernels. Needs an OpenCL device: none is a failure.
+// Programs and typed kernels. These tests fail without an OpenCL device.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -32,7 +32,7 @@ Program build_test_program(const Session& session) {
 
 }  // namespace
 
-TEST_CASE("a kernel with buffers and a value computes the right numbers", "[cl]") {
+TEST_CASE("a kernel receives buffers and values", "[cl]") {
     Session session(choose_device(""));
     const Program program = build_test_program(session);
     auto scale = program.kernel<const Buffer<float>&, cl_float, Buffer<float>&>("scale");
@@ -52,7 +52,7 @@ TEST_CASE("a kernel with buffers and a value computes the right numbers", "[cl]"
     CHECK(program.name() == "test");
 }
 
-TEST_CASE("a kernel gets local memory counted in elements", "[cl]") {
+TEST_CASE("a kernel receives local memory, sized in elements", "[cl]") {
     Session session(choose_device(""));
     auto reverse = build_test_program(session).kernel<Buffer<cl_int>&, LocalMemory<cl_int>>("reverse_group");
     Buffer<cl_int> words = session.buffer<cl_int>("words", 8);
@@ -69,7 +69,7 @@ TEST_CASE("a kernel gets local memory counted in elements", "[cl]") {
                           Contains(std::to_string(session.device().local_memory_bytes)));
 }
 
-TEST_CASE("a wrong number of arguments and an unknown kernel are refused by name", "[cl]") {
+TEST_CASE("errors for a wrong number of arguments and an unknown kernel name the kernel", "[cl]") {
     const Session session(choose_device(""));
     const Program program = build_test_program(session);
     CHECK_THROWS_WITH((program.kernel<const Buffer<float>&, Buffer<float>&>("scale")),
@@ -80,7 +80,7 @@ TEST_CASE("a wrong number of arguments and an unknown kernel are refused by name
     CHECK_THROWS_AS(program.kernel<cl_int>("scael"), DeviceError);
 }
 
-TEST_CASE("an argument of the wrong size is refused with kernel and number", "[cl]") {
+TEST_CASE("the error for an argument of the wrong size names kernel and argument", "[cl]") {
     Session session(choose_device(""));
     auto wrong = build_test_program(session).kernel<const Buffer<float>&, cl_double2, Buffer<float>&>("scale");
     Buffer<float> data = session.buffer<float>("data", 8);
@@ -88,7 +88,7 @@ TEST_CASE("an argument of the wrong size is refused with kernel and number", "[c
                       Contains("argument 1") && Contains("'scale'") && Contains("CL_INVALID_ARG_SIZE"));
 }
 
-TEST_CASE("a failed build shows log, options, device and program", "[cl]") {
+TEST_CASE("the error of a failed build contains log, options, device and program", "[cl]") {
     const Session session(choose_device(""));
     std::string text;
     try {
@@ -103,29 +103,29 @@ TEST_CASE("a failed build shows log, options, device and program", "[cl]") {
     CHECK_THAT(text, Contains(session.device().platform) && Contains(session.device().name));
 }
 
-/// Programs that PoCL keeps in this test program's folder (tests/kernel_cache.hpp).
-long kept_programs() {
-    long kept = 0;
+/// The number of programs in PoCL's cache, which is a folder of this test program (tests/kernel_cache.hpp).
+long cached_programs() {
+    long cached = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(std::getenv("POCL_CACHE_DIR")))
-        kept += entry.path().filename() == "program.bc";
-    return kept;
+        cached += entry.path().filename() == "program.bc";
+    return cached;
 }
 
-// Else a store of kernels that outlives a run would hide one that no longer builds.
-TEST_CASE("a build that fails is kept nowhere, and fails again", "[cl]") {
+// A kernel cache that outlives a run must not hide a kernel that no longer builds.
+TEST_CASE("a failed build is not cached, and fails again", "[cl]") {
     const auto build = [](const std::string& value) {
         const Session session(choose_device(""));
         session.build("test", "kernel void f(global long* a) { a[0] = " + value + "; }", {});
     };
-    const long before = kept_programs();
+    const long before = cached_programs();
     for (int times = 0; times < 2; ++times) CHECK_THROWS_AS(build("undeclared_name"), DeviceError);
-    CHECK(kept_programs() == before);
+    CHECK(cached_programs() == before);
     build(std::to_string(Clock::now().time_since_epoch().count()));  // new in each run
     if (Session(choose_device("")).device().platform == "Portable Computing Language")
-        CHECK(kept_programs() == before + 1);
+        CHECK(cached_programs() == before + 1);
 }
 
-TEST_CASE("a program is built once for each text and options", "[cl]") {
+TEST_CASE("a program is built once per text and options", "[cl]") {
     Session session(choose_device(""));
     StepLog steps;
     session.observe(steps, 0);

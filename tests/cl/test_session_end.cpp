@@ -1,4 +1,4 @@
-// What a session leaves behind when it ends early: nothing that is still at work.
+// A session that ends early leaves no running commands.
 #include <catch2/catch.hpp>
 #include <stdexcept>
 #include <string>
@@ -7,8 +7,9 @@
 
 using namespace raya;
 
-TEST_CASE("a session that an exception ends waits for what the device is at", "[cl]") {
-    // The kernel is compiled at this launch, by PoCL, and then takes millions of turns; nobody else waits for it.
+TEST_CASE("a session that an exception ends waits for the device's running commands", "[cl]") {
+    // PoCL compiles the kernel at this launch. The kernel then runs millions of iterations, and nothing else waits for
+    // it.
     const std::string source =
         "kernel void slow(global uint* a, const uint turns) {\n"
         "    uint x = a[0];\n"
@@ -30,7 +31,7 @@ TEST_CASE("a session that an exception ends waits for what the device is at", "[
         session.launch("empty", slow, 0, 1, a, kTurns);
     };
     CHECK_THROWS_AS(fail(), std::invalid_argument);
-    // A queue of its own knows nothing of the session's commands.
+    // A separate queue does not wait for the session's commands.
     const auto context = memory.getInfo<CL_MEM_CONTEXT>();
     const cl::CommandQueue other(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
     other.enqueueReadBuffer(memory, CL_TRUE, 0, sizeof got, &got);

@@ -1,4 +1,4 @@
-// Which part of the program an address belongs to: for preloaded libraries that let calls of raya's own code fail.
+// The module that an address belongs to, for preloaded libraries that inject faults into calls of raya's own code.
 #pragma once
 #include <dlfcn.h>
 #include <link.h>
@@ -8,8 +8,8 @@
 
 namespace raya {
 
-/// The file name of the library or module that holds the code at `address`, empty for the program itself, null where it
-/// is in none; `base` becomes the address it was loaded at. Takes neither a lock nor memory.
+/// Returns the file name of the library or module with the code at `address`, empty for the program itself, null if
+/// there is none. Sets `base` to its load address. Neither locks nor allocates.
 inline const char* module_of(std::uintptr_t address, std::uintptr_t& base) {
     dl_find_object found;
     if (_dl_find_object(reinterpret_cast<void*>(address), &found) != 0) return nullptr;
@@ -23,7 +23,7 @@ inline bool begins_with(const char* text, const char* begin) {
     return std::strncmp(text, begin, std::strlen(begin)) == 0;
 }
 
-/// Whether the name is of raya's own code: the program or one of its modules.
+/// Returns true if module_of()'s name is raya's: the program or one of its modules.
 inline bool is_raya(const char* name) { return *name == '\0' || begins_with(name, "raya"); }
 
 }  // namespace raya

@@ -1,18 +1,17 @@
-// A device that fails on demand: preloaded into raya (LD_PRELOAD), it lets one call of OpenCL do something else.
-//   RAYA_FAULT="clCreateBuffer 3 -4"          the third clCreateBuffer, and all after it, return -4 and do nothing
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 lost"   every third clEnqueueCopyBuffer says that it is done, and is not;
+// Fault injection into OpenCL: preloaded into raya (LD_PRELOAD), the library changes one kind of call.
+//   RAYA_FAULT="clCreateBuffer 3 -4"          the third clCreateBuffer and all later ones return -4 and do nothing
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 lost"   every third clEnqueueCopyBuffer completes without copying;
 //                                             clEnqueueCopyBufferRect likewise
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third one ends one length of itself further on, or before where the
-//                                             buffer ends there: in the memory of another PE
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third, and all after it, end the program by SIGSEGV
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflow"   by a stack that overflows
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflows"  by those of two other threads at once
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   or with exit code 1
-//   RAYA_FAULT="clFinish 1 slow"              the first, and all after it, take two seconds and a half longer
-//   RAYA_FAULT="clGetDeviceInfo 4100 8"       asked for 0x1004 = CL_DEVICE_MAX_WORK_GROUP_SIZE, the device says 8
-//   RAYA_FAULT="clGetKernelWorkGroupInfo 4528 8"  0x11B0 = CL_KERNEL_WORK_GROUP_SIZE, for every kernel
-//   RAYA_FAULT="new 1000000 0"                the host has no memory for objects of 1,000,000 bytes or more
-// No driver can be made to run out of memory, to lose its device or to forget a copy at a chosen moment.
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third one writes to its target offset plus its size (minus, at the
+//                                             end of the buffer): into the memory of another PE
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third and all later ones raise SIGSEGV
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflow"   overflow the stack
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflows"  overflow the stacks of two other threads at once
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   end the program with exit code 1
+//   RAYA_FAULT="clFinish 1 slow"              the first and all later ones take 2.5 seconds longer
+//   RAYA_FAULT="clGetDeviceInfo 4100 8"       the query 0x1004 = CL_DEVICE_MAX_WORK_GROUP_SIZE returns 8
+//   RAYA_FAULT="clGetKernelWorkGroupInfo 4528 8"  0x11B0 = CL_KERNEL_WORK_GROUP_SIZE likewise, for every kernel
+//   RAYA_FAULT="new 1000000 0"                the host's allocations of 1,000,000 bytes or more fail
 #include <CL/cl.h>
 #include <dlfcn.h>
 
@@ -32,15 +31,15 @@ namespace {
 
 struct Fault {
     std::string call;
-    int at = 0;        // 1: the first call; of new: bytes
-    std::string what;  // "lost", "astray", "crash", "exit", "slow", or empty
+    int at = 0;          // number of the call from 1; query; bytes of `new`
+    std::string action;  // "lost", "astray", "crash", "overflow", "overflows", "exit", "slow" or empty
     cl_int error = CL_SUCCESS;
 
     Fault() {
         const char* text = std::getenv("RAYA_FAULT");
-        std::istringstream(text != nullptr ? text : "") >> call >> at >> what;
-        error = std::atoi(what.c_str());
-        if (error != CL_SUCCESS) what.clear();
+        std::istringstream(text != nullptr ? text : "") >> call >> at >> action;
+        error = std::atoi(action.c_str());
+        if (error != CL_SUCCESS) action.clear();
     }
 };
 
@@ -49,35 +48,36 @@ const Fault& wanted() {
     return fault;
 }
 
-/// Frames of 16 KB, without end.
+/// Recurses without end, in frames of 16 KB.
 int overflow(int depth) {
     volatile char frame[16384];
     frame[0] = static_cast<char>(depth);
     return depth == 0 ? 0 : overflow(depth + 1) + frame[0];
 }
 
-/// What the call must return in place of doing its work; CL_SUCCESS: its work.
+/// Returns the error that the call returns instead of doing its work; CL_SUCCESS if the call does its work.
 cl_int fault_of(const char* call) {
     const Fault& fault = wanted();
     static std::atomic<int> calls{0};
-    if (fault.call != call || fault.what == "lost" || fault.what == "astray" || ++calls < fault.at) return CL_SUCCESS;
-    if (fault.what == "crash") std::raise(SIGSEGV);
-    if (fault.what == "overflow") std::_Exit(overflow(1));
-    if (fault.what == "overflows") {
+    if (fault.call != call || fault.action == "lost" || fault.action == "astray" || ++calls < fault.at)
+        return CL_SUCCESS;
+    if (fault.action == "crash") std::raise(SIGSEGV);
+    if (fault.action == "overflow") std::_Exit(overflow(1));
+    if (fault.action == "overflows") {
         std::thread one(overflow, 1), other(overflow, 1);
         one.join();
         other.join();
     }
-    if (fault.what == "exit") std::_Exit(1);
-    if (fault.what == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    if (fault.action == "exit") std::_Exit(1);
+    if (fault.action == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(2500));
     return fault.error;
 }
 
-/// Whether this copy is not to be done, or not to where it should go.
-bool goes_wrong(const char* call, const char* how) {
+/// Returns true if this copy is lost or goes astray, as `action` says.
+bool corrupts_copy(const char* call, const char* action) {
     const Fault& fault = wanted();
     static std::atomic<int> calls{0};
-    return fault.what == how && fault.call == call && ++calls % fault.at == 0;
+    return fault.action == action && fault.call == call && ++calls % fault.at == 0;
 }
 
 template <class Function>
@@ -85,14 +85,14 @@ Function* real(const char* name) {
     return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
-/// Calls the real one, or returns the error.
+/// Calls the driver's function or returns the injected error.
 template <class Function, class... Args>
 cl_int command(const char* name, Args... args) {
     const cl_int error = fault_of(name);
     return error != CL_SUCCESS ? error : real<Function>(name)(args...);
 }
 
-/// The same for calls that return an object and the error by a pointer.
+/// Same for functions that return an object, and the error by a pointer.
 template <class Function, class... Args>
 auto object(const char* name, cl_int* error, Args... args) -> decltype(real<Function>(name)(args..., error)) {
     const cl_int fault = fault_of(name);
@@ -101,22 +101,22 @@ auto object(const char* name, cl_int* error, Args... args) -> decltype(real<Func
     return nullptr;
 }
 
-/// Where a copy goes that is to be led astray; to its place, if the buffer has no other.
-size_t next_door(cl_mem buffer, size_t offset, size_t size) {
+/// Returns the target offset of a copy that goes astray; unchanged if the buffer has space for no other.
+size_t displaced_offset(cl_mem buffer, size_t offset, size_t size) {
     size_t bytes = 0;
     clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr);
     return offset + 2 * size <= bytes ? offset + size : offset >= size ? offset - size : offset;
 }
 
-/// The answer to a query for `what`, if that is to be another.
-void replace_answer(const char* call, cl_uint what, size_t size, void* value) {
+/// Replaces the answer to the query if the fault says so.
+void replace_answer(const char* call, cl_uint query, size_t size, void* value) {
     const Fault& fault = wanted();
-    if (fault.call != call || static_cast<int>(what) != fault.at || value == nullptr) return;
+    if (fault.call != call || static_cast<int>(query) != fault.at || value == nullptr) return;
     const size_t answer = static_cast<size_t>(fault.error);
     std::memcpy(value, &answer, std::min(size, sizeof answer));
 }
 
-/// In place of a copy: a command that is done in the end, with its times, and that moves a byte to nowhere.
+/// Enqueues, instead of a copy, a read of one byte that is discarded: the event completes and has its times.
 cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, const cl_event* wait_list,
                             cl_event* event) {
     static char nowhere;
@@ -126,10 +126,10 @@ cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, 
 
 }  // namespace
 
-// A sanitizer has an allocator of its own.
+// Sanitizers replace the allocator.
 #ifndef __SANITIZE_ADDRESS__
 void* operator new(std::size_t bytes) {
-    constexpr std::size_t kNeverFails = 1000;  // what the fault itself is read with
+    constexpr std::size_t kNeverFails = 1000;  // bytes; allocations of `Fault` itself are smaller
     if (bytes > kNeverFails && wanted().call == "new" && bytes >= static_cast<std::size_t>(wanted().at))
         throw std::bad_alloc();
     if (void* memory = std::malloc(bytes != 0 ? bytes : 1)) return memory;
@@ -141,8 +141,8 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 extern "C" {
 
-cl_int CL_API_CALL clGetPlatformIDs(cl_uint most, cl_platform_id* platforms, cl_uint* count) {
-    return command<decltype(clGetPlatformIDs)>("clGetPlatformIDs", most, platforms, count);
+cl_int CL_API_CALL clGetPlatformIDs(cl_uint capacity, cl_platform_id* platforms, cl_uint* count) {
+    return command<decltype(clGetPlatformIDs)>("clGetPlatformIDs", capacity, platforms, count);
 }
 
 cl_context CL_API_CALL clCreateContext(const cl_context_properties* properties, cl_uint count,
@@ -173,8 +173,8 @@ cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl
 cl_int CL_API_CALL clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset,
                                        size_t to_offset, size_t size, cl_uint waits, const cl_event* wait_list,
                                        cl_event* event) {
-    if (goes_wrong("clEnqueueCopyBuffer", "lost")) return command_without_copy(queue, from, waits, wait_list, event);
-    if (goes_wrong("clEnqueueCopyBuffer", "astray")) to_offset = next_door(to, to_offset, size);
+    if (corrupts_copy("clEnqueueCopyBuffer", "lost")) return command_without_copy(queue, from, waits, wait_list, event);
+    if (corrupts_copy("clEnqueueCopyBuffer", "astray")) to_offset = displaced_offset(to, to_offset, size);
     return command<decltype(clEnqueueCopyBuffer)>("clEnqueueCopyBuffer", queue, from, to, from_offset, to_offset, size,
                                                   waits, wait_list, event);
 }
@@ -183,27 +183,28 @@ cl_int CL_API_CALL clEnqueueCopyBufferRect(cl_command_queue queue, cl_mem from, 
                                            const size_t* to_origin, const size_t* region, size_t from_row,
                                            size_t from_slice, size_t to_row, size_t to_slice, cl_uint waits,
                                            const cl_event* wait_list, cl_event* event) {
-    if (goes_wrong("clEnqueueCopyBufferRect", "lost"))
+    if (corrupts_copy("clEnqueueCopyBufferRect", "lost"))
         return command_without_copy(queue, from, waits, wait_list, event);
     size_t origin[] = {to_origin[0], to_origin[1], to_origin[2]};
-    if (goes_wrong("clEnqueueCopyBufferRect", "astray"))
-        origin[0] = next_door(to, origin[0], (region[1] - 1) * to_row + region[0]);
+    if (corrupts_copy("clEnqueueCopyBufferRect", "astray"))
+        origin[0] = displaced_offset(to, origin[0], (region[1] - 1) * to_row + region[0]);
     return command<decltype(clEnqueueCopyBufferRect)>("clEnqueueCopyBufferRect", queue, from, to, from_origin, origin,
                                                       region, from_row, from_slice, to_row, to_slice, waits, wait_list,
                                                       event);
 }
 
-cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void* value, size_t* needed) {
-    const cl_int error = real<decltype(clGetDeviceInfo)>("clGetDeviceInfo")(device, what, size, value, needed);
-    replace_answer("clGetDeviceInfo", what, size, value);
+cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info query, size_t size, void* value,
+                                   size_t* needed) {
+    const cl_int error = real<decltype(clGetDeviceInfo)>("clGetDeviceInfo")(device, query, size, value, needed);
+    replace_answer("clGetDeviceInfo", query, size, value);
     return error;
 }
 
-cl_int CL_API_CALL clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info what,
+cl_int CL_API_CALL clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info query,
                                             size_t size, void* value, size_t* needed) {
-    const cl_int error =
-        real<decltype(clGetKernelWorkGroupInfo)>("clGetKernelWorkGroupInfo")(kernel, device, what, size, value, needed);
-    replace_answer("clGetKernelWorkGroupInfo", what, size, value);
+    const cl_int error = real<decltype(clGetKernelWorkGroupInfo)>("clGetKernelWorkGroupInfo")(kernel, device, query,
+                                                                                              size, value, needed);
+    replace_answer("clGetKernelWorkGroupInfo", query, size, value);
     return error;
 }
 

@@ -1,14 +1,14 @@
-// A disk that fails: preloaded into raya (LD_PRELOAD).
-//   RAYA_FULL_DISK="1000000 /folder"    the files that are written there get 1,000,000 bytes together, then write()
-//   fails with ENOSPC. As on a real disk the last write that finds room is cut short.
-//   RAYA_FULL_DISK="write /folder"      a write() there does half of its work and then does not return
-//   RAYA_FULL_DISK="rename /folder"     a rename() there does not return
-//   RAYA_WRITE_FAULT="17 28"            the 17th of raya's own calls that write fails with errno 28 (ENOSPC)
+// Fault injection into writes: a library preloaded into raya (LD_PRELOAD).
+//   RAYA_FULL_DISK="1000000 /folder"    the files in this folder take 1,000,000 bytes together, then write() fails with
+//                                       ENOSPC. As on a real disk, the last write with free space left is a short one.
+//   RAYA_FULL_DISK="write /folder"      a write() there writes half its bytes and then blocks
+//   RAYA_FULL_DISK="rename /folder"     a rename() there blocks
+//   RAYA_WRITE_FAULT="17 28"            the 17th of raya's own writing calls fails with errno 28 (ENOSPC)
 //   RAYA_WRITE_FAULT="17 short"         the 17th writes half its bytes
-//   RAYA_WRITE_CALLS=FILE               a line for each of these calls is appended to FILE: its name, and "fails" for
-//                                       the one that does
-// Small disks can be mounted by root alone, and not in every container; no file system fails at a chosen call.
-// Counted are calls on regular files, of raya and of the C++ library, not of drivers.
+//   RAYA_WRITE_CALLS=FILE               appends a line to FILE for each of these calls: its name, and "fails" for the
+//                                       one that fails
+// Mounting a small file system instead needs root and does not work in every container.
+// The count includes calls on regular files by raya and the C++ library, not by drivers.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -31,17 +31,17 @@
 namespace {
 
 struct Disk {
-    std::string folder;  // ends in a slash; empty: no disk is full
-    std::atomic<long long> room{0};
-    std::string stuck;  // the call that does not return
+    std::string folder;  // ends in a slash; empty: no fault
+    std::atomic<long long> free_bytes{0};
+    std::string blocking_call;  // "write", "rename" or empty
 
     Disk() {
         const char* text = std::getenv("RAYA_FULL_DISK");
         if (text == nullptr) return;
         const std::string all = text;
         const std::size_t space = all.find(' ');
-        room = std::atoll(text);
-        if (room == 0) stuck = all.substr(0, space);
+        free_bytes = std::atoll(text);
+        if (free_bytes == 0) blocking_call = all.substr(0, space);
         folder = all.substr(space + 1) + "/";
     }
 };
@@ -51,7 +51,8 @@ Disk& disk() {
     return the_disk;
 }
 
-bool is_there(int descriptor) {
+/// Returns true if the file is in the folder of RAYA_FULL_DISK.
+bool is_in_folder(int descriptor) {
     std::array<char, PATH_MAX> name{};
     const std::string link = "/proc/self/fd/" + std::to_string(descriptor);
     const ssize_t length = ::readlink(link.c_str(), name.data(), name.size());
@@ -59,7 +60,7 @@ bool is_there(int descriptor) {
     return !disk().folder.empty() && path.compare(0, disk().folder.size(), disk().folder) == 0;
 }
 
-[[noreturn]] void stay() {
+[[noreturn]] void block() {
     for (;;) ::pause();
 }
 
@@ -88,7 +89,7 @@ const WriteFault& write_fault() {
     return fault;
 }
 
-void note(const char* call, bool fails) {
+void record_call(const char* call, bool fails) {
     static const char* const file = std::getenv("RAYA_WRITE_CALLS");
     if (file == nullptr) return;
     const int descriptor = real("open", &::open)(file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -103,30 +104,30 @@ bool is_of_raya(const void* caller) {
     return module != nullptr && (raya::is_raya(module) || raya::begins_with(module, "libstdc++"));
 }
 
-/// Whether the next call fails; `can_be`: it can be short, or be interrupted (man 2 of each says which).
+/// Counts the call and returns true if it fails. Only some calls can write short or be interrupted (man 2 of each).
 bool next_fails(const char* call, bool can_be_short, bool can_be_interrupted) {
     static std::atomic<long> calls{0};
     const WriteFault& fault = write_fault();
     const bool now =
         ++calls == fault.at && (!fault.is_short || can_be_short) && (fault.error != EINTR || can_be_interrupted);
-    note(call, now);
+    record_call(call, now);
     if (now) errno = fault.error;
     return now;
 }
 
-/// The same for a call of raya's; that of another library succeeds.
+/// Same for a call by raya; calls by other libraries succeed.
 bool fails(const char* call, const void* caller, bool can_be_short, bool can_be_interrupted) {
     return is_of_raya(caller) && next_fails(call, can_be_short, can_be_interrupted);
 }
 
-/// Whether it is a file, and not the one that stderr goes to.
+/// Returns true for a regular file, except the one that stderr is redirected to.
 bool is_file(int descriptor) {
     struct stat status {
     }, messages{};
-    const int kept = errno;
+    const int saved = errno;
     const bool is = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
     const bool is_stderr = ::fstat(STDERR_FILENO, &messages) == 0 && messages.st_ino == status.st_ino;
-    errno = kept;
+    errno = saved;
     return is && !is_stderr;
 }
 
@@ -138,19 +139,19 @@ bool may_write(int flags) { return (flags & O_ACCMODE) != O_RDONLY || (flags & O
 
 ssize_t write_some(int descriptor, const void* bytes, std::size_t count) {
     static auto* const next = real("write", &::write);
-    if (!is_there(descriptor) || disk().stuck == "rename") return next(descriptor, bytes, count);
-    if (disk().stuck == "write" && next(descriptor, bytes, count / 2) >= 0) stay();
-    const long long room = disk().room;
-    if (room <= 0 && count > 0) {
+    if (!is_in_folder(descriptor) || disk().blocking_call == "rename") return next(descriptor, bytes, count);
+    if (disk().blocking_call == "write" && next(descriptor, bytes, count / 2) >= 0) block();
+    const long long free_bytes = disk().free_bytes;
+    if (free_bytes <= 0 && count > 0) {
         errno = ENOSPC;
         return -1;
     }
-    const ssize_t written = next(descriptor, bytes, std::min(count, static_cast<std::size_t>(room)));
-    disk().room -= std::max<ssize_t>(written, 0);
+    const ssize_t written = next(descriptor, bytes, std::min(count, static_cast<std::size_t>(free_bytes)));
+    disk().free_bytes -= std::max<ssize_t>(written, 0);
     return written;
 }
 
-/// The C library writes stdout by itself, where no preloaded write() is called.
+/// Writes for the FILE stdout: the C library would bypass the preloaded write().
 ssize_t write_stdout(void*, const char* bytes, std::size_t count) {
     static auto* const next = real("write", &::write);
     if (is_file(STDOUT_FILENO) && next_fails("stdout", false, true)) return 0;
@@ -215,7 +216,7 @@ int open64(const char* path, int flags, ...) {
 int close(int descriptor) {
     const bool fails_now = is_written(descriptor) && fails("close", CALLER, false, true);
     const int error = errno;
-    const int closed = real("close", &::close)(descriptor);  // Linux closes it, whatever it reports
+    const int closed = real("close", &::close)(descriptor);  // Linux closes the descriptor even if it reports an error
     if (!fails_now) return closed;
     errno = error;
     return -1;
@@ -236,7 +237,7 @@ int flock(int descriptor, int operation) noexcept {
 }
 
 int rename(const char* from, const char* to) noexcept {
-    if (disk().stuck == "rename" && std::string(to).find(disk().folder) == 0) stay();
+    if (disk().blocking_call == "rename" && std::string(to).find(disk().folder) == 0) block();
     return fails("rename", CALLER, false, false) ? -1 : real("rename", &::rename)(from, to);
 }
 

@@ -1,4 +1,4 @@
-// What cl_faults.cpp makes of a device, around a run of raya.
+// Runs of raya with an injected fault of the OpenCL device.
 #pragma once
 #include <string>
 
@@ -13,8 +13,8 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-/// A device that fails as `fault` says, see cl_faults.cpp.
-inline Surroundings failing_device(const std::string& fault) {
+/// Options of a run whose device fails as `fault` says; syntax in cl_faults.cpp.
+inline RunOptions failing_device(const std::string& fault) {
     return {.variables = {{"LD_PRELOAD", RAYA_CL_FAULTS},
                           {"RAYA_FAULT", fault},
                           {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0:handle_segv=0"}}};

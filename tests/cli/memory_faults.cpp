@@ -1,13 +1,12 @@
-// A host that runs out of memory: preloaded into raya (LD_PRELOAD), it lets one allocation fail.
-//   RAYA_MEMORY_SITES=FILE      writes a line for each allocation site at the end: its number, how often it was
-//   reached,
-//                               its return addresses; and "elsewhere" with the number of allocations of other libraries
+// Fault injection into allocations: preloaded into raya (LD_PRELOAD), the library makes one allocation fail.
+//   RAYA_MEMORY_SITES=FILE      writes at exit a line for each allocation site: its number, its count, its return
+//                               addresses; and "elsewhere" with the number of allocations of other libraries
 //   RAYA_MEMORY_FAULT=1f2e      the first allocation at the site of that number fails
 //   RAYA_MEMORY_FAULT==17       the 17th allocation in raya fails
 //   RAYA_MEMORY_FAULT=+17       the 17th allocation elsewhere fails
-// Where one fails, FILE of RAYA_MEMORY_FAILED is created: a run can then be told from one that did not get there.
-// A site is the innermost return addresses in raya and its modules, where no other library but those that allocate on
-// the caller's account (the C and C++ libraries, fmt, zlib) lies between them and the allocation.
+// When one fails, the file named by RAYA_MEMORY_FAILED is created: it shows whether a run reached the fault.
+// A site is the innermost return addresses in raya and its modules. Between them and the allocation may be only
+// libraries that allocate for their caller: the C and C++ libraries, fmt, zlib.
 #include <fcntl.h>
 #include <unistd.h>
 #include <unwind.h>
@@ -30,7 +29,7 @@ void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 
 namespace {
 
-constexpr std::size_t kDepth = 3;  // return addresses of a site: one would not tell the callers of a template apart
+constexpr std::size_t kDepth = 3;  // return addresses of a site; one would not distinguish the callers of a template
 constexpr std::size_t kSlots = 1 << 16;
 
 using Site = std::array<std::uintptr_t, kDepth>;
@@ -44,9 +43,9 @@ struct Slot {
 std::array<Slot, kSlots> slots;
 std::atomic<std::uint64_t> in_raya{0}, elsewhere{0};
 std::atomic<bool> failed{false};
-__thread bool busy __attribute__((tls_model("initial-exec"))) = false;  // what runs below allocates nothing of its own
+__thread bool busy __attribute__((tls_model("initial-exec"))) = false;  // set while this library allocates
 
-enum class Module { kOwn, kRaya, kSupport, kOther };
+enum class Module { kOwn, kRaya, kSupport, kOther };  // kOwn: this library; kSupport: allocates for its caller
 
 Module module_of(std::uintptr_t address, std::uintptr_t& base) {
     const char* const name = raya::module_of(address, base);
@@ -62,7 +61,7 @@ struct Walk {
     std::size_t frames = 0;
 };
 
-_Unwind_Reason_Code look(_Unwind_Context* context, void* data) {
+_Unwind_Reason_Code add_frame(_Unwind_Context* context, void* data) {
     Walk& walk = *static_cast<Walk*>(data);
     std::uintptr_t base = 0;
     const std::uintptr_t address = _Unwind_GetIP(context);
@@ -73,16 +72,16 @@ _Unwind_Reason_Code look(_Unwind_Context* context, void* data) {
 }
 
 std::uint64_t number_of(const Site& site) {
-    std::uint64_t hash = 14695981039346656037ull;  // FNV-1a, by words
+    std::uint64_t hash = 14695981039346656037ull;  // FNV-1a, by 64-bit words
     for (const std::uintptr_t address : site) hash = (hash ^ address) * 1099511628211ull;
     return hash | 1;
 }
 
 void record(std::uint64_t number, const Site& site) {
     for (std::size_t at = number % kSlots;; at = (at + 1) % kSlots) {
-        std::uint64_t held = 0;
-        if (slots[at].number.compare_exchange_strong(held, number)) slots[at].site = site;
-        if (held != 0 && held != number) continue;
+        std::uint64_t found = 0;
+        if (slots[at].number.compare_exchange_strong(found, number)) slots[at].site = site;
+        if (found != 0 && found != number) continue;
         ++slots[at].count;
         return;
     }
@@ -95,9 +94,9 @@ bool fails_now() {
     return true;
 }
 
-/// What RAYA_MEMORY_FAULT asks for.
+/// The fault in RAYA_MEMORY_FAULT.
 struct Fault {
-    char kind = '\0';  // of the number: '=' or '+', else that of a site
+    char kind = '\0';  // '=': count in raya, '+': count elsewhere, ' ': site, 0: no fault
     std::uint64_t number = 0;
 
     Fault() {
@@ -114,7 +113,7 @@ bool is_in_raya(const void* caller, Walk& walk) {
     const Module module = module_of(reinterpret_cast<std::uintptr_t>(caller) - 1, base);
     if (module == Module::kRaya || module == Module::kSupport) {
         busy = true;
-        _Unwind_Backtrace(&look, &walk);
+        _Unwind_Backtrace(&add_frame, &walk);
         busy = false;
     }
     return walk.frames > 0;
@@ -133,9 +132,10 @@ bool fails(const void* caller) {
     return wanted && fails_now();
 }
 
-struct AtTheEnd {
-    ~AtTheEnd() {
-        busy = true;  // what is written here allocates
+/// Writes RAYA_MEMORY_SITES when the process exits.
+struct SiteWriter {
+    ~SiteWriter() {
+        busy = true;  // dprintf() may allocate
         const char* file = std::getenv("RAYA_MEMORY_SITES");
         const int descriptor = file != nullptr ? ::open(file, O_CREAT | O_WRONLY | O_TRUNC, 0666) : -1;
         if (descriptor < 0) return;
@@ -148,7 +148,7 @@ struct AtTheEnd {
         ::dprintf(descriptor, "elsewhere %lu\n", elsewhere.load());
         ::close(descriptor);
     }
-} at_the_end;
+} site_writer;
 
 }  // namespace
 

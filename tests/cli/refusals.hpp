@@ -1,4 +1,4 @@
-// What every refused run must show: its exit code, a message that says enough, nothing on stdout and no file.
+// Checks of runs that raya refuses: exit code, message, empty stdout, no files.
 #pragma once
 #include <catch2/catch.hpp>
 #include <string>
@@ -9,21 +9,22 @@
 
 namespace raya {
 
-/// Runs raya, which must leave `outputs` as empty as it is.
-inline void check_refused(const ScratchFolder& outputs, const Words& arguments, int code, const Words& message,
-                          const Surroundings& around = {}) {
-    const RunOutcome run = run_raya(arguments, around);
-    INFO(run.told());
+/// Runs raya and checks that it ends with `code`, prints every part of `message` on stderr and nothing on stdout, and
+/// leaves `outputs` empty.
+inline void check_refused(const ScratchFolder& outputs, const Arguments& arguments, int code, const Arguments& message,
+                          const RunOptions& run_options = {}) {
+    const RunOutcome run = run_raya(arguments, run_options);
+    INFO(run.describe());
     CHECK(run.code == code);
     CHECK(run.out.empty());
     for (const std::string& part : message) CHECK_THAT(run.err, Catch::Contains(part));
     CHECK(outputs.entries() == 0);
 }
 
-/// A render of `scene` into `outputs` that asks for every kind of file.
-inline Words render_into(const ScratchFolder& outputs, const std::string& scene, const Words& options = {}) {
-    Words arguments = {"render",          scene, "-o", outputs / "x.pfm", "--cost", outputs / "x-cost.pfm", "--report",
-                       outputs / "x.json"};
+/// Arguments of a render of `scene` that writes every kind of file into `outputs`.
+inline Arguments render_into(const ScratchFolder& outputs, const std::string& scene, const Arguments& options = {}) {
+    Arguments arguments = {
+        "render", scene, "-o", outputs / "x.pfm", "--cost", outputs / "x-cost.pfm", "--report", outputs / "x.json"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return arguments;
 }

@@ -1,4 +1,4 @@
-// A render of a scene of scenes/ by the program, with every file that it can write.
+// Renders a scene of scenes/ by the program, with image, cost image and report.
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -15,8 +15,8 @@ inline constexpr int kTestWidth = 20, kTestHeight = 12;  // pixels, unless --siz
 
 class RenderFiles {
   public:
-    /// Renders the scene; the test case ends here if that fails. 4 lanes unless the options name others, so that few
-    /// kernels are built.
+    /// Renders the scene and ends the test case if that fails. Defaults: 20 x 12 pixels, 20 PEs, and 4 lanes, so that
+    /// few kernels are built.
     explicit RenderFiles(const std::string& scene, std::vector<std::string> options = {},
                          const std::string& extension = ".pfm", const std::string& cost_extension = ".pfm")
         : image_(folder_ / ("image" + extension)),
@@ -32,7 +32,7 @@ class RenderFiles {
         options.insert(options.begin(),
                        {"render", scene_file(scene), "-o", image_, "--cost", cost_, "--report", report_});
         run_ = run_raya(options);
-        INFO(run_.told());
+        INFO(run_.describe());
         REQUIRE(run_.code == 0);
         REQUIRE(folder_.entries() == 3);
     }

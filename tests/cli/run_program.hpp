@@ -1,5 +1,4 @@
-// Runs the built program as a user does: a process of its own with arguments, seen from outside by what it prints and
-// its exit code.
+// Runs the built program in a process of its own, as a user does. Tests see what it prints and its exit code.
 #pragma once
 #include <fcntl.h>
 #include <grp.h>
@@ -33,28 +32,29 @@
 namespace raya {
 
 struct RunOutcome {
-    std::string command;        // for messages of a failed test
-    int code = 0;               // exit code; 128 + signal if one ended the program
-    double after_signal_s = 0;  // from the signal to the end
+    std::string command;        // for messages of failed tests
+    int code = 0;               // exit code; 128 + signal number if a signal ended the program
+    double after_signal_s = 0;  // seconds from the signal to the end of the process
     std::string out, err;
-    /// stderr without the lines about compiling, which depend on the cache and on how busy the machine is.
+    /// stderr without the lines about compiling, which depend on the cache and on the machine's load.
     std::string messages() const { return std::regex_replace(err, std::regex("raya: compiling kernels [^\n]*\n"), ""); }
-    std::string told() const { return command + "\nexit code " + std::to_string(code) + "\n" + out + "\n" + err; }
+    /// Command, exit code, stdout and stderr, for messages of failed tests.
+    std::string describe() const { return command + "\nexit code " + std::to_string(code) + "\n" + out + "\n" + err; }
 };
 
-/// What a run finds around it.
-struct Surroundings {
-    std::vector<std::pair<std::string, std::string>> variables{};  // set, on top of this process's own
-    bool as_nobody = false;    // if this process is root's, run as a user whom permissions bind
-    rlim_t largest_file = 0;   // bytes that a file may grow to, 0: any; a longer one fails as a full disk does
-    rlim_t memory = 0;         // bytes of address space that it may take, 0: any
-    std::string error_file{};  // what stderr goes to, so that it is not seen in the outcome; empty: to be seen
+/// Environment, limits and redirections of a run.
+struct RunOptions {
+    std::vector<std::pair<std::string, std::string>> variables{};  // environment variables added to this process's
+    bool as_nobody = false;    // root runs the program as user nobody, so that file permissions apply
+    rlim_t largest_file = 0;   // RLIMIT_FSIZE in bytes, 0: no limit; a longer write fails with EFBIG
+    rlim_t memory = 0;         // RLIMIT_AS in bytes, 0: no limit
+    std::string error_file{};  // file that stderr is written to; empty: RunOutcome::err
     std::string program = RAYA_PROGRAM;
-    int signal = 0;           // sent to the program, unless it has ended before
-    int signal_after_ms = 0;  // after it has begun to handle that signal, and `signal_when` is true
+    int signal = 0;           // sent to the program unless it has ended
+    int signal_after_ms = 0;  // delay once the program handles the signal and `signal_when` is true
     std::function<bool()> signal_when{};
     int signal_count = 1;    // timeout(1) sends its signal twice
-    std::string out_file{};  // what stdout goes to, as `error_file`
+    std::string out_file{};  // file that stdout is written to; empty: RunOutcome::out
 };
 
 namespace run_program_detail {
@@ -75,7 +75,7 @@ inline std::string contents(std::FILE* file) {
     return text;
 }
 
-/// Pointers into the texts, as exec takes them.
+/// Returns pointers into the texts, with a null at the end, for exec.
 inline std::vector<char*> pointers(std::vector<std::string>& texts) {
     std::vector<char*> all;
     for (std::string& text : texts) all.push_back(text.data());
@@ -83,21 +83,21 @@ inline std::vector<char*> pointers(std::vector<std::string>& texts) {
     return all;
 }
 
-inline std::vector<std::string> environment(const Surroundings& around) {
+inline std::vector<std::string> environment(const RunOptions& options) {
     std::vector<std::string> all;
     for (char** variable = environ; *variable != nullptr; ++variable) {
         const std::string_view text = *variable;
         bool replaced = false;
-        for (const auto& [name, value] : around.variables)  // a log of kernels is no write that a fault is planted in
+        for (const auto& [name, value] : options.variables)  // RAYA_KERNEL_LOG would add writes to those that fail
             replaced = replaced || text.starts_with(name + "=") ||
                        (name == "LD_PRELOAD" && text.starts_with("RAYA_KERNEL_LOG="));
         if (!replaced) all.emplace_back(text);
     }
-    for (const auto& [name, value] : around.variables) all.push_back(name + "=" + value);
+    for (const auto& [name, value] : options.variables) all.push_back(name + "=" + value);
     return all;
 }
 
-/// Makes `file`, a terminal perhaps, that standard stream.
+/// Redirects the standard stream to `file`, which may be a terminal.
 inline void open_stream(const std::string& file, int stream) {
     if (file.empty()) return;
     const int opened = ::open(file.c_str(), O_WRONLY | O_NOCTTY);
@@ -112,7 +112,7 @@ inline void leave_root() {
 
 inline void limit_files(rlim_t bytes) {
     if (bytes == 0) return;
-    std::signal(SIGXFSZ, SIG_IGN);  // kept by exec: writes fail with EFBIG
+    std::signal(SIGXFSZ, SIG_IGN);  // survives exec: writes fail with EFBIG
     const rlimit limit{bytes, bytes};
     if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
 }
@@ -122,69 +122,71 @@ inline void limit_memory(rlim_t bytes) {
     if (bytes != 0 && ::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(126);
 }
 
-/// Whether the child is raya by now and has a handler for the signal (SigCgt of proc(5)); before, it has this
-/// process's.
+/// Returns true if the child runs raya and has a handler for the signal (SigCgt of proc(5)). Until it runs raya, it has
+/// the handlers of this process.
 inline bool catches(pid_t child, int signal) {
     const std::string folder = "/proc/" + std::to_string(child);
     std::error_code ended;
     const auto program = std::filesystem::read_symlink(folder + "/exe", ended);
     if (ended || program == std::filesystem::read_symlink("/proc/self/exe")) return false;
     std::ifstream status(folder + "/status");
-    for (std::string word; status >> word;) {
-        if (word != "SigCgt:") continue;
-        status >> word;
-        return (std::stoull(word, nullptr, 16) >> (signal - 1) & 1) != 0;
+    for (std::string field; status >> field;) {
+        if (field != "SigCgt:") continue;
+        status >> field;
+        return (std::stoull(field, nullptr, 16) >> (signal - 1) & 1) != 0;
     }
     return false;
 }
 
-/// Looks, and does not wait for it.
+/// Polls without reaping the child.
 inline bool has_ended(pid_t child) {
     siginfo_t found{};
     return ::waitid(P_PID, static_cast<id_t>(child), &found, WEXITED | WNOHANG | WNOWAIT) != 0 || found.si_pid != 0;
 }
 
-/// Sends the signal in its time. The child has not been waited for, so its number is still its own.
-inline void send_signal(pid_t child, const Surroundings& around) {
+/// Sends the signal when `options` say. The child has not been reaped, so its process ID is still valid.
+inline void send_signal(pid_t child, const RunOptions& options) {
     using namespace std::chrono;
-    if (around.signal == 0) return;
+    if (options.signal == 0) return;
     const auto late = steady_clock::now() + seconds(60);
-    const auto ready = [&] { return catches(child, around.signal) && (!around.signal_when || around.signal_when()); };
+    const auto ready = [&] {
+        return catches(child, options.signal) && (!options.signal_when || options.signal_when());
+    };
     while (!ready() && !has_ended(child) && steady_clock::now() < late) std::this_thread::sleep_for(milliseconds(5));
-    std::this_thread::sleep_for(milliseconds(around.signal_after_ms));
-    for (int sent = 0; sent < around.signal_count; ++sent) ::kill(child, around.signal);
+    std::this_thread::sleep_for(milliseconds(options.signal_after_ms));
+    for (int sent = 0; sent < options.signal_count; ++sent) ::kill(child, options.signal);
 }
 
 }  // namespace run_program_detail
 
-/// Runs raya with these arguments and no input, without a shell, and waits for its end. std::runtime_error if it cannot
-/// be started.
-inline RunOutcome run_raya(std::vector<std::string> arguments, const Surroundings& around = {}) {
+/// Runs raya with these arguments and empty stdin, without a shell, and waits for its end. Throws std::runtime_error if
+/// raya cannot be started.
+inline RunOutcome run_raya(std::vector<std::string> arguments, const RunOptions& options = {}) {
     namespace detail = run_program_detail;
     RunOutcome outcome;
     outcome.command = "raya";
     for (const std::string& argument : arguments) outcome.command += " '" + argument + "'";
     arguments.insert(arguments.begin(), "raya");
-    std::vector<std::string> variables = detail::environment(around);
+    std::vector<std::string> variables = detail::environment(options);
     const std::vector<char*> argv = detail::pointers(arguments), envp = detail::pointers(variables);
     const detail::File input = detail::temporary_file(), out = detail::temporary_file(), err = detail::temporary_file();
-    // Opened here, so that a user who may not enter the build's folder can still run it.
-    const int program = ::open(around.program.c_str(), O_RDONLY | O_CLOEXEC);
+    // Opened before the fork, so that user nobody can run it without access to the build folder.
+    const int program = ::open(options.program.c_str(), O_RDONLY | O_CLOEXEC);
     const pid_t child = program < 0 ? -1 : ::fork();
     if (child == 0) {
         ::dup2(::fileno(input.get()), STDIN_FILENO);
         ::dup2(::fileno(out.get()), STDOUT_FILENO);
         ::dup2(::fileno(err.get()), STDERR_FILENO);
-        detail::open_stream(around.out_file, STDOUT_FILENO);
-        detail::open_stream(around.error_file, STDERR_FILENO);
-        detail::limit_files(around.largest_file);
-        if (around.as_nobody) detail::leave_root();
-        detail::limit_memory(around.memory);
+        detail::open_stream(options.out_file, STDOUT_FILENO);
+        detail::open_stream(options.error_file, STDERR_FILENO);
+        detail::limit_files(options.largest_file);
+        if (options.as_nobody) detail::leave_root();
+        detail::limit_memory(options.memory);
         ::fexecve(program, argv.data(), envp.data());
         ::_exit(127);
     }
     if (program >= 0) ::close(program);
-    if (child > 0) detail::send_signal(child, around);
+    if (child > 0) detail::send_signal(child, options);
     const auto signalled = std::chrono::steady_clock::now();
     int status = 0;
     while (child > 0 && ::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
@@ -193,11 +195,11 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const Surrounding
     outcome.out = detail::contents(out.get());
     outcome.err = detail::contents(err.get());
     if (child < 0 || outcome.code == 126 || outcome.code == 127)
-        throw std::runtime_error("cannot run " + around.program + ": " + outcome.told());
+        throw std::runtime_error("cannot run " + options.program + ": " + outcome.describe());
     return outcome;
 }
 
-/// A scene of scenes/.
+/// Returns the path of a scene in scenes/.
 inline std::string scene_file(const std::string& name) { return RAYA_SOURCE_DIR "/scenes/" + name + ".nff"; }
 
 inline std::string file_contents(const std::filesystem::path& path) {
@@ -206,16 +208,16 @@ inline std::string file_contents(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A text with one blank for each gap between words, as help has it at any width.
+/// Replaces each run of white space by one blank, so that help compares equal at any width.
 inline std::string squeezed(const std::string& text) {
     std::string all;
-    std::istringstream words(text);
-    for (std::string word; words >> word;) all += (all.empty() ? "" : " ") + word;
+    std::istringstream tokens(text);
+    for (std::string token; tokens >> token;) all += (all.empty() ? "" : " ") + token;
     return all;
 }
 
-/// Whether a line of the text is what the regular expression says. Of one line, as std::regex goes as deep as its text
-/// is long, and some are too long for the stack.
+/// Returns true if a line of the text matches the regular expression. Matches line by line, because std::regex recurses
+/// once per character and overflows the stack on long texts.
 inline bool has_line(const std::string& text, const std::string& pattern) {
     const std::regex regex(pattern);
     std::istringstream lines(text);
@@ -224,10 +226,10 @@ inline bool has_line(const std::string& text, const std::string& pattern) {
     return false;
 }
 
-using Words = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
-/// The words between blanks.
-inline Words words_of(const std::string& line) {
+/// Splits a line at blanks.
+inline Arguments tokens_of(const std::string& line) {
     std::istringstream text(line);
     return {std::istream_iterator<std::string>(text), {}};
 }

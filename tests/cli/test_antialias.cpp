@@ -1,4 +1,4 @@
-// Anti-aliasing from the command line: what the report says about it, the image of the mask, and what is refused.
+// render --antialias: its report, the mask image, and refused options.
 #include <algorithm>
 #include <array>
 
@@ -14,8 +14,8 @@ using Loads = std::vector<std::uint64_t>;
 
 constexpr std::uint64_t kPixels = kTestWidth * kTestHeight;
 
-Words supersample(const Words& more = {}) {
-    Words options = {"--antialias", "supersample"};
+Arguments supersample(const Arguments& more = {}) {
+    Arguments options = {"--antialias", "supersample"};
     options.insert(options.end(), more.begin(), more.end());
     return options;
 }
@@ -26,7 +26,7 @@ Loads sum_of(Loads a, const Loads& b) {
     return a;
 }
 
-/// Launches of the commands with this label.
+/// Number of launches of the commands with this label.
 std::uint64_t launches_of(const Document& report, const std::string& label) {
     std::uint64_t launches = 0;
     for (const Document& command : report["measured"]["commands"])
@@ -34,7 +34,7 @@ std::uint64_t launches_of(const Document& report, const std::string& label) {
     return launches;
 }
 
-/// A rotation is two copies: all blocks but one, and that one from end to end.
+/// A rotation is two copies: all blocks but one by one place, and the last block from one end to the other.
 void check_rotations(const Document& report) {
     const Document& ring = report["communication"];
     const std::uint64_t rotations = ring["rotations"], pes = report["machine"]["pes"],
@@ -44,7 +44,7 @@ void check_rotations(const Document& report) {
     CHECK(launches_of(report, "ring.rotate_up") + launches_of(report, "ring.rotate_down") == 2 * rotations);
 }
 
-TEST_CASE("the report of an anti-aliased render has keys of its own", "[cli]") {
+TEST_CASE("render --antialias: the report has the keys of its method", "[cli]") {
     std::set<std::string> keys = fixed_keys();
     keys.insert({"antialias.band_pixels count", "antialias.exchange string"});
     CHECK(keys_of(RenderFiles("planes", {"--antialias", "filter"}).report()) == keys);
@@ -54,7 +54,7 @@ TEST_CASE("the report of an anti-aliased render has keys of its own", "[cli]") {
     CHECK(keys_of(RenderFiles("planes", supersample()).report()) == keys);
 }
 
-TEST_CASE("without anti-aliasing the report says so", "[cli]") {
+TEST_CASE("render --antialias none: the report says none, and the image is that of the default", "[cli]") {
     const RenderFiles files("planes", {"--antialias", "none"});
     const Document report = files.report();
     CHECK(report["antialias"] == Document{{"method", "none"}});
@@ -64,28 +64,30 @@ TEST_CASE("without anti-aliasing the report says so", "[cli]") {
     CHECK(report["image"]["hash"] == RenderFiles("planes").report()["image"]["hash"]);
 }
 
-TEST_CASE("the report of a filtered render adds up", "[cli]") {
+TEST_CASE("render --antialias filter: the counts of the report are consistent", "[cli]") {
     const RenderFiles files("planes", {"--antialias", "filter", "--offset", "3"});
     const Document report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
     CHECK(report["antialias"] == Document{{"method", "filter"}, {"exchange", "ring"}, {"band_pixels", kTestHeight}});
-    CHECK(report["communication"]["rotations"] == 2 + 2 * 3);  // a column for each PE: 1 PE aside, 3 PEs up and down
+    CHECK(report["communication"]["rotations"] ==
+          2 + 2 * 3);  // a column per PE: neighbours are 1 PE to the side, 3 PEs up and down
     check_rotations(report);
     for (const char* part : {"rays", "tests", "shading", "load"}) CHECK(report[part] == plain[part]);
     CHECK(report["image"]["hash"] != plain["image"]["hash"]);
     CHECK(report["machine"]["pe_memory_used_bytes"] ==
-          plain["machine"]["pe_memory_used_bytes"].get<int>() + 2 * 12 * kTestHeight);  // sums, and a block in passing
+          plain["machine"]["pe_memory_used_bytes"].get<int>() + 2 * 12 * kTestHeight);  // sums, and a block in transit
     for (const char* label : {"filter.sum_rows", "filter.sum_columns"}) CHECK(launches_of(report, label) == 2);
     CHECK(launches_of(report, "filter.take_means") == 1);
     CHECK_THAT(files.run().out, Catch::Contains("ring    8 rotations, " + std::to_string(8 * 20 * 3 * 12) + " words"));
 }
 
-TEST_CASE("neighbours that come over the bus are counted, charged and told, and change no pixel", "[cli]") {
-    const auto options = [](const std::string& way) {
-        return Words{"--antialias", "supersample", "--offset", "3", "--exchange", way};
+TEST_CASE("render --exchange bus: the report counts and charges the transfers, and the image is that of the ring",
+          "[cli]") {
+    const auto options = [](const std::string& exchange) {
+        return Arguments{"--antialias", "supersample", "--offset", "3", "--exchange", exchange};
     };
     const Document ring = RenderFiles("planes", options("ring")).report();
     const RenderFiles bus("planes", options("bus")), broadcast("planes", options("bus-broadcast"));
-    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // words of a PE, which has a column
+    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // words of a PE, which has one column
     for (const RenderFiles* files : {&bus, &broadcast}) {
         const Document report = files->report();
         const Document& words = report["communication"];
@@ -93,7 +95,7 @@ TEST_CASE("neighbours that come over the bus are counted, charged and told, and 
         CHECK(report["image"]["hash"] == ring["image"]["hash"]);
         CHECK(report["load"] == ring["load"]);
         CHECK(words["rotations"] == 0);
-        CHECK(words["transfers"] == (sends ? 4 * kTestWidth : 0));  // an offset a side; broadcasts serve all sides
+        CHECK(words["transfers"] == (sends ? 4 * kTestWidth : 0));  // one per side; a broadcast serves all sides
         CHECK(words["pe_broadcasts"] == (sends ? 0 : kTestWidth));
         const std::uint64_t moves = sends ? words["transfers"] : words["pe_broadcasts"];
         CHECK(words[sends ? "transfer_words" : "pe_broadcast_words"] == moves * kBlock);
@@ -106,7 +108,7 @@ TEST_CASE("neighbours that come over the bus are counted, charged and told, and 
     }
 }
 
-TEST_CASE("the report of a supersampled render adds up", "[cli]") {
+TEST_CASE("render --antialias supersample: the counts of the report are consistent", "[cli]") {
     const RenderFiles files("planes", supersample({"--offset", "3"}));
     const Document report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
     const Document &antialias = report["antialias"], &load = report["load"];
@@ -130,7 +132,7 @@ TEST_CASE("the report of a supersampled render adds up", "[cli]") {
                Catch::Contains("super   " + std::to_string(recomputed) + " pixels (") && Catch::Contains("super u = "));
 }
 
-TEST_CASE("threshold and points of supersampling do what they say", "[cli]") {
+TEST_CASE("render --threshold, --points: change the supersampled pixels and the sample points", "[cli]") {
     const Document all = RenderFiles("planes", supersample({"--threshold", "0"})).report();
     CHECK(all["antialias"]["threshold"] == 0.0);
     CHECK(all["antialias"]["recomputed_pixels"] == kPixels);
@@ -145,7 +147,7 @@ TEST_CASE("threshold and points of supersampling do what they say", "[cli]") {
     CHECK(diagonals["image"]["hash"] != axes["image"]["hash"]);
 }
 
-TEST_CASE("the mask is white where pixels were supersampled and black elsewhere", "[cli]") {
+TEST_CASE("render --mask: white where pixels were supersampled, black elsewhere", "[cli]") {
     const std::string extension = GENERATE(".png", ".exr", ".pfm");
     const ScratchFolder folder;
     const std::string mask_file = folder / ("mask" + extension);
@@ -166,31 +168,31 @@ TEST_CASE("the mask is white where pixels were supersampled and black elsewhere"
     CHECK(double(white) / double(kPixels) == antialias["recomputed_share"]);
 }
 
-TEST_CASE("options of supersampling are refused out of range and without it", "[cli]") {
+TEST_CASE("render: refuses options of supersampling out of range and without --antialias supersample", "[cli]") {
     const ScratchFolder outputs;
-    const auto refused = [&](const Words& options, const Words& message) {
+    const auto refused = [&](const Arguments& options, const Arguments& message) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), options), 2, message);
     };
     refused({"--antialias", "blur"}, {"--antialias blur", "none, filter or supersample"});
     refused({"--antialias", ""}, {"--antialias", "must not be empty"});
     refused(supersample({"--points", "corners"}), {"--points corners", "axes or diagonals"});
     refused(supersample({"--exchange", "torus"}), {"--exchange torus", "ring, bus or bus-broadcast"});
-    refused({"--exchange", "bus"}, {"--exchange", "give --antialias as well"});
+    refused({"--exchange", "bus"}, {"--exchange", "add --antialias filter or supersample"});
     for (const std::string value : {"-0.1", "1.001", "nan", "inf"})
         refused(supersample({"--threshold", value}), {"--threshold", "must be 0..1"});
     refused(supersample({"--threshold", "0.125x"}), {"--threshold 0.125x: not a number", "0..1"});
-    for (const Words& option : {Words{"--threshold", "0.125"}, Words{"--points", "diagonals"},
-                                Words{"--points", "axes"}, Words{"--mask", outputs / "mask.png"}})
+    for (const Arguments& option : {Arguments{"--threshold", "0.125"}, Arguments{"--points", "diagonals"},
+                                    Arguments{"--points", "axes"}, Arguments{"--mask", outputs / "mask.png"}})
         for (const std::string method : {"none", "filter"}) {
-            Words options = {"--antialias", method};
+            Arguments options = {"--antialias", method};
             options.insert(options.end(), option.begin(), option.end());
-            refused(options, {option[0], "give --antialias supersample"});
+            refused(options, {option[0], "add --antialias supersample"});
         }
 }
 
-TEST_CASE("a mask that cannot be written is refused before anything is rendered", "[cli]") {
+TEST_CASE("render --mask: refuses a file that it cannot write, before rendering", "[cli]") {
     const ScratchFolder outputs;
-    const auto refused = [&](const std::string& mask, const Words& message) {
+    const auto refused = [&](const std::string& mask, const Arguments& message) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), supersample({"--mask", mask})), 2, message);
     };
     for (const char* other : {"x.json", "./x.pfm"}) refused(outputs / other, {other, "--mask", "the same file as"});
@@ -200,12 +202,13 @@ TEST_CASE("a mask that cannot be written is refused before anything is rendered"
     refused(outputs / "missing/mask.png", {"/missing' does not exist", "mkdir -p"});
 }
 
-TEST_CASE("anti-aliasing that a PE has no room for is refused with both figures", "[cli]") {
+TEST_CASE("render --antialias: refuses a PE memory that is too small, with the needed and the available size",
+          "[cli]") {
     const ScratchFolder outputs;
-    const auto refused = [&](const Words& options, const Words& message) {
+    const auto refused = [&](const Arguments& options, const Arguments& message) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), options), 2, message);
     };
-    // 24 bytes a pixel for the filter, 13 for supersampling, and those of the broadcast words
+    // bytes per pixel: 24 for the filter, 13 for supersampling; and the broadcast words
     refused({"--antialias", "filter", "--size", "256", "--pes", "1"},
             {"planes.nff with --antialias filter", "needs 153", " KB in every PE", "the SPA has 32 KB", "more PEs",
              "--machine grande"});

@@ -1,4 +1,4 @@
-// raya bench against an earlier report: what it writes, what it holds against what, and its exit codes.
+// raya bench: its report, the comparison with an earlier report, and exit codes.
 #include <fstream>
 
 #include "host/version.hpp"
@@ -10,14 +10,15 @@
 namespace raya {
 namespace {
 
-/// A bench of one small row that takes well under a second.
-Words small_bench(const Words& more) {
-    Words arguments = {"bench", "--size", "32", "--pes", "32", "--lanes", "4", "--format", "fp32", "--samples", "3"};
+/// Arguments of a bench with one small row, which takes well under a second.
+Arguments small_bench(const Arguments& more) {
+    Arguments arguments = {"bench", "--size",   "32",   "--pes",     "32", "--lanes",
+                           "4",     "--format", "fp32", "--samples", "3"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
 }
 
-/// A copy of the report in which the row was `factor` times as fast, or another image.
+/// Writes a copy of base.json with a row `factor` times as fast, or with another hash. Returns its path.
 std::string changed(const ScratchFolder& folder, const std::string& name, double factor, const std::string& hash = {}) {
     Document json = json_of(folder / "base.json");
     for (const char* part : {"best", "median"})
@@ -27,7 +28,7 @@ std::string changed(const ScratchFolder& folder, const std::string& name, double
     return folder / name;
 }
 
-TEST_CASE("what a bench would pass over is refused", "[cli]") {
+TEST_CASE("bench: refuses options that it would ignore", "[cli]") {
     const ScratchFolder outputs;
     check_refused(outputs, small_bench({"--tolerance", "5"}), 2, {"--tolerance requires --compare"});
     check_refused(outputs, {"bench", "--variants", "torus", "--mapping", "rows"}, 2,
@@ -40,11 +41,11 @@ TEST_CASE("what a bench would pass over is refused", "[cli]") {
     check_refused(outputs, {"bench", "--compare", "/dev/zero"}, 2, {"/dev/zero: cannot be read: not a regular file"});
 }
 
-TEST_CASE("bench --report writes its rows, --compare holds a later run against them", "[cli]") {
+TEST_CASE("bench --report, --compare: a later run is compared with the rows of the report", "[cli]") {
     const ScratchFolder folder;
     const std::string base = folder / "base.json";
     const RunOutcome first = run_raya(small_bench({"--report", base}));
-    INFO(first.told());
+    INFO(first.describe());
     REQUIRE(first.code == 0);
     const Document report = json_of(base);
     CHECK(report["kind"] == "raya bench");
@@ -63,35 +64,35 @@ TEST_CASE("bench --report writes its rows, --compare holds a later run against t
     CHECK(row["mrays_per_s"]["best"].get<double>() ==
           Approx(row["rays"].get<double>() / row["ms"]["best"].get<double>() * 1e-3));
     CHECK_THAT(row["build_options"].get<std::string>(), Catch::Contains("-DRAYA_LANES=4"));
-    // Against a row a thousand times slower nothing can be slower.
+    // No run is slower than a baseline that is a thousand times slower.
     const RunOutcome second = run_raya(small_bench({"--compare", changed(folder, "slow.json", 1e-3)}));
-    INFO(second.told());
+    INFO(second.describe());
     CHECK(second.code == 0);
     CHECK(second.messages().empty());
     CHECK_THAT(second.out,
                Catch::Contains("faster") && Catch::Contains("1 row compared, none slower by more than 10 %"));
-    // Against a row a thousand times faster it must be.
+    // Every run is slower than a baseline that is a thousand times faster.
     const RunOutcome third = run_raya(small_bench(
         {"--compare", changed(folder, "fast.json", 1e3), "--tolerance", "50", "--report", folder / "now.json"}));
-    INFO(third.told());
+    INFO(third.describe());
     CHECK(third.code == 4);
-    // -99.9 %, or rounded to more where other programs have come between.
+    // -99.9 %, or rounded to -100.0 % if other programs disturbed the run.
     CHECK_THAT(third.out, Catch::Contains("SLOWER") && (Catch::Contains("-99.") || Catch::Contains("-100.0 %")));
-    CHECK_THAT(third.err, Catch::Contains("fast.json: of 1 row 1 slower by more than 50 %, 0 with another image"));
-    CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // written all the same
+    CHECK_THAT(third.err, Catch::Contains("fast.json: of 1 row 1 slower by more than 50 %, 0 with a different image"));
+    CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // written although the comparison failed
     const RunOutcome fourth = run_raya(small_bench({"--compare", changed(folder, "other.json", 1e-3, "0123456789")}));
-    INFO(fourth.told());
+    INFO(fourth.describe());
     CHECK(fourth.code == 4);
     CHECK_THAT(fourth.out, Catch::Contains("OTHER IMAGE: ") && Catch::Contains(", was 01234567"));
-    // A run of other rows has nothing to be compared.
+    // Other rows have no baseline.
     const RunOutcome fifth = run_raya(small_bench({"--compare", base, "--bounces", "1"}));
-    INFO(fifth.told());
+    INFO(fifth.describe());
     CHECK(fifth.code == 2);
-    CHECK_THAT(fifth.err, Catch::Contains("no row of this run is in it") && Catch::Contains("8 bounces, accel none") &&
+    CHECK_THAT(fifth.err, Catch::Contains("contains no row of this run") && Catch::Contains("8 bounces, accel none") &&
                               Catch::Contains("1 bounces"));
 }
 
-TEST_CASE("bench refuses baselines, reports and tolerances that cannot be", "[cli]") {
+TEST_CASE("bench: refuses invalid baselines, reports and tolerances", "[cli]") {
     const ScratchFolder folder, outputs;
     std::ofstream(folder / "no.json") << "no JSON";
     const std::string missing = folder / "missing.json";
@@ -106,14 +107,14 @@ TEST_CASE("bench refuses baselines, reports and tolerances that cannot be", "[cl
                       {"--tolerance"});
 }
 
-TEST_CASE("bench --variants times whole renders with and without a grid and on the torus, the same image",
+TEST_CASE("bench --variants: times renders with and without a grid and on the torus, with the same image",
           "[cli][slow]") {
     const ScratchFolder folder;
     const std::string base = folder / "variants.json";
     const RunOutcome run =
         run_raya({"bench", RAYA_SOURCE_DIR "/scenes/mirrors.nff", "--variants", "grid,torus,none", "--machine",
                   "grande", "--size", "40x30", "--format", "fp32", "--lanes", "4", "--samples", "1", "--report", base});
-    INFO(run.told());
+    INFO(run.describe());
     REQUIRE(run.code == 0);
     const Document rows = json_of(base)["rows"];
     REQUIRE(rows.size() == 3);
@@ -131,12 +132,12 @@ TEST_CASE("bench --variants times whole renders with and without a grid and on t
     check_refused(empty, {"bench", "--variants", "grid,octree"}, 2, {"--variants octree", "none, grid, bvh or torus"});
 }
 
-TEST_CASE("bench --denormals times every row twice, and makes the same image where nothing is denormal", "[cli]") {
+TEST_CASE("bench --denormals: times every row twice, with the same image if no value is denormal", "[cli]") {
     const ScratchFolder outputs;
     const RunOutcome run =
         run_raya({"bench", scene_file("planes"), "--variants", "none", "--size", "16", "--pes", "16", "--lanes", "4",
                   "--format", "fp32", "--samples", "1", "--denormals", "--report", outputs / "x.json"});
-    INFO(run.told());
+    INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("-cl-denorms-are-zero") && Catch::Contains("render, none, flushed"));
     const auto rows = nlohmann::json::parse(file_contents(outputs / "x.json"))["rows"];
@@ -146,16 +147,21 @@ TEST_CASE("bench --denormals times every row twice, and makes the same image whe
     CHECK(rows[0]["hash"] == rows[1]["hash"]);
 }
 
-TEST_CASE("bench --build lists what compiling takes, and a kernel above --limit is exit code 4", "[cli]") {
+TEST_CASE("bench --build: lists compile times, and ends with 4 if a kernel takes longer than --limit", "[cli]") {
     const ScratchFolder folder, outputs;
-    const auto build = [&](const Words& more) {
-        Words words = {"bench",     RAYA_SOURCE_DIR "/scenes/planes.nff",
-                       "--build",   "--variants", "none", "--size", "16", "--pes", "4", "--lanes", "4", "--format", "fp32"};
-        words.insert(words.end(), more.begin(), more.end());
-        return words;
+    const auto build = [&](const Arguments& more) {
+        Arguments arguments = {"bench",   RAYA_SOURCE_DIR "/scenes/planes.nff",
+                               "--build", "--variants",
+                               "none",    "--size",
+                               "16",      "--pes",
+                               "4",       "--lanes",
+                               "4",       "--format",
+                               "fp32"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
     };
     const RunOutcome run = run_raya(build({"--report", folder / "b.json"}));
-    INFO(run.told());
+    INFO(run.describe());
     REQUIRE(run.code == 0);
     const Document report = json_of(folder / "b.json");
     CHECK(report["rows"].empty());
@@ -165,7 +171,7 @@ TEST_CASE("bench --build lists what compiling takes, and a kernel above --limit 
     for (std::size_t i = 0; i < 3; ++i) {
         CHECK(builds[i]["kernel"] == kernels[i]);
         CHECK(builds[i]["lanes"] == 4);
-        for (const char* what : {"build_s", "first_launch_s", "binary_bytes"}) CHECK(builds[i][what] > 0);
+        for (const char* key : {"build_s", "first_launch_s", "binary_bytes"}) CHECK(builds[i][key] > 0);
         CHECK_FALSE(contains(builds[i]["build_options"].get<std::string>(), "RAYA_BUILT"));
         CHECK_THAT(run.out, Catch::Contains(kernels[i]));
     }

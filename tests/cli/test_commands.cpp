@@ -1,4 +1,4 @@
-// What the commands print and make when all is well.
+// Output of commands that succeed.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -11,25 +11,26 @@
 
 namespace raya {
 namespace {
-RunOutcome succeed(const Words& arguments) {
+/// Runs raya, which must succeed without messages.
+RunOutcome succeed(const Arguments& arguments) {
     RunOutcome run = run_raya(arguments);
-    INFO(run.told());
+    INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK(run.messages().empty());
     return run;
 }
 
-std::vector<Words> lines_that_start_with(const std::string& text, const std::string& word) {
+std::vector<Arguments> lines_that_start_with(const std::string& text, const std::string& word) {
     std::istringstream lines(text);
-    std::vector<Words> found;
+    std::vector<Arguments> found;
     for (std::string line; std::getline(lines, line);) {
-        const Words words = words_of(line);
-        if (!words.empty() && words[0] == word) found.push_back(words);
+        const Arguments arguments = tokens_of(line);
+        if (!arguments.empty() && arguments[0] == word) found.push_back(arguments);
     }
     return found;
 }
 
-TEST_CASE("--version prints name, version, commit and build", "[cli]") {
+TEST_CASE("raya --version: prints name, version, commit and build", "[cli]") {
     const std::string out = succeed({"--version"}).out;
     CHECK_THAT(out, Catch::StartsWith(fmt::format("{} (", name_and_version())));
     CHECK_THAT(out,
@@ -38,45 +39,45 @@ TEST_CASE("--version prints name, version, commit and build", "[cli]") {
     CHECK(std::string(name_and_version()) == fmt::format("raya {}", raya_version()));
 }
 
-TEST_CASE("--help names every command and the exit codes", "[cli]") {
+TEST_CASE("raya --help: names every command and the exit codes", "[cli]") {
     const std::string help = squeezed(succeed({"--help"}).out);
     for (const char* text :
          {"render", "devices", "generate", "bench", "Exit codes: 0 done, 2 bad option or input, 3 device"})
         CHECK_THAT(help, Catch::Contains(text));
 }
 
-TEST_CASE("a command's help gives unit, default and legal range", "[cli]") {
+TEST_CASE("COMMAND --help, --help-all: give unit, default and range of every option", "[cli]") {
     struct Row {
-        Words command;
-        Words texts;
+        Arguments command;
+        Arguments texts;
     };
-    const Words of_a_render = {"--machine NAME spa: 256 PEs",
-                               "256 PEs of 32 KB",
-                               "grande",
-                               "--size N|WxH",
-                               "in pixels, 1..16384 a side; default: the scene's",
-                               "1..W*H; default: the machine's, or A*B of a grid",
-                               "in pixels, 0..W-1; default: 16",
-                               "--mapping NAME",
-                               "cyclic:p, column",
-                               "grid:AxB",
-                               "tiles:WxH",
-                               "random:seed",
-                               "cyclic|block",
-                               "(c P div W); default: cyclic",
-                               "--format NAME",
-                               "0..31; default: 8",
-                               "centres|corners",
-                               "default: centres",
-                               "1, 4, 8 or 16; default",
-                               "1..1024; default: as the device was tuned, else 1 on a CPU",
-                               "RAYA_DEVICE",
-                               "--kernel-dir DIR"};
-    Words render = of_a_render;
+    const Arguments of_a_render = {"--machine NAME spa: 256 PEs",
+                                   "256 PEs of 32 KB",
+                                   "grande",
+                                   "--size N|WxH",
+                                   "in pixels, 1..16384 a side; default: the scene's",
+                                   "1..W*H; default: the machine's, or A*B of a grid",
+                                   "in pixels, 0..W-1; default: 16",
+                                   "--mapping NAME",
+                                   "cyclic:p, column",
+                                   "grid:AxB",
+                                   "tiles:WxH",
+                                   "random:seed",
+                                   "cyclic|block",
+                                   "(c P div W); default: cyclic",
+                                   "--format NAME",
+                                   "0..31; default: 8",
+                                   "centres|corners",
+                                   "default: centres",
+                                   "1, 4, 8 or 16; default",
+                                   "1..1024; default: as the device was tuned, else 1 on a CPU",
+                                   "RAYA_DEVICE",
+                                   "--kernel-dir DIR"};
+    Arguments render = of_a_render;
     render.insert(render.end(), {"SCENE", ".exr or .pfm (linear)", "modelled cycles of each pixel",
                                  "--report FILE.json", "--profile", "--trace FILE.json[.gz]", "--trace-events N",
                                  "default: 1000000", "--trace-pes N", "default: 16", "--quiet"});
-    Words bench = of_a_render;
+    Arguments bench = of_a_render;
     bench.insert(bench.end(), {"--samples N", "are printed; default: 7", "default: 30 spheres and a plane, 512 x 512"});
     const std::vector<Row> rows = {
         {{"render"}, render},
@@ -90,14 +91,15 @@ TEST_CASE("a command's help gives unit, default and legal range", "[cli]") {
         {{"generate", "random"}, {"1..1000000", "--seed N", "default: 1"}},
         {{"generate", "centre"}, {"-o, --output SCENE.nff"}}};
     for (const Row& row : rows) {
-        Words arguments = row.command;
-        arguments.emplace_back("--help");
+        Arguments arguments = row.command;
+        const bool many_options = row.command == Arguments{"render"} || row.command == Arguments{"bench"};
+        arguments.emplace_back(many_options ? "--help-all" : "--help");
         const std::string help = squeezed(succeed(arguments).out);
         for (const std::string& text : row.texts) CHECK_THAT(help, Catch::Contains(text));
     }
 }
 
-TEST_CASE("devices lists each device with the lanes that raya chooses", "[cli]") {
+TEST_CASE("devices: lists each device with its default lanes", "[cli]") {
     const std::string out = succeed({"devices"}).out;
     INFO(out);
     for (const char* column : {"device", "platform", "lanes", "local KB", "div/sqrt exact", "profiling"})
@@ -107,7 +109,7 @@ TEST_CASE("devices lists each device with the lanes that raya chooses", "[cli]")
                Catch::Contains("0: OpenCL") && Catch::Contains("--device takes a number, a type or a part of a name"));
 }
 
-TEST_CASE("a render ends with a short summary", "[cli]") {
+TEST_CASE("render: prints a summary of at most 8 lines", "[cli]") {
     const RenderFiles files("centre");
     const Document report = files.report();
     const std::string& out = files.run().out;
@@ -121,7 +123,7 @@ TEST_CASE("a render ends with a short summary", "[cli]") {
     CHECK_THAT(out, Catch::Contains(std::to_string(report["rays"]["shadow"].get<int>()) + " shadow"));
 }
 
-TEST_CASE("the summary names a mapping without slots, and a grid brings its own PEs", "[cli]") {
+TEST_CASE("render --mapping grid: the summary names the mapping, which sets the number of PEs", "[cli]") {
     const ScratchFolder folder;
     const std::string out = succeed({"render", scene_file("planes"), "-o", folder / "x.png", "--size", "12", "--lanes",
                                      "4", "--mapping", "grid:3x2"})
@@ -129,13 +131,13 @@ TEST_CASE("the summary names a mapping without slots, and a grid brings its own 
     CHECK_THAT(out, Catch::Contains("12 x 12 pixels on spa (6 PEs, grid:3x2 mapping), e6m15"));
 }
 
-TEST_CASE("--quiet prints nothing", "[cli]") {
+TEST_CASE("render --quiet: prints nothing", "[cli]") {
     const RunOutcome run = RenderFiles("centre", {"--quiet"}).run();
     CHECK(run.out.empty());
     CHECK(run.err.empty());
 }
 
-TEST_CASE("--profile prints launches and times of every labelled command", "[cli]") {
+TEST_CASE("render --profile: prints launches and times of every labelled command", "[cli]") {
     const RenderFiles files("centre", {"--profile", "--quiet"});
     const std::string& out = files.run().out;
     INFO(out);
@@ -146,12 +148,12 @@ TEST_CASE("--profile prints launches and times of every labelled command", "[cli
     CHECK(lines_that_start_with(out, "roof").size() == 1);  // trace is the only kernel
 }
 
-TEST_CASE("what generate makes can be rendered", "[cli]") {
-    const Words kind =
-        GENERATE(Words{"balls", "--level", "1"}, Words{"lattice", "--size", "2"}, Words{"gears", "--size", "1"},
-                 Words{"uniform", "9", "--voxels", "2x2x2"}, Words{"random", "9", "--seed", "3"}, Words{"centre"});
+TEST_CASE("generate: every kind of scene can be rendered", "[cli]") {
+    const Arguments kind = GENERATE(Arguments{"balls", "--level", "1"}, Arguments{"lattice", "--size", "2"},
+                                    Arguments{"gears", "--size", "1"}, Arguments{"uniform", "9", "--voxels", "2x2x2"},
+                                    Arguments{"random", "9", "--seed", "3"}, Arguments{"centre"});
     const ScratchFolder folder;
-    Words arguments = {"generate"};
+    Arguments arguments = {"generate"};
     arguments.insert(arguments.end(), kind.begin(), kind.end());
     arguments.insert(arguments.end(), {"-o", folder / "scene.nff"});
     CHECK(succeed(arguments).out.empty());
@@ -159,7 +161,7 @@ TEST_CASE("what generate makes can be rendered", "[cli]") {
     CHECK(folder.entries() == 2);
 }
 
-TEST_CASE("the same seed generates the same bytes, another seed others", "[cli]") {
+TEST_CASE("generate --seed: the same seed makes the same bytes, another seed other bytes", "[cli]") {
     const ScratchFolder folder;
     for (const auto& [seed, name] : {std::pair{"3", "a"}, {"3", "b"}, {"4", "c"}})
         succeed({"generate", "random", "9", "--seed", seed, "-o", folder / name});
@@ -167,13 +169,13 @@ TEST_CASE("the same seed generates the same bytes, another seed others", "[cli]"
     CHECK(file_contents(folder / "a") != file_contents(folder / "c"));
 }
 
-TEST_CASE("bench prints a row for each format and number of lanes, one image a format, and the operations",
+TEST_CASE("bench: prints a row per format and number of lanes, one image hash per format, and the operations",
           "[cli][slow]") {
     const std::string out = succeed({"bench", "--samples", "1", "--size", "64"}).out;
     INFO(out);
     CHECK_THAT(out, Catch::Contains("spheres.nff") && Catch::Contains("64 x 64 pixels, 256 PEs, 8 bounces"));
-    const std::vector<Words> rows = lines_that_start_with(out, "trace");
-    const Words lanes = {"1", "4", "8", "16"};
+    const std::vector<Arguments> rows = lines_that_start_with(out, "trace");
+    const Arguments lanes = {"1", "4", "8", "16"};
     REQUIRE(rows.size() == 2 * lanes.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         REQUIRE(rows[i].size() == 12);

@@ -1,4 +1,4 @@
-// Every reader of JSON with every kind of damage: refused in one line with file and line, or warned of; never an
+// Every reader of JSON with every kind of damage: a refusal or a warning in one line with file and line, never an
 // internal error.
 #include <fmt/core.h>
 
@@ -23,7 +23,7 @@ struct Damage {
     std::string text, reason;
 };
 
-// Damage that no reader can miss, as it is found while the text is parsed.
+// Damage that the parser finds, and therefore every reader.
 std::vector<Damage> unreadable() {
     const auto deep = [](std::size_t levels) { return std::string(levels, '['); };
     return {{"", "x.json:1: not valid JSON (byte 1)"},
@@ -45,7 +45,7 @@ std::vector<Damage> unreadable() {
             {"{'kind': 1}", "x.json:1: not valid JSON"}};
 }
 
-// Valid JSON of another kind.
+// Valid JSON that is not a report.
 std::vector<std::string> wrong_kinds() {
     return {"null",
             "3",
@@ -66,19 +66,19 @@ std::string refusal(const auto& read) {
     return "accepted";
 }
 
-TEST_CASE("damaged JSON is refused by every reader with file and line", "[cli][json]") {
+TEST_CASE("readers of JSON: refuse damaged files with file and line", "[cli][json]") {
     const ScratchFolder folder;
     const std::string file = folder / "x.json";
     setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
     unsetenv("RAYA_TUNED");
     const DeviceInfo device;
-    const std::filesystem::path tuned = tuned_place(device);
+    const std::filesystem::path tuned = tuned_path(device);
     const auto check = [&](const Damage& damage) {
         CAPTURE(damage.text.substr(0, 60), damage.reason);
         std::ofstream(file, std::ios::binary) << damage.text;
         std::ofstream(tuned, std::ios::binary) << damage.text;
         std::string warning;
-        CHECK_FALSE(kept_choices([&](const std::string& text) { warning = text; })(device, {}));
+        CHECK_FALSE(stored_choices([&](const std::string& text) { warning = text; })(device, {}));
         const std::string in_cache = tuned.string() + damage.reason.substr(std::string("x.json").size());
         CHECK_THAT(warning, Contains("ignored"));
         const std::vector<std::string> messages = {refusal([&] { page_of_report(damage.text, "x.json"); }),
@@ -97,20 +97,20 @@ TEST_CASE("damaged JSON is refused by every reader with file and line", "[cli][j
     setenv("RAYA_TUNED", "off", 1);
 }
 
-TEST_CASE("commands end with exit code 2 at a number that no double holds", "[cli][json]") {
+TEST_CASE("page, bench, render: end with 2 at a JSON number that no double holds", "[cli][json]") {
     const ScratchFolder folder;
     const std::string file = folder / "x.json";
     std::ofstream(file) << "{\"kind\": \"raya bench\",\n\"rows\": [1e400]}";
     const std::string reason = "x.json:2: rows[0]: 1e400 is outside the range of double precision; remedy: ";
-    const Surroundings nothing = {.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}};
+    const RunOptions no_device = {.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}};
     const std::vector<std::vector<std::string>> commands = {
         {"page", file, "-o", folder / "x.html"},
         {"bench", scene_file("planes"), "--compare", file},
         {"render", scene_file("planes"), "--frames", "1:2", "--turn", "90", "-o", folder / "t.ppm"}};
     std::filesystem::copy(file, folder / "t-frames.json");
     for (const std::vector<std::string>& command : commands) {
-        const RunOutcome run = run_raya(command, command[0] == "page" ? nothing : Surroundings{});
-        INFO(run.told());
+        const RunOutcome run = run_raya(command, command[0] == "page" ? no_device : RunOptions{});
+        INFO(run.describe());
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Contains(command[0] == "render" ? "t-frames.json:2: rows[0]: 1e400" : reason));
         CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
@@ -118,13 +118,13 @@ TEST_CASE("commands end with exit code 2 at a number that no double holds", "[cl
     }
 }
 
-TEST_CASE("a report of more than 64 MB is refused at once", "[cli][json]") {
+TEST_CASE("page: refuses a report of more than 64 MB", "[cli][json]") {
     const ScratchFolder folder;
     const std::string file = folder / "x.json";
     std::ofstream(file) << "[1]";
     std::filesystem::resize_file(file, 65'000'000);
     const RunOutcome run = run_raya({"page", file, "-o", folder / "x.html"});
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 2);
     CHECK_THAT(run.err, Contains(file + ": cannot be read: larger than 64000000 bytes"));
 }

@@ -1,4 +1,4 @@
-// Trouble with the device or its compiler: exit code 3, with all that is needed to mend it.
+// Failures of the device, its driver or its compiler: exit code 3 and a message with the remedy.
 #include <sys/mount.h>
 #include <sys/stat.h>
 
@@ -15,7 +15,7 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-TEST_CASE("a kernel that does not compile ends with device, options and build log", "[cli]") {
+TEST_CASE("render: a kernel that does not compile ends with device, options and build log", "[cli]") {
     const ScratchFolder kernels, outputs;
     const SourcePatch mistake{"geometry/sphere.clh", "#include \"kernels/geometry/ray.clh\"", "no_such_type broken;"};
     const std::string broken = write_kernels(kernels / "kernels", {mistake}), planes = scene_file("planes");
@@ -27,7 +27,7 @@ TEST_CASE("a kernel that does not compile ends with device, options and build lo
                    "no_such_type"});
 }
 
-TEST_CASE("a device that ends a loop early is found by its pixels, and nothing is written", "[cli]") {
+TEST_CASE("render: a device that ends a loop early is detected by its pixel count, and no file is written", "[cli]") {
     const ScratchFolder kernels, outputs;
     const SourcePatch early{"ring/trace.cl", "store.points = points;",
                             "store.points = points; store.end -= group == 3 && store.end > 0;"};
@@ -41,12 +41,13 @@ TEST_CASE("a device that ends a loop early is found by its pixels, and nothing i
     }
 }
 
-TEST_CASE("RAYA_BUILD_OPTIONS goes to every build, into the report and into the message of a failed one", "[cli]") {
+TEST_CASE("RAYA_BUILD_OPTIONS: is used in every build and shown in the report and in the message of a failed build",
+          "[cli]") {
     const ScratchFolder outputs;
     const RunOutcome run =
         run_raya(render_into(outputs, scene_file("planes"), {"--size", "16", "--quiet", "--lanes", "4"}),
                  {.variables = {{"RAYA_BUILD_OPTIONS", "-cl-opt-disable -DNO_MATTER=1"}}});
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 0);
     CHECK(contains(file_contents(outputs / "x.json"), "-cl-opt-disable -DNO_MATTER=1\""));
     const ScratchFolder none;
@@ -55,15 +56,16 @@ TEST_CASE("RAYA_BUILD_OPTIONS goes to every build, into the report and into the 
                   {.variables = {{"RAYA_BUILD_OPTIONS", "-no-such-option"}}});
 }
 
-TEST_CASE("options in RAYA_BUILD_OPTIONS that may change results are warned of, in the report too", "[cli]") {
+TEST_CASE("RAYA_BUILD_OPTIONS: options that may change results cause a warning, also in the report", "[cli]") {
     const auto warnings = [](const std::string& options) {
         const ScratchFolder outputs;
         const RunOutcome run = run_raya({"render", scene_file("planes"), "-o", outputs / "x.pfm", "--report",
                                          outputs / "x.json", "--size", "8", "--pes", "8", "--lanes", "4", "-q"},
                                         {.variables = {{"RAYA_BUILD_OPTIONS", options}}});
-        INFO(run.told());
+        INFO(run.describe());
         CHECK(run.code == 0);
-        std::vector<std::string> all = Document::parse(file_contents(outputs / "x.json")).value("warnings", Words());
+        std::vector<std::string> all =
+            Document::parse(file_contents(outputs / "x.json")).value("warnings", Arguments());
         for (const std::string& one : all) CHECK_THAT(run.err, Catch::Contains("raya: warning: " + one));
         return all;
     };
@@ -72,26 +74,27 @@ TEST_CASE("options in RAYA_BUILD_OPTIONS that may change results are warned of, 
     for (const char* option : {"-cl-fast-relaxed-math", "-cl-unsafe-math-optimizations", "-cl-finite-math-only",
                                "-cl-mad-enable", "-cl-no-signed-zeros", "-cl-denorms-are-zero", "-DRAYA_OTHER=1"})
         CHECK(warnings(std::string("-cl-opt-disable ") + option) ==
-              Words{std::string("RAYA_BUILD_OPTIONS: ") + option + " may change pixels and counts"});
-    for (const Words& words :
-         {Words{"bench", "--size", "8", "--pes", "8", "--samples", "1", "--lanes", "4", "--format", "fp32"},
-          Words{"verify", "--only", "machine bus", "--lanes", "4"}}) {
-        const RunOutcome run = run_raya(words, {.variables = {{"RAYA_BUILD_OPTIONS", "-cl-mad-enable"}}});
-        INFO(run.told());
+              Arguments{std::string("RAYA_BUILD_OPTIONS: ") + option + " may change pixels and counts"});
+    for (const Arguments& arguments :
+         {Arguments{"bench", "--size", "8", "--pes", "8", "--samples", "1", "--lanes", "4", "--format", "fp32"},
+          Arguments{"verify", "--only", "machine bus", "--lanes", "4"}}) {
+        const RunOutcome run = run_raya(arguments, {.variables = {{"RAYA_BUILD_OPTIONS", "-cl-mad-enable"}}});
+        INFO(run.describe());
         CHECK_THAT(run.err, Catch::Contains("raya: warning: RAYA_BUILD_OPTIONS: -cl-mad-enable may change"));
     }
 }
 
-TEST_CASE("RAYA_TUNED is off, or not set", "[cli]") {
+TEST_CASE("RAYA_TUNED: refuses values other than off", "[cli]") {
     const ScratchFolder outputs;
-    const Words words = render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4"});
+    const Arguments arguments =
+        render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4"});
     for (const char* value : {"maybe", "on", "OFF", "0"})
-        check_refused(outputs, words, 2, {std::string("RAYA_TUNED=") + value + ": must be off, or not set"},
+        check_refused(outputs, arguments, 2, {std::string("RAYA_TUNED=") + value + ": must be off, or not set"},
                       {.variables = {{"RAYA_TUNED", value}}});
     check_refused(outputs, {"bench", "--size", "8"}, 2, {"RAYA_TUNED=maybe"}, {.variables = {{"RAYA_TUNED", "maybe"}}});
 }
 
-TEST_CASE("a driver with two ICD entries lists its devices once, and equal devices have a number each", "[cli]") {
+TEST_CASE("devices: lists a driver with two ICD entries once, and numbers equal devices separately", "[cli]") {
     const ScratchFolder vendors;
     const fs::path entry = "/etc/OpenCL/vendors/pocl.icd";
     if (!fs::exists(entry)) return;
@@ -99,12 +102,12 @@ TEST_CASE("a driver with two ICD entries lists its devices once, and equal devic
     const auto devices = [&](const char* of_pocl) {
         const RunOutcome run =
             run_raya({"devices"}, {.variables = {{"OCL_ICD_VENDORS", vendors.path()}, {"POCL_DEVICES", of_pocl}}});
-        INFO(run.told());
+        INFO(run.describe());
         CHECK(run.code == 0);
         return std::count(run.out.begin(), run.out.end(), '\n');
     };
     const auto one = devices("pthread");
-    CHECK(devices("pthread basic") == one + 2);  // a row and a version
+    CHECK(devices("pthread basic") == one + 2);  // a row and a version line
     CHECK(devices("pthread pthread") == one + 2);
     const ScratchFolder outputs;
     const auto render = [&](const char* device) {
@@ -118,11 +121,11 @@ TEST_CASE("a driver with two ICD entries lists its devices once, and equal devic
     CHECK_THAT(none.err, Catch::Contains("\n  1: ") && !Catch::Contains("\n  2: "));
 }
 
-TEST_CASE("an unknown device ends with the list of those that there are", "[cli]") {
+TEST_CASE("--device: an unknown device ends with the list of devices", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
-    const Words message = {"no OpenCL device matches 'nosuch'", "remedy: a number, a type or a part of a name",
-                           "\n  0: "};
+    const Arguments message = {"no OpenCL device matches 'nosuch'", "remedy: a number, a type or a part of a name",
+                               "\n  0: "};
     check_refused(outputs, render_into(outputs, scene, {"--device", "nosuch"}), 3, message);
     check_refused(outputs, render_into(outputs, scene), 3, message, {.variables = {{"RAYA_DEVICE", "nosuch"}}});
     check_refused(outputs, {"bench", "--device", "nosuch"}, 3, message);
@@ -130,20 +133,19 @@ TEST_CASE("an unknown device ends with the list of those that there are", "[cli]
                   {"no OpenCL device matches '999'", "\n  0: "});
 }
 
-TEST_CASE("a machine without OpenCL ends with the remedy", "[cli]") {
+TEST_CASE("render, devices, bench: without OpenCL they end with the remedy", "[cli]") {
     const ScratchFolder no_drivers, outputs;
-    const Surroundings without{.variables = {{"OCL_ICD_VENDORS", no_drivers.path()}}};
-    const Words message = {"no OpenCL device found", "apt install pocl-opencl-icd", "OCL_ICD_VENDORS"};
+    const RunOptions without{.variables = {{"OCL_ICD_VENDORS", no_drivers.path()}}};
+    const Arguments message = {"no OpenCL device found", "apt install pocl-opencl-icd", "OCL_ICD_VENDORS"};
     check_refused(outputs, render_into(outputs, scene_file("planes")), 3, message, without);
     check_refused(outputs, {"devices"}, 3, message, without);
     check_refused(outputs, {"bench"}, 3, message, without);
 }
 
-TEST_CASE("a driver that crashes is named with what it did, as a device's failure", "[cli]") {
-    if (kSanitized) return;  // which sees crashes first
+TEST_CASE("render: a driver that crashes ends with 3, and the message names the failed call", "[cli]") {
+    if (kSanitized) return;  // the sanitizer handles SIGSEGV
     const ScratchFolder outputs;
-    // In the thread that calls the driver, and in two of the driver's own at once; by an overflow no stack is left for
-    // a handler.
+    // In the calling thread and in two threads of the driver at once. After a stack overflow a handler has no stack.
     for (const char* crash : {"crash", "overflow", "overflows"}) {
         CAPTURE(crash);
         check_refused(outputs,
@@ -154,51 +156,51 @@ TEST_CASE("a driver that crashes is named with what it did, as a device's failur
     }
 }
 
-TEST_CASE("a group that a kernel does not allow is refused with both sizes", "[cli]") {
+TEST_CASE("render --group: refuses a group that the kernel does not allow, with both sizes", "[cli]") {
     const ScratchFolder outputs;
-    const Words words =
+    const Arguments arguments =
         render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4", "--group", "16"});
-    check_refused(outputs, words, 3, {"groups of 16 work-items", "allows groups of 1..8", "--group 8"},
+    check_refused(outputs, arguments, 3, {"groups of 16 work-items", "allows groups of 1..8", "--group 8"},
                   failing_device("clGetKernelWorkGroupInfo 4528 8"));
 }
 
-/// The image of a render with groups of that size, on PoCL's device of that name.
-std::string image_of(const std::string& group, const std::string& device, const Words& more) {
+/// Returns the image file of a render with groups of that size on the PoCL device of that name.
+std::string image_of(const std::string& group, const std::string& device, const Arguments& more) {
     const ScratchFolder outputs;
-    Words words = {"render", scene_file("centre"), "-o", outputs / "x.pfm", "--size", "16", "--lanes", "16"};
-    words.insert(words.end(), {"--group", group});
-    words.insert(words.end(), more.begin(), more.end());
-    const RunOutcome run = run_raya(words, {.variables = {{"POCL_DEVICES", device}}});
-    INFO(run.told());
+    Arguments arguments = {"render", scene_file("centre"), "-o", outputs / "x.pfm", "--size", "16", "--lanes", "16"};
+    arguments.insert(arguments.end(), {"--group", group});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunOutcome run = run_raya(arguments, {.variables = {{"POCL_DEVICES", device}}});
+    INFO(run.describe());
     CHECK(run.code == 0);
     return run.code == 0 ? file_contents(outputs / "x.pfm") : "";
 }
 
-// PoCL has the private memory of a whole group on the stack of the thread that runs it.
-TEST_CASE("the largest group of the widest lanes renders the same image", "[cli]") {
-    const Words grande = {"--machine", "grande"};
+// PoCL puts the private memory of a whole group on the stack of its thread.
+TEST_CASE("render --group: the largest group with the most lanes renders the same image", "[cli]") {
+    const Arguments grande = {"--machine", "grande"};
     CHECK(image_of("1024", "pthread", grande) == image_of("1", "pthread", grande));
 }
 
-TEST_CASE("the largest group with the most private memory renders the same image", "[cli][slow]") {
+TEST_CASE("render --group: the largest group with the most private memory renders the same image", "[cli][slow]") {
     for (const char* device : {"pthread", "basic"})
-        for (const Words& more :
-             {Words{"--machine", "grande"}, Words{"--machine", "torus", "--nodes", "2x1x1"},
-              Words{"--machine", "grande", "--antialias", "filter"},
-              Words{"--machine", "grande", "--bounces", "31", "--accel", "grid"},
-              Words{"--machine", "grande", "--bounces", "31", "--accel", "bvh", "--antialias", "supersample"}}) {
+        for (const Arguments& more :
+             {Arguments{"--machine", "grande"}, Arguments{"--machine", "torus", "--nodes", "2x1x1"},
+              Arguments{"--machine", "grande", "--antialias", "filter"},
+              Arguments{"--machine", "grande", "--bounces", "31", "--accel", "grid"},
+              Arguments{"--machine", "grande", "--bounces", "31", "--accel", "bvh", "--antialias", "supersample"}}) {
             CAPTURE(device, more);
             CHECK(image_of("1024", device, more) == image_of("1", device, more));
         }
 }
 
-TEST_CASE("a damaged cache of the driver's ends with a remedy", "[cli]") {
+TEST_CASE("render: a damaged kernel cache of the driver ends with a remedy", "[cli]") {
     if (kSanitized) return;
     const ScratchFolder cache, outputs;
-    const Surroundings around{.variables = {{"POCL_CACHE_DIR", cache.path()}}};
-    const Words words = {
+    const RunOptions run_options{.variables = {{"POCL_CACHE_DIR", cache.path()}}};
+    const Arguments arguments = {
         "render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8", "--lanes", "4"};
-    REQUIRE(run_raya(words, around).code == 0);
+    REQUIRE(run_raya(arguments, run_options).code == 0);
     std::filesystem::remove(outputs / "x.pfm");
     int damaged = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(cache.path()))
@@ -207,68 +209,66 @@ TEST_CASE("a damaged cache of the driver's ends with a remedy", "[cli]") {
             ++damaged;
         }
     REQUIRE(damaged > 0);
-    check_refused(outputs, words, 3, {"the OpenCL driver crashed (SIGABRT) while building program", "empty folder"},
-                  around);
+    check_refused(outputs, arguments, 3, {"the OpenCL driver crashed (SIGABRT) while building program", "empty folder"},
+                  run_options);
 }
 
-TEST_CASE("memory that runs out while the driver builds a kernel ends the program, though the driver stays locked",
-          "[cli]") {
+TEST_CASE("render: ends if memory runs out during a build, although the driver keeps its lock", "[cli]") {
     if (kSanitized) return;
     const ScratchFolder cache, outputs;
-    Surroundings around = failing_device("new 1000000 0");
-    around.variables.emplace_back("POCL_CACHE_DIR", cache.path());
+    RunOptions run_options = failing_device("new 1000000 0");
+    run_options.variables.emplace_back("POCL_CACHE_DIR", cache.path());
     check_refused(outputs, render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8"}), 2,
-                  {"out of memory on the host"}, around);
+                  {"out of memory on the host"}, run_options);
 }
 
-TEST_CASE("where PoCL's cache is not writable, the build's failure begins with that; without any place one is found",
-          "[cli]") {
+TEST_CASE("render: names an unwritable PoCL cache first, and finds a folder if none is set", "[cli]") {
     const ScratchFolder home, outputs;
     ::chmod(outputs.path().c_str(), 0777);
     ::chmod(home.path().c_str(), 0555);
-    const Words words = {
+    const Arguments arguments = {
         "render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8", "--lanes", "4"};
-    check_refused(outputs, words, 3,
+    check_refused(outputs, arguments, 3,
                   {"raya: building program 'ring/trace.cl': PoCL's kernel cache (POCL_CACHE_DIR=" +
                        home.path().string() + "): cannot write '",
                    "is not writable; ", "build log:"},
                   {.variables = {{"POCL_CACHE_DIR", home.path()}}, .as_nobody = true});
     const RunOutcome run = run_raya(
-        words,
+        arguments,
         {.variables = {{"POCL_CACHE_DIR", ""}, {"XDG_CACHE_HOME", ""}, {"HOME", home.path()}}, .as_nobody = true});
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 0);
     CHECK_THAT(run.err, Catch::Contains("raya: warning: ") && Catch::Contains("PoCL keeps its kernels in"));
 }
 
-/// A file system of `bytes` at `folder` while it lives; where this process may not mount one, there is none.
-class SmallDisk {
+/// Mounts a file system of `bytes` at `folder` for its lifetime, if this process may.
+class SmallFileSystem {
   public:
-    SmallDisk(const fs::path& folder, int bytes)
+    SmallFileSystem(const fs::path& folder, int bytes)
         : folder_(folder),
-          there_(::mount("none", folder.c_str(), "tmpfs", 0, ("size=" + std::to_string(bytes)).c_str()) == 0) {}
-    ~SmallDisk() {
-        if (there_) ::umount2(folder_.c_str(), MNT_DETACH);
+          is_mounted_(::mount("none", folder.c_str(), "tmpfs", 0, ("size=" + std::to_string(bytes)).c_str()) == 0) {}
+    ~SmallFileSystem() {
+        if (is_mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
     }
-    SmallDisk(const SmallDisk&) = delete;
-    SmallDisk& operator=(const SmallDisk&) = delete;
-    bool there() const { return there_; }
+    SmallFileSystem(const SmallFileSystem&) = delete;
+    SmallFileSystem& operator=(const SmallFileSystem&) = delete;
+    bool is_mounted() const { return is_mounted_; }
 
   private:
     fs::path folder_;
-    bool there_;
+    bool is_mounted_;
 };
 
-TEST_CASE("a full kernel cache is named as such, whether PoCL or LLVM in it finds that", "[cli]") {
+TEST_CASE("render: names a full kernel cache, whether PoCL or LLVM reports it", "[cli]") {
     if (kSanitized) return;
     for (const int bytes : {4 << 10, 300 << 10}) {
         CAPTURE(bytes);
         const ScratchFolder cache, outputs;
-        const SmallDisk disk(cache.path(), bytes);
-        if (!disk.there()) return;
+        const SmallFileSystem disk(cache.path(), bytes);
+        if (!disk.is_mounted()) return;
         check_refused(outputs,
                       render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4"}), 3,
-                      {"No space left on device", "make room", "POCL_CACHE_DIR"},
+                      {"No space left on device", "free some space", "POCL_CACHE_DIR"},
                       {.variables = {{"POCL_CACHE_DIR", cache.path()}}});
     }
 }

@@ -1,58 +1,60 @@
-// Every option of every command with values that nobody means: one line that names the option, exit code 2, and no
-// internal error. In this process, as there are thousands of cases.
+// Every option of every command with odd values: a refusal in one line that names the option, no internal error.
+// Thousands of cases, therefore in this process.
 #include <catch2/catch.hpp>
 #include <set>
 
 #include "host/cli/parse_failure.hpp"
 #include "host/error.hpp"
 #include "tests/base/scratch_folder.hpp"
+#include "tests/cli/all_commands.hpp"
 #include "tests/cli/run_program.hpp"
-#include "tests/cli/whole_tree.hpp"
 #include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
 
 constexpr const char* kNoDevice = "no-such-device";
-const Words kOddValues = {"x", "-1", "1e400", "99999999999999999999", "nan", "\x1b[31m"};
+const Arguments kOddValues = {"x", "-1", "1e400", "99999999999999999999", "nan", "\x1b[31m"};
 
 struct Command {
-    Words path;  // "generate", "balls"
+    Arguments path;  // "generate", "balls"
     CommandText text;
 };
 
 std::vector<Command> all_commands() {
     std::vector<Command> commands;
-    for_each_command(tree_of_all(), [&](const CommandText& command, const std::string& path) {
-        std::istringstream words(path);
-        commands.push_back({Words(std::istream_iterator<std::string>(words), {}), command});
+    for_each_command(text_of_all_commands(), [&](const CommandText& command, const std::string& path) {
+        std::istringstream tokens(path);
+        commands.push_back({Arguments(std::istream_iterator<std::string>(tokens), {}), command});
         commands.back().path.erase(commands.back().path.begin());  // raya
     });
     return commands;
 }
 
-Words operator+(Words words, const Words& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+Arguments operator+(Arguments arguments, const Arguments& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
 }
 
-struct Opened : CLI::App {
+struct ExposedApp : CLI::App {
     using CLI::App::final_callback_;
 };
 
-/// What the program says of these words; "" if it takes them. Other exceptions than a refusal end the test.
-std::string refusal(const Words& words, bool runs) {
-    const std::shared_ptr<CLI::App> program = parser_of_all();
+/// Returns the program's refusal of these arguments, "" if it accepts them. `runs`: runs the command's callback.
+/// Exceptions other than UserError end the test.
+std::string refusal(const Arguments& arguments, bool runs) {
+    const std::shared_ptr<CLI::App> program = make_full_parser();
     if (!runs)
         for (CLI::App* at = program.get(); at != nullptr;) {
-            at->callback([kept = at->*(&Opened::final_callback_)] {});  // it owns what the options fill
+            at->callback(
+                [owner = at->*(&ExposedApp::final_callback_)] {});  // it owns the variables that the options fill
             const auto next = at->get_subcommands([&](const CLI::App* one) {
-                return std::find(words.begin(), words.end(), one->get_name()) != words.end();
+                return std::find(arguments.begin(), arguments.end(), one->get_name()) != arguments.end();
             });
             at = next.empty() ? nullptr : next.front();
         }
     try {
-        parse_words(*program, words);
+        parse_arguments(*program, arguments);
     } catch (const UserError& error) {
         return error.what();
     }
@@ -64,10 +66,10 @@ bool names_option(const std::string& text, const OptionText& option) {
                        [&](const std::string& name) { return contains(text, name); });
 }
 
-void check_refused_in_words(const Words& words, const OptionText& option, bool runs = false) {
-    const std::string text = refusal(words, runs);
+void check_refused_in_process(const Arguments& arguments, const OptionText& option, bool runs = false) {
+    const std::string text = refusal(arguments, runs);
     std::string line;
-    for (const std::string& word : words) line += word.substr(0, 60) + ' ';
+    for (const std::string& argument : arguments) line += argument.substr(0, 60) + ' ';
     INFO(line << "\n" << text);
     CHECK_FALSE(text.empty());
     CHECK(text.size() < 2000);
@@ -75,62 +77,67 @@ void check_refused_in_words(const Words& words, const OptionText& option, bool r
     CHECK(names_option(text, option));
 }
 
-TEST_CASE("a flag takes no value, whatever it is", "[cli][every]") {
+TEST_CASE("every flag: refuses a value", "[cli][every]") {
     for (const Command& command : all_commands())
         for (const OptionText& option : command.text.options)
             if (option.is_flag())
                 for (const std::string& name : option.names)
-                    for (const std::string& value : by_turns(kOddValues + Words{"", "true", "none", "2", "{}"}))
-                        check_refused_in_words(command.path + Words{name + '=' + value}, option);
+                    for (const std::string& value : all_or_next(kOddValues + Arguments{"", "true", "none", "2", "{}"}))
+                        check_refused_in_process(command.path + Arguments{name + '=' + value}, option);
 }
 
-TEST_CASE("an option takes no empty value, none that is too long, and one value once", "[cli][every]") {
+TEST_CASE("every option: refuses an empty value, one of 1 MB, and a repeated one", "[cli][every]") {
     for (const Command& command : all_commands())
         for (const OptionText& option : command.text.options) {
             if (option.is_flag()) continue;
             const std::string& name = option.names.back();
-            const std::vector<Words> refused = {
-                {name + '='},           {name + '=', "1"}, {name, ""}, {name}, {name, std::string(1 << 20, 'x')},
-                {name + '=' + std::string(1 << 20, '9')}};
-            for (const Words& words : by_turns(refused)) check_refused_in_words(command.path + words, option);
-            if (!option.repeated) check_refused_in_words(command.path + Words{name, "1", name, "1"}, option);
+            const std::vector<Arguments> refused = {{name + '='},
+                                                    {name + '=', "1"},
+                                                    {name, ""},
+                                                    {name},
+                                                    {name, std::string(1 << 20, 'x')},
+                                                    {name + '=' + std::string(1 << 20, '9')}};
+            for (const Arguments& arguments : all_or_next(refused))
+                check_refused_in_process(command.path + arguments, option);
+            if (!option.repeated) check_refused_in_process(command.path + Arguments{name, "1", name, "1"}, option);
         }
 }
 
-TEST_CASE("odd values of every option are refused, or are legal: no internal error", "[cli][every]") {
+TEST_CASE("every option: odd values cause no internal error", "[cli][every]") {
     for (const Command& command : all_commands())
         for (const OptionText& option : command.text.options)
-            for (const std::string& value : by_turns(kOddValues))
-                if (!option.is_flag()) CHECK_NOTHROW(refusal(command.path + Words{option.names.back(), value}, false));
+            for (const std::string& value : all_or_next(kOddValues))
+                if (!option.is_flag())
+                    CHECK_NOTHROW(refusal(command.path + Arguments{option.names.back(), value}, false));
 }
 
-TEST_CASE("odd values of render's options are refused before a device is asked for", "[cli][every]") {
+TEST_CASE("render: refuses odd values before it opens a device", "[cli][every]") {
     const ScratchFolder folder;
     const std::set<std::string> any_text = {"--output", "--device", "--kernel-dir"};
     const std::set<std::string> may_be_negative = {"--exposure", "--turn"};
     const auto commands = all_commands();
     const auto render =
-        std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.path == Words{"render"}; });
+        std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.path == Arguments{"render"}; });
     for (const OptionText& option : render->text.options) {
         const std::string& name = option.names.back();
         const bool is_file = contains(option.value, "FILE") || contains(option.value, "IMAGE");
         if (option.is_flag() || is_file || any_text.count(name) > 0) continue;
         for (const std::string& value : kOddValues)
             if (value != "-1" || may_be_negative.count(name) == 0)
-                check_refused_in_words(
+                check_refused_in_process(
                     {"render", scene_file("planes"), "-o", folder / "x.ppm", "--device", kNoDevice, name, value},
                     option, true);
     }
 }
 
-TEST_CASE("the words behind -- are arguments, and a refusal says so", "[cli][every]") {
+TEST_CASE("--: arguments after it are positional, and a refusal says so", "[cli][every]") {
     CHECK_THAT(refusal({"render", "--", "-x.nff", "--size", "16"}, false),
                Catch::Contains("unexpected argument '--size' after --"));
     CHECK(refusal({"render", "-o", "x.ppm", "--size", "16", "--", "-x.nff"}, false).empty());
     CHECK_THAT(refusal({"info", "--", "-x.nff"}, true), Catch::StartsWith("-x.nff: "));
 }
 
-TEST_CASE("the word that was meant is named for values, options and commands", "[cli][every]") {
+TEST_CASE("refusals: name the closest value, option or command", "[cli][every]") {
     const auto of_render = [&](const std::string& option, const std::string& value) {
         return refusal({"render", scene_file("planes"), "-o", "x.ppm", "--device", kNoDevice, option, value}, true);
     };

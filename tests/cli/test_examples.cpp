@@ -1,120 +1,121 @@
-// The examples in help: each is what the parser takes, and those that take seconds are run.
+// The examples in help: the parser accepts each, and the quick ones are run.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "tests/cli/all_commands.hpp"
 #include "tests/cli/refusals.hpp"
-#include "tests/cli/whole_tree.hpp"
 
 namespace raya {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The words behind each "raya" of a shell's line, up to what ends that call.
-std::vector<Words> calls_in(std::string line) {
+/// Returns the arguments of each call of raya in a shell's line.
+std::vector<Arguments> calls_in(std::string line) {
     for (const char* sign : {"<(", ")", "|", "&&", ">"})
         for (std::size_t at = 0; (at = line.find(sign, at)) != std::string::npos; at += std::string(sign).size() + 2)
             line.replace(at, std::string(sign).size(), std::string(" ") + sign + ' ');
-    std::vector<Words> calls;
+    std::vector<Arguments> calls;
     bool inside = false;
-    for (const std::string& word : words_of(line)) {
-        if (word == "raya")
+    for (const std::string& token : tokens_of(line)) {
+        if (token == "raya")
             calls.emplace_back();
-        else if (inside && word != "|" && word != "&&" && word != ">" && word != ")")
-            calls.back().push_back(word);
-        inside = word == "raya" || (inside && word != "|" && word != "&&" && word != ">" && word != ")");
+        else if (inside && token != "|" && token != "&&" && token != ">" && token != ")")
+            calls.back().push_back(token);
+        inside = token == "raya" || (inside && token != "|" && token != "&&" && token != ">" && token != ")");
     }
     return calls;
 }
 
-struct Taken {};  // thrown where the command would run
+struct Accepted {};  // thrown where the command would run
 
-/// What the parser says against it; empty: nothing.
-std::string refusal_of(const Words& call) {
-    const std::shared_ptr<CLI::App> program = parser_of_all();
-    program->parse_complete_callback([] { throw Taken{}; });
+/// Returns the parser's refusal, empty if it accepts the call.
+std::string refusal_of(const Arguments& call) {
+    const std::shared_ptr<CLI::App> program = make_full_parser();
+    program->parse_complete_callback([] { throw Accepted{}; });
     try {
-        program->parse(Words{call.rbegin(), call.rend()});
+        program->parse(Arguments{call.rbegin(), call.rend()});
         return "nothing was parsed";
-    } catch (const Taken&) {
+    } catch (const Accepted&) {
         return "";
     } catch (const std::exception& error) {
         return error.what();
     }
 }
 
-/// The files and folders that a call is told to write.
-Words outputs_of(const Words& call) {
-    Words files;
+/// Returns the files and folders that a call writes.
+Arguments outputs_of(const Arguments& call) {
+    Arguments files;
     for (std::size_t i = 0; i + 1 < call.size(); ++i)
         for (const char* option : {"-o", "--output", "--report", "--page", "--cost", "--trace", "--packets"})
             if (call[i] == option && call[i + 1] != "-") files.push_back(call[i + 1]);
     return files;
 }
 
-/// What takes longer than a test may, asks for what may not be here, or is of another shell.
-bool is_left_out(const std::string& path, const std::string& line) {
+/// Returns true for examples that take long, need other software, or are for another shell.
+bool is_skipped(const std::string& path, const std::string& line) {
     if (path == "raya study") return !contains(line, " --size 64 ");
     for (const char* part : {"raya study all", "mpirun", "man -l", "raya bench", "source <("})
         if (contains(line, part)) return true;
     return line == "raya verify";
 }
 
-TEST_CASE("every command has two examples, each with a word on what it does", "[cli][help]") {
-    for_each_command(tree_of_all(), [](const CommandText& command, const std::string& path) {
+TEST_CASE("help: every command has two examples, each with a description", "[cli][help]") {
+    for_each_command(text_of_all_commands(), [](const CommandText& command, const std::string& path) {
         CAPTURE(path);
         CHECK(command.examples.size() == 2);
         for (const ExampleText& example : command.examples) {
             CAPTURE(example.command);
-            CHECK(!example.says.empty());
+            CHECK(!example.description.empty());
             CHECK((contains(example.command, path + ' ') || example.command.ends_with(path) || path == "raya"));
         }
     });
 }
 
-TEST_CASE("every example is what the parser takes, of scenes that there are", "[cli][help]") {
-    for_each_command(tree_of_all(), [](const CommandText& command, const std::string&) {
+TEST_CASE("help: the parser accepts every example, and its scenes exist", "[cli][help]") {
+    for_each_command(text_of_all_commands(), [](const CommandText& command, const std::string&) {
         for (const ExampleText& example : command.examples) {
             CAPTURE(example.command);
-            const std::vector<Words> calls = calls_in(example.command);
+            const std::vector<Arguments> calls = calls_in(example.command);
             CHECK(!calls.empty());
-            for (const Words& call : calls) {
+            for (const Arguments& call : calls) {
                 CHECK(refusal_of(call) == "");
-                for (const std::string& word : call)
-                    if (word.starts_with("scenes/")) CHECK(fs::exists(fs::path(RAYA_SOURCE_DIR) / word));
+                for (const std::string& argument : call)
+                    if (argument.starts_with("scenes/")) CHECK(fs::exists(fs::path(RAYA_SOURCE_DIR) / argument));
             }
         }
     });
 }
 
-TEST_CASE("what is wrong in an example is seen", "[cli][help]") {
-    CHECK(calls_in("a=b raya x -o - | raya y >z && raya w") == std::vector<Words>{{"x", "-o", "-"}, {"y"}, {"w"}});
-    CHECK(calls_in("source <(raya completion bash)") == std::vector<Words>{{"completion", "bash"}});
-    for (const Words& call : {Words{"rendr", "x.nff"}, Words{"render", "x.nff", "-o", "x.png", "--no-such-option"},
-                              Words{"render", "x.nff", "-o"}, Words{"render", "x.nff"},
-                              Words{"generate", "random", "many", "-o", "x.nff"}, Words{"study", "fig7"}})
+TEST_CASE("help: the parser refuses wrong examples", "[cli][help]") {
+    CHECK(calls_in("a=b raya x -o - | raya y >z && raya w") == std::vector<Arguments>{{"x", "-o", "-"}, {"y"}, {"w"}});
+    CHECK(calls_in("source <(raya completion bash)") == std::vector<Arguments>{{"completion", "bash"}});
+    for (const Arguments& call :
+         {Arguments{"rendr", "x.nff"}, Arguments{"render", "x.nff", "-o", "x.png", "--no-such-option"},
+          Arguments{"render", "x.nff", "-o"}, Arguments{"render", "x.nff"},
+          Arguments{"generate", "random", "many", "-o", "x.nff"}, Arguments{"study", "fig7"}})
         CHECK(refusal_of(call) != "");
 }
 
-TEST_CASE("examples do what they say", "[.][long][cli][help]") {
+TEST_CASE("help: the examples run and write their files", "[.][long][cli][help]") {
     const ScratchFolder folder;
     fs::create_directory_symlink(RAYA_SOURCE_DIR "/scenes", folder / "scenes");
     fs::create_directory(folder / "bin");
     fs::create_symlink(RAYA_PROGRAM, folder / "bin/raya");
     int count = 0;
-    for_each_command(tree_of_all(), [&](const CommandText& command, const std::string& path) {
+    for_each_command(text_of_all_commands(), [&](const CommandText& command, const std::string& path) {
         for (const ExampleText& example : command.examples) {
-            if (is_left_out(path, example.command)) continue;
+            if (is_skipped(path, example.command)) continue;
             CAPTURE(example.command);
             std::ofstream(folder / "example.sh")
                 << "cd " << folder.path().string() << " && PATH=$PWD/bin:$PATH && set -eo pipefail\n{ "
-                << example.command << "; } >told 2>errors\n";
+                << example.command << "; } >output 2>errors\n";
             const int status = std::system(("bash " + (folder / "example.sh").string()).c_str());
             INFO(file_contents(folder / "errors"));
             CHECK(status == 0);
-            for (const Words& call : calls_in(example.command))
+            for (const Arguments& call : calls_in(example.command))
                 for (const std::string& file : outputs_of(call)) CHECK(fs::exists(folder / file));
             ++count;
         }

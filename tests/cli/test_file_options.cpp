@@ -1,5 +1,5 @@
-// No output of a command overwrites an input or another output of it, by whatever names: all commands, all pairs of
-// their file options. The parser runs in this process: it refuses before any callback.
+// No output of a command overwrites its input or another output, under any name: all commands, all pairs of file
+// options. The parser runs in this process; it refuses before any callback runs.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -11,8 +11,8 @@
 #include "host/cli/file_options.hpp"
 #include "host/error.hpp"
 #include "host/tune/store.hpp"
+#include "tests/cli/all_commands.hpp"
 #include "tests/cli/refusals.hpp"
-#include "tests/cli/whole_tree.hpp"
 #include "tests/kernels/write_kernels.hpp"
 #include "tests/thorough.hpp"
 
@@ -32,66 +32,67 @@ void for_each_command(CLI::App& command, const Path& path, const std::function<v
     }
 }
 
-TEST_CASE("every option whose value is a file or a folder says what is done with it", "[cli][file_options]") {
-    const auto parser = parser_of_all();
+TEST_CASE("file options: every option with a file or folder declares its use", "[cli][file_options]") {
+    const auto parser = make_full_parser();
     const std::regex file("FILE|IMAGE|SCENE[.]nff|DIR|REPORT");
     std::size_t files = 0;
     for_each_command(*parser, {}, [&](CLI::App& command, const Path& path) {
         for (CLI::Option* option : command.get_options()) {
             CAPTURE(path, option->get_name());
             const bool names_file = std::regex_search(option->get_type_name(), file);
-            CHECK((file_use(*option) != FileUse::kNone) == names_file);
+            CHECK((file_use_of(*option) != FileUse::kNone) == names_file);
             files += names_file;
         }
     });
     CHECK(files > 35);
 }
 
-/// A line that gives two options of a command their values, and its other required ones any.
-Words line_of(CLI::App& command, const Path& path, const Words& two_options, const Words& two_values,
-              const ScratchFolder& others) {
-    Words words = path;
+/// Returns arguments that give two options of a command these values, and its other required options any.
+Arguments arguments_for(CLI::App& command, const Path& path, const Arguments& two_options, const Arguments& two_values,
+                        const ScratchFolder& others) {
+    Arguments arguments = path;
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         const auto at = std::find(two_options.begin(), two_options.end(), name);
         if (at == two_options.end() && !option->get_required()) continue;
-        if (!option->get_positional()) words.push_back(name);
+        if (!option->get_positional()) arguments.push_back(name);
         if (at != two_options.end())
-            words.push_back(two_values[static_cast<std::size_t>(at - two_options.begin())]);
+            arguments.push_back(two_values[static_cast<std::size_t>(at - two_options.begin())]);
         else
-            words.push_back(option->get_type_name() == "COUNT" ? "5" : others / name);
+            arguments.push_back(option->get_type_name() == "COUNT" ? "5" : others / name);
     }
-    return words;
+    return arguments;
 }
 
-void check_refused_by_parser(const Words& words, const Words& options) {
-    CAPTURE(words);
+void check_refused_by_parser(const Arguments& arguments, const Arguments& options) {
+    CAPTURE(arguments);
     std::string message = "nothing";
     try {
-        parser_of_all()->parse(Words(words.rbegin(), words.rend()));  // the last word first
-    } catch (const UserError& error) {                                // exit code 2
+        make_full_parser()->parse(
+            Arguments(arguments.rbegin(), arguments.rend()));  // CLI11 takes the last argument first
+    } catch (const UserError& error) {                         // exit code 2
         message = error.what();
     }
     for (const std::string& option : options) CHECK_THAT(message, Catch::Contains(option));
 }
 
-std::vector<Words> pairs_of(CLI::App& command, FileUse one, FileUse other) {
-    std::vector<Words> pairs;
+std::vector<Arguments> pairs_of(CLI::App& command, FileUse one, FileUse other) {
+    std::vector<Arguments> pairs;
     for (CLI::Option* a : command.get_options())
         for (CLI::Option* b : command.get_options())
-            if (file_use(*a) == one && file_use(*b) == other && (one != other || a->get_name() < b->get_name()))
+            if (file_use_of(*a) == one && file_use_of(*b) == other && (one != other || a->get_name() < b->get_name()))
                 pairs.push_back({a->get_name(), b->get_name()});
     return pairs;
 }
 
-/// `see` with two names of one file, which `exists` or does not.
-void for_each_two_names(bool exists, const std::function<void(const Words&)>& see) {
-    Words others = {"file", "./file", "sub/../file", "way/file", "link", "link2"};
+/// Calls `see` with two names of one file, which exists if `exists` says so.
+void for_each_two_names(bool exists, const std::function<void(const Arguments&)>& see) {
+    Arguments others = {"file", "./file", "sub/../file", "folder_link/file", "link", "link2"};
     if (exists) others.push_back("hard");
-    for (const std::string& other : by_turns(others)) {
+    for (const std::string& other : all_or_next(others)) {
         const ScratchFolder folder;
         fs::create_directory(folder / "sub");
-        fs::create_directory_symlink(".", folder / "way");
+        fs::create_directory_symlink(".", folder / "folder_link");
         fs::create_symlink("file", folder / "link");
         fs::create_symlink(fs::path(folder / "link"), folder / "link2");
         if (exists) write_whole_file(folder / "file", "content");
@@ -103,16 +104,16 @@ void for_each_two_names(bool exists, const std::function<void(const Words&)>& se
     }
 }
 
-TEST_CASE("no command overwrites a file that it reads or writes, by whatever names", "[cli][file_options]") {
-    const auto parser = parser_of_all();
+TEST_CASE("file options: no command overwrites a file that it reads or writes, under any name", "[cli][file_options]") {
+    const auto parser = make_full_parser();
     const ScratchFolder others;
     std::size_t pairs = 0;
     for_each_command(*parser, {}, [&](CLI::App& command, const Path& path) {
         const auto check = [&](FileUse one, bool exists) {
-            for (const Words& options : pairs_of(command, one, FileUse::kWritten)) {
+            for (const Arguments& options : pairs_of(command, one, FileUse::kWritten)) {
                 ++pairs;
-                for_each_two_names(exists, [&](const Words& names) {
-                    check_refused_by_parser(line_of(command, path, options, names, others), options);
+                for_each_two_names(exists, [&](const Arguments& names) {
+                    check_refused_by_parser(arguments_for(command, path, options, names, others), options);
                 });
             }
         };
@@ -124,9 +125,9 @@ TEST_CASE("no command overwrites a file that it reads or writes, by whatever nam
     CHECK(others.entries() == 0);
 }
 
-TEST_CASE("no command overwrites kernels that it reads, or what it reads in the folder that it fills",
+TEST_CASE("file options: no command overwrites kernels that it reads, or an input in its output folder",
           "[cli][file_options]") {
-    const auto parser = parser_of_all();
+    const auto parser = make_full_parser();
     const ScratchFolder others, kernels, folder;
     write_kernels(kernels.path());
     const std::string kernel = file_contents(kernels / "ring/trace.cl");
@@ -135,10 +136,10 @@ TEST_CASE("no command overwrites kernels that it reads, or what it reads in the 
     fs::create_symlink(fs::path(folder / "fig7.csv"), others / "scene.nff");
     std::size_t pairs = 0;
     for_each_command(*parser, {}, [&](CLI::App& command, const Path& path) {
-        const auto check = [&](FileUse one, FileUse other, const Words& values) {
-            for (const Words& options : pairs_of(command, one, other)) {
+        const auto check = [&](FileUse one, FileUse other, const Arguments& values) {
+            for (const Arguments& options : pairs_of(command, one, other)) {
                 ++pairs;
-                check_refused_by_parser(line_of(command, path, options, values, others), options);
+                check_refused_by_parser(arguments_for(command, path, options, values, others), options);
             }
         };
         check(FileUse::kKernelFolder, FileUse::kWritten, {kernels.path(), kernels / "ring/trace.cl"});
@@ -151,45 +152,47 @@ TEST_CASE("no command overwrites kernels that it reads, or what it reads in the 
     CHECK(file_contents(folder / "fig7.csv") == "content");
 }
 
-/// A run that must not touch `file`, which holds a scene.
-void check_kept(const std::string& file, const Words& words, const Words& message) {
+/// Runs raya, which must refuse the arguments and leave `file`, a scene, unchanged.
+void check_unchanged(const std::string& file, const Arguments& arguments, const Arguments& message) {
     const std::string before = file_contents(file);
-    const RunOutcome run = run_raya(words);
-    INFO(run.told());
+    const RunOutcome run = run_raya(arguments);
+    INFO(run.describe());
     CHECK(run.code == 2);
     CHECK(run.out.empty());
     for (const std::string& part : message) CHECK_THAT(run.err, Catch::Contains(part));
     CHECK(file_contents(file) == before);
 }
 
-TEST_CASE("outputs that follow from options overwrite nothing", "[cli][file_options]") {
+TEST_CASE("file options: derived output names (frames, replay) overwrite no input and no output",
+          "[cli][file_options]") {
     const ScratchFolder folder;
     const std::string scene = scene_file("planes"), image = folder / "a.ppm";
     const auto copy = [&](const std::string& name) {
         fs::copy(scene, folder / name);
         return folder / name;
     };
-    const Words frames = {"-o", image, "--frames", "1:4", "--turn", "90", "--size", "4"};
-    const auto of = [&](const std::string& input, Words words) {
-        words.insert(words.begin(), {"render", input});
-        return words;
+    const Arguments frames = {"-o", image, "--frames", "1:4", "--turn", "90", "--size", "4"};
+    const auto of = [&](const std::string& input, Arguments arguments) {
+        arguments.insert(arguments.begin(), {"render", input});
+        return arguments;
     };
     const std::string third = copy("a-0003.ppm"), record = copy("a-frames.json"), report = copy("r-0002.json"),
                       platform = copy("p.xml"), history = copy("p.replay");
-    check_kept(third, of(third, frames), {"--output", "a-0003.ppm", "SCENE"});
-    check_kept(record, of(record, frames), {"--frames", "a-frames.json", "SCENE"});
-    Words reports = frames;
+    check_unchanged(third, of(third, frames), {"--output", "a-0003.ppm", "SCENE"});
+    check_unchanged(record, of(record, frames), {"--frames", "a-frames.json", "SCENE"});
+    Arguments reports = frames;
     reports.insert(reports.end(), {"--report", folder / "r.json"});
-    check_kept(report, of(report, reports), {"--report", "r-0002.json", "SCENE"});
+    check_unchanged(report, of(report, reports), {"--report", "r-0002.json", "SCENE"});
     fs::create_symlink("r-0003.json", folder / "a-0004.ppm");
-    check_kept(scene, of(scene, reports), {"--report", "r-0003.json", "--output", "a-0004.ppm"});
-    const Words packets = {"-o", image, "--machine", "torus", "--packets", folder / "p.csv.gz", "--replay", "simgrid"};
+    check_unchanged(scene, of(scene, reports), {"--report", "r-0003.json", "--output", "a-0004.ppm"});
+    const Arguments packets = {"-o",       image,    "--machine", "torus", "--packets", folder / "p.csv.gz",
+                               "--replay", "simgrid"};
     for (const std::string& file : {platform, history})
-        check_kept(file, of(file, packets), {"--replay", file, "SCENE"});
+        check_unchanged(file, of(file, packets), {"--replay", file, "SCENE"});
     CHECK_FALSE(fs::exists(image));
 }
 
-TEST_CASE("tune does not overwrite what it keeps with its report", "[cli][file_options]") {
+TEST_CASE("tune --report: refuses the file of tuned values", "[cli][file_options]") {
     const ScratchFolder cache;
     const DeviceInfo device = device_info(choose_device(""));
     fs::create_directory(cache / "raya");
@@ -197,7 +200,7 @@ TEST_CASE("tune does not overwrite what it keeps with its report", "[cli][file_o
     write_whole_file(file, "content");
     const RunOutcome run =
         run_raya({"tune", "--seconds", "1", "--report", file}, {.variables = {{"XDG_CACHE_HOME", cache.path()}}});
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 2);
     CHECK_THAT(run.err, Catch::Contains("tune ") && Catch::Contains("the same file as --report"));
     CHECK(file_contents(file) == "content");

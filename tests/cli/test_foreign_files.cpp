@@ -1,4 +1,4 @@
-// Files that other users have planted, or could change: no code of theirs is loaded.
+// Security: raya loads no modules and no kernel cache that other users may write.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ constexpr uid_t kNobody = 65534;
 
 const fs::path kBuild = fs::path(RAYA_PROGRAM).parent_path();
 
-/// A copy of raya in `program`, and of its modules in `modules`.
+/// Copies raya into `program_in` and its modules into `modules_in`, below `folder`.
 struct Installation {
     Installation(const fs::path& folder, const char* program_in, const char* modules_in)
         : top(folder),
@@ -43,7 +43,7 @@ struct Installation {
              .program = program});
     }
 
-    /// As one of two ranks that never meet: the module for MPI comes before anything else.
+    /// Runs as one of two ranks, which do not find each other: raya loads the MPI module first.
     RunOutcome run_as_rank() const {
         return run_raya(
             {"devices"},
@@ -53,7 +53,7 @@ struct Installation {
 
     void check_refused(const std::string& named) const {
         for (const RunOutcome& outcome : {run(), run_as_rank()}) {
-            INFO(outcome.told());
+            INFO(outcome.describe());
             CHECK(outcome.code == 2);
             CHECK_THAT(outcome.err, Contains("refused to load '" + modules.string() + "/raya_"));
             CHECK_THAT(outcome.err, Contains(named));
@@ -63,17 +63,17 @@ struct Installation {
     fs::path top, program, modules;
 };
 
-TEST_CASE("modules come from one folder of an installation, and from no other", "[cli][module]") {
+TEST_CASE("modules: are loaded from one folder of an installation only", "[cli][module]") {
     const ScratchFolder folder;
     CHECK(Installation(folder / "flat", ".", ".").run().code == 0);
     CHECK(Installation(folder / "prefix", "bin", "lib/raya").run().code == 0);
-    // Folders in which versions before looked as well, and where another user can put something.
+    // Folders that earlier versions searched too, and where another user may put files.
     for (const auto& [program, modules] : {std::pair{"sub", "."}, {"sub", "lib/raya"}, {"bin", "bin"}, {"bin", "."}}) {
         CAPTURE(program, modules);
         const ScratchFolder scratch;
-        const Installation planted(scratch / "planted", program, modules);
-        const RunOutcome picture = planted.run(), rank = planted.run_as_rank();
-        INFO(picture.told() + rank.told());
+        const Installation foreign(scratch / "foreign", program, modules);
+        const RunOutcome picture = foreign.run(), rank = foreign.run_as_rank();
+        INFO(picture.describe() + rank.describe());
         CHECK(picture.code == 2);
         CHECK_THAT(picture.err, Contains("there is no file '") && Contains("/raya_pictures.so'") && Contains(".ppm"));
         CHECK(rank.code == 2);
@@ -81,7 +81,7 @@ TEST_CASE("modules come from one folder of an installation, and from no other", 
     }
 }
 
-TEST_CASE("a module that others may change, or replace, is refused", "[cli][module]") {
+TEST_CASE("modules: refused if others may write or replace them", "[cli][module]") {
     const ScratchFolder folder;
     const Installation flat(folder / "flat", ".", "."), prefix(folder / "prefix", "bin", "lib/raya");
     const auto check_mode = [](const Installation& one, const fs::path& changed, mode_t mode,
@@ -109,22 +109,23 @@ TEST_CASE("a module that others may change, or replace, is refused", "[cli][modu
     CHECK_THAT(prefix.run_as_rank().err, Contains("there is no file '"));
 }
 
-TEST_CASE("a group that may write passes if the owner is its only member", "[cli][module]") {
+TEST_CASE("modules: group write permission is accepted if the owner is the group's only member", "[cli][module]") {
     if (::geteuid() != 0) return;
     const ScratchFolder folder;
     const Installation flat(folder / "flat", ".", ".");
     ::chmod(flat.top.c_str(), 0775);
-    CHECK(flat.run().code == 0);  // root's own
+    CHECK(flat.run().code == 0);  // root's group
     constexpr gid_t kNoNumber = 54'321;
     REQUIRE(::chown(flat.top.c_str(), 0, kNoNumber) == 0);
     CHECK(flat.run().code == 0);
     REQUIRE(::chown(flat.top.c_str(), 0, kNobody) == 0);
     flat.check_refused("(mode 0775)");
-    REQUIRE(::chown(flat.top.c_str(), 0, 1) == 0);  // that of the user daemon
+    REQUIRE(::chown(flat.top.c_str(), 0, 1) == 0);  // group of the user daemon
     flat.check_refused("(mode 0775)");
 }
 
-TEST_CASE("modules of the program's owner and of root are loaded, of other users not", "[cli][module]") {
+TEST_CASE("modules: those of the program's owner and of root are loaded, those of other users refused",
+          "[cli][module]") {
     if (::geteuid() != 0) return;
     const ScratchFolder folder;
     ::chmod(folder.path().c_str(), 0755);
@@ -133,11 +134,11 @@ TEST_CASE("modules of the program's owner and of root are loaded, of other users
     for (const auto& entry : fs::recursive_directory_iterator(prefix.modules))
         REQUIRE(::chown(entry.path().c_str(), kNobody, 0) == 0);
     prefix.check_refused("' belongs to user nobody");
-    REQUIRE(::chown(prefix.program.c_str(), kNobody, 0) == 0);  // whom one trusts who runs it
+    REQUIRE(::chown(prefix.program.c_str(), kNobody, 0) == 0);  // whoever runs the program trusts its owner
     CHECK(prefix.run().code == 0);
 }
 
-/// Where a run as nobody finds its cache.
+/// Runs raya as nobody with chosen places for the kernel cache.
 struct CacheRun {
     ScratchFolder temporary;
     std::vector<std::pair<std::string, std::string>> variables;
@@ -145,12 +146,12 @@ struct CacheRun {
     explicit CacheRun(mode_t mode = 01777) { ::chmod(temporary.path().c_str(), mode); }
 
     RunOutcome operator()(const std::string& home, const std::string& cache = "",
-                          const Words& words = {"devices"}) const {
-        return run_raya(words, {.variables = {{"POCL_CACHE_DIR", ""},
-                                              {"TMPDIR", temporary.path()},
-                                              {"HOME", home},
-                                              {"XDG_CACHE_HOME", cache}},
-                                .as_nobody = true});
+                          const Arguments& arguments = {"devices"}) const {
+        return run_raya(arguments, {.variables = {{"POCL_CACHE_DIR", ""},
+                                                  {"TMPDIR", temporary.path()},
+                                                  {"HOME", home},
+                                                  {"XDG_CACHE_HOME", cache}},
+                                    .as_nobody = true});
     }
 
     RunOutcome render() const {
@@ -161,6 +162,7 @@ struct CacheRun {
                         "4", "-q"});
     }
 
+    /// The private cache folder that raya makes in TMPDIR.
     fs::path own(const std::string& end = "") const {
         return temporary / ("raya-pocl-cache-" + std::to_string(::geteuid() == 0 ? kNobody : ::geteuid()) + end);
     }
@@ -170,7 +172,7 @@ void give_to_nobody(const fs::path& path) {
     if (::geteuid() == 0) REQUIRE(::chown(path.c_str(), kNobody, kNobody) == 0);
 }
 
-TEST_CASE("PoCL gets a folder of this user's own where others may write the one that it would take", "[cli][cache]") {
+TEST_CASE("kernel cache: a private folder replaces PoCL's default if others may write that", "[cli][cache]") {
     const CacheRun run;
     const ScratchFolder homes;
     ::chmod(homes.path().c_str(), 0755);
@@ -178,7 +180,7 @@ TEST_CASE("PoCL gets a folder of this user's own where others may write the one 
         CAPTURE(home, cache);
         fs::remove_all(run.own());
         const RunOutcome outcome = run(home, cache);
-        INFO(outcome.told());
+        INFO(outcome.describe());
         CHECK(outcome.code == 0);
         CHECK_THAT(outcome.err, Contains("raya: warning: ") && Contains(why) && Contains(run.own().string()));
         struct stat is {};
@@ -206,14 +208,14 @@ TEST_CASE("PoCL gets a folder of this user's own where others may write the one 
     check_own(homes / "foreign", "", "belongs to user ");
 }
 
-TEST_CASE("PoCL's usual folder serves where it is this user's alone", "[cli][cache]") {
+TEST_CASE("kernel cache: PoCL's default folder is used if only this user may write it", "[cli][cache]") {
     const CacheRun run;
     const ScratchFolder home;
     ::chmod(home.path().c_str(), 0755);
     give_to_nobody(home.path());
     for (const std::string& cache : {std::string(), (home / "cache").string()}) {
         const RunOutcome outcome = run(home.path(), cache);
-        INFO(outcome.told());
+        INFO(outcome.describe());
         CHECK(outcome.code == 0);
         CHECK(outcome.err.empty());
         CHECK_FALSE(fs::exists(run.own()));
@@ -222,10 +224,10 @@ TEST_CASE("PoCL's usual folder serves where it is this user's alone", "[cli][cac
     CHECK(fs::exists(home / "cache/pocl/kcache"));
 }
 
-TEST_CASE("a planted folder for kernels leads to one of another name", "[cli][cache]") {
+TEST_CASE("kernel cache: raya skips private folders that it does not own", "[cli][cache]") {
     const CacheRun run;
     fs::create_directory(run.own());
-    ::chmod(run.own().c_str(), 0777);  // root's, as another user's would be
+    ::chmod(run.own().c_str(), 0777);  // root owns it: stands for another user
     if (::geteuid() != 0) ::chmod(run.own().c_str(), 0755);
     fs::create_directory_symlink(run.temporary.path(), run.own("-1"));
     std::ofstream(run.own("-2")) << "x";
@@ -233,7 +235,7 @@ TEST_CASE("a planted folder for kernels leads to one of another name", "[cli][ca
     give_to_nobody(run.own("-3"));
     ::chmod(run.own("-3").c_str(), 0750);
     const RunOutcome outcome = run.render();
-    INFO(outcome.told());
+    INFO(outcome.describe());
     CHECK(outcome.code == 0);
     CHECK_THAT(outcome.err, Contains(run.own("-4").string()));
     CHECK(fs::is_empty(run.own()));
@@ -241,15 +243,15 @@ TEST_CASE("a planted folder for kernels leads to one of another name", "[cli][ca
     CHECK_FALSE(fs::is_empty(run.own("-4")));
 }
 
-TEST_CASE("without any safe folder for kernels the message names those that were tried", "[cli][cache]") {
+TEST_CASE("kernel cache: without a safe folder the message names those that were tried", "[cli][cache]") {
     const auto check_none = [](const CacheRun& run) {
         const RunOutcome outcome = run("");
-        INFO(outcome.told());
+        INFO(outcome.describe());
         CHECK(outcome.code == 3);
-        CHECK_THAT(outcome.err, Contains(run.own().string()) && Contains("name one in POCL_CACHE_DIR") &&
+        CHECK_THAT(outcome.err, Contains(run.own().string()) && Contains("name another folder in POCL_CACHE_DIR") &&
                                     !Contains("no OpenCL device found"));
     };
-    check_none(CacheRun(0777));  // not sticky: others may replace what lies there
+    check_none(CacheRun(0777));  // not sticky: others may replace its files
     const CacheRun taken;
     for (const char* end : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
         std::ofstream(taken.own(end)) << "x";

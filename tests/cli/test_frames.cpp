@@ -1,4 +1,4 @@
-// Sequences of images: which frames, which cameras, what is rendered again and what is not.
+// render --frames: frame numbers, cameras, and which frames are rendered again.
 #include <fmt/core.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST_CASE("ranges of frames", "[cli][frames]") {
+TEST_CASE("--frames: ranges and file names", "[cli][frames]") {
     CHECK(parse_frames("1:24") == FrameRange{1, 24, 1, 24});
     CHECK(parse_frames("0:0") == FrameRange{0, 0, 0, 0});
     CHECK(parse_frames("5:8/24") == FrameRange{5, 8, 1, 24});
@@ -37,7 +37,7 @@ TEST_CASE("ranges of frames", "[cli][frames]") {
     CHECK(numbered("", 1).empty());
 }
 
-TEST_CASE("a turn's frames are equal steps, whichever of them are asked for", "[cli][frames]") {
+TEST_CASE("--turn: a frame's camera depends on its number, not on the range", "[cli][frames]") {
     const View view = read_nff(scene_file("centre")).view;
     const auto frames = [&](const char* range) { return frames_of({range, "", 360.0}, view); };
     const std::vector<Frame> all = frames("1:24"), some = frames("7:9/24"), from_zero = frames("0:23");
@@ -54,7 +54,7 @@ TEST_CASE("a turn's frames are equal steps, whichever of them are asked for", "[
     CHECK((opposite - (view.up * (2 * arm.dot(view.up) / view.up.dot(view.up)) - arm)).length() < 1e-12);
 }
 
-TEST_CASE("a path has a camera in each line", "[cli][frames]") {
+TEST_CASE("--camera-path: each line is a camera; a wrong line is refused with its number", "[cli][frames]") {
     const ScratchFolder folder;
     const std::string path = folder / "path.txt";
     View view;
@@ -93,7 +93,7 @@ TEST_CASE("a path has a camera in each line", "[cli][frames]") {
         CHECK_THROWS_WITH(read_camera_path(path, view), Catch::Contains(message));
     }
     CHECK_THROWS_WITH(read_camera_path(folder / "none.txt", view), Catch::Contains("--camera-path"));
-    // 0xbf is no UTF-8.
+    // 0xbf alone is not valid UTF-8.
     for (const char* name : {"", "from ", "angle ", "from 1,2,", "up \xbf"}) {
         write_whole_file(path, name + std::string(5'000'000, name[0] == 'u' ? '\xbf' : '1') + "x\n");
         try {
@@ -109,20 +109,20 @@ TEST_CASE("a path has a camera in each line", "[cli][frames]") {
     CHECK(read_camera_path(path, view)[0].from == Vec3(0, 0, 9));
 }
 
-/// A small sequence in a folder of its own.
+/// A small sequence in its own folder.
 class Sequence {
   public:
-    Words words(const Words& more = {}) const {
-        Words all = {"render", scene_file("centre"), "--size", "16x12", "--pes", "16", "--lanes", "4",
-                     "-o",     folder_ / "t.ppm",    "--turn", "360"};
+    Arguments arguments(const Arguments& more = {}) const {
+        Arguments all = {"render", scene_file("centre"), "--size", "16x12", "--pes", "16", "--lanes", "4",
+                         "-o",     folder_ / "t.ppm",    "--turn", "360"};
         all.insert(all.end(), more.begin(), more.end());
         return all;
     }
 
-    /// Runs it, and tells how many frames were rendered.
-    int rendered(const Words& more) const {
-        const RunOutcome run = run_raya(words(more));
-        INFO(run.told());
+    /// Runs it and returns the number of rendered frames.
+    int rendered(const Arguments& more) const {
+        const RunOutcome run = run_raya(arguments(more));
+        INFO(run.describe());
         REQUIRE(run.code == 0);
         CHECK(run.messages().empty());
         const std::size_t at = run.out.find(" frames, ");
@@ -139,11 +139,11 @@ class Sequence {
     ScratchFolder folder_;
 };
 
-TEST_CASE("frames are the pictures that single renders make, and are not made twice", "[cli][frames]") {
+TEST_CASE("render --frames: frames equal single renders, and existing ones are skipped", "[cli][frames]") {
     const Sequence s;
     REQUIRE(s.rendered({"--frames", "1:4"}) == 4);
     CHECK(s.folder().entries() == 5);
-    Words single = s.words();
+    Arguments single = s.arguments();
     single.resize(single.size() - 2);  // no turn
     REQUIRE(run_raya(single).code == 0);
     CHECK((file_contents(s.file("t.ppm")) == s.bytes(1)));
@@ -155,15 +155,15 @@ TEST_CASE("frames are the pictures that single renders make, and are not made tw
 
     CHECK(s.rendered({"--frames", "1:4"}) == 0);
     CHECK(s.rendered({"--frames", "2:3/4"}) == 0);
-    CHECK(s.rendered({"--frames", "0:3"}) == 4);  // other places for the same numbers
-    CHECK(s.rendered({"--frames", "1:4"}) == 3);  // 0 is kept; 1 to 3 had moved
+    CHECK(s.rendered({"--frames", "0:3"}) == 4);  // the same numbers have other cameras
+    CHECK(s.rendered({"--frames", "1:4"}) == 3);  // frame 4 is unchanged; 1 to 3 had other cameras
     CHECK(s.record()["frames"].size() == 5);
-    CHECK(s.rendered({"--frames", "1:8"}) == 7);  // frame 1 stands where it stood
+    CHECK(s.rendered({"--frames", "1:8"}) == 7);  // frame 1 has the same camera
 }
 
-TEST_CASE("what is changed is rendered again, and only that", "[cli][frames]") {
+TEST_CASE("render --frames: renders again the frames whose file or settings changed, and only those", "[cli][frames]") {
     const Sequence s;
-    const Words frames = {"--frames", "1:3"};
+    const Arguments frames = {"--frames", "1:3"};
     REQUIRE(s.rendered(frames) == 3);
     const std::string second = s.bytes(2);
     write_whole_file(s.file("t-0002.ppm"), "P6 1 1 255\nabc");
@@ -171,14 +171,15 @@ TEST_CASE("what is changed is rendered again, and only that", "[cli][frames]") {
     CHECK((s.bytes(2) == second));
     fs::remove(s.file("t-0003.ppm"));
     CHECK(s.rendered(frames) == 1);
-    for (const Words& changed : {Words{"--bounces", "2"}, Words{"--exposure", "1"}, Words{"--from", "5,-9,4"},
-                                 Words{"--light", "1,1,9"}, Words{"--mapping", "rows"}, Words{"--strict"},
-                                 Words{"--report", s.file("t.json")}, Words{"--cost", s.file("c.pfm")}}) {
-        Words words = frames;
-        words.insert(words.end(), changed.begin(), changed.end());
+    for (const Arguments& changed :
+         {Arguments{"--bounces", "2"}, Arguments{"--exposure", "1"}, Arguments{"--from", "5,-9,4"},
+          Arguments{"--light", "1,1,9"}, Arguments{"--mapping", "rows"}, Arguments{"--strict"},
+          Arguments{"--report", s.file("t.json")}, Arguments{"--cost", s.file("c.pfm")}}) {
+        Arguments arguments = frames;
+        arguments.insert(arguments.end(), changed.begin(), changed.end());
         CAPTURE(changed.front());
-        CHECK(s.rendered(words) == 3);
-        CHECK(s.rendered(words) == 0);
+        CHECK(s.rendered(arguments) == 3);
+        CHECK(s.rendered(arguments) == 0);
     }
     CHECK(fs::exists(s.file("t-0002.json")));
     CHECK(fs::exists(s.file("c-0003.pfm")));
@@ -186,13 +187,13 @@ TEST_CASE("what is changed is rendered again, and only that", "[cli][frames]") {
     CHECK(report["image"]["file"] == s.file("t-0002.ppm"));
 }
 
-TEST_CASE("another scene of the same name is rendered anew", "[cli][frames]") {
+TEST_CASE("render --frames: renders again if the content of the scene file changed", "[cli][frames]") {
     const Sequence s;
     const std::string scene = s.file("scene.nff");
     fs::copy_file(scene_file("spheres"), scene);
-    Words words = s.words({"--frames", "1:2"});
-    words[1] = scene;
-    const auto out = [&] { return run_raya(words).out; };
+    Arguments arguments = s.arguments({"--frames", "1:2"});
+    arguments[1] = scene;
+    const auto out = [&] { return run_raya(arguments).out; };
     CHECK_THAT(out(), Catch::Contains("2 frames, 2 rendered"));
     CHECK_THAT(out(), Catch::Contains("2 frames, 0 rendered"));
     fs::remove(scene);
@@ -200,24 +201,24 @@ TEST_CASE("another scene of the same name is rendered anew", "[cli][frames]") {
     CHECK_THAT(out(), Catch::Contains("2 frames, 2 rendered"));
 }
 
-TEST_CASE("kernels that are being developed are never as recorded", "[cli][frames]") {
+TEST_CASE("render --frames: with --kernel-dir every frame is rendered again", "[cli][frames]") {
     const Sequence s;
-    const Words words = {"--frames", "1:2", "--kernel-dir", RAYA_SOURCE_DIR "/kernels"};
-    CHECK(s.rendered(words) == 2);
-    CHECK(s.rendered(words) == 2);
+    const Arguments arguments = {"--frames", "1:2", "--kernel-dir", RAYA_SOURCE_DIR "/kernels"};
+    CHECK(s.rendered(arguments) == 2);
+    CHECK(s.rendered(arguments) == 2);
 }
 
-TEST_CASE("a sequence that was stopped goes on", "[cli][frames]") {
+TEST_CASE("render --frames: an interrupted sequence continues with the missing frames", "[cli][frames]") {
     const Sequence whole;
-    const Words frames = {"--frames", "1:60"};
+    const Arguments frames = {"--frames", "1:60"};
     REQUIRE(whole.rendered(frames) == 60);
-    // Stopped later and later, until some frames are there.
+    // Interrupted later at each try, until some frames exist.
     std::optional<Sequence> stopped;
     int left = 60;
     for (int ms = 60; left == 60 && ms <= 5000; ms += ms / 2) {
         stopped.emplace();
-        const RunOutcome run = run_raya(stopped->words(frames), {.signal = SIGINT, .signal_after_ms = ms});
-        INFO(run.told());
+        const RunOutcome run = run_raya(stopped->arguments(frames), {.signal = SIGINT, .signal_after_ms = ms});
+        INFO(run.describe());
         REQUIRE(run.code == 128 + SIGINT);
         left = stopped->rendered(frames);
     }
@@ -228,18 +229,18 @@ TEST_CASE("a sequence that was stopped goes on", "[cli][frames]") {
     }
 }
 
-TEST_CASE("frames of the torus", "[cli][frames]") {
+TEST_CASE("render --frames --machine torus: existing frames are skipped", "[cli][frames]") {
     const Sequence s;
-    const Words torus = {"--frames", "1:2", "--machine", "torus", "--nodes", "2x2x1"};
-    Words words = s.words(torus);
-    std::erase_if(words, [](const std::string& word) { return word == "--pes"; });
-    words.erase(std::find(words.begin(), words.end(), "16"));
-    const auto out = [&] { return run_raya(words).out; };
+    const Arguments torus = {"--frames", "1:2", "--machine", "torus", "--nodes", "2x2x1"};
+    Arguments arguments = s.arguments(torus);
+    std::erase_if(arguments, [](const std::string& argument) { return argument == "--pes"; });
+    arguments.erase(std::find(arguments.begin(), arguments.end(), "16"));
+    const auto out = [&] { return run_raya(arguments).out; };
     CHECK_THAT(out(), Catch::Contains("2 frames, 2 rendered"));
     CHECK_THAT(out(), Catch::Contains("2 frames, 0 rendered"));
 }
 
-TEST_CASE("a record keeps the frames of all processes that write it", "[cli][frames]") {
+TEST_CASE("FrameRecord: has the frames of all processes that write it at once", "[cli][frames]") {
     const ScratchFolder folder;
     const std::string file = folder / "t-frames.json";
     constexpr std::uint32_t kProcesses = 8, kFrames = 12;
@@ -265,10 +266,11 @@ TEST_CASE("a record keeps the frames of all processes that write it", "[cli][fra
         CAPTURE(number);
         CHECK(record.find(number, "settings", {}) != nullptr);
     }
-    CHECK(folder.entries() == 1);  // no lock is left
+    CHECK(folder.entries() == 1);  // no lock file is left
 }
 
-TEST_CASE("a process keeps its own frames and those that others have written since it began", "[cli][frames]") {
+TEST_CASE("FrameRecord: merges its frames with those that others wrote meanwhile, the last writer first",
+          "[cli][frames]") {
     const ScratchFolder folder;
     FrameRecord one(folder / "t-frames.json"), other(folder / "t-frames.json");
     one.add({1, "one", "pixels", 1, 1, {}}, {});
@@ -282,14 +284,14 @@ TEST_CASE("a process keeps its own frames and those that others have written sin
     }
 }
 
-TEST_CASE("several processes render a sequence into one folder, and its record has all frames", "[cli][frames]") {
+TEST_CASE("render --frames: several processes share a folder, and its record has all frames", "[cli][frames]") {
     const Sequence s;
     std::vector<std::thread> processes;
     std::array<int, 3> codes{};
     for (int part = 0; part < 3; ++part)
         processes.emplace_back([&, part] {
             const std::string range = fmt::format("{}:{}/6", 2 * part + 1, 2 * part + 2);
-            codes[static_cast<std::size_t>(part)] = run_raya(s.words({"--frames", range})).code;
+            codes[static_cast<std::size_t>(part)] = run_raya(s.arguments({"--frames", range})).code;
         });
     for (std::thread& process : processes) process.join();
     CHECK(codes == std::array<int, 3>{});
@@ -297,31 +299,33 @@ TEST_CASE("several processes render a sequence into one folder, and its record h
     CHECK(s.rendered({"--frames", "1:6"}) == 0);
 }
 
-TEST_CASE("what cannot be a sequence is refused before anything is rendered", "[cli][frames]") {
+TEST_CASE("render --frames: refuses invalid sequences before rendering", "[cli][frames]") {
     const ScratchFolder outputs;
     const std::string image = outputs / "t.ppm";
-    const auto refused = [&](const Words& options, const Words& message) {
-        Words words = {"render", scene_file("centre"), "-o", image, "--size", "8"};
-        words.insert(words.end(), options.begin(), options.end());
-        check_refused(outputs, words, 2, message);
+    const auto refused = [&](const Arguments& options, const Arguments& message) {
+        Arguments arguments = {"render", scene_file("centre"), "-o", image, "--size", "8"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        check_refused(outputs, arguments, 2, message);
     };
     refused({"--frames", "1:4"}, {"--frames 1:4", "--turn"});
     refused({"--turn", "90"}, {"--turn 90", "--frames"});
     refused({"--frames", "4:1", "--turn", "90"}, {"--frames 4:1", "A:B"});
     refused({"--frames", "1:4", "--turn", "1e9"}, {"--turn", "360000"});
     refused({"--frames", "1:4", "--turn", "nan"}, {"--turn"});
-    refused({"--frames", "1:4", "--camera-path", "p", "--turn", "90"}, {"leave one of them out"});
+    refused({"--frames", "1:4", "--camera-path", "p", "--turn", "90"}, {"leave out one of them"});
     refused({"--frames", "1:4", "--camera-path", outputs / "none"}, {"--camera-path", "none"});
-    for (const Words& single : {Words{"--page", outputs / "p.html"}, Words{"--trace", outputs / "t.json"},
-                                Words{"--profile"}, Words{"--machine", "torus", "--packets", outputs / "p.csv.gz"}}) {
-        Words options = {"--frames", "1:4", "--turn", "90"};
+    for (const Arguments& single :
+         {Arguments{"--page", outputs / "p.html"}, Arguments{"--trace", outputs / "t.json"}, Arguments{"--profile"},
+          Arguments{"--machine", "torus", "--packets", outputs / "p.csv.gz"}}) {
+        Arguments options = {"--frames", "1:4", "--turn", "90"};
         options.insert(options.end(), single.begin(), single.end());
-        refused(options, {"is of one image"});
+        refused(options, {"is for a single image"});
     }
     check_refused(outputs, {"render", scene_file("centre"), "-o", "-", "--frames", "1:4", "--turn", "90"}, 2,
-                  {"--output -", "many files"});
+                  {"--output -", "several files"});
     for (const char* option : {"--report", "--cost", "--mask"})
-        refused({"--frames", "1:4", "--turn", "90", option, "-"}, {std::string(option) + " -: frames are many files"});
+        refused({"--frames", "1:4", "--turn", "90", option, "-"},
+                {std::string(option) + " -: --frames writes several files"});
     const ScratchFolder other;
     write_whole_file(other / "t-frames.json", "{\"kind\": \"mine\"}");
     const RunOutcome run =

@@ -1,4 +1,4 @@
-// Help: the same by all ways to it, as wide as the terminal, with every option below a heading.
+// Help: the same from `help` and `--help`, as wide as the terminal, every option below a heading.
 #include <pty.h>
 #include <sys/wait.h>
 
@@ -6,22 +6,22 @@
 #include <sstream>
 
 #include "host/cli/command_text.hpp"
+#include "tests/cli/all_commands.hpp"
 #include "tests/cli/refusals.hpp"
-#include "tests/cli/whole_tree.hpp"
 
 namespace raya {
 namespace {
 
-std::string help_of(Words words, const std::string& columns = "") {
-    const RunOutcome run = run_raya(std::move(words), {.variables = {{"COLUMNS", columns}}});
-    INFO(run.told());
+std::string help_of(Arguments arguments, const std::string& columns = "") {
+    const RunOutcome run = run_raya(std::move(arguments), {.variables = {{"COLUMNS", columns}}});
+    INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
     return run.out;
 }
 
-/// What raya prints on a terminal of so many columns.
-std::string on_terminal(Words words, unsigned short columns) {
+/// Returns what raya prints on a terminal of that many columns.
+std::string on_terminal(Arguments arguments, unsigned short columns) {
     winsize size{};
     size.ws_col = columns;
     size.ws_row = 24;
@@ -30,8 +30,8 @@ std::string on_terminal(Words words, unsigned short columns) {
     REQUIRE(child >= 0);
     if (child == 0) {
         ::unsetenv("COLUMNS");
-        words.insert(words.begin(), "raya");
-        ::execv(RAYA_PROGRAM, run_program_detail::pointers(words).data());
+        arguments.insert(arguments.begin(), "raya");
+        ::execv(RAYA_PROGRAM, run_program_detail::pointers(arguments).data());
         ::_exit(127);
     }
     std::string text;
@@ -47,7 +47,7 @@ std::string on_terminal(Words words, unsigned short columns) {
     return text;
 }
 
-TEST_CASE("raya help WORDS prints what --help prints", "[cli][help]") {
+TEST_CASE("help COMMAND: prints the same as COMMAND --help", "[cli][help]") {
     CHECK(help_of({"help"}) == help_of({"--help"}));
     CHECK(help_of({"help", "render"}) == help_of({"render", "--help"}));
     CHECK(help_of({"help", "study"}) == help_of({"study", "-h"}));
@@ -55,37 +55,37 @@ TEST_CASE("raya help WORDS prints what --help prints", "[cli][help]") {
     CHECK(help_of({"help", "help"}) == help_of({"help", "--help"}));
     CHECK_THAT(help_of({"help", "study"}),
                Catch::StartsWith("Usage: raya study STUDY") && Catch::Contains("Load of each PE, column split"));
-    CHECK_THAT(help_of({"help", "page"}), !Catch::Contains("script"));  // pages have one, which sorts tables
+    CHECK_THAT(help_of({"help", "page"}), !Catch::Contains("script"));  // an implementation detail of pages
 }
 
-TEST_CASE("help of what there is not is refused, with what was perhaps meant", "[cli][help]") {
+TEST_CASE("help: refuses unknown commands, with the closest name", "[cli][help]") {
     const ScratchFolder outputs;
     check_refused(outputs, {"help", "rendr"}, 2,
-                  {"raya: help: no command rendr (did you mean render?); there are render"});
+                  {"raya: help: no command rendr (did you mean render?); commands: render"});
     check_refused(outputs, {"help", "study", "fig7"}, 2, {"study has no command fig7; see raya help study"});
     check_refused(outputs, {"help", "render", "fig7"}, 2, {"render has no command fig7; see raya help render"});
 }
 
-TEST_CASE("help is as wide as COLUMNS says, from 40 to 120, and else 80", "[cli][help]") {
-    const std::string usual = help_of({"help", "render"});
-    CHECK(longest_line(usual) <= 80);
-    CHECK(longest_line(usual) > 70);
+TEST_CASE("help: is COLUMNS wide, clamped to 40..120, and 80 wide by default", "[cli][help]") {
+    const std::string by_default = help_of({"help", "render"});
+    CHECK(longest_line(by_default) <= 80);
+    CHECK(longest_line(by_default) > 70);
     for (const char* none : {"0", "x", "80x", "-3", "99999999", "184467440737095516150"})
-        CHECK(help_of({"help", "render"}, none) == usual);
+        CHECK(help_of({"help", "render"}, none) == by_default);
     CHECK(longest_line(help_of({"help", "render"}, "100")) > 90);
     CHECK(help_of({"help", "render"}, "10") == help_of({"help", "render"}, "40"));
     CHECK(help_of({"help", "render"}, "300") == help_of({"help", "render"}, "120"));
-    CHECK(help_of({"help", "render"}, "60") != usual);
+    CHECK(help_of({"help", "render"}, "60") != by_default);
 }
 
-TEST_CASE("help is as wide as the terminal", "[cli][help]") {
+TEST_CASE("help: is as wide as the terminal", "[cli][help]") {
     for (const unsigned short columns : std::initializer_list<unsigned short>{50, 97})
         CHECK(on_terminal({"help", "verify"}, columns) == help_of({"help", "verify"}, std::to_string(columns)));
     CHECK(on_terminal({"help", "verify"}, 0) == help_of({"help", "verify"}));
 }
 
-TEST_CASE("no command's help has a line that is too long", "[cli][help]") {
-    for_each_command(tree_of_all(), [](const CommandText& command, const std::string& path) {
+TEST_CASE("help: no command has a line longer than the width", "[cli][help]") {
+    for_each_command(text_of_all_commands(), [](const CommandText& command, const std::string& path) {
         for (const std::size_t width : {40u, 60u, 80u, 120u})
             for (const std::string& line : lines_of(help_text(command, path, width))) {
                 CAPTURE(path, width, line);
@@ -96,34 +96,66 @@ TEST_CASE("no command's help has a line that is too long", "[cli][help]") {
     });
 }
 
-TEST_CASE("every option stands below a heading of its kind, those of all commands below the last", "[cli][help]") {
-    for_each_command(tree_of_all(), [](const CommandText& command, const std::string& path) {
+TEST_CASE("help: every option is below a heading; \"General options\" is the last", "[cli][help]") {
+    for_each_command(text_of_all_commands(), [](const CommandText& command, const std::string& path) {
         CAPTURE(path);
         const std::vector<std::string> groups = groups_of(command);
         CHECK(std::find(groups.begin(), groups.end(), "Options") == groups.end());
         REQUIRE(!groups.empty());
-        CHECK(groups.back() == "Common options");
-        Words common;
+        CHECK(groups.back() == "General options");
+        Arguments general;
         for (const OptionText& option : command.options)
-            if (option.group == groups.back()) common.push_back(option.names.back());
+            if (option.group == groups.back()) general.push_back(option.names.back());
         for (const char* name : {"--help", "--quiet", "--verbose"})
-            CHECK(std::count(common.begin(), common.end(), name) == 1);
-        CHECK(common.size() == (path == "raya" ? 4 : 3));  // --version
+            CHECK(std::count(general.begin(), general.end(), name) == 1);
+        const bool short_help = std::count(general.begin(), general.end(), "--help-all") == 1;
+        CHECK(short_help == !command.short_help.empty());
+        CHECK(general.size() == (path == "raya" || short_help ? 4 : 3));  // --version, --help-all
     });
 }
 
-TEST_CASE("a render's options stand where a reader looks for them", "[cli][help]") {
-    const CommandText program = tree_of_all();
+TEST_CASE("help: commands with more than 25 options have a short help of at most 80 lines", "[cli][help]") {
+    for_each_command(text_of_all_commands(), [](const CommandText& command, const std::string& path) {
+        CAPTURE(path);
+        CHECK((command.options.size() > 25) == !command.short_help.empty());
+        if (command.short_help.empty()) return;
+        Arguments words = tokens_of(path);
+        words.erase(words.begin());  // raya
+        Arguments all = words;
+        words.emplace_back("--help");
+        all.emplace_back("--help-all");
+        const std::string text = help_of(words);
+        CHECK(lines_of(text).size() <= 80);
+        CHECK(longest_line(text) <= 80);
+        CHECK_THAT(text, Catch::Contains(path + " --help-all prints all "));
+        CHECK(text == help_text(short_form(command, path), path, 80));
+        CHECK(help_of(all) == help_text(command, path, 80));
+    });
+}
+
+TEST_CASE("help render: common options first, in the order of use", "[cli][help]") {
+    const CommandText program = text_of_all_commands();
     const auto& render = *std::find_if(program.commands.begin(), program.commands.end(),
                                        [](const CommandText& one) { return one.name == "render"; });
-    CHECK(groups_of(render) == Words{"Files", "Picture", "Camera and light", "Machine and mapping",
-                                     "Kernels and device", "Frames", "Long images", "Torus machine", "Looking closer",
-                                     "Common options"});
+    Arguments first;
+    for (const OptionText& option : short_form(render, "raya render").options)
+        if (first.size() < 11) first.push_back(option.names.back());
+    CHECK(first == Arguments{"--output", "--size", "--machine", "--pes", "--mapping", "--offset", "--format", "--accel",
+                             "--antialias", "--device", "--report"});
+}
+
+TEST_CASE("help render: the groups of options and their order", "[cli][help]") {
+    const CommandText program = text_of_all_commands();
+    const auto& render = *std::find_if(program.commands.begin(), program.commands.end(),
+                                       [](const CommandText& one) { return one.name == "render"; });
+    CHECK(groups_of(render) == Arguments{"Files", "Image", "Camera and light", "Machine and mapping",
+                                         "Kernels and device", "Frames", "Checkpoints", "Torus machine", "Diagnostics",
+                                         "General options"});
     const std::vector<std::pair<std::string, std::string>> rows = {{"--output", "Files"},
                                                                    {"--strict", "Files"},
-                                                                   {"--size", "Picture"},
-                                                                   {"--exposure", "Picture"},
-                                                                   {"--antialias", "Picture"},
+                                                                   {"--size", "Image"},
+                                                                   {"--exposure", "Image"},
+                                                                   {"--antialias", "Image"},
                                                                    {"--from", "Camera and light"},
                                                                    {"--light", "Camera and light"},
                                                                    {"--machine", "Machine and mapping"},
@@ -133,10 +165,10 @@ TEST_CASE("a render's options stand where a reader looks for them", "[cli][help]
                                                                    {"--device", "Kernels and device"},
                                                                    {"--no-tuned", "Kernels and device"},
                                                                    {"--nodes", "Torus machine"},
-                                                                   {"--report", "Looking closer"},
-                                                                   {"--page", "Looking closer"},
-                                                                   {"--profile", "Looking closer"},
-                                                                   {"--trace", "Looking closer"}};
+                                                                   {"--report", "Diagnostics"},
+                                                                   {"--page", "Diagnostics"},
+                                                                   {"--profile", "Diagnostics"},
+                                                                   {"--trace", "Diagnostics"}};
     for (const auto& [name, group] : rows) {
         CAPTURE(name);
         const auto option = std::find_if(render.options.begin(), render.options.end(),

@@ -1,6 +1,7 @@
-// Help of a small command line, at widths of terminals.
+// help_text() of a small command line at several widths.
 #include <catch2/catch.hpp>
 #include <sstream>
+#include <stdexcept>
 
 #include "host/cli/command_text.hpp"
 
@@ -23,19 +24,19 @@ CommandText small_command() {
     command.examples = {
         {"raya draw scene.nff --output picture.png --colour red", "A red picture of a scene, in a file"},
         {"raya draw x", "Nothing"}};
-    command.words = {option({"SCENE"}, "SCENE.nff", "What is drawn", "Files")};
-    command.words[0].required = true;
+    command.arguments = {option({"SCENE"}, "SCENE.nff", "What is drawn", "Files")};
+    command.arguments[0].required = true;
     command.options = {option({"-o", "--output"}, "FILE", "Where it goes to; a long text that is about files", "Files"),
                        option({"--colour"}, "red|green", "What colour it has", "Looks"),
                        option({"--a-name-as-long-as-this"}, "VALUE", "What stands below its name", "Looks"),
                        option({"-q", "--quiet"}, "", "Say nothing", "Common options")};
     command.options[0].required = true;
-    command.options[1].usual = "red";
+    command.options[1].default_value = "red";
     command.footer = "Exit codes: 0 done, 2 bad option or input, 3 device.\n\nEnvironment:\n  RAYA_X   what it is\n";
     return command;
 }
 
-TEST_CASE("help begins with usage, and its parts stand below headings", "[manual]") {
+TEST_CASE("help_text: usage first, then sections below headings", "[manual]") {
     CHECK(help_text(small_command(), "raya draw", 80) == R"(Usage: raya draw SCENE -o FILE [OPTIONS]
 
 Draw one thing after another, each of them as it was said to be
@@ -67,7 +68,8 @@ Environment:
 )");
 }
 
-TEST_CASE("on a narrow terminal texts stand below names, and a shell's line goes on as a shell reads it", "[manual]") {
+TEST_CASE("help_text: in a narrow terminal texts are below names, and example lines continue with a backslash",
+          "[manual]") {
     CHECK(help_text(small_command(), "raya draw", 40) == R"(Usage: raya draw SCENE -o FILE [OPTIONS]
 
 Draw one thing after another, each of
@@ -109,7 +111,7 @@ Environment:
 )");
 }
 
-TEST_CASE("no line of help is longer than the terminal is wide, but for a word", "[manual]") {
+TEST_CASE("help_text: no line exceeds the width, except a single long word", "[manual]") {
     for (std::size_t width = 40; width <= 120; ++width)
         CHECK(longest_line(help_text(small_command(), "raya draw", width)) <= width);
     CommandText command = small_command();
@@ -117,7 +119,7 @@ TEST_CASE("no line of help is longer than the terminal is wide, but for a word",
     CHECK_THAT(help_text(command, "raya draw", 40), Catch::Contains("\nSee\n" + std::string(50, 'x') + "\nfor more\n"));
 }
 
-TEST_CASE("a command of commands lists them", "[manual]") {
+TEST_CASE("help_text: a command with subcommands lists them", "[manual]") {
     CommandText program;
     program.name = "raya";
     program.commands = {small_command()};
@@ -125,6 +127,21 @@ TEST_CASE("a command of commands lists them", "[manual]") {
           "Usage: raya COMMAND [OPTIONS]\n\n\n\nCommands:\n  draw  Draw one thing after another, each of them as it "
           "was said to "
           "be\n");
+}
+
+TEST_CASE("short_form: the options of the short help in its order, and the name of --help-all", "[manual]") {
+    CommandText command = small_command();
+    CHECK(help_text(short_form(command, "raya draw"), "raya draw", 80) == help_text(command, "raya draw", 80));
+    command.short_help = {{"--colour", "First", "Its colour"}, {"--output", "Second", ""}};
+    const CommandText text = short_form(command, "raya draw");
+    REQUIRE(text.options.size() == 2);
+    CHECK(text.options[0].names.back() == "--colour");
+    CHECK(text.options[0].help == "Its colour");
+    CHECK(text.options[0].group == "First");
+    CHECK(text.options[1].help == command.options[0].help);
+    CHECK(text.footer.starts_with("raya draw --help-all prints all 4 options in full.\n\nExit codes: "));
+    command.short_help = {{"--none", "First", ""}};
+    CHECK_THROWS_AS(short_form(command, "raya draw"), std::logic_error);
 }
 
 }  // namespace

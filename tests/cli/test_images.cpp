@@ -1,4 +1,4 @@
-// The files that a render writes: what they say about themselves, and that the same render writes the same bytes.
+// The image files of a render: their attributes, and reproducible bytes.
 #include <OpenImageIO/imageio.h>
 #include <unistd.h>
 
@@ -14,7 +14,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("the same render writes the same bytes", "[cli]") {
+TEST_CASE("render: the same render writes the same bytes", "[cli]") {
     const std::string extension = GENERATE(".png", ".exr", ".pfm", ".ppm", ".tif", ".jpg");
     const std::string cost_extension = extension == ".exr" ? ".exr" : ".pfm";
     CAPTURE(extension, cost_extension);
@@ -24,18 +24,18 @@ TEST_CASE("the same render writes the same bytes", "[cli]") {
     CHECK(first.report()["image"]["hash"] == second.report()["image"]["hash"]);
 }
 
-TEST_CASE("drivers are loaded before what writes pictures", "[cli]") {
+TEST_CASE("render: loads OpenCL drivers before the picture module", "[cli]") {
     const ScratchFolder scratch;
-    const Surroundings told{.variables = {{"LD_DEBUG", "libs"}}};
+    const RunOptions log_libraries{.variables = {{"LD_DEBUG", "libs"}}};
     const RunOutcome run =
-        run_raya({"render", scene_file("planes"), "-o", scratch / "x.png", "--size", "4", "--pes", "1"}, told);
+        run_raya({"render", scene_file("planes"), "-o", scratch / "x.png", "--size", "4", "--pes", "1"}, log_libraries);
     CHECK(run.code == 0);
     const std::size_t driver = run.err.find("/libpocl"), pictures = run.err.find("raya_pictures.so");
     CHECK(driver < pictures);
     CHECK(pictures != std::string::npos);
 }
 
-TEST_CASE("PNG and EXR say how they were made", "[cli]") {
+TEST_CASE("render: PNG and EXR have the settings as attributes", "[cli]") {
     const std::string extension = GENERATE(".png", ".exr");
     const RenderFiles files("centre", {"--offset", "3"}, extension, ".exr");
     const double u = files.report()["load"]["imbalance"];
@@ -49,11 +49,11 @@ TEST_CASE("PNG and EXR say how they were made", "[cli]") {
         CHECK(text("raya:mapping") == "cyclic");
         CHECK(text("raya:offset") == "3");
         CHECK(text("raya:format") == "e6m15");
-        CHECK(std::stod(text("raya:u")) == Approx(u).margin(0.5e-6));  // six digits after the point
+        CHECK(std::stod(text("raya:u")) == Approx(u).margin(0.5e-6));  // six decimal places
     }
 }
 
-TEST_CASE("no file says when or where it was made", "[cli]") {
+TEST_CASE("render: no file contains a date, host or program name", "[cli]") {
     const std::string extension = GENERATE(".png", ".exr", ".pfm", ".tif", ".jpg");
     CAPTURE(extension);
     std::array<char, 256> host{};
@@ -64,17 +64,16 @@ TEST_CASE("no file says when or where it was made", "[cli]") {
         for (const std::string word : {"DateTime", "capDate", "tIME", "HostComputer", "Software", "owner"})
             CHECK_FALSE(contains(bytes, word));
         const std::string name = host.data();
-        if (name.size() >= 6) CHECK_FALSE(contains(bytes, name));  // a shorter one could stand among the pixels
+        if (name.size() >= 6) CHECK_FALSE(contains(bytes, name));  // a shorter one could occur among the pixels
     }
 }
 
-TEST_CASE("a scene too large for the default machine's format is rendered in other units, which are reported",
-          "[cli]") {
+TEST_CASE("render: scales a scene that exceeds the range of the format, and reports the exponent", "[cli]") {
     const ScratchFolder folder;
     Scene scene = read_nff(scene_file("mirrors"));
     scene.planes.clear();
-    const std::string usual = folder / "usual.nff", large = folder / "large.nff", tiny = folder / "tiny.nff";
-    write_whole_file(usual, write_nff(scene));
+    const std::string plain = folder / "plain.nff", large = folder / "large.nff", tiny = folder / "tiny.nff";
+    write_whole_file(plain, write_nff(scene));
     write_whole_file(large, write_nff(scaled_scene(scene, 0x1p14)));
     write_whole_file(tiny, write_nff(scaled_scene(scene, 0x1p-20)));
     const std::string light_years = folder / "light-years.nff", atoms = folder / "atoms.nff";
@@ -82,20 +81,21 @@ TEST_CASE("a scene too large for the default machine's format is rendered in oth
     write_whole_file(atoms, write_nff(scaled_scene(scene, 0x1p-60)));
     for (const char* machine : {"spa", "grande", "torus"}) {
         CAPTURE(machine);
-        const Words options = {"--machine", machine, "--size", "24"};
+        const Arguments options = {"--machine", machine, "--size", "24"};
         const auto report_of = [&](const std::string& file) {
-            Words words = {"render", file, "-o", folder / "x.pfm", "--lanes", "4", "--report", folder / "x.json"};
-            words.insert(words.end(), options.begin(), options.end());
-            if (machine == std::string("spa")) words.insert(words.end(), {"--pes", "24"});
-            const RunOutcome run = run_raya(words);
-            INFO(run.told());
+            Arguments arguments = {"render",  file, "-o",       folder / "x.pfm",
+                                   "--lanes", "4",  "--report", folder / "x.json"};
+            arguments.insert(arguments.end(), options.begin(), options.end());
+            if (machine == std::string("spa")) arguments.insert(arguments.end(), {"--pes", "24"});
+            const RunOutcome run = run_raya(arguments);
+            INFO(run.describe());
             REQUIRE(run.code == 0);
             const Document report = Document::parse(file_contents(folder / "x.json"));
             CHECK((run.out.find("scale   lengths x 2^") != std::string::npos) ==
                   (report["machine"]["length_exponent"] != 0));
             return report;
         };
-        const Document as_is = report_of(usual), beyond = report_of(large), below = report_of(tiny);
+        const Document as_is = report_of(plain), beyond = report_of(large), below = report_of(tiny);
         CHECK(as_is["machine"]["length_exponent"] == 0);
         CHECK((beyond["machine"]["length_exponent"] < 0) == (machine == std::string("spa")));  // the others: fp32
         CHECK((below["machine"]["length_exponent"] > 0) == (machine == std::string("spa")));
@@ -107,7 +107,7 @@ TEST_CASE("a scene too large for the default machine's format is rendered in oth
     }
 }
 
-TEST_CASE("what a format cannot hold is warned of, and refused where nothing is left", "[cli]") {
+TEST_CASE("render: warns of objects that the format cannot represent, and refuses a scene with no others", "[cli]") {
     const ScratchFolder folder;
     const std::string scene = folder / "far.nff";
     const auto render = [&](const std::string& spheres, const std::string& format) {
@@ -116,30 +116,30 @@ TEST_CASE("what a format cannot hold is warned of, and refused where nothing is 
                          "--report", folder / "x.json"});
     };
     const RunOutcome warned = render("s 0 0 0 1000\ns 9 9 9 1e-5\n", "spa22");
-    INFO(warned.told());
+    INFO(warned.describe());
     CHECK(warned.code == 0);
     CHECK_THAT(warned.messages(),
-               Catch::StartsWith("raya: warning: far.nff: 1 spheres, cones or checkers are not seen") &&
-                   Catch::Contains("e6m15 holds beside a length of 1e+06"));
+               Catch::StartsWith("raya: warning: far.nff: 1 spheres, cones or checkers are invisible") &&
+                   Catch::Contains("the minimum of e6m15 in a scene with lengths up to 1e+06"));
     const Document report = Document::parse(file_contents(folder / "x.json"));
     REQUIRE(report["warnings"].size() == 1);
     CHECK_THAT(warned.err, Catch::Contains(report["warnings"][0].get<std::string>()));
     const RunOutcome refused = render("s 9 9 9 1e-5\n", "spa22");
     CHECK(refused.code == 2);
-    CHECK_THAT(refused.err, Catch::Contains("from 1e-05 to 1e+06") && Catch::Contains("remedy: --format fp32"));
+    CHECK_THAT(refused.err, Catch::Contains("1e-05 to 1e+06") && Catch::Contains("remedy: --format fp32"));
     CHECK(render("s 9 9 9 1e-5\n", "fp32").code == 0);
 }
 
-TEST_CASE("what a scene's file has beside NFF is warned of and reported, with --strict refused", "[cli]") {
+TEST_CASE("render: warns of and reports foreign lines of a scene; --strict refuses them", "[cli]") {
     const ScratchFolder folder;
     const std::string scene = folder / "t.nff";
     write_whole_file(scene,
                      "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\nla 1 1 1\nla 0 0 0\n"
                      "p 3\n0 0 0\n0 0 0\n1 1 1\ns 0 0 0 1\n");
-    const Words words = {"render", scene,   "-o", folder / "x.pfm", "--lanes",
-                         "4",      "--pes", "8",  "--report",       folder / "x.json"};
-    const RunOutcome run = run_raya(words);
-    INFO(run.told());
+    const Arguments arguments = {"render", scene,   "-o", folder / "x.pfm", "--lanes",
+                                 "4",      "--pes", "8",  "--report",       folder / "x.json"};
+    const RunOutcome run = run_raya(arguments);
+    INFO(run.describe());
     CHECK(run.code == 0);
     CHECK(run.messages() == "raya: warning: " + scene + ":8: entity 'la' of another dialect, skipped (2 in all)\n" +
                                 "raya: warning: " + scene + ":10: polygon without area, left out\n");
@@ -148,20 +148,20 @@ TEST_CASE("what a scene's file has beside NFF is warned of and reported, with --
     CHECK(report["skipped"][0] ==
           Document{{"what", "entity 'la' of another dialect, skipped"}, {"count", 2}, {"line", 8}});
     CHECK(report["warnings"].size() == 2);
-    Words strict = words;
+    Arguments strict = arguments;
     strict.push_back("--strict");
     CHECK(run_raya(strict).code == 2);
-    for (const Words& other :
-         {Words{"bench", scene, "--strict"}, Words{"explore", scene, "--strict", "-o", folder / "s.html"}}) {
+    for (const Arguments& other :
+         {Arguments{"bench", scene, "--strict"}, Arguments{"explore", scene, "--strict", "-o", folder / "s.html"}}) {
         const RunOutcome refused = run_raya(other);
-        INFO(refused.told());
+        INFO(refused.describe());
         CHECK(refused.code == 2);
         CHECK_THAT(refused.err, Catch::Contains("t.nff:8: unknown entity 'la'"));
     }
     CHECK(folder.entries() == 3);
 }
 
-TEST_CASE("two names of one file are refused, however they are written", "[cli]") {
+TEST_CASE("render: refuses two names of one file", "[cli]") {
     const ScratchFolder folder;
     std::filesystem::create_directory(folder / "d");
     std::filesystem::create_symlink("x.pfm", folder / "link.pfm");
@@ -182,13 +182,13 @@ TEST_CASE("two names of one file are refused, however they are written", "[cli]"
     CHECK(folder.entries() == 3);
 }
 
-TEST_CASE("a render replaces old files", "[cli]") {
+TEST_CASE("render: replaces existing files", "[cli]") {
     const ScratchFolder folder;
     const std::string image = folder / "x.pfm";
     for (const std::string size : {"9x7", "4x3"}) {
         const RunOutcome run =
             run_raya({"render", scene_file("planes"), "-o", image, "--size", size, "--pes", "2", "--lanes", "4"});
-        INFO(run.told());
+        INFO(run.describe());
         REQUIRE(run.code == 0);
     }
     CHECK(file_contents(image).size() == std::string("PF\n4 3\n-1.0\n").size() + 4 * 3 * 3 * sizeof(float));

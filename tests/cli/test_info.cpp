@@ -1,4 +1,4 @@
-// raya info: its figures are those of renders, and it needs no device.
+// raya info: its figures equal those of renders, and it needs no device.
 #include <fmt/core.h>
 
 #include "host/base/whole_file.hpp"
@@ -10,13 +10,13 @@
 namespace raya {
 namespace {
 
-/// No implementation of OpenCL is found, so that whoever asks for a device fails.
-const Surroundings kNoDriver{.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}};
+/// Hides all OpenCL drivers, so that any use of a device fails.
+const RunOptions kNoDriver{.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}};
 
-Document info_of(const std::string& scene, Words options = {}) {
+Document info_of(const std::string& scene, Arguments options = {}) {
     options.insert(options.begin(), {"info", scene, "--json"});
     const RunOutcome run = run_raya(options, kNoDriver);
-    INFO(run.told());
+    INFO(run.describe());
     REQUIRE(run.code == 0);
     return Document::parse(run.out);
 }
@@ -35,9 +35,9 @@ const Document& need_of(const Document& machine, const std::string& accel) {
     return machine;
 }
 
-/// Renders as the options say; what the report says, or what was said where it does not fit.
-struct Rendered {
-    Rendered(const ScratchFolder& folder, const std::string& scene, Words options) {
+/// A render with these options: its report if it succeeds, otherwise its messages.
+struct RenderedScene {
+    RenderedScene(const ScratchFolder& folder, const std::string& scene, Arguments options) {
         options.insert(options.begin(), {"render", scene, "-o", folder / "x.pfm", "--report", folder / "x.json",
                                          "--lanes", "4", "--size", "16", "--bounces", "1"});
         run = run_raya(options);
@@ -47,9 +47,9 @@ struct Rendered {
     Document report;
 };
 
-/// What info says of one machine and accelerator against a render.
-void check_against_render(const Document& machine, const Document& need, const Rendered& rendered) {
-    INFO(rendered.run.told());
+/// Compares info's figures for one machine and accelerator with a render.
+void check_against_render(const Document& machine, const Document& need, const RenderedScene& rendered) {
+    INFO(rendered.run.describe());
     CAPTURE(need.dump());
     if (need["fits"] == false) {
         CHECK(rendered.run.code == 2);
@@ -75,10 +75,10 @@ void check_against_render(const Document& machine, const Document& need, const R
     if (accel["kind"] != "none") CHECK(accel["words"] == need["accel_words"]);
 }
 
-TEST_CASE("info's figures are those of renders on every machine with every accelerator", "[cli][slow]") {
+TEST_CASE("info: figures equal those of renders, for every machine and accelerator", "[cli][slow]") {
     const ScratchFolder folder;
     const std::string random = folder / "random.nff";
-    REQUIRE(run_raya({"generate", "random", "2000", "-o", random}).code == 0);  // 32 KB do not hold them
+    REQUIRE(run_raya({"generate", "random", "2000", "-o", random}).code == 0);  // more than 32 KB
     for (const std::string& scene : {random, scene_file("centre")}) {
         CAPTURE(scene);
         const Document info = info_of(scene, {"--size", "16", "--bounces", "1"});
@@ -88,28 +88,28 @@ TEST_CASE("info's figures are those of renders on every machine with every accel
                 CAPTURE(name, accel);
                 const Document& machine = machine_of(info, name);
                 check_against_render(machine, need_of(machine, accel),
-                                     Rendered(folder, scene, {"--machine", name, "--accel", accel}));
+                                     RenderedScene(folder, scene, {"--machine", name, "--accel", accel}));
             }
         const Document& torus = machine_of(info, "torus");
-        check_against_render(torus, need_of(torus, "voxels"), Rendered(folder, scene, {"--machine", "torus"}));
+        check_against_render(torus, need_of(torus, "voxels"), RenderedScene(folder, scene, {"--machine", "torus"}));
     }
     CHECK(need_of(machine_of(info_of(random), "spa"), "none")["fits"] == false);
 }
 
-TEST_CASE("info follows a render's options", "[cli][slow]") {
+TEST_CASE("info: takes the options of a render into account", "[cli][slow]") {
     const ScratchFolder folder;
     const std::string scene = scene_file("glass");
-    for (const Words& options :
-         {Words{"--machine", "spa", "--antialias", "filter", "--pes", "8"},
-          Words{"--machine", "spa", "--format", "fp32"}, Words{"--machine", "cap", "--accel", "grid:3x2x1"},
-          Words{"--machine", "spa", "--pe-memory", "1000"}, Words{"--machine", "torus", "--nodes", "2x2x1"},
-          Words{"--machine", "torus", "--pe-memory", "4000"}}) {
-        Words words = {"--size", "16", "--bounces", "1"};
-        words.insert(words.end(), options.begin(), options.end());
-        const Document info = info_of(scene, words);
+    for (const Arguments& options :
+         {Arguments{"--machine", "spa", "--antialias", "filter", "--pes", "8"},
+          Arguments{"--machine", "spa", "--format", "fp32"}, Arguments{"--machine", "cap", "--accel", "grid:3x2x1"},
+          Arguments{"--machine", "spa", "--pe-memory", "1000"}, Arguments{"--machine", "torus", "--nodes", "2x2x1"},
+          Arguments{"--machine", "torus", "--pe-memory", "4000"}}) {
+        Arguments arguments = {"--size", "16", "--bounces", "1"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const Document info = info_of(scene, arguments);
         REQUIRE(info["machines"].size() == 1);
         const Document& machine = info["machines"][0];
-        const Rendered rendered(folder, scene, options);
+        const RenderedScene rendered(folder, scene, options);
         const std::string kind = machine["name"] == "torus" ? "voxels"
                                  : rendered.run.code == 0   ? rendered.report["accel"]["kind"].get<std::string>()
                                                             : "none";
@@ -125,14 +125,14 @@ TEST_CASE("info follows a render's options", "[cli][slow]") {
     }
 }
 
-TEST_CASE("the default that info names is what a render takes", "[cli]") {
+TEST_CASE("info: names the accelerator that a render uses by default", "[cli]") {
     const ScratchFolder folder;
     for (const char* name : {"centre", "spheres"}) {
         const std::string scene = scene_file(name);
         const Document info = info_of(scene, {"--size", "16", "--bounces", "1"});
         for (const char* machine : {"spa", "grande"}) {
             CAPTURE(name, machine);
-            const Rendered rendered(folder, scene, {"--machine", machine});
+            const RenderedScene rendered(folder, scene, {"--machine", machine});
             REQUIRE(rendered.run.code == 0);
             int defaults = 0;
             for (const Document& need : machine_of(info, machine)["needs"]) {
@@ -144,11 +144,11 @@ TEST_CASE("the default that info names is what a render takes", "[cli]") {
                 if (fit["format"] == rendered.report["machine"]["format"])
                     CHECK(fit["length_exponent"] == rendered.report["machine"]["length_exponent"]);
         }
-        CHECK(info["view"] == Rendered(folder, scene, {}).report["view"]);
+        CHECK(info["view"] == RenderedScene(folder, scene, {}).report["view"]);
     }
 }
 
-TEST_CASE("info counts what the reader reads, and tells what was skipped", "[cli]") {
+TEST_CASE("info: counts the objects that were read, and lists skipped lines", "[cli]") {
     const ScratchFolder folder;
     for (const char* name : {"polygons", "cones", "planes"}) {
         const Scene scene = read_nff(scene_file(name));
@@ -165,7 +165,7 @@ TEST_CASE("info counts what the reader reads, and tells what was skipped", "[cli
                      "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\nla 1 1 1\n"
                      "s 0 0 0 1\ns 9 9 9 1e-9\n");
     const RunOutcome run = run_raya({"info", file, "--format", "spa22", "--from", "0,-1e6,0"}, kNoDriver);
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 0);
     CHECK_THAT(run.err, Catch::Contains("warning: " + file + ":8: entity 'la'"));
     CHECK_THAT(run.out, Catch::StartsWith(file + ": 2 objects: 2 spheres; 1 surface\n"));
@@ -180,7 +180,7 @@ TEST_CASE("info counts what the reader reads, and tells what was skipped", "[cli
     CHECK(info["extent"]["cube_half_side"] == 1e6);
 }
 
-TEST_CASE("a scene that a format cannot hold is told, with what a render would say", "[cli]") {
+TEST_CASE("info: shows a scene that does not fit a format, with the render's message", "[cli]") {
     const ScratchFolder folder;
     const std::string file = folder / "far.nff";
     write_whole_file(file, "v\nfrom 0 -1e6 0\nat 0 0 0\nup 0 0 1\nangle 1\nhither 1\nresolution 64 64\ns 9 9 9 1e-5\n");
@@ -193,7 +193,7 @@ TEST_CASE("a scene that a format cannot hold is told, with what a render would s
     CHECK(need_of(machine_of(info, "grande"), "none")["fits"] == true);
 }
 
-TEST_CASE("info refuses what no machine can be", "[cli]") {
+TEST_CASE("info: refuses invalid machines and options", "[cli]") {
     const ScratchFolder none;
     const std::string scene = scene_file("planes");
     check_refused(none, {"info", scene, "--format", "e9m9"}, 2, {"e9m9"});
@@ -207,7 +207,7 @@ TEST_CASE("info refuses what no machine can be", "[cli]") {
     check_refused(none, {"info", none / "no.nff"}, 2, {"no.nff: cannot read the scene"});
     const RunOutcome run = run_raya({"info", scene, "--offset", "3"}, kNoDriver);
     CHECK(run.code == 0);
-    CHECK_THAT(run.out, Catch::Contains("cap: --offset 3"));  // the others can
+    CHECK_THAT(run.out, Catch::Contains("cap: --offset 3"));  // the other machines accept it
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// Kernels that were compiled before: beside the program, taken only where they are right and nobody else may change
-// them.
+// Kernel binaries next to the program: used only if they match and no other user may write them.
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -14,22 +13,34 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-/// A copy of the program, which has no modules.
+/// A copy of the program, without modules.
 struct Copy {
     ScratchFolder folder, outputs;
 
     Copy() { fs::copy_file(RAYA_PROGRAM, folder / "raya"); }
 
-    RunOutcome render(const Words& more, const std::string& binaries = "") const {
+    RunOutcome render(const Arguments& more, const std::string& binaries = "") const {
         const ScratchFolder cache;
-        Words words = {"render", scene_file("planes"), "-o",      outputs / "x.pfm", "--size",   "16",
-                       "--pes",  "4",                  "--lanes", "4",               "--format", "fp32",
-                       "-vv",    "--report",           outputs / "r.json"};
-        words.insert(words.end(), more.begin(), more.end());
-        const RunOutcome run =
-            run_raya(words, {.variables = {{"POCL_CACHE_DIR", cache.path()}, {"RAYA_BINARIES", binaries}},
-                             .program = folder / "raya"});
-        INFO(run.told());
+        Arguments arguments = {"render",
+                               scene_file("planes"),
+                               "-o",
+                               outputs / "x.pfm",
+                               "--size",
+                               "16",
+                               "--pes",
+                               "4",
+                               "--lanes",
+                               "4",
+                               "--format",
+                               "fp32",
+                               "-vv",
+                               "--report",
+                               outputs / "r.json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const RunOutcome run = run_raya(
+            arguments,
+            {.variables = {{"POCL_CACHE_DIR", cache.path()}, {"RAYA_BINARIES", binaries}}, .program = folder / "raya"});
+        INFO(run.describe());
         REQUIRE(run.code == 0);
         return run;
     }
@@ -42,38 +53,38 @@ struct Copy {
     }
 };
 
-bool took_binary(const RunOutcome& run) { return contains(run.err, "from the binary that came with raya"); }
+bool used_binary(const RunOutcome& run) { return contains(run.err, "from the binary installed with raya"); }
 
-TEST_CASE("kernels that were kept are taken by the next render, which makes the same image", "[cli]") {
+TEST_CASE("render --cache-kernels: the next render uses the binary and makes the same image", "[cli]") {
     const Copy copy;
-    CHECK_FALSE(took_binary(copy.render({})));
+    CHECK_FALSE(used_binary(copy.render({})));
     CHECK_FALSE(fs::exists(copy.folder / "kernels"));
     const std::string right = copy.hash();
-    CHECK_FALSE(took_binary(copy.render({"--keep-kernels"})));
-    CHECK(took_binary(copy.render({})));
+    CHECK_FALSE(used_binary(copy.render({"--cache-kernels"})));
+    CHECK(used_binary(copy.render({})));
     CHECK(copy.hash() == right);
-    CHECK_FALSE(took_binary(copy.render({}, "off")));
+    CHECK_FALSE(used_binary(copy.render({}, "off")));
     CHECK(copy.hash() == right);
-    CHECK_FALSE(took_binary(copy.render({"--bounces", "1"})));  // another program
+    CHECK_FALSE(used_binary(copy.render({"--bounces", "1"})));  // another OpenCL program
 }
 
-TEST_CASE("kernels that are damaged or that others may write are not taken", "[cli]") {
+TEST_CASE("kernel binaries: damaged ones and those that others may write are not used", "[cli]") {
     const Copy copy;
-    copy.render({"--keep-kernels"});
+    copy.render({"--cache-kernels"});
     const std::string right = copy.hash();
     const fs::path binary = copy.binary();
     ::chmod(binary.c_str(), 0666);
-    CHECK_FALSE(took_binary(copy.render({})));
+    CHECK_FALSE(used_binary(copy.render({})));
     ::chmod(binary.c_str(), 0644);
-    CHECK(took_binary(copy.render({})));
+    CHECK(used_binary(copy.render({})));
     std::ofstream(binary) << "no binary";
-    CHECK_FALSE(took_binary(copy.render({})));
+    CHECK_FALSE(used_binary(copy.render({})));
     CHECK(copy.hash() == right);
-    copy.render({"--keep-kernels"});  // which writes it anew
-    CHECK(took_binary(copy.render({})));
+    copy.render({"--cache-kernels"});  // writes it again
+    CHECK(used_binary(copy.render({})));
 }
 
-TEST_CASE("RAYA_BINARIES is off or not set", "[cli]") {
+TEST_CASE("RAYA_BINARIES: refuses values other than off", "[cli]") {
     const ScratchFolder outputs;
     check_refused(outputs, {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "16"}, 2,
                   {"RAYA_BINARIES=on: must be off, or not set"}, {.variables = {{"RAYA_BINARIES", "on"}}});

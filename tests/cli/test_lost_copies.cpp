@@ -1,5 +1,4 @@
-// A driver that says it has copied, and has not, or to elsewhere: raya verify sees it in the check of the copies, and
-// in images.
+// A driver that loses copies or writes them elsewhere: raya verify detects it in the checks of copies and of images.
 #include <algorithm>
 #include <sstream>
 #include <utility>
@@ -12,24 +11,24 @@
 namespace raya {
 namespace {
 
-/// Beginnings of the names of checks that ended so: lines that open with "FAIL  LAYER ".
-Words checks_with(const RunOutcome& run, const std::string& beginning) {
-    Words names;
+/// Names of the checks whose lines begin so, for example with "FAIL  LAYER ".
+Arguments checks_with(const RunOutcome& run, const std::string& beginning) {
+    Arguments names;
     std::istringstream lines(run.out);
     for (std::string line; std::getline(lines, line);)
         if (line.starts_with(beginning)) names.push_back(line.substr(beginning.size()));
     return names;
 }
 
-long count_of(const Words& names, const std::string& part) {
+long count_of(const Arguments& names, const std::string& part) {
     return std::count_if(names.begin(), names.end(), [&](const std::string& name) { return contains(name, part); });
 }
 
-RunOutcome verify_losing(const std::string& fault, const std::string& only) {
+RunOutcome verify_with_fault(const std::string& fault, const std::string& only) {
     return run_raya({"verify", "--only", only}, failing_device(fault));
 }
 
-TEST_CASE("copies that are lost are seen by the checks of what copies", "[cli][verify]") {
+TEST_CASE("verify: the checks of copies detect lost copies", "[cli][verify]") {
     struct Row {
         const char* fault;
         long rings, transfers, blocks, links;
@@ -37,52 +36,52 @@ TEST_CASE("copies that are lost are seen by the checks of what copies", "[cli][v
     for (const Row& row :
          {Row{"clEnqueueCopyBuffer 2 lost", 3, 0, 0, 0}, Row{"clEnqueueCopyBuffer 40 astray", 1, 0, 0, 0},
           Row{"clEnqueueCopyBufferRect 1 lost", 3, 1, 1, 4}}) {
-        const RunOutcome run = verify_losing(row.fault, "machine");
-        INFO(run.told());
+        const RunOutcome run = verify_with_fault(row.fault, "machine");
+        INFO(run.describe());
         CHECK(run.code == 4);
-        const Words wrong = checks_with(run, "FAIL  machine   ");
+        const Arguments wrong = checks_with(run, "FAIL  machine   ");
         CHECK(count_of(wrong, "ring: rotations of") == row.rings);
         CHECK(count_of(wrong, "bus: transfers") == row.transfers);
         CHECK(count_of(wrong, "copies of blocks") == row.blocks);
         CHECK(count_of(wrong, "exchange of") == row.links);
         CHECK(row.rings + row.transfers + row.blocks + row.links == static_cast<long>(wrong.size()));
-        CHECK(contains(run.out, "words are not where they should be"));
+        CHECK(contains(run.out, "words at wrong places"));
     }
 }
 
-TEST_CASE("copies that are lost are seen in the images of both machines", "[cli][verify]") {
+TEST_CASE("verify: the image checks of both machines detect lost copies", "[cli][verify]") {
     using Run = std::pair<const char*, const char*>;
     for (const auto& [only, fault] : {Run{"glass fp32 filter", "clEnqueueCopyBuffer 20 lost"},
                                       Run{"polygons fp32: torus3d 2x2x2", "clEnqueueCopyBufferRect 20 lost"}}) {
-        const RunOutcome lost = verify_losing(fault, only);
-        INFO(lost.told());
+        const RunOutcome lost = verify_with_fault(fault, only);
+        INFO(lost.describe());
         CHECK(lost.code == 4);
         CHECK(checks_with(lost, "FAIL  image     ").size() == 1);
     }
 }
 
-TEST_CASE("a transfer over the bus that goes to the wrong PE is seen in the image", "[cli][verify]") {
+TEST_CASE("render: a bus transfer to the wrong PE changes the image", "[cli][verify]") {
     const ScratchFolder folder;
-    const auto hash_of = [&](const std::string& way, const std::string& fault) {
+    const auto hash_of = [&](const std::string& exchange, const std::string& fault) {
         const RunOutcome run = run_raya(
             {"render", scene_file("planes"), "-o", folder / "i.pfm", "--report", folder / "r.json", "--size", "20x12",
-             "--pes", "20", "--offset", "3", "--lanes", "4", "--antialias", "filter", "--exchange", way},
+             "--pes", "20", "--offset", "3", "--lanes", "4", "--antialias", "filter", "--exchange", exchange},
             failing_device(fault));
-        INFO(run.told());
+        INFO(run.describe());
         REQUIRE(run.code == 0);
         return Document::parse(file_contents(folder / "r.json"))["image"]["hash"].get<std::string>();
     };
-    const std::string whole = hash_of("ring", "clEnqueueCopyBufferRect 1000000 astray");
-    for (const std::string way : {"bus", "bus-broadcast"}) {
-        CAPTURE(way);
-        CHECK(hash_of(way, "clEnqueueCopyBufferRect 1000000 astray") == whole);
-        CHECK(hash_of(way, "clEnqueueCopyBufferRect 30 astray") != whole);
+    const std::string expected = hash_of("ring", "clEnqueueCopyBufferRect 1000000 astray");
+    for (const std::string exchange : {"bus", "bus-broadcast"}) {
+        CAPTURE(exchange);
+        CHECK(hash_of(exchange, "clEnqueueCopyBufferRect 1000000 astray") == expected);
+        CHECK(hash_of(exchange, "clEnqueueCopyBufferRect 30 astray") != expected);
     }
 }
 
-TEST_CASE("a device that loses nothing is right: the tests above can pass", "[cli][verify]") {
-    const RunOutcome run = verify_losing("clEnqueueCopyBuffer 1000000 lost", "exchange of");
-    INFO(run.told());
+TEST_CASE("verify: passes with a fault that is never reached (control)", "[cli][verify]") {
+    const RunOutcome run = verify_with_fault("clEnqueueCopyBuffer 1000000 lost", "exchange of");
+    INFO(run.describe());
     CHECK(run.code == 0);
 }
 

@@ -1,11 +1,11 @@
-// stdout and stderr that are closed or full: what is lost on stdout is exit code 2, what is lost on stderr is lost.
+// Closed and full stdout and stderr: lost output on stdout is exit code 2, lost output on stderr is ignored.
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/run_program.hpp"
 
 namespace raya {
 namespace {
 
-/// A run of raya by a shell, with `redirections` of it; its own exit code.
+/// Runs raya in a shell with these redirections and returns its exit code.
 int code_of(const std::string& arguments, const std::string& redirections) {
     std::string command = RAYA_PROGRAM;
     command.append(" ").append(arguments).append(" ").append(redirections);
@@ -13,7 +13,7 @@ int code_of(const std::string& arguments, const std::string& redirections) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-TEST_CASE("a line that is lost on stdout is exit code 2", "[cli]") {
+TEST_CASE("stdout: a lost line is exit code 2", "[cli]") {
     for (const char* arguments : {"--version", "--help", "devices", "verify --only 'machine bus' --lanes 4"}) {
         CAPTURE(arguments);
         CHECK(code_of(arguments, ">/dev/null 2>/dev/null") == 0);
@@ -21,12 +21,12 @@ TEST_CASE("a line that is lost on stdout is exit code 2", "[cli]") {
         CHECK(code_of(arguments, ">&- 2>/dev/null") == 2);
     }
     const ScratchFolder folder;
-    const std::string told = folder / "told";
-    CHECK(code_of("devices", ">/dev/full 2>" + told) == 2);
-    CHECK(file_contents(told).starts_with("raya: cannot write to stdout: No space left on device"));
+    const std::string errors = folder / "errors";
+    CHECK(code_of("devices", ">/dev/full 2>" + errors) == 2);
+    CHECK(file_contents(errors).starts_with("raya: cannot write to stdout: No space left on device"));
 }
 
-TEST_CASE("where stderr is closed or full, the exit code is as ever", "[cli]") {
+TEST_CASE("stderr: closed or full, it does not change the exit code", "[cli]") {
     for (const char* lost : {"2>/dev/full", "2>&-"}) {
         CAPTURE(lost);
         CHECK(code_of("rendr", lost) == 2);
@@ -36,7 +36,7 @@ TEST_CASE("where stderr is closed or full, the exit code is as ever", "[cli]") {
     }
 }
 
-TEST_CASE("a file that is opened while stdout is closed does not get what is printed", "[cli]") {
+TEST_CASE("stdout: if it is closed, output does not go into a file that raya opens", "[cli]") {
     const ScratchFolder folder;
     const std::string image = folder / "x.pfm";
     CHECK(code_of("render " + scene_file("planes") + " --size 4 --pes 4 --lanes 4 -o " + image, ">&- 2>&-") == 2);

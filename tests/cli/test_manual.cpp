@@ -1,4 +1,4 @@
-// Manual pages and completions of a small command line, with texts that shells and man would take for their own.
+// Manual pages and completions of a small command line, with texts that man and shells would interpret.
 #include <catch2/catch.hpp>
 
 #include "host/cli/command_text.hpp"
@@ -34,12 +34,12 @@ CommandText small_program() {
     return program;
 }
 
-TEST_CASE("what a value may be follows from how help calls it", "[manual]") {
-    const auto value = [](const std::string& called) { return value_of(option({"--x"}, called)); };
-    CHECK(value("ring|bus-broadcast").words == std::vector<std::string>{"ring", "bus-broadcast"});
-    CHECK(value("none|bvh|grid[:AxBxC]").words == std::vector<std::string>{"none", "bvh", "grid"});
+TEST_CASE("value_of: the kind of a value follows from its placeholder in help", "[manual]") {
+    const auto value = [](const std::string& placeholder) { return value_of(option({"--x"}, placeholder)); };
+    CHECK(value("ring|bus-broadcast").choices == std::vector<std::string>{"ring", "bus-broadcast"});
+    CHECK(value("none|bvh|grid[:AxBxC]").choices == std::vector<std::string>{"none", "bvh", "grid"});
     CHECK(value("none,grid").kind == Kind::kList);
-    CHECK(value("none,grid").words == std::vector<std::string>{"none", "grid"});
+    CHECK(value("none,grid").choices == std::vector<std::string>{"none", "grid"});
     CHECK(value("FILE.json[.gz]").extension == ".json");
     CHECK(value("FILE.csv.gz").extension == ".csv.gz");
     for (const char* file : {"SCENE.nff", "IMAGE", "FILE.html", "FILE"}) CHECK(value(file).kind == Kind::kFile);
@@ -48,13 +48,13 @@ TEST_CASE("what a value may be follows from how help calls it", "[manual]") {
     for (const char* other : {"N|WxH", "p", "ALPHA,BETA", "1,2,...", "NAME,...", "BYTES", ""})
         CHECK(value(other).kind == Kind::kOther);
     OptionText named = option({"--x"}, "NAME");
-    named.words = {"a", "b"};
-    CHECK(value_of(named).kind == Kind::kWords);
+    named.choices = {"a", "b"};
+    CHECK(value_of(named).kind == Kind::kChoice);
     named.repeated = true;
     CHECK(value_of(named).kind == Kind::kList);
 }
 
-TEST_CASE("a help text is cut to its first part, between words", "[manual]") {
+TEST_CASE("brief: cuts a help text after its first part, between words", "[manual]") {
     CHECK(brief("Size in pixels; default: 5") == "Size in pixels");
     CHECK(brief("One. Two") == "One");
     CHECK(brief("as they are 1.5") == "as they are 1.5");
@@ -63,7 +63,7 @@ TEST_CASE("a help text is cut to its first part, between words", "[manual]") {
     CHECK(brief(std::string(100, 'x'), 20) == "xxxxxxxxxxxxxxxx ...");
 }
 
-TEST_CASE("a page holds help's texts, with what man would take for its own escaped", "[manual]") {
+TEST_CASE("man_pages: contain the texts of help, with roff syntax escaped", "[manual]") {
     const std::vector<ManPage> pages = man_pages(small_program(), "raya 1.2");
     REQUIRE(pages.size() == 2);
     CHECK(pages[0].name == "raya");
@@ -78,7 +78,7 @@ TEST_CASE("a page holds help's texts, with what man would take for its own escap
         CHECK_THAT(pages[1].text, Catch::Contains(text));
 }
 
-TEST_CASE("completions quote what shells would take for their own", "[manual]") {
+TEST_CASE("completion_script: quotes shell syntax", "[manual]") {
     const CommandText program = small_program();
     CHECK_THAT(completion_script(program, "bash"), Catch::Contains("'raya draw')") &&
                                                        Catch::Contains("-o|--output) value='files .json' ;;") &&
@@ -95,7 +95,7 @@ TEST_CASE("completions quote what shells would take for their own", "[manual]") 
     CHECK_THROWS(completion_script(program, "tcsh"));
 }
 
-TEST_CASE("commands that take the same stand in one case", "[manual]") {
+TEST_CASE("shell_cases: commands with the same body share one case", "[manual]") {
     CHECK(shell_cases({{"a b", "x\n"}, {"c", "y\n"}, {"it's", "x\n"}}) ==
           "    'a b'|'it'\\''s')\nx\n        ;;\n    'c')\ny\n        ;;\n");
 }

@@ -1,4 +1,4 @@
-// The modelled figures of a report, worked out again from what else it says.
+// The modelled times of a report, recomputed from its counts.
 #include <numeric>
 
 #include "tests/cli/render_files.hpp"
@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// 6 cycles a division, 8 a root, 3 a branch (host/model/budget.hpp).
+// 6 cycles per division, 8 per root, 3 per branch (host/model/budget.hpp).
 std::uint64_t cycles_of(const Document& budget) {
     return budget["multiply_accumulates"].get<std::uint64_t>() + 6 * budget["divisions"].get<std::uint64_t>() +
            8 * budget["roots"].get<std::uint64_t>() + budget["moves"].get<std::uint64_t>() +
@@ -21,22 +21,22 @@ std::uint64_t sum_of_loads(const Document& load) {
 
 Approx about(double value) { return Approx(value).epsilon(1e-9); }
 
-TEST_CASE("the budget's operations are the loads of all PEs", "[cli]") {
+TEST_CASE("report: the cycles of the budget equal the sum of the loads", "[cli]") {
     const std::string scene = GENERATE("glass", "polygons", "cones");
     CAPTURE(scene);
     const Document report = RenderFiles(scene, {"--pes", "5", "--antialias", "supersample"}).report();
     CHECK(cycles_of(report["budget"]) == sum_of_loads(report["load"]));
 }
 
-TEST_CASE("modelled times follow from counted cycles and words", "[cli]") {
+TEST_CASE("report: modelled times follow from counted cycles and words", "[cli]") {
     const std::string antialias = GENERATE("none", "filter", "supersample");
     CAPTURE(antialias);
     const Document report = RenderFiles("centre", {"--pes", "8", "--offset", "3", "--antialias", antialias}).report();
     const Document &time = report["modelled_ms"], &words = report["communication"], &load = report["load"];
     INFO(time.dump());
     const bool filter = antialias == "filter", supersample = antialias == "supersample";
-    const double share = 3 * 12;          // pixels of the PE with most: 3 of the 20 columns of 12
-    const double host = 140 / 196'608.0;  // ms a word
+    const double share = 3 * 12;          // pixels of the PE with the most: 3 of the 20 columns of 12
+    const double host = 140 / 196'608.0;  // ms per word
     CHECK(time["filter"] == about(filter ? 42e-4 * share : 0));
     CHECK(time["compare"] == about(supersample ? 121e-4 * share : 0));
     double busiest = load["trace"]["max"];
@@ -52,7 +52,7 @@ TEST_CASE("modelled times follow from counted cycles and words", "[cli]") {
     CHECK(time["factor"] == 1.0);
 }
 
-TEST_CASE("the summary has the modelled time where the machine has one", "[cli]") {
+TEST_CASE("render: the summary has the modelled time if the machine has one", "[cli]") {
     const std::string line = "modelled time of ";
     const auto summary = [](const std::string& machine) {
         return RenderFiles("planes", {"--machine", machine, "--offset", "0"}).run().out;

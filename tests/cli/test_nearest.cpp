@@ -1,4 +1,4 @@
-// The name that a user may have meant.
+// The closest name to a misspelt one.
 #include <catch2/catch.hpp>
 
 #include "host/cli/nearest.hpp"
@@ -6,7 +6,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("the nearest name is the one with the fewest letters to change, or that begins so", "[parse]") {
+TEST_CASE("nearest_name: the fewest edits, or the name with that prefix", "[parse]") {
     const std::vector<std::string> names = {"render", "devices", "generate", "bench", "study", "verify"};
     CHECK(nearest_name("rendr", names) == "render");
     CHECK(nearest_name("redner", names) == "render");  // two letters swapped

@@ -1,4 +1,4 @@
-// raya page, and --page of the commands that write reports: one page of one report, and what is refused.
+// raya page, and --page of the commands that write reports: equal pages, and refused reports.
 #include <catch2/catch.hpp>
 
 #include "tests/base/scratch_folder.hpp"
@@ -13,30 +13,30 @@ namespace {
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
-Words joined(Words words, const Words& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+Arguments joined(Arguments arguments, const Arguments& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
 }
 
-Words render_of_24(const ScratchFolder& folder, const Words& more = {}) {
+Arguments render_of_24(const ScratchFolder& folder, const Arguments& more = {}) {
     return joined(
         {"render", scene_file("planes"), "--size", "24x16", "--lanes", "4", "--quiet", "-o", folder / "c.pfm"}, more);
 }
 
-// No device is there, so that nothing can run again.
-RunOutcome page_of_file(const std::string& report, const std::string& page, const Words& more = {}) {
+// Without a device, so that nothing can be run again.
+RunOutcome page_of_file(const std::string& report, const std::string& page, const Arguments& more = {}) {
     return run_raya(joined({"page", report, "-o", page}, more),
                     {.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}});
 }
 
-// Runs the command with both files, and makes the page once more of the report alone.
-std::string check_page(const ScratchFolder& folder, const Words& command, int code = 0) {
+// Runs the command with --report and --page, makes the page again from the report, and returns it.
+std::string check_page(const ScratchFolder& folder, const Arguments& command, int code = 0) {
     const std::string report = folder / "r.json", page = folder / "r.html", again = folder / "again.html";
     const RunOutcome run = run_raya(joined(command, {"--report", report, "--page", page}));
-    INFO(run.told());
+    INFO(run.describe());
     REQUIRE(run.code == code);
     const RunOutcome made = page_of_file(report, again);
-    INFO(made.told());
+    INFO(made.describe());
     REQUIRE(made.code == 0);
     CHECK_THAT(made.out, StartsWith("page    " + again));
     const std::string html = file_contents(page);
@@ -46,10 +46,10 @@ std::string check_page(const ScratchFolder& folder, const Words& command, int co
     return html;
 }
 
-TEST_CASE("the page of a render is what raya page makes of its report", "[cli][page]") {
+TEST_CASE("render --page: equals the page that raya page makes from the report", "[cli][page]") {
     const ScratchFolder folder;
-    for (const Words& more : {Words{"--pes", "20"}, Words{"--machine", "torus", "--nodes", "2x2x2"},
-                              Words{"--mapping", "dynamic:4", "--pes", "6"}}) {
+    for (const Arguments& more : {Arguments{"--pes", "20"}, Arguments{"--machine", "torus", "--nodes", "2x2x2"},
+                                  Arguments{"--mapping", "dynamic:4", "--pes", "6"}}) {
         const std::string html = check_page(folder, render_of_24(folder, more));
         const Document report = Document::parse(file_contents(folder / "r.json"));
         for (const std::string& part :
@@ -61,10 +61,10 @@ TEST_CASE("the page of a render is what raya page makes of its report", "[cli][p
     }
 }
 
-TEST_CASE("a page is written without a report, and a report has what a page needs", "[cli][page]") {
+TEST_CASE("render --page: needs no --report, and raya page needs only the report", "[cli][page]") {
     const ScratchFolder folder;
     const RunOutcome run = run_raya(render_of_24(folder, {"--page", folder / "r.html"}));
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 0);
     CHECK(folder.entries() == 2);
     REQUIRE(run_raya(render_of_24(folder, {"--report", folder / "r.json"})).code == 0);
@@ -74,7 +74,7 @@ TEST_CASE("a page is written without a report, and a report has what a page need
     CHECK_THAT(file_contents(folder / "again.html"), !Contains("copy_bytes_per_s\":"));
 }
 
-TEST_CASE("the page of a verify that failed is that of its report", "[cli][page]") {
+TEST_CASE("verify --page: equals the page of its report, also after a failure", "[cli][page]") {
     const ScratchFolder folder;
     const std::string kernels = write_kernels(folder / "kernels", {kMappingFault});
     const std::string html = check_page(folder, {"verify", "--only", "mapping", "--kernel-dir", kernels}, 4);
@@ -83,10 +83,10 @@ TEST_CASE("the page of a verify that failed is that of its report", "[cli][page]
     for (const Document& check : device["checks"]) CHECK_THAT(html, Contains("\"name\": " + check["name"].dump()));
 }
 
-TEST_CASE("the page of a bench has rates, comparison and roofline", "[cli][page]") {
+TEST_CASE("bench --page: has rates, comparison and roofline", "[cli][page]") {
     const ScratchFolder folder;
-    const Words bench = {"bench", scene_file("planes"), "--size", "24x16",    "--lanes",
-                         "4",     "--samples",          "2",      "--format", "fp32"};
+    const Arguments bench = {"bench", scene_file("planes"), "--size", "24x16",    "--lanes",
+                             "4",     "--samples",          "2",      "--format", "fp32"};
     REQUIRE(run_raya(joined(bench, {"--report", folder / "base.json"})).code == 0);
     CHECK(page_of_file(folder / "base.json", folder / "base.html").code == 0);
     const std::string html =
@@ -95,7 +95,7 @@ TEST_CASE("the page of a bench has rates, comparison and roofline", "[cli][page]
     CHECK(Document::parse(file_contents(folder / "r.json"))["compared"]["rows"].size() == 1);
 }
 
-TEST_CASE("what raya page refuses names the reason and leaves nothing behind", "[cli][page]") {
+TEST_CASE("page: refuses other files with the reason, and writes none", "[cli][page]") {
     const ScratchFolder folder, written;
     REQUIRE(run_raya(render_of_24(written, {"--report", written / "r.json"})).code == 0);
     const Document good = Document::parse(file_contents(written / "r.json"));
@@ -117,21 +117,20 @@ TEST_CASE("what raya page refuses names the reason and leaves nothing behind", "
         {written / "broken.json", page, "not valid JSON (byte"},
         {written / "list.json", page, "not a report of raya render, bench, verify or gpu_day"},
         {scene_file("planes"), page, "not valid JSON"},
-        {written / "r.json", folder / "p.png", "let the name end in .html"},
+        {written / "r.json", folder / "p.png", "choose a name that ends in .html"},
         {written / "r.json", folder / "no/p.html", "does not exist; make it first"},
-        {changed("old.json", [](Document& r) { r.erase("kind"), r.erase("raya"); }), page,
-         "the report of an older raya"},
+        {changed("old.json", [](Document& r) { r.erase("kind"), r.erase("raya"); }), page, "a report of an older raya"},
         {changed("other.json", [](Document& r) { r["kind"] = "raya ping"; }), page, "not a report of raya render"},
         {changed("said.json", [](Document& r) { r["warnings"] = {1}; }), page, "warnings"}};
     for (const Row& row : rows) {
         const RunOutcome run = page_of_file(row.report, row.page);
-        INFO(run.told());
+        INFO(run.describe());
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Contains(row.reason));
         CHECK(folder.entries() == 0);
     }
     const RunOutcome known = page_of_file(changed("more.json", [](Document& r) { r["later"] = {{"a", 1}}; }), page);
-    INFO(known.told());
+    INFO(known.describe());
     CHECK(known.code == 0);
     const RunOutcome twice = run_raya(render_of_24(folder, {"--report", page, "--page", page}));
     CHECK(twice.code == 2);

@@ -1,4 +1,4 @@
-// Options as they are written: words, and values by the type that they fill.
+// Parsing of option values: names, and numbers by the type of their variable.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <optional>
@@ -15,12 +15,12 @@ using Catch::Equals;
 
 namespace {
 
-/// The parser's complaint about `arguments` of a command with one option, --it, that fills `value`; "" where it fits.
+/// Returns the parser's refusal of "--it TEXT" for an option --it that sets `value`; "" if it accepts the text.
 template <class Value>
-std::string complaint(Value& value, const std::string& text) {
+std::string refusal_of_value(Value& value, const std::string& text) {
     CLI::App app;
-    add_value(app, "--it", value, "A value")->type_name("N");  // the placeholder of the help decides nothing
-    std::vector<std::string> arguments = {text, "--it"};       // CLI11 takes them from the end
+    add_value(app, "--it", value, "A value")->type_name("N");  // the placeholder in help must not matter
+    std::vector<std::string> arguments = {text, "--it"};       // CLI11 takes the last argument first
     try {
         app.parse(arguments);
     } catch (const UserError& error) {
@@ -31,16 +31,16 @@ std::string complaint(Value& value, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("links, methods, points and sampling are read, and other words refused", "[parse]") {
+TEST_CASE("parse_links, parse_antialias, parse_points, parse_sampling: read their names and refuse others", "[parse]") {
     for (const Links links : {Links::kTorus3d, Links::kTorus2d}) CHECK(parse_links(links_name(links)) == links);
     for (const AntialiasMethod method :
          {AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample})
         CHECK(parse_antialias(antialias_name(method)) == method);
     CHECK(parse_points("axes") == RAYA_POINTS_AXES);
     CHECK(parse_points("diagonals") == RAYA_POINTS_DIAGONALS);
-    CHECK(parse_exchange("ring") == ExchangeWay::kRing);
-    CHECK(parse_exchange("bus") == ExchangeWay::kBus);
-    CHECK(parse_exchange("bus-broadcast") == ExchangeWay::kBroadcast);
+    CHECK(parse_exchange("ring") == ExchangeMethod::kRing);
+    CHECK(parse_exchange("bus") == ExchangeMethod::kBus);
+    CHECK(parse_exchange("bus-broadcast") == ExchangeMethod::kBroadcast);
     CHECK(parse_sampling("centres") == Sampling::kCentres);
     CHECK(parse_sampling("corners") == Sampling::kCorners);
     for (const std::string text : {"", "torus", "torus4d", "Torus3d", "torus3d ", "none ", "axis", "centers"}) {
@@ -55,41 +55,41 @@ TEST_CASE("links, methods, points and sampling are read, and other words refused
     }
 }
 
-TEST_CASE("an image size is a side or two", "[parse]") {
+TEST_CASE("parse_image_size: one side or two", "[parse]") {
     CHECK(parse_image_size("512") == ImageSize{512, 512});
     CHECK(parse_image_size("512x256") == ImageSize{512, 256});
     for (const std::string text : {"", "x", "0", "512x", "1x2x3", "-1", "12y"})
         CHECK_THROWS_WITH(parse_image_size(text), Contains("--size " + text + ":") && Contains("N or WxH"));
 }
 
-TEST_CASE("the type of an option's value decides what it takes, not what its help calls it", "[parse]") {
+TEST_CASE("add_value: the type of the variable decides what a value may be, not the placeholder in help", "[parse]") {
     std::optional<std::uint32_t> whole;
-    CHECK(complaint(whole, "7").empty());
+    CHECK(refusal_of_value(whole, "7").empty());
     CHECK(whole == 7u);
     for (const std::string text : {"-1", "+1", "1.5", "x", "1 "})
         CHECK_THAT(
-            complaint(whole, text),
+            refusal_of_value(whole, text),
             Equals("--it " + text + (text == "-1" ? ": out of range" : ": not a whole number") + "; --it: A value"));
-    CHECK_THAT(complaint(whole, "4294967296"), Contains("--it 4294967296: out of range"));
+    CHECK_THAT(refusal_of_value(whole, "4294967296"), Contains("--it 4294967296: out of range"));
     std::uint64_t plain = 0;
-    CHECK_THAT(complaint(plain, "-1"), Contains("out of range"));
-    CHECK_THAT(complaint(plain, "18446744073709551616"), Contains("out of range"));
-    CHECK(complaint(plain, "18446744073709551615").empty());
+    CHECK_THAT(refusal_of_value(plain, "-1"), Contains("out of range"));
+    CHECK_THAT(refusal_of_value(plain, "18446744073709551616"), Contains("out of range"));
+    CHECK(refusal_of_value(plain, "18446744073709551615").empty());
     CHECK(plain == UINT64_MAX);
     std::vector<std::uint32_t> several;
-    CHECK_THAT(complaint(several, "x"), Contains("not a whole number"));
-    int number = 0;  // a range of its own is for its command to check
-    CHECK(complaint(number, "-1").empty());
+    CHECK_THAT(refusal_of_value(several, "x"), Contains("not a whole number"));
+    int number = 0;  // the command checks its range
+    CHECK(refusal_of_value(number, "-1").empty());
     CHECK(number == -1);
     std::optional<double> real;
-    CHECK(complaint(real, "-1.5").empty());
+    CHECK(refusal_of_value(real, "-1.5").empty());
     CHECK(real == -1.5);
-    CHECK_THAT(complaint(real, "1.5x"), Contains("--it 1.5x: not a number"));
-    CHECK_THAT(complaint(real, "1e999"), Contains("--it 1e999: out of range"));
+    CHECK_THAT(refusal_of_value(real, "1.5x"), Contains("--it 1.5x: not a number"));
+    CHECK_THAT(refusal_of_value(real, "1e999"), Contains("--it 1e999: out of range"));
     std::string word;
-    CHECK(complaint(word, "x").empty());
+    CHECK(refusal_of_value(word, "x").empty());
     CHECK(word == "x");
-    CHECK_THAT(complaint(whole, ""), Contains("must not be empty"));
-    CHECK_THAT(complaint(word, ""), Contains("must not be empty"));
-    CHECK_THAT(complaint(real, ""), Contains("must not be empty"));
+    CHECK_THAT(refusal_of_value(whole, ""), Contains("must not be empty"));
+    CHECK_THAT(refusal_of_value(word, ""), Contains("must not be empty"));
+    CHECK_THAT(refusal_of_value(real, ""), Contains("must not be empty"));
 }

@@ -1,4 +1,4 @@
-// --mapping and --fold as they are written: every form, its canonical text, and what is refused with which words.
+// Parsing of --mapping and --fold: every form, its canonical text, and refusals.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <string>
@@ -12,7 +12,7 @@
 using namespace raya;
 using Catch::Contains;
 
-TEST_CASE("every form of a mapping is understood", "[parse]") {
+TEST_CASE("parse_mapping: reads every form", "[parse]") {
     const auto rule = [](const std::string& text) { return parse_mapping(text).rule; };
     CHECK(rule("cyclic:0") == cyclic_mapping(0));
     CHECK(rule("cyclic:319") == cyclic_mapping(319));
@@ -35,7 +35,7 @@ TEST_CASE("every form of a mapping is understood", "[parse]") {
     CHECK(parse_fold("block") == Fold::kBlock);
 }
 
-TEST_CASE("the text of a mapping makes the same mapping again", "[parse]") {
+TEST_CASE("parse_mapping: inverts mapping_text", "[parse]") {
     constexpr std::uint64_t kSeed = 31;
     SplitMix random(kSeed);
     for (int i = 0; i < 500; ++i) {
@@ -48,24 +48,24 @@ TEST_CASE("the text of a mapping makes the same mapping again", "[parse]") {
     }
 }
 
-TEST_CASE("a mapping that is not written as it should is refused with the form", "[parse]") {
+TEST_CASE("parse_mapping: refuses other texts with the expected form", "[parse]") {
     const auto refuses = [](const std::string& text, const std::string& form) {
         CAPTURE(text);
         CHECK_THROWS_AS(parse_mapping(text), UserError);
         CHECK_THROWS_WITH(parse_mapping(text), Contains("--mapping " + text + ":") && Contains(form));
     };
     for (const char* text : {"spiral", "", ":", "Cyclic", "cyclic ", "row", "spiral:3"})
-        refuses(text, "there are cyclic, cyclic:p, column, rows, blocks, grid:AxB, tiles:WxH, random:seed");
+        refuses(text, "mappings: cyclic, cyclic:p, column, rows, blocks, grid:AxB, tiles:WxH, random:seed");
     for (const char* text : {"cyclic:", "cyclic:x", "cyclic:-1", "cyclic:1.5", "cyclic: 1", "cyclic:16384",
                              "cyclic:4294967296", "cyclic:1:2"})
         refuses(text, "cyclic:p with an offset p 0..W-1");
-    for (const char* text : {"column:", "column:0"}) refuses(text, "must be column alone");
-    refuses("rows:3", "must be rows alone");
-    refuses("blocks:3", "must be blocks alone");
+    for (const char* text : {"column:", "column:0"}) refuses(text, "must be column, without a parameter");
+    refuses("rows:3", "must be rows, without a parameter");
+    refuses("blocks:3", "must be blocks, without a parameter");
     for (const std::string rest :
          {"", ":", ":4", ":4x", ":x4", ":0x4", ":4x0", ":4x4x4", ":16385x1", ":4X4", ":-4x4"}) {
-        refuses("grid" + rest, "grid:AxB, A rows of B PEs, each 1..16384");
-        refuses("tiles" + rest, "tiles:WxH, the sides of a tile in pixels, each 1..16384");
+        refuses("grid" + rest, "grid:AxB with A rows of B PEs, each 1..16384");
+        refuses("tiles" + rest, "tiles:WxH with the sides of a tile in pixels, each 1..16384");
     }
     for (const char* text : {"random:", "random:x", "random:-1", "random:4294967296"})
         refuses(text, "random:seed with a seed 0..4294967295, or random");
@@ -73,7 +73,7 @@ TEST_CASE("a mapping that is not written as it should is refused with the form",
     CHECK_THROWS_AS(parse_fold(""), UserError);
 }
 
-TEST_CASE("dynamic mappings by name, and what is refused", "[parse]") {
+TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with the form", "[parse]") {
     CHECK(parse_dynamic("dynamic:4") == DynamicPlan{4, 0, 0});
     CHECK(parse_dynamic("dynamic:1,2000") == DynamicPlan{1, 2'000, 0});
     CHECK(parse_dynamic("dynamic:268435456,1000000000") == DynamicPlan{268'435'456, 1'000'000'000, 0});

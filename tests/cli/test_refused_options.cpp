@@ -1,5 +1,4 @@
-// Options that the program refuses: exit code 2, and a message that names the option, its value and what would be
-// right.
+// Options that the program refuses: exit code 2, and a message with the option, its value and the valid values.
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -12,8 +11,8 @@ namespace raya {
 namespace {
 
 struct OptionsRow {
-    Words options;
-    Words message;
+    Arguments options;
+    Arguments message;
 };
 
 void check_render_options(const std::vector<OptionsRow>& rows) {
@@ -22,7 +21,7 @@ void check_render_options(const std::vector<OptionsRow>& rows) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), row.options), 2, row.message);
 }
 
-TEST_CASE("a name that the program does not know is refused with those that it knows", "[cli]") {
+TEST_CASE("render: refuses an unknown name with the known ones", "[cli]") {
     check_render_options({{{"--machine", "sparc"}, {"--machine sparc", "spa, grande"}},
                           {{"--mapping", "spiral"}, {"--mapping spiral", "cyclic, cyclic:p, column", "random:seed"}},
                           {{"--fold", "diagonal"}, {"--fold diagonal", "cyclic or block"}},
@@ -32,23 +31,23 @@ TEST_CASE("a name that the program does not know is refused with those that it k
                           {{"--sampling", "random"}, {"--sampling random", "centres or corners"}}});
 }
 
-TEST_CASE("a number outside its range is refused with the range", "[cli]") {
+TEST_CASE("render: refuses a number outside its range with the range", "[cli]") {
     check_render_options({{{"--lanes", "3"}, {"--lanes 3", "1, 4, 8 or 16"}},
                           {{"--lanes", "0"}, {"--lanes", "1 or more"}},
                           {{"--group", "1025"}, {"--group 1025", "1..1024"}},
                           {{"--group", "0"}, {"--group", "1 or more"}},
                           {{"--bounces", "32"}, {"--bounces 32", "0..31"}},
-                          {{"--size", "8", "--pes", "0"}, {"--pes 0", "1..64", "a PE for each pixel"}},
+                          {{"--size", "8", "--pes", "0"}, {"--pes 0", "1..64", "at most one for each pixel"}},
                           {{"--size", "8x4", "--pes", "33"}, {"--pes 33", "1..32"}},
                           {{"--size", "8x16", "--pes", "8", "--offset", "8"}, {"--offset 8", "0..7", "width"}},
                           {{"--size", "100000"}, {"--size 100000x100000", "1..16384 pixels"}},
                           {{"--size", "16385x1"}, {"--size 16385x1", "1..16384 pixels"}}});
 }
 
-TEST_CASE("a mapping that is written wrong, or does not go with image, PEs, offset or fold, is refused", "[cli]") {
+TEST_CASE("render --mapping: refuses wrong syntax, and conflicts with image, PEs, offset and fold", "[cli]") {
     check_render_options(
-        {{{"--mapping", "grid:4"}, {"--mapping grid:4:", "grid:AxB, A rows of B PEs"}},
-         {{"--mapping", "grid:4x4", "--pes", "8"}, {"--pes 8 with --mapping grid:4x4", "16 PEs; leave --pes out"}},
+        {{{"--mapping", "grid:4"}, {"--mapping grid:4:", "grid:AxB with A rows of B PEs"}},
+         {{"--mapping", "grid:4x4", "--pes", "8"}, {"--pes 8 with --mapping grid:4x4", "16 PEs; omit --pes"}},
          {{"--mapping", "grid:4x4", "--size", "3"}, {"--mapping grid:4x4: 16 PEs", "1..9"}},
          {{"--mapping", "tiles:5x4", "--size", "12", "--pes", "8"}, {"--mapping tiles:5x4", "12 x 12", "tiles:4x4"}},
          {{"--mapping", "cyclic:12", "--size", "12", "--pes", "8"}, {"--mapping cyclic:12", "0..11", "width"}},
@@ -58,22 +57,22 @@ TEST_CASE("a mapping that is written wrong, or does not go with image, PEs, offs
          {{"--mapping", "tiles:4x4", "--fold", "cyclic"},
           {"--fold cyclic with --mapping tiles:4x4", "no slots to fold", "cyclic or column"}},
          {{"--mapping", "random", "--antialias", "filter"},
-          {"--antialias filter with --mapping random:1", "neighbours live on PEs all over the ring",
-           "choose cyclic, column, rows, blocks, grid or tiles"}}});
+          {"--antialias filter with --mapping random:1", "neighbours are on PEs all over the ring",
+           "use cyclic, column, rows, blocks, grid or tiles"}}});
 }
 
-TEST_CASE("an absurdly large number is refused like any other outside the range", "[cli]") {
+TEST_CASE("render: refuses a very large number like any other outside the range", "[cli]") {
     check_render_options({{{"--lanes", "4000000000"}, {"--lanes 4000000000", "1, 4, 8 or 16"}},
                           {{"--group", "4000000000"}, {"--group 4000000000", "1..1024"}},
                           {{"--bounces", "4000000000"}, {"--bounces 4000000000", "0..31"}}});
 }
 
-TEST_CASE("a size that is no size is refused", "[cli]") {
+TEST_CASE("render --size: refuses wrong syntax", "[cli]") {
     for (const std::string size : {"0", "12y", "8x", "x8", "8x8x8", "-4", "1e2"})
         check_render_options({{{"--size", size}, {"--size " + size + ": must be"}}});
 }
 
-TEST_CASE("a number that is no whole number is refused", "[cli]") {
+TEST_CASE("render: refuses a text that is not a whole number", "[cli]") {
     for (const std::string option : {"--pes", "--offset", "--bounces", "--lanes", "--group"})
         check_render_options({{{option, "x"}, {option + " x: not a whole number; " + option + ": "}}});
     for (const std::string value : {"-1", "4294967296"})
@@ -81,7 +80,7 @@ TEST_CASE("a number that is no whole number is refused", "[cli]") {
     check_render_options({{{"--pes", "1.5"}, {"--pes 1.5: not a whole number", "1..W*H"}}});
 }
 
-TEST_CASE("words that do not belong there are refused with a hint at the help", "[cli]") {
+TEST_CASE("raya: refuses unknown, missing and repeated arguments, and points to the help", "[cli]") {
     check_render_options({{{"--nonsense"}, {"raya: render: no option --nonsense; see raya render --help"}},
                           {{"--siz", "32"}, {"no option --siz (did you mean --size?)"}},
                           {{"second.nff"}, {"unexpected argument 'second.nff'; see raya render --help"}},
@@ -89,18 +88,18 @@ TEST_CASE("words that do not belong there are refused with a hint at the help", 
                           {{"--pes", "4", "--pes", "5"}, {"--pes: takes one value, not 2", "--help"}}});
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
-    check_refused(outputs, {}, 2, {"raya: name a command: render, explore, devices", "see raya --help"});
-    check_refused(outputs, {"frobnicate"}, 2, {"raya: no command frobnicate; there are render, explore, devices"});
-    check_refused(outputs, {"rendr"}, 2, {"raya: no command rendr (did you mean render?); there are"});
+    check_refused(outputs, {}, 2, {"raya: command missing; commands: render, explore, devices", "see raya --help"});
+    check_refused(outputs, {"frobnicate"}, 2, {"raya: no command frobnicate; commands: render, explore, devices"});
+    check_refused(outputs, {"rendr"}, 2, {"raya: no command rendr (did you mean render?); commands:"});
     check_refused(outputs, {"verify", "--ful"}, 2, {"no option --ful (did you mean --full?); see raya verify --help"});
     check_refused(outputs, {"study", "fig7", "fig8", "-o", outputs / "z"}, 2, {"fig8 is a study", "raya study all"});
     check_refused(outputs, {"render"}, 2, {"SCENE is required", "--help"});
     check_refused(outputs, {"render", scene}, 2, {"--output is required", "--help"});
     check_refused(outputs, {"devices", "extra"}, 2, {"extra", "--help"});
-    check_refused(outputs, {"generate"}, 2, {"raya: generate: name a command: balls, lattice", "--help"});
+    check_refused(outputs, {"generate"}, 2, {"raya: generate: command missing; commands: balls, lattice", "--help"});
 }
 
-TEST_CASE("bench and generate refuse numbers outside their ranges", "[cli]") {
+TEST_CASE("bench, generate: refuse numbers outside their ranges", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = outputs / "x.nff";
     check_refused(outputs, {"bench", "--samples", "0"}, 2, {"--samples 0", "1..1000"});
@@ -118,7 +117,7 @@ TEST_CASE("bench and generate refuse numbers outside their ranges", "[cli]") {
     check_refused(outputs, {"generate", "random", "9", "--seed", "x", "-o", scene}, 2, {"--seed", "x"});
 }
 
-TEST_CASE("a file that cannot be written is refused before anything is rendered", "[cli]") {
+TEST_CASE("render, generate: refuse a file that they cannot write, before any work", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes"), image = outputs / "x.png", missing = outputs / "missing/x";
     check_refused(outputs, {"render", scene, "-o", outputs / "x.gif"}, 2, {"x.gif", ".png, .exr, .pfm"});
@@ -135,27 +134,27 @@ TEST_CASE("a file that cannot be written is refused before anything is rendered"
     check_refused(outputs, {"generate", "centre", "-o", missing + ".nff"}, 2, {"/missing' does not exist"});
 }
 
-TEST_CASE("where OpenImageIO does not load, PNG and EXR are refused before anything is rendered", "[cli]") {
+TEST_CASE("render: without OpenImageIO it refuses PNG and EXR before rendering, and writes PPM and PFM", "[cli]") {
     const ScratchFolder libraries, outputs;
     const std::string broken = libraries / "libOpenImageIO.so.2.4";
     std::ofstream(broken) << "no library";
-    const Surroundings around{.variables = {{"LD_LIBRARY_PATH", libraries.path()}}};
+    const RunOptions run_options{.variables = {{"LD_LIBRARY_PATH", libraries.path()}}};
     const std::string scene = scene_file("planes");
     for (const auto& [image, instead] : {std::pair{"x.png", "name a .ppm file"},
                                          {"x.tif", "name a .ppm file"},
                                          {"x.jpg", "name a .ppm file"},
                                          {"x.exr", "name a .pfm file"}})
         check_refused(outputs, {"render", scene, "-o", outputs / image}, 2,
-                      {outputs / image, "libOpenImageIO", "remedy: install OpenImageIO ", instead}, around);
+                      {outputs / image, "libOpenImageIO", "remedy: install OpenImageIO ", instead}, run_options);
     for (const char* image : {"x.pfm", "x.ppm"}) {
-        const RunOutcome run =
-            run_raya({"render", scene, "-o", outputs / image, "--size", "4", "--pes", "4", "--lanes", "4"}, around);
-        INFO(run.told());
+        const RunOutcome run = run_raya(
+            {"render", scene, "-o", outputs / image, "--size", "4", "--pes", "4", "--lanes", "4"}, run_options);
+        INFO(run.describe());
         CHECK(run.code == 0);
     }
 }
 
-TEST_CASE("a folder without permission to write is refused", "[cli]") {
+TEST_CASE("render: refuses a folder without write permission", "[cli]") {
     const ScratchFolder outputs;
     ::chmod(outputs.path().c_str(), 0555);
     const std::string refused = "'" + outputs.path().string() + "' is not writable";
@@ -164,14 +163,15 @@ TEST_CASE("a folder without permission to write is refused", "[cli]") {
     ::chmod(outputs.path().c_str(), 0755);
 }
 
-TEST_CASE("a folder without kernels is refused", "[cli]") {
+TEST_CASE("render --kernel-dir: refuses a folder without kernels", "[cli]") {
     const ScratchFolder empty;
-    check_render_options({{{"--kernel-dir", empty / "missing"}, {"--kernel-dir", "cannot read kernel file", "missing/"}},
-                          {{"--kernel-dir", empty.path()}, {"--kernel-dir", "cannot read kernel file", "kernels/"}}});
+    check_render_options(
+        {{{"--kernel-dir", empty / "missing"}, {"--kernel-dir", "cannot read kernel file", "missing/"}},
+         {{"--kernel-dir", empty.path()}, {"--kernel-dir", "cannot read kernel file", "kernels/"}}});
 }
 
 }  // namespace
-TEST_CASE("empty values, negative counts and one file named twice are refused", "[cli]") {
+TEST_CASE("render, generate: refuse empty values, negative counts and one file for two outputs", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = std::string(RAYA_SOURCE_DIR) + "/scenes/planes.nff", image = (outputs / "x.pfm").string();
     for (const char* option : {"--lanes", "--size", "--device", "--format", "--report"})

@@ -1,4 +1,4 @@
-// Scenes that the program refuses, from end to end; the reader's own tests have the full table.
+// Scenes that the program refuses; the tests of the reader have the full table.
 #include <filesystem>
 #include <fstream>
 
@@ -10,7 +10,7 @@ namespace {
 const std::string kView = "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\n";
 const std::string kSphere = "s 0 0 0 1\n";
 
-TEST_CASE("a scene that is no good is refused with file, line and reason", "[cli]") {
+TEST_CASE("render: refuses an invalid scene with file, line and reason", "[cli]") {
     struct Row {
         std::string text;
         std::string message;  // "LINE: reason"
@@ -38,7 +38,7 @@ TEST_CASE("a scene that is no good is refused with file, line and reason", "[cli
     }
 }
 
-TEST_CASE("a scene that cannot be read is refused", "[cli]") {
+TEST_CASE("render, bench: refuse a scene file that they cannot read", "[cli]") {
     const ScratchFolder scenes, outputs;
     const std::string missing = scenes / "missing.nff";
     check_refused(outputs, render_into(outputs, missing), 2, {missing, "cannot read the scene: No such file"});
@@ -46,13 +46,13 @@ TEST_CASE("a scene that cannot be read is refused", "[cli]") {
     check_refused(outputs, {"bench", missing}, 2, {missing, "cannot read the scene"});
 }
 
-TEST_CASE("a scene that does not fit a PE is refused with both figures and the remedy", "[cli]") {
+TEST_CASE("render: refuses a scene that does not fit a PE, with both sizes and the remedy", "[cli]") {
     const ScratchFolder scenes, outputs;
     const std::string scene = scenes / "balls4.nff";
     REQUIRE(run_raya({"generate", "balls", "--level", "4", "-o", scene}).code == 0);
-    const std::string words_of_spheres = "145.0 KB";  // 7,381 spheres of 5 words and a few hundred words beside them
+    const std::string needed = "145.0 KB";  // 7,381 spheres of 5 words, and a few hundred words more
     check_refused(outputs, render_into(outputs, scene), 2,
-                  {"balls4.nff: needs " + words_of_spheres + " in every PE", "has 32 KB", "use --machine grande"});
+                  {"balls4.nff: needs " + needed + " in every PE", "has 32 KB", "use --machine grande"});
 }
 
 }  // namespace

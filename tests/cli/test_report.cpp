@@ -1,5 +1,4 @@
-// The report of a render, read back: its keys and types, and numbers that must agree with each other, with the scene
-// and with the images.
+// The report of a render: its keys and types, and numbers that agree with each other, the scene and the images.
 #include <algorithm>
 #include <numeric>
 #include <set>
@@ -43,16 +42,16 @@ void check_load(const Document& report) {
     const auto sum = static_cast<double>(sum_of(per_pe));
     const auto pes = static_cast<double>(per_pe.size());
     const auto [min, max] = std::minmax_element(per_pe.begin(), per_pe.end());
-    const auto most = static_cast<double>(*max);
+    const auto maximum = static_cast<double>(*max);
     CHECK(per_pe.size() == report["machine"]["pes"]);
     CHECK(load["unit"] == "cycles");
     CHECK(load["min"] == *min);
     CHECK(load["max"] == *max);
     const auto close = [&](const char* key) { return Approx(load[key].get<double>()).epsilon(1e-12); };
     CHECK(sum / pes == close("mean"));
-    CHECK((most - sum / pes) / (sum / pes) == close("imbalance"));
-    CHECK(sum / most == close("speedup"));
-    CHECK(sum / most / pes == close("efficiency"));
+    CHECK((maximum - sum / pes) / (sum / pes) == close("imbalance"));
+    CHECK(sum / maximum == close("speedup"));
+    CHECK(sum / maximum / pes == close("efficiency"));
 }
 
 void check_communication(const Document& report) {
@@ -83,7 +82,7 @@ void check_measured(const Document& report) {
     for (const char* label : {"bus.broadcast", "trace", "bus.gather"}) CHECK(labels.count(label) == 1);
 }
 
-TEST_CASE("the report has its fixed keys, each of its type", "[cli]") {
+TEST_CASE("report: has its fixed keys, each with its type", "[cli]") {
     CHECK(keys_of(RenderFiles("planes").report()) == fixed_keys());
     std::set<std::string> without_limit = fixed_keys();
     without_limit.erase("machine.pe_memory_bytes count");
@@ -97,7 +96,7 @@ TEST_CASE("the report has its fixed keys, each of its type", "[cli]") {
     CHECK(keys_of(RenderFiles("planes", {"--mapping", "rows"}).report()) == without_slots);
 }
 
-TEST_CASE("the report's numbers agree with each other and with the scene", "[cli]") {
+TEST_CASE("report: numbers agree with each other and with the scene", "[cli]") {
     const std::string name = GENERATE("centre", "glass", "polygons", "cones");
     CAPTURE(name);
     const Document report = RenderFiles(name, {"--pes", "5"}).report();
@@ -107,7 +106,7 @@ TEST_CASE("the report's numbers agree with each other and with the scene", "[cli
     check_measured(report);
 }
 
-TEST_CASE("the report says what was asked for", "[cli]") {
+TEST_CASE("report: contains the options of the render", "[cli]") {
     const Document report = RenderFiles("planes", {"--pes", "7", "--offset", "3", "--fold", "block", "--lanes", "1",
                                                    "--group", "2", "--bounces", "2"})
                                 .report();
@@ -133,7 +132,7 @@ TEST_CASE("the report says what was asked for", "[cli]") {
     CHECK(RenderFiles("planes", {"--machine", "grande"}).report()["machine"]["pes"] == kTestWidth);
 }
 
-TEST_CASE("the report names the mapping: slots by name and offset, others by their whole text", "[cli]") {
+TEST_CASE("report: names a mapping with slots by name and offset, others by their full text", "[cli]") {
     struct Row {
         std::string mapping, name;
         Document offset, fold;
@@ -149,7 +148,7 @@ TEST_CASE("the report names the mapping: slots by name and offset, others by the
     }
 }
 
-TEST_CASE("dynamic and hybrid distribution are simulated, and the report says so", "[cli]") {
+TEST_CASE("report: marks dynamic and hybrid mappings as simulated", "[cli]") {
     const Document fixed = RenderFiles("planes", {"--mapping", "cyclic"}).report();
     for (const char* mapping : {"dynamic:4", "dynamic:4,100", "hybrid:4,0,0.5"}) {
         const Document report = RenderFiles("planes", {"--mapping", mapping, "--pes", "9"}).report();
@@ -165,7 +164,7 @@ TEST_CASE("dynamic and hybrid distribution are simulated, and the report says so
     CHECK(RenderFiles("planes", {"--machine", "links"}).report()["machine"]["mapping"] == "dynamic:1");
 }
 
-TEST_CASE("the hash is that of the pixels written, the cost image adds up to the load", "[cli]") {
+TEST_CASE("report: the hash is that of the image file, and the cost image sums to the load", "[cli]") {
     const std::string extension = GENERATE(".exr", ".pfm");
     CAPTURE(extension);
     const RenderFiles files("centre", {"--pes", "5"}, extension, extension);
@@ -179,7 +178,7 @@ TEST_CASE("the hash is that of the pixels written, the cost image adds up to the
           static_cast<double>(sum_of(loads_of(report))));
 }
 
-TEST_CASE("one PE of the SPA hands its image over block by block", "[cli]") {
+TEST_CASE("render --pes 1: one PE of the SPA gathers its image in blocks", "[cli]") {
     const Document one = RenderFiles("centre", {"--size", "256", "--pes", "1"}).report();
     const Document many = RenderFiles("centre", {"--size", "256", "--pes", "256"}).report();
     CHECK(one["communication"]["gathers"] > 1);

@@ -1,4 +1,4 @@
-// What a start loads: libraries are counted as the dynamic loader tells them, not timed.
+// Libraries that the program loads at its start, from the log of the dynamic loader.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -15,16 +15,16 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/// File names of all libraries that raya and the processes that it starts load, as LD_DEBUG of ld.so(8) tells them.
+/// Returns the file names of all libraries that raya and its child processes load, from LD_DEBUG (ld.so(8)).
 Names libraries_of(const std::vector<std::string>& arguments, int code = 0) {
-    const ScratchFolder told;
+    const ScratchFolder logs;
     const RunOutcome run =
-        run_raya(arguments, {.variables = {{"LD_DEBUG", "files"}, {"LD_DEBUG_OUTPUT", told / "process"}}});
-    INFO(run.told());
+        run_raya(arguments, {.variables = {{"LD_DEBUG", "files"}, {"LD_DEBUG_OUTPUT", logs / "process"}}});
+    INFO(run.describe());
     REQUIRE(run.code == code);
     Names names;
     const std::regex initialised("calling init: .*/([^/\n]+)");
-    for (const auto& process : std::filesystem::directory_iterator(told.path())) {
+    for (const auto& process : std::filesystem::directory_iterator(logs.path())) {
         const std::string text = file_contents(process.path());
         for (std::sregex_iterator at(text.begin(), text.end(), initialised), end; at != end; ++at)
             names.insert((*at)[1]);
@@ -32,7 +32,7 @@ Names libraries_of(const std::vector<std::string>& arguments, int code = 0) {
     return names;
 }
 
-/// Those whose name has one of the parts in it.
+/// Returns the names that contain one of the parts.
 Names with(const Names& names, const std::vector<std::string>& parts) {
     Names found;
     std::copy_if(names.begin(), names.end(), std::inserter(found, found.end()), [&](const std::string& name) {
@@ -45,10 +45,10 @@ std::vector<std::string> render_of_4(const std::string& image) {
     return {"render", scene_file("planes"), "-o", image, "--size", "4", "--pes", "4", "--lanes", "4"};
 }
 
-TEST_CASE("a start loads the OpenCL loader, three small libraries, those of C and C++, and no other", "[cli]") {
+TEST_CASE("--version: loads the OpenCL loader, three small libraries, those of C and C++, and no others", "[cli]") {
     Names names = libraries_of({"--version"});
     for (const std::string& sanitizer : with(names, {"libasan", "libubsan"})) names.erase(sanitizer);
-    if (kSanitized)  // less is inlined there
+    if (kSanitized)  // less inlining: Imath is a dependency there
         for (const std::string& imath : with(names, {"libImath"})) names.erase(imath);
     CHECK(names.size() <= 9);
     const std::vector<std::string> known = {"libOpenCL.", "libfmt.", "libxxhash.", "libz.",       "libstdc++.", "libm.",
@@ -56,16 +56,16 @@ TEST_CASE("a start loads the OpenCL loader, three small libraries, those of C an
     CHECK(with(names, known) == names);
 }
 
-TEST_CASE("devices and renders to PFM and PPM load neither OpenImageIO nor TBB nor MPI; a render to PNG does",
-          "[cli]") {
+TEST_CASE("devices, renders to PFM and PPM: load neither OpenImageIO nor TBB nor MPI; a render to PNG does", "[cli]") {
     const ScratchFolder outputs;
-    const std::vector<std::string> heavy = {"raya_", "OpenImageIO", "libtbb", "libmpi", "libopen-"};  // of Open MPI
+    const std::vector<std::string> heavy = {"raya_", "OpenImageIO", "libtbb", "libmpi",
+                                            "libopen-"};  // libopen-*: Open MPI
     CHECK(with(libraries_of({"devices"}), heavy).empty());
     for (const char* image : {"x.pfm", "x.ppm"}) CHECK(with(libraries_of(render_of_4(outputs / image)), heavy).empty());
     CHECK(with(libraries_of(render_of_4(outputs / "x.png")), {"raya_pictures", "OpenImageIO"}).size() >= 2);
 }
 
-TEST_CASE("what is wrong with inputs is refused before a driver or OpenImageIO is loaded", "[cli]") {
+TEST_CASE("commands: refuse wrong inputs before they load a driver or OpenImageIO", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes"), image = outputs / "x.png", missing = outputs / "none";
     std::ofstream(outputs / "bad.nff") << "v\nfrom 0 0 x\n";
@@ -84,9 +84,9 @@ TEST_CASE("what is wrong with inputs is refused before a driver or OpenImageIO i
         {"explore", missing, "-o", outputs / "x.html"},
         {"study", "fig7", missing, "-o", outputs / "d"},
         {"verify", "--kernel-dir", missing}};
-    for (const std::vector<std::string>& words : refused) {
-        CAPTURE(words);
-        CHECK(with(libraries_of(words, 2), {"raya_pictures", "OpenImageIO", "libtbb", "libpocl"}).empty());
+    for (const std::vector<std::string>& arguments : refused) {
+        CAPTURE(arguments);
+        CHECK(with(libraries_of(arguments, 2), {"raya_pictures", "OpenImageIO", "libtbb", "libpocl"}).empty());
     }
 }
 

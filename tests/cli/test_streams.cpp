@@ -1,4 +1,4 @@
-// "-": stdin for a scene, stdout for one file, and then the summary on stderr.
+// "-" as a file name: stdin for a scene, stdout for one file; the summary then goes to stderr.
 #include <fcntl.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-/// A run of raya by a shell in `folder`, whose redirections name files there; its own exit code.
+/// Runs a command line in a shell in `folder` and returns its exit code.
 struct Shell {
     const ScratchFolder& folder;
 
@@ -28,34 +28,34 @@ const std::string kRaya = std::string("'") + RAYA_PROGRAM + "' ";
 const std::string kRender = kRaya + "render ";
 const std::string kSmall = " --size 12 --pes 12 --lanes 4 ";
 
-TEST_CASE("a scene from stdin and a picture to stdout are those of files", "[cli]") {
+TEST_CASE("render - -o -: reads stdin and writes stdout with the same bytes as files", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     const std::string scene = scene_file("planes");
     REQUIRE(shell(kRender + scene + " -o a.ppm --report a.json --quiet" + kSmall) == 0);
-    REQUIRE(shell("cat " + scene + " | " + kRender + "- -o - --report b.json" + kSmall + "> b.ppm 2> told") == 0);
+    REQUIRE(shell("cat " + scene + " | " + kRender + "- -o - --report b.json" + kSmall + "> b.ppm 2> log") == 0);
     CHECK(file_contents(folder / "b.ppm") == file_contents(folder / "a.ppm"));
-    const std::string told = file_contents(folder / "told");
-    CHECK(contains(told, "stdin: 12 x 12 pixels"));
-    CHECK(contains(told, "image   stdout ("));
+    const std::string log = file_contents(folder / "log");
+    CHECK(contains(log, "stdin: 12 x 12 pixels"));
+    CHECK(contains(log, "image   stdout ("));
     const Document report = json_of(folder / "b.json");
     CHECK(report["scene"] == "stdin");
     CHECK(report["image"]["file"] == "stdout");
     CHECK(report["image"]["hash"] == json_of(folder / "a.json")["image"]["hash"]);
-    REQUIRE(shell(kRender + "- -o - --quiet" + kSmall + "< " + scene + " > c.ppm 2> told") == 0);
+    REQUIRE(shell(kRender + "- -o - --quiet" + kSmall + "< " + scene + " > c.ppm 2> log") == 0);
     CHECK(file_contents(folder / "c.ppm") == file_contents(folder / "a.ppm"));
-    CHECK(file_contents(folder / "told").empty());
+    CHECK(file_contents(folder / "log").empty());
 }
 
-TEST_CASE("each single file of a render can go to stdout", "[cli]") {
+TEST_CASE("render: each of its files can go to stdout", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     const std::string scene = scene_file("planes");
     const auto streamed = [&](const std::string& option, const std::string& file, const std::string& more = "") {
         CAPTURE(option);
-        REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " " + file + kSmall + more + "> told") == 0);
-        REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " -" + kSmall + more + "> out 2> told") == 0);
-        CHECK(contains(file_contents(folder / "told"), "rays    "));
+        REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " " + file + kSmall + more + "> log") == 0);
+        REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " -" + kSmall + more + "> out 2> log") == 0);
+        CHECK(contains(file_contents(folder / "log"), "rays    "));
         return file_contents(folder / "out");
     };
     const std::string cost = streamed("--cost", "cost.pfm");
@@ -67,31 +67,31 @@ TEST_CASE("each single file of a render can go to stdout", "[cli]") {
     CHECK(Document::parse(streamed("--trace", "t.json")).is_object());
 }
 
-TEST_CASE("packets go to stdout as the file has them", "[cli]") {
+TEST_CASE("render --packets -: writes the same bytes to stdout as to a file", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     const std::string line =
         kRender + scene_file("planes") + " -o x.ppm --machine torus --nodes 2x1x1 --size 8 --lanes 4 ";
-    REQUIRE(shell(line + "--packets p.csv.gz > told") == 0);
-    REQUIRE(shell(line + "--packets - > out 2> told") == 0);
+    REQUIRE(shell(line + "--packets p.csv.gz > log") == 0);
+    REQUIRE(shell(line + "--packets - > out 2> log") == 0);
     CHECK(file_contents(folder / "out") == file_contents(folder / "p.csv.gz"));
     CHECK_FALSE(gunzip(file_contents(folder / "out")).empty());
 }
 
-TEST_CASE("the explorer's page goes to stdout, and shows what its view options say", "[cli]") {
+TEST_CASE("explore -o -: writes the same page to stdout as to a file", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     const std::string line = kRaya + "explore " + scene_file("planes") + kSmall;
     REQUIRE(shell(line + "-o a.html --quiet") == 0);
-    REQUIRE(shell(line + "-o - > b.html 2> told") == 0);
+    REQUIRE(shell(line + "-o - > b.html 2> log") == 0);
     CHECK((file_contents(folder / "b.html") == file_contents(folder / "a.html")));
-    CHECK(contains(file_contents(folder / "told"), "page    stdout"));
+    CHECK(contains(file_contents(folder / "log"), "page    stdout"));
     REQUIRE(shell(line + "-o c.html --quiet --from 3,-6,4") == 0);
     CHECK((file_contents(folder / "c.html") != file_contents(folder / "a.html")));
     CHECK(contains(file_contents(folder / "c.html"), "--from 3,-6,4"));
 }
 
-TEST_CASE("what other commands write and read goes through stdout and stdin too", "[cli]") {
+TEST_CASE("generate, info, verify, bench: read stdin and write stdout", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     REQUIRE(shell(kRaya + "generate random 5 -o s.nff") == 0);
@@ -99,61 +99,61 @@ TEST_CASE("what other commands write and read goes through stdout and stdin too"
     CHECK(file_contents(folder / "out.nff") == file_contents(folder / "s.nff"));
     REQUIRE(shell(kRaya + "generate random 5 -o - | " + kRaya + "info - --json > info.json") == 0);
     CHECK(json_of(folder / "info.json")["objects"]["spheres"] == 5);
-    REQUIRE(shell(kRaya + "verify --only 'machine bus' --lanes 4 --report - > v.json 2> told") == 0);
+    REQUIRE(shell(kRaya + "verify --only 'machine bus' --lanes 4 --report - > v.json 2> log") == 0);
     CHECK(json_of(folder / "v.json")["devices"][0]["right"] == true);
-    CHECK(contains(file_contents(folder / "told"), "PASS"));
+    CHECK(contains(file_contents(folder / "log"), "PASS"));
     const auto bench = [&](const std::string& scene) {
         return kRaya + "bench " + scene + " --format fp32 --samples 1" + kSmall;
     };
-    REQUIRE(shell(bench("-") + "--report - < s.nff > piped.json 2> told") == 0);
-    CHECK(contains(file_contents(folder / "told"), "Mrays/s"));
-    REQUIRE(shell(bench("s.nff") + "--report - > named.json 2> told") == 0);
+    REQUIRE(shell(bench("-") + "--report - < s.nff > piped.json 2> log") == 0);
+    CHECK(contains(file_contents(folder / "log"), "Mrays/s"));
+    REQUIRE(shell(bench("s.nff") + "--report - > named.json 2> log") == 0);
     CHECK(json_of(folder / "piped.json")["rows"][0]["hash"] == json_of(folder / "named.json")["rows"][0]["hash"]);
-    CHECK(shell(bench("s.nff") + "--compare - --tolerance 100 < named.json > told") == 0);
-    CHECK(shell(bench("-") + "--compare - < named.json 2> told") == 2);
-    CHECK(contains(file_contents(folder / "told"), "stdin can be read once"));
+    CHECK(shell(bench("s.nff") + "--compare - --tolerance 100 < named.json > log") == 0);
+    CHECK(shell(bench("-") + "--compare - < named.json 2> log") == 2);
+    CHECK(contains(file_contents(folder / "log"), "stdin can be read only once"));
     if (!RAYA_STUDIES) return;
-    CHECK(shell(kRaya + "study formats - - -o d < s.nff 2> told") == 2);
-    CHECK(contains(file_contents(folder / "told"), "stdin can be read once"));
+    CHECK(shell(kRaya + "study formats - - -o d < s.nff 2> log") == 2);
+    CHECK(contains(file_contents(folder / "log"), "stdin can be read only once"));
 }
 
-TEST_CASE("a file named - is ./-", "[cli]") {
+TEST_CASE("./-: is a file named -", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     std::filesystem::copy(scene_file("planes"), folder / "-");
-    REQUIRE(shell(kRender + "./- -o a.ppm --report ./-.json" + kSmall + "> told") == 0);
+    REQUIRE(shell(kRender + "./- -o a.ppm --report ./-.json" + kSmall + "> log") == 0);
     CHECK(json_of(folder / "-.json")["scene"] == "./-");
-    REQUIRE(shell(kRaya + "generate random 5 -o ./- > told") == 0);
-    CHECK(file_contents(folder / "told").empty());
+    REQUIRE(shell(kRaya + "generate random 5 -o ./- > log") == 0);
+    CHECK(file_contents(folder / "log").empty());
     CHECK(contains(file_contents(folder / "-"), "s "));
 }
 
-TEST_CASE("two files on stdout, stdin read twice, and what cannot be a stream are refused", "[cli]") {
+TEST_CASE("-: refused for two outputs, two inputs, and files that cannot be streams", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
-    for (const Words& two : {Words{"-o", "-", "--report", "-"}, Words{"-o", "-", "--cost", "-"},
-                             Words{"-o", "x.pfm", "--cost", "-", "--trace", "-"}}) {
-        Words words = {"render", scene};
-        words.insert(words.end(), two.begin(), two.end());
-        check_refused(outputs, words, 2, {"only one file can go to stdout"});
+    for (const Arguments& two : {Arguments{"-o", "-", "--report", "-"}, Arguments{"-o", "-", "--cost", "-"},
+                                 Arguments{"-o", "x.pfm", "--cost", "-", "--trace", "-"}}) {
+        Arguments arguments = {"render", scene};
+        arguments.insert(arguments.end(), two.begin(), two.end());
+        check_refused(outputs, arguments, 2, {"only one file can go to stdout"});
     }
     check_refused(outputs, {"bench", "--compare", "-"}, 2, {"stdin:1: not valid JSON"});
-    check_refused(outputs, {"study", "fig7", scene, "-o", "-"}, 2, {"-o -: a study is many files"});
+    check_refused(outputs, {"study", "fig7", scene, "-o", "-"}, 2, {"-o -: a study writes several files"});
     check_refused(outputs, {"tune", "-"}, 2, {"tune -: ", "name a file"});
     check_refused(
         outputs,
         {"render", scene, "-o", outputs / "x.ppm", "--machine", "torus", "--packets", "-", "--replay", "simgrid"}, 2,
-        {"give --packets FILE.csv.gz"});
+        {"add --packets FILE.csv.gz"});
 }
 
-TEST_CASE("redirected stdin and stdout are files that no output overwrites", "[cli][file_options]") {
+TEST_CASE("-: no output overwrites the file behind redirected stdin or stdout", "[cli][file_options]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     std::filesystem::copy(scene_file("planes"), folder / "s.nff");
     const auto refused = [&](const std::string& line, const std::string& message) {
         CAPTURE(line);
-        CHECK(shell(kRaya + line + " 2> told") == 2);
-        CHECK_THAT(file_contents(folder / "told"), Catch::Contains(message));
+        CHECK(shell(kRaya + line + " 2> log") == 2);
+        CHECK_THAT(file_contents(folder / "log"), Catch::Contains(message));
         CHECK(file_contents(folder / "s.nff") == file_contents(scene_file("planes")));
     };
     refused("bench - --report s.nff < s.nff", "--report s.nff: would overwrite the input SCENE -");
@@ -162,35 +162,35 @@ TEST_CASE("redirected stdin and stdout are files that no output overwrites", "[c
     refused("render s.nff -o - --report - >> x", "only one file can go to stdout");
 }
 
-TEST_CASE("messages call a scene on stdin stdin, with the line", "[cli]") {
+TEST_CASE("-: messages name stdin and the line", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
-    CHECK(shell("printf 'v\\nfrom 0 0 x\\n' | " + kRender + "- -o x.ppm 2> told") == 2);
-    CHECK(contains(file_contents(folder / "told"), "raya: stdin:2: "));
-    CHECK(shell(kRender + "- -o x.ppm < /dev/null 2> told") == 2);
-    CHECK(contains(file_contents(folder / "told"), "raya: stdin:1: no 'v'"));
-    CHECK(shell(kRender + "- -o x.ppm <&- 2> told") == 2);
-    CHECK(shell(kRender + "- -o x.ppm < . 2> told") == 2);
-    CHECK(contains(file_contents(folder / "told"), "stdin: cannot read the scene"));
-    CHECK(shell("(echo 'la 1 1 1'; cat " + scene_file("planes") + ") | " + kRaya + "info - > out 2> told") == 0);
-    CHECK(contains(file_contents(folder / "told"), "warning: stdin:1: entity 'la'"));
+    CHECK(shell("printf 'v\\nfrom 0 0 x\\n' | " + kRender + "- -o x.ppm 2> log") == 2);
+    CHECK(contains(file_contents(folder / "log"), "raya: stdin:2: "));
+    CHECK(shell(kRender + "- -o x.ppm < /dev/null 2> log") == 2);
+    CHECK(contains(file_contents(folder / "log"), "raya: stdin:1: no 'v'"));
+    CHECK(shell(kRender + "- -o x.ppm <&- 2> log") == 2);
+    CHECK(shell(kRender + "- -o x.ppm < . 2> log") == 2);
+    CHECK(contains(file_contents(folder / "log"), "stdin: cannot read the scene"));
+    CHECK(shell("(echo 'la 1 1 1'; cat " + scene_file("planes") + ") | " + kRaya + "info - > out 2> log") == 0);
+    CHECK(contains(file_contents(folder / "log"), "warning: stdin:1: entity 'la'"));
     CHECK(contains(file_contents(folder / "out"), "skipped stdin:1: entity 'la'"));
 }
 
-TEST_CASE("a file that is lost on stdout is exit code 2", "[cli]") {
+TEST_CASE("-o -: a failed write to stdout is exit code 2", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     for (const std::string lost : {"> /dev/full", ">&-"}) {
         CAPTURE(lost);
-        CHECK(shell(kRender + scene_file("planes") + " -o - --quiet" + kSmall + lost + " 2> told") == 2);
-        CHECK(contains(file_contents(folder / "told"), "cannot write 'stdout'"));
-        CHECK(shell(kRaya + "generate random 5 -o - " + lost + " 2> told") == 2);
+        CHECK(shell(kRender + scene_file("planes") + " -o - --quiet" + kSmall + lost + " 2> log") == 2);
+        CHECK(contains(file_contents(folder / "log"), "cannot write 'stdout'"));
+        CHECK(shell(kRaya + "generate random 5 -o - " + lost + " 2> log") == 2);
     }
     CHECK(shell(kRaya + "generate random 5 -o - 2>&- > out.nff") == 0);
     CHECK(contains(file_contents(folder / "out.nff"), "s "));
 }
 
-/// A terminal of which this process has the other end.
+/// A pseudoterminal; this process has the master end.
 struct Terminal {
     Terminal() {
         REQUIRE(master >= 0);
@@ -213,16 +213,16 @@ struct Terminal {
     int master = ::posix_openpt(O_RDWR | O_NOCTTY), slave = -1;
 };
 
-TEST_CASE("a terminal is not waited for in silence, nor filled with bytes", "[cli]") {
+TEST_CASE("-: a message says that raya reads a terminal; binary output to a terminal is refused", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     const Terminal terminal;
     terminal.type("v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\ns 0 0 0 1\n\x04");
-    CHECK(shell(kRaya + "info - < " + terminal.name() + " > out 2> told") == 0);
-    CHECK(contains(file_contents(folder / "told"), "raya: reads stdin, a terminal; Ctrl-D"));
+    CHECK(shell(kRaya + "info - < " + terminal.name() + " > out 2> log") == 0);
+    CHECK(contains(file_contents(folder / "log"), "raya: reading stdin from the terminal; end with Ctrl-D"));
     CHECK(contains(file_contents(folder / "out"), "stdin: 1 object: 1 sphere"));
-    CHECK(shell(kRender + scene_file("planes") + " -o -" + kSmall + "> " + terminal.name() + " 2> told") == 2);
-    CHECK(contains(file_contents(folder / "told"), "stdout is a terminal"));
+    CHECK(shell(kRender + scene_file("planes") + " -o -" + kSmall + "> " + terminal.name() + " 2> log") == 2);
+    CHECK(contains(file_contents(folder / "log"), "stdout is a terminal"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// raya study of the load laboratory, as a user runs it: the files that it leaves, and what it refuses without a trace.
+// raya study: the files of the load laboratory's studies, and refusals.
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -23,16 +23,16 @@ Files files_in(const std::filesystem::path& folder) {
     return files;
 }
 
-Words study(const std::string& name, const ScratchFolder& outputs, const Words& options = {}) {
-    Words arguments = {"study", name, "-o", outputs / "made/x"};
+Arguments study(const std::string& name, const ScratchFolder& outputs, const Arguments& options = {}) {
+    Arguments arguments = {"study", name, "-o", outputs / "made/x"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return arguments;
 }
 
-TEST_CASE("a study writes its figures for readers and for programs", "[cli]") {
+TEST_CASE("study: writes figures, tables, JSON and a document", "[cli]") {
     const ScratchFolder outputs;
     const RunOutcome run = run_raya(study("fig8", outputs, {"--size", "32"}));
-    INFO(run.told());
+    INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
     for (const char* part : {"u(0)", "u(8)", "u(16)", "best p of all 32", "fig8.md"})
@@ -60,13 +60,13 @@ TEST_CASE("a study writes its figures for readers and for programs", "[cli]") {
     const std::string csv = file_contents(folder / "fig8.csv"), markdown = file_contents(folder / "fig8.md");
     CHECK(csv.starts_with("p,u,mean u,+-,least u,largest u,"));
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 33);
-    CHECK_THAT(markdown, Catch::Contains("## Chief figures") && Catch::Contains("(fig8-all.svg)"));
+    CHECK_THAT(markdown, Catch::Contains("## Main figures") && Catch::Contains("(fig8-all.svg)"));
 }
 
-// SimGrid's program lies beside raya, where it is built: a copy of raya elsewhere has none.
-TEST_CASE("without SimGrid its study says what to install, and the others go on without it", "[cli]") {
+// SimGrid's program is next to raya if it was built: a copy of raya in another folder has none.
+TEST_CASE("study simgrid: without SimGrid it says what to install, and study all skips it", "[cli]") {
     const ScratchFolder outputs, elsewhere;
-    const Surroundings copy{.program = elsewhere / "raya"};
+    const RunOptions copy{.program = elsewhere / "raya"};
     std::filesystem::copy_file(RAYA_PROGRAM, copy.program);
     std::filesystem::create_directory_symlink(std::filesystem::path(RAYA_PROGRAM).parent_path() / "python",
                                               elsewhere / "python");
@@ -76,11 +76,11 @@ TEST_CASE("without SimGrid its study says what to install, and the others go on 
                   {"study simgrid is left out", "missing.nff"}, copy);
 }
 
-TEST_CASE("a study takes a scene of one's own", "[cli]") {
+TEST_CASE("study NAME SCENE: uses the given scene", "[cli]") {
     const ScratchFolder outputs;
     const std::string name = GENERATE(from_range(quick(1, {"fig13", "fig7", "fig8", "fig12"})));
     const RunOutcome run = run_raya(study(name, outputs, {scene_file("glass"), "--size", "20"}));
-    INFO(run.told());
+    INFO(run.describe());
     REQUIRE(run.code == 0);
     const auto json = Document::parse(file_contents(outputs / "made/x" / (name + ".json")));
     CHECK(json["settings"]["scene"] == "glass.nff");
@@ -88,19 +88,19 @@ TEST_CASE("a study takes a scene of one's own", "[cli]") {
     CHECK_FALSE(contains(run.out, "calibrated"));
 }
 
-TEST_CASE("a file of Python is a study of one's own", "[cli]") {
+TEST_CASE("study FILE.py: runs a user's study", "[cli]") {
     const ScratchFolder outputs;
     const RunOutcome run = run_raya(study(RAYA_SOURCE_DIR "/docs/my_study.py", outputs, {"--size", "32"}));
-    INFO(run.told());
+    INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK(files_in(outputs / "made/x") ==
           Files{"index.html", "my-study.csv", "my-study.json", "my-study.md", "my-study.png", "my-study.svg"});
 }
 
-TEST_CASE("a study refuses names, sizes and scenes, and leaves no folder behind", "[cli]") {
+TEST_CASE("study: refuses wrong names, sizes, scenes and devices, and leaves no folder", "[cli]") {
     const ScratchFolder outputs;
     check_refused(outputs, study("fig6", outputs), 2, {"no study fig6 (did you mean fig7?)", "FILE.py"});
-    check_refused(outputs, study(outputs / "none.py", outputs), 2, {"none.py: there is no such file"});
+    check_refused(outputs, study(outputs / "none.py", outputs), 2, {"none.py: no such file"});
     for (const char* size : quick(1, {"16", "0", "8", "5000"}))
         check_refused(outputs, study("fig8", outputs, {"--size", size}), 2,
                       {std::string("--size ") + size + ":", "17..4096"});
@@ -122,7 +122,7 @@ TEST_CASE("a study refuses names, sizes and scenes, and leaves no folder behind"
                   {.variables = {{"RAYA_PYTHON", "/nonexistent"}}});
 }
 
-TEST_CASE("a study refuses a folder that it cannot make or write before it renders", "[cli]") {
+TEST_CASE("study: refuses a folder that it cannot create or write, before rendering", "[cli]") {
     const ScratchFolder outputs;
     check_refused(outputs, {"study", "fig8", "-o", "/dev/null/x"}, 2, {"/dev/null/x", "cannot create directory"});
     const ScratchFolder closed;

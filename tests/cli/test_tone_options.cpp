@@ -1,4 +1,4 @@
-// --exposure, --gamma, --tone: what an 8-bit picture is made with, told in report and picture; the hash stays.
+// render --exposure, --gamma, --tone: they change the codes of 8-bit images, and report and image record them.
 #include <OpenImageIO/imageio.h>
 
 #include "tests/cli/refusals.hpp"
@@ -7,24 +7,24 @@
 namespace raya {
 namespace {
 
-TEST_CASE("a tone changes codes, never the hash, and report and picture tell it", "[cli]") {
-    const Words tone = {"--exposure", "-1.5", "--gamma", "2.2", "--tone", "reinhard"};
-    const RenderFiles usual("planes", {}, ".ppm");
-    CHECK(usual.report()["image"]["codes"] == Document({{"exposure", 0.0}, {"tone", "clip"}, {"gamma", nullptr}}));
+TEST_CASE("render --tone: changes the codes, not the hash; report and image record it", "[cli]") {
+    const Arguments tone = {"--exposure", "-1.5", "--gamma", "2.2", "--tone", "reinhard"};
+    const RenderFiles plain("planes", {}, ".ppm");
+    CHECK(plain.report()["image"]["codes"] == Document({{"exposure", 0.0}, {"tone", "clip"}, {"gamma", nullptr}}));
     for (const std::string extension : {".ppm", ".png", ".tif", ".jpg"}) {
         CAPTURE(extension);
         const RenderFiles toned("planes", tone, extension);
-        CHECK(toned.report()["image"]["hash"] == usual.report()["image"]["hash"]);
+        CHECK(toned.report()["image"]["hash"] == plain.report()["image"]["hash"]);
         CHECK(toned.report()["image"]["codes"] == Document({{"exposure", -1.5}, {"tone", "reinhard"}, {"gamma", 2.2}}));
         if (extension == ".ppm") {
-            CHECK(file_contents(toned.image()) != file_contents(usual.image()));
+            CHECK(file_contents(toned.image()) != file_contents(plain.image()));
             continue;
         }
         const auto image = OIIO::ImageInput::open(toned.image());
         REQUIRE(image);
         if (extension != ".png") {
-            const std::string told = image->spec().get_string_attribute("ImageDescription");
-            CHECK_THAT(told, Catch::EndsWith("raya:exposure=-1.5\nraya:tone=reinhard\nraya:gamma=2.2"));
+            const std::string description = image->spec().get_string_attribute("ImageDescription");
+            CHECK_THAT(description, Catch::EndsWith("raya:exposure=-1.5\nraya:tone=reinhard\nraya:gamma=2.2"));
             continue;
         }
         CHECK(image->spec().get_string_attribute("raya:exposure") == "-1.5");
@@ -33,17 +33,17 @@ TEST_CASE("a tone changes codes, never the hash, and report and picture tell it"
     }
 }
 
-TEST_CASE("a tone that is none, or for a picture of linear colours, is refused", "[cli]") {
+TEST_CASE("render --tone: refuses wrong values, and linear image formats", "[cli]") {
     const ScratchFolder outputs;
-    const auto refused = [&](const std::string& image, const Words& options, const Words& message) {
-        Words words = {"render", scene_file("planes"), "-o", outputs / image};
-        words.insert(words.end(), options.begin(), options.end());
-        check_refused(outputs, words, 2, message);
+    const auto refused = [&](const std::string& image, const Arguments& options, const Arguments& message) {
+        Arguments arguments = {"render", scene_file("planes"), "-o", outputs / image};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        check_refused(outputs, arguments, 2, message);
     };
     for (const char* image : {"x.exr", "x.pfm"}) {
-        refused(image, {"--exposure", "1"}, {"--exposure is for 8-bit pictures", image, "name a .png"});
-        refused(image, {"--gamma", "2"}, {"--gamma is for 8-bit pictures"});
-        refused(image, {"--tone", "clip"}, {"--tone is for 8-bit pictures"});
+        refused(image, {"--exposure", "1"}, {"--exposure applies to 8-bit images", image, "name a .png"});
+        refused(image, {"--gamma", "2"}, {"--gamma applies to 8-bit images"});
+        refused(image, {"--tone", "clip"}, {"--tone applies to 8-bit images"});
     }
     refused("x.ppm", {"--exposure", "65"}, {"--exposure 65: must be -64..64 stops"});
     refused("x.ppm", {"--exposure", "nan"}, {"--exposure nan: must be -64..64 stops"});

@@ -1,4 +1,4 @@
-// The torus's options: what the program refuses before it renders, and what its help says.
+// Options of the torus: refusals and help.
 #include "host/scene/nff.hpp"
 #include "kernels/shared/traffic.h"
 #include "tests/cli/refusals.hpp"
@@ -8,21 +8,21 @@ namespace raya {
 namespace {
 
 struct TorusRow {
-    Words options;
-    Words message;
+    Arguments options;
+    Arguments message;
 };
 
-/// A render of a small picture on `machine`, which must be refused with every message.
+/// Checks that renders on `machine` with these options are refused with these messages.
 void check_refused_on(const std::string& machine, const std::vector<TorusRow>& rows) {
     const ScratchFolder outputs;
     for (const TorusRow& row : quick_of(3, rows)) {
-        Words arguments = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--machine", machine};
+        Arguments arguments = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--machine", machine};
         arguments.insert(arguments.end(), row.options.begin(), row.options.end());
         check_refused(outputs, arguments, 2, row.message);
     }
 }
 
-TEST_CASE("the torus refuses the options of rings, with reason and remedy", "[cli]") {
+TEST_CASE("render --machine torus: refuses options of rings, with reason and remedy", "[cli]") {
     const std::string with = " with --machine torus";
     check_refused_on("torus",
                      {{{"--mapping", "rows"}, {"--mapping rows" + with, "voxels of the scene, not pixels", "--voxels"}},
@@ -34,10 +34,10 @@ TEST_CASE("the torus refuses the options of rings, with reason and remedy", "[cl
                       {{"--threshold", "0.5"}, {"--threshold 0.5" + with, "neighbours", "choose a ring"}},
                       {{"--points", "axes"}, {"--points axes" + with, "neighbours", "choose a ring"}},
                       {{"--mask", "m.png"}, {"--mask m.png" + with, "neighbours", "choose a ring"}},
-                      {{"--cost", "c.exr"}, {"--cost c.exr" + with, "many nodes work for a pixel", "choose a ring"}}});
+                      {{"--cost", "c.exr"}, {"--cost c.exr" + with, "nodes work for a pixel", "choose a ring"}}});
 }
 
-TEST_CASE("rings refuse the options of the torus, with reason and remedy", "[cli]") {
+TEST_CASE("render --machine spa: refuses options of the torus, with reason and remedy", "[cli]") {
     const std::string with = " with --machine spa", remedy = "choose --machine torus";
     check_refused_on("spa", {{{"--nodes", "4x4x4"}, {"--nodes 4x4x4" + with, "ring", "--pes"}},
                              {{"--voxels", "4x4x4"}, {"--voxels 4x4x4" + with, remedy}},
@@ -51,7 +51,7 @@ TEST_CASE("rings refuse the options of the torus, with reason and remedy", "[cli
     check_refused_on("grande", {{{"--inject", "all"}, {"--inject all with --machine grande", remedy}}});
 }
 
-TEST_CASE("the torus's own options are checked before anything is rendered", "[cli]") {
+TEST_CASE("render --machine torus: checks its options before rendering", "[cli]") {
     check_refused_on("torus", {{{"--nodes", "4x4"}, {"--nodes 4x4: must be XxYxZ", "65,536"}},
                                {{"--nodes", "0x4x4"}, {"--nodes 0x4x4"}},
                                {{"--nodes", "64x64x17"}, {"--nodes 64x64x17", "65536"}},
@@ -78,14 +78,14 @@ TEST_CASE("the torus's own options are checked before anything is rendered", "[c
         check_refused_on("torus", {{{option, ""}, {option, "must not be empty"}}});
 }
 
-TEST_CASE("a trace of packets that could not be written is refused before anything is rendered", "[cli]") {
+TEST_CASE("render --packets: refuses a file that it cannot write, before rendering", "[cli]") {
     const ScratchFolder outputs;
     const std::string missing = outputs / "missing/p.csv.gz", image = outputs / "x.pfm";
     check_refused_on("torus", {{{"--packets", outputs / "p.csv"}, {"p.csv", "gzip", ".csv.gz"}},
                                {{"--packets", missing}, {"/missing' does not exist", "mkdir -p"}},
                                {{"--packets", outputs / "p.csv.gz", "--report", outputs / "p.csv.gz"},
                                 {"p.csv.gz", "the same file as --packets"}},
-                               {{"--replay", "simgrid"}, {"--replay simgrid", "give --packets FILE.csv.gz"}},
+                               {{"--replay", "simgrid"}, {"--replay simgrid", "add --packets FILE.csv.gz"}},
                                {{"--replay", "simgrid", "--packets", outputs / "p.gz"}, {"FILE.csv.gz"}},
                                {{"--replay", "booksim", "--packets", outputs / "p.csv.gz"}, {"must be simgrid"}}});
     check_refused(
@@ -94,43 +94,42 @@ TEST_CASE("a trace of packets that could not be written is refused before anythi
         {outputs.path(), "it is a folder"});
 }
 
-TEST_CASE("a machine that stands still is refused with a queue that has been tried", "[cli]") {
+TEST_CASE("render --queue: a deadlock ends with a queue length that works", "[cli]") {
     const std::string file = scene_file("mirrors");
     const auto lights = static_cast<std::uint32_t>(read_nff(file).lights.size());
-    const std::string queue = std::to_string(raya_shortest_queue(lights, 4));
-    const Words machine = {"--machine", "torus", "--links", "torus2d", "--size",  "24", "--format", "spa22",
-                           "--bounces", "4",     "--lanes", "4",       "--group", "1",  "--queue",  queue};
+    const std::string queue = std::to_string(raya_min_queue(lights, 4));
+    const Arguments machine = {"--machine", "torus", "--links", "torus2d", "--size",  "24", "--format", "spa22",
+                               "--bounces", "4",     "--lanes", "4",       "--group", "1",  "--queue",  queue};
     const ScratchFolder outputs;
-    check_refused(outputs,
-                  [&] {
-                      Words words = {"render", file, "-o", outputs / "x.pfm"};
-                      words.insert(words.end(), machine.begin(), machine.end());
-                      return words;
-                  }(),
-                  2,
-                  {"the machine stands still in superstep", "are full at " + queue + " packets; --queue ",
-                   " is long enough (tried)"});
+    check_refused(
+        outputs,
+        [&] {
+            Arguments arguments = {"render", file, "-o", outputs / "x.pfm"};
+            arguments.insert(arguments.end(), machine.begin(), machine.end());
+            return arguments;
+        }(),
+        2, {": deadlock in superstep", "are full at " + queue + " packets; --queue ", " is long enough (tried)"});
 }
 
-TEST_CASE("bench takes no torus", "[cli]") {
+TEST_CASE("bench --machine torus: is refused", "[cli]") {
     const ScratchFolder outputs;
     check_refused(outputs, {"bench", "--samples", "1", "--machine", "torus"}, 2,
                   {"--machine torus", "voxels of the scene, not pixels", "only raya render", "spa"});
     check_refused(outputs, {"bench", "--nodes", "4x4x4"}, 2, {"--nodes", "--help"});
 }
 
-TEST_CASE("the help of render gives the torus's options with units and defaults", "[cli]") {
-    const RunOutcome run = run_raya({"render", "--help"});
+TEST_CASE("render --help: has the options of the torus with units and defaults", "[cli]") {
+    const RunOutcome run = run_raya({"render", "--help-all"});
     REQUIRE(run.code == 0);
     const std::string help = squeezed(run.out);
     for (const char* text :
          {"Torus machine", "torus: nodes of 4 MB",
-          "--nodes IxJxK Nodes along x, y and z of the scene, at most 65,536 together; default: 4x4x4",
+          "--nodes IxJxK Nodes along x, y and z of the scene, at most 65,536 in total; default: 4x4x4",
           "--voxels AxBxC", "fewer leave nodes empty", "one for each node", "torus3d|torus2d", "default: torus3d",
-          "root|all", "default: all", "--queue N", "Packets that wait", "--pe-memory BYTES", "4194304",
+          "root|all", "default: all", "--queue N", "Maximum packets queued", "--pe-memory BYTES", "4194304",
           "--packets FILE.csv.gz", "docs/packets.md", "--async", "--replay simgrid"})
         CHECK_THAT(help, Catch::Contains(text));
-    CHECK_THAT(run_raya({"bench", "--help"}).out, !Catch::Contains("--nodes"));
+    CHECK_THAT(run_raya({"bench", "--help-all"}).out, !Catch::Contains("--nodes"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The traces that the program writes: each by the schema, and against the report of the same run.
+// render --trace: traces follow the schema and agree with the report of the same run.
 #include <map>
 
 #include "host/report/trace_file.hpp"
@@ -15,14 +15,14 @@ struct TracedRun {
     Document trace, report;
 };
 
-TracedRun traced(const std::string& scene, const Words& options, const std::string& ending = ".json") {
+TracedRun traced(const std::string& scene, const Arguments& options, const std::string& ending = ".json") {
     const ScratchFolder folder;
     const std::string file = folder / ("t" + ending), report = folder / "r.json";
-    Words words = {"render", scene_file(scene), "-o", folder / "x.pfm", "--size", "24x16", "--lanes",
-                   "4",      "--trace",         file, "--report",       report};
-    words.insert(words.end(), options.begin(), options.end());
-    TracedRun t{run_raya(words), {}, {}};
-    INFO(t.run.told());
+    Arguments arguments = {"render", scene_file(scene), "-o", folder / "x.pfm", "--size", "24x16", "--lanes",
+                           "4",      "--trace",         file, "--report",       report};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    TracedRun t{run_raya(arguments), {}, {}};
+    INFO(t.run.describe());
     REQUIRE(t.run.code == 0);
     CHECK(folder.entries() == 3);
     const std::string text = file_contents(file);
@@ -31,7 +31,7 @@ TracedRun traced(const std::string& scene, const Words& options, const std::stri
     return t;
 }
 
-// Nanoseconds and commands by label and kind.
+// Nanoseconds and number of commands by "label/kind".
 using Sums = std::map<std::string, std::pair<std::int64_t, std::int64_t>>;
 
 Sums sums_of_trace(const Document& trace) {
@@ -58,7 +58,7 @@ Sums sums_of_report(const Document& report) {
 }
 
 void check(const TracedRun& t) {
-    INFO(t.run.told());
+    INFO(t.run.describe());
     const TraceSchema schema(t.trace);
     CHECK(schema.faults() == std::vector<std::string>{});
     CHECK(sums_of_trace(t.trace) == sums_of_report(t.report));
@@ -67,7 +67,7 @@ void check(const TracedRun& t) {
     CHECK(t.trace["otherData"]["device_clock"].is_object());
 }
 
-// The host's step of that name contains all commands of the device.
+// The host's step "render" contains all commands of the device.
 void check_clocks(const Document& trace) {
     const TraceSchema schema(trace);
     const auto steps = schema.slices_of(kTraceHost);
@@ -88,7 +88,7 @@ const Document& kernel_of(const Document& trace, const std::string& label) {
 
 }  // namespace
 
-TEST_CASE("a ring's trace keeps the rules and adds up to the report", "[cli]") {
+TEST_CASE("render --trace: the trace of a ring follows the schema and sums to the report", "[cli]") {
     const TracedRun t = traced("centre", {"--pes", "24"});
     check(t);
     check_clocks(t.trace);
@@ -101,16 +101,16 @@ TEST_CASE("a ring's trace keeps the rules and adds up to the report", "[cli]") {
         CHECK(std::count_if(steps.begin(), steps.end(), [&](const auto& s) { return s.name == name; }) == 1);
 }
 
-TEST_CASE("traces of smoothed images, with gzip and with a profile", "[cli]") {
+TEST_CASE("render --trace: works with anti-aliasing, gzip and --profile", "[cli]") {
     check(traced("centre", {"--pes", "24", "--offset", "4", "--antialias", "filter"}, ".json.gz"));
     const TracedRun t = traced("centre", {"--pes", "24", "--antialias", "supersample", "--profile"}, ".json.gz");
     check(t);
     const Document& measured = t.report["measured"];
     CHECK(measured["builds"].size() >= 2);
     CHECK(measured["peak"]["copy_bytes_per_s"] > 0);
-    Words labels;
+    Arguments labels;
     for (const Document& row : measured["roofline"]) labels.push_back(row["label"]);
-    CHECK(labels == Words{"trace", "supersample", "supersample.compare"});
+    CHECK(labels == Arguments{"trace", "supersample", "supersample.compare"});
     for (const Document& row : measured["roofline"]) {
         CHECK(row["operations"] > 0);
         CHECK(row["share_of_roof"] > 0);
@@ -118,7 +118,7 @@ TEST_CASE("traces of smoothed images, with gzip and with a profile", "[cli]") {
     }
 }
 
-TEST_CASE("a torus's trace has its nodes, packets and links", "[cli]") {
+TEST_CASE("render --trace --machine torus: has nodes, packets and links", "[cli]") {
     const TracedRun t = traced("centre", {"--machine", "torus", "--nodes", "2x2x2", "--trace-pes", "5", "--profile"});
     check(t);
     check_clocks(t.trace);
@@ -130,23 +130,23 @@ TEST_CASE("a torus's trace has its nodes, packets and links", "[cli]") {
         CHECK_THAT(t.run.out, Catch::Contains(std::string("roof    ") + label + ": "));
 }
 
-TEST_CASE("a limit on events is kept and said", "[cli]") {
+TEST_CASE("render --trace-events: limits the events, and a message counts those left out", "[cli]") {
     const TracedRun t = traced("centre", {"--pes", "24", "--trace-events", "20"});
     CHECK(t.trace["otherData"]["events"] == 20);
     const std::uint64_t left_out = t.trace["otherData"]["events_left_out"];
     CHECK(left_out > 0);
     CHECK(TraceSchema(t.trace).faults() == std::vector<std::string>{});
     CHECK_THAT(t.run.err,
-               Catch::Contains(std::to_string(left_out) + " events are left out of " + std::to_string(20 + left_out)));
+               Catch::Contains(std::to_string(left_out) + " of " + std::to_string(20 + left_out) + " events omitted"));
 }
 
-TEST_CASE("a trace that cannot be is refused before anything is rendered", "[cli]") {
+TEST_CASE("render --trace: refuses wrong files and limits before rendering", "[cli]") {
     const ScratchFolder folder;
-    const auto refused = [&](const Words& options) {
-        Words words = {"render", scene_file("centre"), "-o", folder / "x.pfm", "--size", "8", "--pes", "8"};
-        words.insert(words.end(), options.begin(), options.end());
-        const RunOutcome run = run_raya(words);
-        INFO(run.told());
+    const auto refused = [&](const Arguments& options) {
+        Arguments arguments = {"render", scene_file("centre"), "-o", folder / "x.pfm", "--size", "8", "--pes", "8"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const RunOutcome run = run_raya(arguments);
+        INFO(run.describe());
         CHECK(run.code == 2);
         CHECK(folder.entries() == 0);
         return run.err;
@@ -155,8 +155,8 @@ TEST_CASE("a trace that cannot be is refused before anything is rendered", "[cli
     CHECK_THAT(refused({"--trace", folder / "no/t.json"}), Catch::Contains("no/t.json"));
     CHECK_THAT(refused({"--trace", folder / "x.json", "--report", folder / "x.json"}),
                Catch::Contains("the same file as --report"));
-    CHECK_THAT(refused({"--trace-events", "5"}), Catch::Contains("give --trace"));
-    CHECK_THAT(refused({"--trace-pes", "5"}), Catch::Contains("give --trace"));
+    CHECK_THAT(refused({"--trace-events", "5"}), Catch::Contains("requires --trace"));
+    CHECK_THAT(refused({"--trace-pes", "5"}), Catch::Contains("requires --trace"));
     CHECK_THAT(refused({"--trace", folder / "t.json", "--trace-events", "0"}), Catch::Contains("1 or more"));
     CHECK_THAT(refused({"--trace", folder / "t.json", "--trace-events", "-5"}), Catch::Contains("--trace-events"));
 }

@@ -1,4 +1,4 @@
-// raya tune: candidates that are wrong, fail, crash or hang are dropped; what is kept is taken by renders.
+// raya tune: wrong, failing, crashing and hanging candidates are dropped; renders use the stored values.
 #include <set>
 
 #include "tests/cli/failing_device.hpp"
@@ -10,16 +10,17 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-/// A device whose own lanes are 4, and a cache folder.
-Surroundings tuned_in(const ScratchFolder& cache) {
-    Surroundings around = failing_device("clGetDeviceInfo 4154 4");
-    around.variables.emplace_back("XDG_CACHE_HOME", cache.path());
-    around.variables.emplace_back("RAYA_TUNED", "");
-    around.variables.emplace_back("RAYA_BUILD_OPTIONS", "-cl-opt-disable");  // compiled sooner
-    return around;
+/// Options of a run with a device of 4 native lanes and this cache folder.
+RunOptions tuned_in(const ScratchFolder& cache) {
+    RunOptions run_options = failing_device("clGetDeviceInfo 4154 4");
+    run_options.variables.emplace_back("XDG_CACHE_HOME", cache.path());
+    run_options.variables.emplace_back("RAYA_TUNED", "");
+    run_options.variables.emplace_back("RAYA_BUILD_OPTIONS", "-cl-opt-disable");  // compiles faster
+    return run_options;
 }
 
-// One fault for each value of a knob beside the defaults; eight lanes are not built.
+// An injected fault for one value of each knob that is not the default: a failed build for 8 lanes, a wrong image for
+// groups of 2, a crash without local words, a hang for batches of 8.
 const SourcePatch kFaults = {"shading/tree.clh", "    t->sum = vec_choose(m, vec_mad(value, weight, t->sum), t->sum);",
                              R"(#if RAYA_LANES == 8
 #error "no eight lanes"
@@ -32,7 +33,7 @@ const SourcePatch kFaults = {"shading/tree.clh", "    t->sum = vec_choose(m, vec
 #endif
     t->sum = vec_choose(m, vec_mad(value, weight, t->sum), t->sum);)"};
 
-/// How candidates with this value ended, of a T4 report.
+/// Returns the outcomes of the candidates with this value in a T4 report.
 std::set<std::string> ends_with(const Document& report, const std::string& knob, std::uint32_t value) {
     std::set<std::string> ends;
     for (const Document& one : report["results"])
@@ -40,17 +41,16 @@ std::set<std::string> ends_with(const Document& report, const std::string& knob,
     return ends;
 }
 
-TEST_CASE("candidates that fail, crash, hang or make another image are dropped, and renders take what is left",
-          "[cli][slow]") {
+TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; renders use the result", "[cli][slow]") {
     const ScratchFolder kernels, cache, outputs;
     const std::string copy = write_kernels(kernels / "kernels", {kFaults}), report = outputs / "t4.json";
-    const Surroundings around = tuned_in(cache);
+    const RunOptions run_options = tuned_in(cache);
     const RunOutcome run = run_raya({"tune", "--variants", "none", "--format", "fp32", "--size", "16", "--pes", "1",
                                      "--candidate-seconds", "12", "--kernel-dir", copy, "--report", report},
-                                    around);
-    INFO(run.told());
+                                    run_options);
+    INFO(run.describe());
     REQUIRE(run.code == 0);
-    CHECK_FALSE(contains(run.err, "raya: "));  // compilers speak there
+    CHECK_FALSE(contains(run.err, "raya: "));  // stderr has messages of compilers only
     const Document t4 = Document::parse(file_contents(report));
     using Ends = std::set<std::string>;
     CHECK(ends_with(t4, "lanes", 8) == Ends{"compile"});
@@ -59,26 +59,26 @@ TEST_CASE("candidates that fail, crash, hang or make another image are dropped, 
     CHECK(ends_with(t4, "batch", 8) == Ends{"timeout"});
     CHECK(ends_with(t4, "lanes", 1) == Ends{"correct"});
     for (const char* part : {"ring none fp32", "not built: ", "wrong: another image",
-                             "failed: ended by signal 11 (SIGSEGV)", "too long: not done in 12 s", "kept in "})
+                             "failed: ended by signal 11 (SIGSEGV)", "too long: not done in 12 s", "stored in "})
         CHECK_THAT(run.out, Catch::Contains(part));
 
     REQUIRE(std::distance(fs::directory_iterator(cache / "raya"), {}) == 1);
     const std::string file = fs::directory_iterator(cache / "raya")->path();
-    const Document kept = Document::parse(file_contents(file))["tuned"];
-    REQUIRE(kept.size() == 1);
-    CHECK((kept[0]["machine"] == "ring" && kept[0]["accel"] == "none" && kept[0]["format"] == "fp32"));
-    const auto lanes = kept[0]["values"]["lanes"].get<int>();
+    const Document stored = Document::parse(file_contents(file))["tuned"];
+    REQUIRE(stored.size() == 1);
+    CHECK((stored[0]["machine"] == "ring" && stored[0]["accel"] == "none" && stored[0]["format"] == "fp32"));
+    const auto lanes = stored[0]["values"]["lanes"].get<int>();
     CHECK((lanes == 1 || lanes == 4));
-    CHECK(
-        (kept[0]["values"]["group"] == 1 && kept[0]["values"]["local_words"] == 1 && kept[0]["values"]["batch"] == 0));
+    CHECK((stored[0]["values"]["group"] == 1 && stored[0]["values"]["local_words"] == 1 &&
+           stored[0]["values"]["batch"] == 0));
 
-    const auto rendered = [&](const Words& more) {
-        Words words = {
+    const auto rendered = [&](const Arguments& more) {
+        Arguments arguments = {
             "render", scene_file("spheres"), "-o",     outputs / "x.pfm", "--size", "16",       "--pes",
             "4",      "--machine",           "grande", "--accel",         "none",   "--report", outputs / "r.json"};
-        words.insert(words.end(), more.begin(), more.end());
-        const RunOutcome render = run_raya(words, around);
-        INFO(render.told());
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const RunOutcome render = run_raya(arguments, run_options);
+        INFO(render.describe());
         REQUIRE(render.code == 0);
         CHECK(contains(render.out, "\ntuned   " + file) == more.empty());
         return Document::parse(file_contents(outputs / "r.json"));
@@ -97,28 +97,30 @@ TEST_CASE("candidates that fail, crash, hang or make another image are dropped, 
     const RunOutcome warned =
         run_raya({"render", scene_file("spheres"), "-o", outputs / "x.pfm", "--size", "16", "--pes", "4", "--machine",
                   "grande", "--accel", "none", "--report", outputs / "r.json"},
-                 around);
+                 run_options);
     CHECK(warned.code == 0);
     CHECK_THAT(warned.err, Catch::Contains("raya: warning: " + file + ":1: not valid JSON"));
     CHECK(Document::parse(file_contents(outputs / "r.json"))["warnings"].size() == 1);
 }
 
-TEST_CASE("a device whose defaults fail is not tuned", "[cli]") {
+TEST_CASE("tune: refuses a device whose defaults fail", "[cli]") {
     const ScratchFolder kernels, cache, outputs;
     const std::string copy =
         write_kernels(kernels / "kernels", {{"shading/tree.clh", "#ifndef RAYA_TREE_CLH\n", "#error \"none\"\n"}});
     const RunOutcome run =
         run_raya({"tune", "--variants", "none", "--size", "8", "--pes", "4", "--kernel-dir", copy}, tuned_in(cache));
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 3);
     CHECK_THAT(run.err,
-               Catch::Contains("ring none fp32: the defaults cannot be measured") && Catch::Contains("raya verify"));
+               Catch::Contains("ring none fp32: cannot measure the defaults") && Catch::Contains("raya verify"));
     CHECK(std::distance(fs::directory_iterator(cache / "raya"), {}) == 0);
 }
 
-TEST_CASE("tune refuses what it cannot do in one line", "[cli]") {
+TEST_CASE("tune: refuses wrong options in one line", "[cli]") {
     const ScratchFolder outputs;
-    const auto refused = [&](Words words, const Words& parts) { check_refused(outputs, words, 2, parts); };
+    const auto refused = [&](Arguments arguments, const Arguments& parts) {
+        check_refused(outputs, arguments, 2, parts);
+    };
     refused({"tune", "--lanes", "4"}, {"tune: no option --lanes"});
     refused({"tune", "--seconds", "0"}, {"--seconds 0", "1..86400 seconds"});
     refused({"tune", "--candidate-seconds", "1e9"}, {"--candidate-seconds", "1..3600 seconds"});

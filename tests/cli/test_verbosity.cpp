@@ -1,4 +1,4 @@
-// -q and -v: what is said beside a result, and that the result stays the same.
+// -q and -v: they change messages, not results.
 #include <algorithm>
 #include <sstream>
 
@@ -9,42 +9,42 @@
 namespace raya {
 namespace {
 
-Words render_of_16(const ScratchFolder& folder, const Words& options) {
-    Words words = {"render", scene_file("planes"), "-o", folder / "x.ppm", "--size", "16", "--pes", "4", "--lanes",
-                   "4"};
-    words.insert(words.end(), options.begin(), options.end());
-    return words;
+Arguments render_of_16(const ScratchFolder& folder, const Arguments& options) {
+    Arguments arguments = {
+        "render", scene_file("planes"), "-o", folder / "x.ppm", "--size", "16", "--pes", "4", "--lanes", "4"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return arguments;
 }
 
-RunOutcome run_of(const Words& words) {
-    RunOutcome run = run_raya(words);
-    INFO(run.told());
+RunOutcome run_of(const Arguments& arguments) {
+    RunOutcome run = run_raya(arguments);
+    INFO(run.describe());
     REQUIRE(run.code == 0);
     return run;
 }
 
-/// What is printed but the times, which no two runs share.
+/// Returns the lines of the summary without times, which differ between runs.
 std::vector<std::string> without_times(const std::string& out) {
     std::vector<std::string> lines = lines_of(out);
     std::erase_if(lines, [](const std::string& line) { return line.starts_with("time "); });
     return lines;
 }
 
-/// A scene with a polygon that has no area, which is left out with a warning.
-std::string scene_to_be_warned_of(const ScratchFolder& folder) {
+/// Writes a scene with a polygon without area, which causes a warning. Returns its path.
+std::string scene_with_warning(const ScratchFolder& folder) {
     std::string scene = file_contents(scene_file("planes"));
     std::ofstream(folder / "flat.nff") << scene << "p 3\n0 0 0\n1 1 1\n2 2 2\n";
     return folder / "flat.nff";
 }
 
-TEST_CASE("-v says on stderr what the host does, and changes nothing on stdout", "[cli][verbosity]") {
+TEST_CASE("render -v: prints the steps of the host on stderr, and does not change stdout", "[cli][verbosity]") {
     const ScratchFolder folder;
-    const RunOutcome usual = run_of(render_of_16(folder, {}));
-    CHECK(usual.messages().empty());
+    const RunOutcome plain = run_of(render_of_16(folder, {}));
+    CHECK(plain.messages().empty());
     const std::string picture = file_contents(folder / "x.ppm");
     const RunOutcome run = run_of(render_of_16(folder, {"-v"}));
     INFO(run.err);
-    CHECK(without_times(run.out) == without_times(usual.out));
+    CHECK(without_times(run.out) == without_times(plain.out));
     CHECK(file_contents(folder / "x.ppm") == picture);
     for (const std::string& line : lines_of(run.err)) CHECK_THAT(line, Catch::StartsWith("raya: "));
     for (const char* text : {"planes.nff: ", " objects, ", " lights, ", "raya: device ", ", driver "})
@@ -55,29 +55,28 @@ TEST_CASE("-v says on stderr what the host does, and changes nothing on stdout",
     CHECK_THAT(run.err, !Catch::Contains("options -cl-std"));
 }
 
-TEST_CASE("the first compiling of kernels is announced without a terminal, and then how long it took",
-          "[cli][verbosity]") {
+TEST_CASE("render: announces the first compilation and its duration, also without a terminal", "[cli][verbosity]") {
     const ScratchFolder cache, folder;
     const std::vector<std::pair<std::string, std::string>> variables = {{"POCL_CACHE_DIR", cache.path()}};
-    const Words words = {
+    const Arguments arguments = {
         "render", scene_file("planes"), "-o", folder / "x.ppm", "--size", "16", "--lanes", "16", "--accel",
         "bvh"};  // seconds to compile
-    const RunOutcome first = run_raya(words, {.variables = variables}),
-                     second = run_raya(words, {.variables = variables});
-    INFO(first.told() + second.told());
+    const RunOutcome first = run_raya(arguments, {.variables = variables}),
+                     second = run_raya(arguments, {.variables = variables});
+    INFO(first.describe() + second.describe());
     CHECK(first.code == 0);
     CHECK(std::regex_match(first.err, std::regex("raya: compiling kernels for .* \\(first run only\\) \\.\\.\\.\n"
                                                  "raya: compiling kernels took [0-9]+\\.[0-9] s\n")));
     CHECK(second.err.empty());
     for (const auto& entry : std::filesystem::directory_iterator(cache.path())) std::filesystem::remove_all(entry);
-    Words quiet = words;
+    Arguments quiet = arguments;
     quiet.emplace_back("-q");
     CHECK(run_raya(quiet, {.variables = variables}).err.empty());
 }
 
-TEST_CASE("-vv tells builds and the device's times too", "[cli][verbosity]") {
+TEST_CASE("render -vv: prints builds and device times too", "[cli][verbosity]") {
     const ScratchFolder folder;
-    for (const Words& twice : {Words{"-vv"}, Words{"--verbose", "-v"}}) {
+    for (const Arguments& twice : {Arguments{"-vv"}, Arguments{"--verbose", "-v"}}) {
         const RunOutcome run = run_of(render_of_16(folder, twice));
         INFO(run.err);
         for (const std::string& line : lines_of(run.err)) CHECK_THAT(line, Catch::StartsWith("raya: "));
@@ -86,37 +85,37 @@ TEST_CASE("-vv tells builds and the device's times too", "[cli][verbosity]") {
     }
 }
 
-TEST_CASE("-q leaves warnings, -qq leaves them out, and neither an error", "[cli][verbosity]") {
+TEST_CASE("render -q: prints warnings and errors; -qq: only errors", "[cli][verbosity]") {
     const ScratchFolder folder;
-    const std::string scene = scene_to_be_warned_of(folder);
-    Words words = render_of_16(folder, {});
-    words[1] = scene;
-    CHECK_THAT(run_of(words).err, Catch::Contains("raya: warning: "));
-    words.emplace_back("-q");
-    const RunOutcome quiet = run_of(words);
+    const std::string scene = scene_with_warning(folder);
+    Arguments arguments = render_of_16(folder, {});
+    arguments[1] = scene;
+    CHECK_THAT(run_of(arguments).err, Catch::Contains("raya: warning: "));
+    arguments.emplace_back("-q");
+    const RunOutcome quiet = run_of(arguments);
     CHECK(quiet.out.empty());
     CHECK_THAT(quiet.err, Catch::Contains("raya: warning: "));
-    words.emplace_back("-q");
-    const RunOutcome silent = run_of(words);
-    CHECK(silent.out.empty());
-    CHECK(silent.err.empty());
-    words.emplace_back("--strict");
-    const RunOutcome refused = run_raya(words);
+    arguments.emplace_back("-q");
+    const RunOutcome quieter = run_of(arguments);
+    CHECK(quieter.out.empty());
+    CHECK(quieter.err.empty());
+    arguments.emplace_back("--strict");
+    const RunOutcome refused = run_raya(arguments);
     CHECK(refused.code == 2);
     CHECK_THAT(refused.err, Catch::Contains("flat.nff"));
 }
 
-TEST_CASE("control characters of file names do not reach the terminal", "[cli][verbosity]") {
+TEST_CASE("messages: escape control characters in file names", "[cli][verbosity]") {
     const ScratchFolder folder;
     const std::string odd = "a\x1b[31m\a\xc2\x9b-\xc3\xa9", shown = "a\\x1b[31m\\x07\\x9b-\xc3\xa9";  // and e acute
     const std::string scene = folder / (odd + ".nff"), report = folder / (odd + ".json");
-    std::filesystem::copy_file(scene_to_be_warned_of(folder), scene);
-    const Words size = {"--size", "16", "--pes", "4", "--lanes", "4"};
-    const auto with_size = [&](Words words) {
-        words.insert(words.end(), size.begin(), size.end());
-        return words;
+    std::filesystem::copy_file(scene_with_warning(folder), scene);
+    const Arguments size = {"--size", "16", "--pes", "4", "--lanes", "4"};
+    const auto with_size = [&](Arguments arguments) {
+        arguments.insert(arguments.end(), size.begin(), size.end());
+        return arguments;
     };
-    std::vector<Words> runs = {
+    std::vector<Arguments> runs = {
         {"info", scene, "-v"},
         with_size({"render", scene, "-v", "-o", folder / (odd + ".ppm"), "--report", report}),
         with_size({"render", scene, "--frames", "1:2", "--turn", "9", "-o", folder / (odd + ".ppm")}),
@@ -127,25 +126,25 @@ TEST_CASE("control characters of file names do not reach the terminal", "[cli][v
         {"info", scene, odd},
         {"render", scene, "-o", folder / ("missing" + odd) / "x.ppm"},
         {odd}};
-    for (const Words& words : runs) {
-        const RunOutcome run = run_raya(words);
-        INFO(run.told());
+    for (const Arguments& arguments : runs) {
+        const RunOutcome run = run_raya(arguments);
+        INFO(run.describe());
         CHECK((run.code == 0 || run.code == 2));
         CHECK_THAT(run.out + run.err, Catch::Contains(shown));
         for (const char* control : {"\x1b", "\a", "\xc2\x9b"}) CHECK_FALSE(contains(run.out + run.err, control));
     }
 }
 
-TEST_CASE("what there is one of is named in the singular", "[cli][verbosity]") {
+TEST_CASE("messages: use the singular for one", "[cli][verbosity]") {
     const ScratchFolder folder;
     const std::string scene = scene_file("planes"), path = folder / "path.txt";
     std::ofstream(path) << "angle 40\n";
-    const Words one = {"--size", "4", "--bounces", "1", "--format", "fp32", "--lanes", "1"};
-    const auto with_one = [&](Words words) {
-        words.insert(words.end(), one.begin(), one.end());
-        return words;
+    const Arguments one = {"--size", "4", "--bounces", "1", "--format", "fp32", "--lanes", "1"};
+    const auto with_one = [&](Arguments arguments) {
+        arguments.insert(arguments.end(), one.begin(), one.end());
+        return arguments;
     };
-    const std::vector<Words> runs = {
+    const std::vector<Arguments> runs = {
         with_one({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--antialias", "filter", "-v"}),
         with_one({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--accel", "bvh"}),
         with_one({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--accel", "grid:1x1x1"}),
@@ -153,57 +152,58 @@ TEST_CASE("what there is one of is named in the singular", "[cli][verbosity]") {
         with_one({"render", scene, "-o", folder / "x.ppm", "--camera-path", path, "--frames", "1:2"}),
         with_one({"bench", scene, "--pes", "1", "--samples", "1"}),
         {"verify", "--only", "machine bus", "--lanes", "1"}};
-    for (const Words& words : runs) {
-        const RunOutcome run = run_raya(words);
-        INFO(run.told());
+    for (const Arguments& arguments : runs) {
+        const RunOutcome run = run_raya(arguments);
+        INFO(run.describe());
         CHECK((run.code == 0 || run.code == 2));
         for (const std::string& line : lines_of(run.out + run.err))
             CHECK_FALSE(has_line(line, "(.*[^0-9.,x])?1 [A-Za-z]*[^s ]s\\b.*"));
     }
 }
 
-TEST_CASE("-q with -v is refused, in either order", "[cli][verbosity]") {
+TEST_CASE("-q with -v: refused in either order", "[cli][verbosity]") {
     const ScratchFolder outputs;
-    for (const Words& both : {Words{"-q", "-v"}, Words{"--verbose", "--quiet"}, Words{"-vq"}})
+    for (const Arguments& both : {Arguments{"-q", "-v"}, Arguments{"--verbose", "--quiet"}, Arguments{"-vq"}})
         check_refused(outputs, render_of_16(outputs, both), 2, {"--quiet and --verbose: give one of them"});
     check_refused(outputs, {"-v", "devices", "-q"}, 2, {"--quiet and --verbose"});
 }
 
-TEST_CASE("before the command and behind it they say the same", "[cli][verbosity]") {
-    for (const Words& words : {Words{"devices", "-v"}, Words{"-v", "devices"}}) {
-        const RunOutcome run = run_of(words);
+TEST_CASE("-q, -v: have the same effect before and after the command", "[cli][verbosity]") {
+    for (const Arguments& arguments : {Arguments{"devices", "-v"}, Arguments{"-v", "devices"}}) {
+        const RunOutcome run = run_of(arguments);
         CHECK_THAT(run.out, Catch::Contains("platform"));
     }
     const ScratchFolder folder;
-    Words words = render_of_16(folder, {});
-    words.insert(words.begin(), "-q");
-    const RunOutcome run = run_of(words);
+    Arguments arguments = render_of_16(folder, {});
+    arguments.insert(arguments.begin(), "-q");
+    const RunOutcome run = run_of(arguments);
     CHECK(run.out.empty());
     CHECK(run.err.empty());
 }
 
-TEST_CASE("verify -q prints what failed and the last line", "[cli][verify][verbosity]") {
-    const Words machine = {"verify", "--only", "machine bus", "--lanes", "4", "-q"};
+TEST_CASE("verify -q: prints failures and the last line", "[cli][verify][verbosity]") {
+    const Arguments machine = {"verify", "--only", "machine bus", "--lanes", "4", "-q"};
     const RunOutcome right = run_of(machine);
     REQUIRE(lines_of(right.out).size() == 1);
     CHECK_THAT(right.out, Catch::Matches(".*: [0-9]+ checks passed, 0 failed, [0-9]+ skipped in [0-9.]+ s\n"));
     const ScratchFolder folder;
     const RunOutcome wrong = run_raya(
         {"verify", "--only", "machine", "-q", "--kernel-dir", write_kernels(folder / "kernels", {kMappingFault})});
-    INFO(wrong.told());
+    INFO(wrong.describe());
     CHECK(wrong.code == 4);
     CHECK_THAT(wrong.out, Catch::StartsWith("FAIL  machine ") && !Catch::Contains("PASS"));
     CHECK_THAT(lines_of(wrong.out).back(), Catch::Contains(" 2 failed, "));
 }
 
-TEST_CASE("studies, pages and frames print nothing with -q", "[cli][verbosity]") {
+TEST_CASE("explore, study, render --frames: print nothing with -q", "[cli][verbosity]") {
     const ScratchFolder folder;
-    std::vector<Words> calls = {{"explore", scene_file("planes"), "--size", "16", "-o", folder / "x.html", "--quiet"},
-                                render_of_16(folder, {"--frames", "1:2", "--turn", "90", "-q"})};
+    std::vector<Arguments> calls = {
+        {"explore", scene_file("planes"), "--size", "16", "-o", folder / "x.html", "--quiet"},
+        render_of_16(folder, {"--frames", "1:2", "--turn", "90", "-q"})};
     if (RAYA_STUDIES) calls.push_back({"study", "fig7", "--size", "32", "-o", folder / "fig7", "-q"});
-    for (const Words& words : calls) {
-        const RunOutcome run = run_of(words);
-        INFO(run.told());
+    for (const Arguments& arguments : calls) {
+        const RunOutcome run = run_of(arguments);
+        INFO(run.describe());
         CHECK(run.out.empty());
         CHECK(run.err.empty());
     }

@@ -1,4 +1,4 @@
-// raya verify, as a user sees it.
+// raya verify: output, reports, exit codes and refusals.
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -10,19 +10,19 @@
 
 namespace raya {
 
-TEST_CASE("verify prints a line for each check and closes with the counts", "[cli][verify]") {
+TEST_CASE("verify: prints a line per check and ends with the counts", "[cli][verify]") {
     const RunOutcome run = run_raya({"verify", "--only", "machine"});
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("PASS  machine   ring: rotations of 7 PEs"));
     CHECK(has_line(run.out, ".*: [0-9]+ checks passed, 0 failed, [0-9]+ skipped in [0-9.]+ s"));
 }
 
-TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli][verify]") {
+TEST_CASE("verify: ends with 4 if a check fails, and shows the difference and remedies", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string file = scratch / "report.json", kernels = write_kernels(scratch / "kernels", {kMappingFault});
     const RunOutcome run = run_raya({"verify", "--only", "machine", "--kernel-dir", kernels, "--report", file});
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 4);
     CHECK_THAT(run.out, Catch::Contains("FAIL  machine   mapping: blocks") && Catch::Contains("expected") &&
                             Catch::Contains("try"));
@@ -35,7 +35,7 @@ TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli
     CHECK(device["passed"].get<int>() + 2 + device["skipped"].get<int>() == int(device["checks"].size()));
     int failures = 0;
     for (const auto& check : device["checks"]) {
-        for (const char* key : {"layer", "name", "status", "seconds", "told"}) CHECK(check.contains(key));
+        for (const char* key : {"layer", "name", "status", "seconds", "result"}) CHECK(check.contains(key));
         if (check["status"] != "FAIL") continue;
         ++failures;
         for (const char* key : {"where", "expected", "got"}) CHECK(check[key] != "");
@@ -43,7 +43,7 @@ TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli
     CHECK(failures == 2);
 }
 
-TEST_CASE("a folder that lacks a kernel is refused before any check", "[cli][verify]") {
+TEST_CASE("verify --kernel-dir: refuses a folder without all kernels, before any check", "[cli][verify]") {
     const ScratchFolder scratch, empty, outputs;
     const std::string partial = write_kernels(scratch / "kernels");
     REQUIRE(std::filesystem::remove(std::filesystem::path(partial) / "shading/light.clh"));
@@ -52,12 +52,12 @@ TEST_CASE("a folder that lacks a kernel is refused before any check", "[cli][ver
                       2, {folder, "cannot read kernel file", "--kernel-dir must be a folder like"});
 }
 
-TEST_CASE("a wrong count of own kernels ends verify with 4, and the advice names the kernels alone", "[cli][verify]") {
+TEST_CASE("verify --kernel-dir: a wrong count ends with 4, and the remedy names the kernels only", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string file = scratch / "report.json";
     const std::string kernels = write_kernels(scratch / "kernels", {kCountFaults.front().patch});
     const RunOutcome run = run_raya({"verify", "--only", kOnGlass, "--kernel-dir", kernels, "--report", file});
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 4);
     CHECK_THAT(run.out, Catch::Contains("wrong counts: reflected, refracted, cycles, pixel_cycles") &&
                             Catch::Contains("expected      reflected 497, refracted 422, cycles ") &&
@@ -65,14 +65,14 @@ TEST_CASE("a wrong count of own kernels ends verify with 4, and the advice names
     const Document check = Document::parse(file_contents(file))["devices"][0]["checks"][0];
     REQUIRE(check["remedies"].size() == 1);
     CHECK_THAT(check["remedies"][0].get<std::string>(),
-               Catch::StartsWith("raya verify without --kernel-dir") && !Catch::Contains("driver"));
+               Catch::StartsWith("run raya verify without --kernel-dir") && !Catch::Contains("driver"));
 }
 
-TEST_CASE("a brief verify takes few rays, and those of reduced formats without the grid", "[cli][verify]") {
+TEST_CASE("verify --brief: few rays, and reduced formats without the grid", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string file = scratch / "report.json";
     const RunOutcome run = run_raya({"verify", "--brief", "--only", "geometry", "--report", file});
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("grid, fp32") && Catch::Contains("  384 rays, ") &&
                             Catch::Contains("  18 rays, with and without grid") && !Catch::Contains("grid, e6m15") &&
@@ -80,42 +80,44 @@ TEST_CASE("a brief verify takes few rays, and those of reduced formats without t
     CHECK(Document::parse(file_contents(file))["depth"] == "brief");
 }
 
-TEST_CASE("verify of nothing says what there is", "[cli][verify]") {
+TEST_CASE("verify --only: refuses a name without checks, and lists the checks", "[cli][verify]") {
     const ScratchFolder scratch;
     check_refused(scratch, {"verify", "--only", "no such check", "--report", scratch / "report.json"}, 2,
-                  {"--only \"no such check\": no check of", "the layers are number, geometry, machine and image",
-                   "\n  number fp32, ", "\n  image glass fp32: ", "--full has more"});
+                  {"--only \"no such check\": no check of",
+                   "the layers are number, geometry, machine and image; checks are, for example:"
+                   "\n  number fp32, ",
+                   "\n  image glass fp32: ", "--full has more"});
 }
 
-TEST_CASE("verify of what the device cannot do is skipped, and no success", "[cli][verify]") {
-    const Surroundings small_groups = failing_device("clGetDeviceInfo 4100 8");
+TEST_CASE("verify: skips checks that the device does not support; only skipped checks end with 4", "[cli][verify]") {
+    const RunOptions small_groups = failing_device("clGetDeviceInfo 4100 8");
     const RunOutcome some = run_raya({"verify", "--only", "machine local memory"}, small_groups);
-    INFO(some.told());
+    INFO(some.describe());
     CHECK(some.code == 0);
     CHECK_THAT(some.out, Catch::Contains("SKIP  machine   local memory and barriers, 32 work-items") &&
-                             Catch::Contains("32 work-items wanted, the device has 8 in a group") &&
+                             Catch::Contains("needs groups of 32 work-items, the device allows 8") &&
                              Catch::Contains(": 1 check passed, 0 failed, 1 skipped"));
     const RunOutcome none = run_raya({"verify", "--only", "32 work-items"}, small_groups);
-    INFO(none.told());
+    INFO(none.describe());
     CHECK(none.code == 4);
     CHECK_THAT(none.out, Catch::Contains(": 0 checks passed, 0 failed, 1 skipped"));
 }
 
-TEST_CASE("verify takes every usable device in turn", "[cli][verify]") {
+TEST_CASE("verify --device all: checks every usable device", "[cli][verify]") {
     const RunOutcome run = run_raya({"verify", "--device", "all", "--only", "rotations"});
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("3 checks passed"));
 }
 
-TEST_CASE("verify with one width of lanes says so in its checks", "[cli][verify]") {
+TEST_CASE("verify --lanes: the names of checks have the lanes", "[cli][verify]") {
     const RunOutcome run = run_raya({"verify", "--lanes", "4", "--only", "number fp32"});
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("PASS  number    fp32, 4 lanes") && Catch::Contains("1 check passed"));
 }
 
-TEST_CASE("verify refuses what makes no sense", "[cli][verify]") {
+TEST_CASE("verify: refuses wrong options", "[cli][verify]") {
     CHECK(run_raya({"verify", "--quick", "--full"}).code == 2);
     CHECK(run_raya({"verify", "--brief", "--quick"}).code == 2);
     CHECK(run_raya({"verify", "--report", "/no/such/folder/report.json"}).code == 2);

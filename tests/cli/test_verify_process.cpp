@@ -1,4 +1,4 @@
-// raya verify's processes: what a driver that ends one leaves behind, Ctrl-C, and the line that says what runs.
+// Worker processes of raya verify: crashes of the driver, Ctrl-C, and the progress line.
 #include <fcntl.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-TEST_CASE("a driver that crashes fails the check that ran, and the others go on", "[cli][verify]") {
+TEST_CASE("verify: a driver crash fails the running check, and the others continue", "[cli][verify]") {
     struct Row {
         const char *fault, *ending;
     };
@@ -23,9 +23,9 @@ TEST_CASE("a driver that crashes fails the check that ran, and the others go on"
         const ScratchFolder scratch;
         const std::string file = scratch / "report.json";
         const RunOutcome run = run_raya({"verify", "--only", "machine", "--report", file}, failing_device(row.fault));
-        INFO(run.told());
+        INFO(run.describe());
         CHECK(run.code == 4);
-        for (const char* part : {"PASS  machine   ways through the torus", "FAIL  machine   copies of blocks",
+        for (const char* part : {"PASS  machine   torus routes", "FAIL  machine   copies of blocks",
                                  "PASS  machine   bus: broadcast and gather", "where", "try"})
             CHECK_THAT(run.out, Catch::Contains(part));
         CHECK_THAT(run.out, Catch::Contains(row.ending));
@@ -34,18 +34,18 @@ TEST_CASE("a driver that crashes fails the check that ran, and the others go on"
         CHECK(device["failed"].get<int>() >= 3);  // copies of blocks; ring, bus and links move rows
         CHECK(device["passed"].get<int>() >= 11);
         for (const auto& check : device["checks"])
-            if (check["status"] == "FAIL") CHECK((check["told"] == row.ending && check["where"] != ""));
+            if (check["status"] == "FAIL") CHECK((check["result"] == row.ending && check["where"] != ""));
     }
 }
 
-TEST_CASE("a driver that crashes before any check is trouble with the device", "[cli][verify]") {
+TEST_CASE("verify: a driver crash before any check ends with 3", "[cli][verify]") {
     const ScratchFolder scratch;
-    const Surroundings crash = failing_device("clGetPlatformIDs 1 crash");
+    const RunOptions crash = failing_device("clGetPlatformIDs 1 crash");
     check_refused(scratch, {"verify", "--report", scratch / "report.json"}, 3,
                   {"looking for devices", "signal 11 (SIGSEGV)", "remedy"}, crash);
 }
 
-TEST_CASE("what no process of raya's own was given is refused", "[cli][verify]") {
+TEST_CASE("--worker: refused from users", "[cli][verify]") {
     const ScratchFolder outputs;
     check_refused(outputs, {"--worker", "x"}, 2, {"--worker:1: not valid JSON"});
     check_refused(outputs, {"--worker", "{}"}, 2, {"--worker", "verbosity"});
@@ -53,7 +53,7 @@ TEST_CASE("what no process of raya's own was given is refused", "[cli][verify]")
     check_refused(outputs, {"verify", "--lines", "1"}, 2, {"no option --lines"});
 }
 
-/// Whether a process has this among its arguments.
+/// Returns true if a process has this text in its command line.
 bool is_running_with(const std::string& argument) {
     for (const auto& entry : fs::directory_iterator("/proc")) {
         std::ifstream file(entry.path() / "cmdline", std::ios::binary);
@@ -63,15 +63,15 @@ bool is_running_with(const std::string& argument) {
     return false;
 }
 
-TEST_CASE("Ctrl-C ends verify and the process of its checks at once", "[cli][verify]") {
+TEST_CASE("verify: SIGINT and SIGTERM end it and its worker process at once", "[cli][verify]") {
     using namespace std::chrono;
     const ScratchFolder kernels, outputs;
     const std::string copy = write_kernels(kernels / "kernels");
-    const Words command = {"verify", "--full", "--kernel-dir", copy, "--report", outputs / "report.json"};
+    const Arguments command = {"verify", "--full", "--kernel-dir", copy, "--report", outputs / "report.json"};
     for (const auto& [signal, after_ms] : {std::pair(SIGINT, 0), std::pair(SIGINT, 1500), std::pair(SIGTERM, 1500)}) {
         CAPTURE(signal, after_ms);
         const RunOutcome run = run_raya(command, {.signal = signal, .signal_after_ms = after_ms});
-        INFO(run.told());
+        INFO(run.describe());
         CHECK(run.code == 128 + signal);
         CHECK_THAT(run.err, Catch::Contains("raya: interrupted\n"));
         CHECK(outputs.entries() == 0);
@@ -82,14 +82,14 @@ TEST_CASE("Ctrl-C ends verify and the process of its checks at once", "[cli][ver
     }
 }
 
-/// What raya prints on a terminal that is its stderr.
-std::string told_on_terminal(const Words& arguments, Surroundings around) {
+/// Runs raya with a terminal as stderr and returns what it prints there.
+std::string text_on_terminal(const Arguments& arguments, RunOptions run_options) {
     const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
     if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) return "no terminal";
     const std::string name = ::ptsname(terminal);
-    const int other_end = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // so that the terminal lives on
-    around.error_file = name;
-    run_raya(arguments, around);
+    const int other_end = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // keeps the terminal open
+    run_options.error_file = name;
+    run_raya(arguments, run_options);
     ::fcntl(terminal, F_SETFL, O_NONBLOCK);
     std::string text;
     std::array<char, 4096> block{};
@@ -100,52 +100,52 @@ std::string told_on_terminal(const Words& arguments, Surroundings around) {
     return text;
 }
 
-long count_of(const std::string& text, const std::string& what) {
+long count_of(const std::string& text, const std::string& part) {
     long count = 0;
-    for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += what.size()) ++count;
+    for (std::size_t at = 0; (at = text.find(part, at)) != text.npos; at += part.size()) ++count;
     return count;
 }
 
-TEST_CASE("every command that takes long says so on a terminal within two seconds, and draws a few times a second",
+TEST_CASE("progress: slow commands show it on a terminal within two seconds, at most 10 times a second",
           "[cli][slow]") {
     const ScratchFolder folder;
-    const Surroundings slow = failing_device("clCreateContext 1 slow");
-    const Words render = {"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--lanes", "4"};
-    const auto with = [&](Words words, const Words& more) {
-        words.insert(words.end(), more.begin(), more.end());
-        return words;
+    const RunOptions slow = failing_device("clCreateContext 1 slow");
+    const Arguments render = {"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--lanes", "4"};
+    const auto with = [&](Arguments arguments, const Arguments& more) {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
     };
-    for (const auto& [words, told] :
-         quick(2, {std::pair<Words, std::string>{with(render, {"--pes", "4"}), "preparing ... 1 s"},
+    for (const auto& [arguments, progress] :
+         quick(2, {std::pair<Arguments, std::string>{with(render, {"--pes", "4"}), "preparing ... 1 s"},
                    {with(render, {"--machine", "torus"}), "preparing ... 1 s"},
                    {{"bench", "--size", "8", "--pes", "8", "--lanes", "4", "--format", "fp32", "--samples", "1"},
                     "preparing ... 1 s"}})) {
         const auto start = std::chrono::steady_clock::now();
-        const std::string text = told_on_terminal(words, slow);
+        const std::string text = text_on_terminal(arguments, slow);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        CAPTURE(words[0], text);
-        CHECK_THAT(text, Catch::Contains(told) && Catch::EndsWith("\r\033[K"));
+        CAPTURE(arguments[0], text);
+        CHECK_THAT(text, Catch::Contains(progress) && Catch::EndsWith("\r\033[K"));
         CHECK(static_cast<double>(count_of(text, "\r\033[K")) <= 10 * seconds + 1);
     }
 }
 
-TEST_CASE("with -q nothing is drawn on a terminal", "[cli][verbosity][slow]") {
+TEST_CASE("progress: none with -q", "[cli][verbosity][slow]") {
     const ScratchFolder folder;
-    const Surroundings slow = failing_device("clCreateContext 1 slow");
-    for (const Words& words : {Words{"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--pes",
-                                     "4", "--lanes", "4", "-q"},
-                               Words{"verify", "--only", "machine bus", "--lanes", "4", "-q"}})
-        CHECK(told_on_terminal(words, slow) == "");
+    const RunOptions slow = failing_device("clCreateContext 1 slow");
+    for (const Arguments& arguments : {Arguments{"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12",
+                                                 "--pes", "4", "--lanes", "4", "-q"},
+                                       Arguments{"verify", "--only", "machine bus", "--lanes", "4", "-q"}})
+        CHECK(text_on_terminal(arguments, slow) == "");
 }
 
-TEST_CASE("a check that takes long is named on a terminal, and nowhere else", "[cli][verify][slow]") {
-    const Words one_check = {"verify", "--only", "machine bus"};
-    const Surroundings slow = failing_device("clFinish 1 slow");
+TEST_CASE("progress: verify names a slow check on a terminal, and not in a file", "[cli][verify][slow]") {
+    const Arguments one_check = {"verify", "--only", "machine bus"};
+    const RunOptions slow = failing_device("clFinish 1 slow");
     CHECK_THAT(
-        told_on_terminal(one_check, slow),
+        text_on_terminal(one_check, slow),
         Catch::Contains("\r\033[Krunning machine bus: broadcast and gather ... 1 s") && Catch::EndsWith("\r\033[K"));
     const RunOutcome run = run_raya(one_check, slow);
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code == 0);
     CHECK(run.err.empty());
 }

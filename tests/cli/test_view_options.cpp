@@ -1,4 +1,4 @@
-// --from, --at, --up, --angle, --background, --light: a picture by them is that of a scene that says the same.
+// --from, --at, --up, --angle, --background, --light: the image equals that of a scene with the same values.
 #include <fmt/core.h>
 
 #include "host/base/whole_file.hpp"
@@ -14,11 +14,11 @@ namespace {
 
 std::string text_of(const Vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
-Vec3 random_vector(SplitMix& random, double least, double most) {
-    return {random.uniform(least, most), random.uniform(least, most), random.uniform(least, most)};
+Vec3 random_vector(SplitMix& random, double low, double high) {
+    return {random.uniform(low, high), random.uniform(low, high), random.uniform(low, high)};
 }
 
-/// Options that say what the scene says.
+/// Options with the view, background and lights of the scene.
 ViewOptions options_of(const Scene& scene) {
     ViewOptions v;
     v.from = text_of(scene.view.from);
@@ -31,6 +31,7 @@ ViewOptions options_of(const Scene& scene) {
     return v;
 }
 
+/// Returns the scene with a random camera, background and lights.
 Scene random_look(const Scene& scene, SplitMix& random) {
     Scene other = scene;
     other.view.from = random_vector(random, 4, 9);
@@ -47,7 +48,7 @@ Scene random_look(const Scene& scene, SplitMix& random) {
     return other;
 }
 
-TEST_CASE("what is given takes the place of what the scene says, to the last bit, and nothing else does", "[cli]") {
+TEST_CASE("change_view: replaces the given values of the scene exactly, and no others", "[cli]") {
     const Scene scene = read_nff(scene_file("centre"));
     SplitMix random(5);
     for (int i = 0; i < 200; ++i) {
@@ -67,7 +68,7 @@ TEST_CASE("what is given takes the place of what the scene says, to the last bit
     }
 }
 
-TEST_CASE("what no reader of scenes would take is refused with the option's name", "[cli]") {
+TEST_CASE("change_view: refuses what the scene reader would refuse, with the option's name", "[cli]") {
     const auto refusal = [](const ViewOptions& v) -> std::string {
         Scene scene = read_nff(scene_file("centre"));
         const Scene before = scene;
@@ -76,7 +77,7 @@ TEST_CASE("what no reader of scenes would take is refused with the option's name
         } catch (const UserError& error) {
             return error.what();
         }
-        FAIL("taken");
+        FAIL("accepted");
         return {};
     };
     using Catch::Matchers::Contains;
@@ -97,37 +98,39 @@ TEST_CASE("what no reader of scenes would take is refused with the option's name
     CHECK(refusal({.from = "1,1,1", .at = "1,1,1"}) == "--from 1,1,1 --at 1,1,1: 'from' and 'at' are the same point");
     for (const double angle : {0.0, 180.0, -1.0}) CHECK_THAT(refusal({.angle = angle}), Contains("between 0 and 180"));
     CHECK_THAT(refusal({.up = "0,0,0"}), Catch::StartsWith("--up 0,0,0: 'up' is zero"));
-    CHECK_THAT(refusal({.from = "0,0,5", .at = "0,0,0", .up = "0,0,-2"}), Contains("along the gaze"));
+    CHECK_THAT(refusal({.from = "0,0,5", .at = "0,0,0", .up = "0,0,-2"}),
+               Contains("parallel to the viewing direction"));
 }
 
-/// The options as words of a command line.
-Words words_of(const ViewOptions& v) {
-    Words words = {"--from",       v.from,      "--at", v.at, "--up", v.up, "--angle", fmt::format("{}", *v.angle),
-                   "--background", v.background};
-    for (const std::string& light : v.lights) words.insert(words.end(), {"--light", light});
-    return words;
+/// The options as arguments of a command line.
+Arguments arguments_of(const ViewOptions& v) {
+    Arguments arguments = {"--from",       v.from,      "--at",    v.at,
+                           "--up",         v.up,        "--angle", fmt::format("{}", *v.angle),
+                           "--background", v.background};
+    for (const std::string& light : v.lights) arguments.insert(arguments.end(), {"--light", light});
+    return arguments;
 }
 
-TEST_CASE("a picture by options is that of a scene which says the same, and its report makes it again", "[cli]") {
+TEST_CASE("render: view options make the image of a scene with these values, and the report reproduces it", "[cli]") {
     const ScratchFolder folder;
     const Scene scene = read_nff(scene_file("centre"));
     SplitMix random(6);
     const Scene other = random_look(scene, random);
     write_whole_file(folder / "other.nff", write_nff(other));
-    const auto report_of = [&](const std::string& file, Words words) {
-        words.insert(words.begin(), {"render", file, "-o", folder / "x.pfm", "--size", "16", "--lanes", "4", "--format",
-                                     "fp32", "--report", folder / "x.json"});
-        const RunOutcome run = run_raya(words);
-        INFO(run.told());
+    const auto report_of = [&](const std::string& file, Arguments arguments) {
+        arguments.insert(arguments.begin(), {"render", file, "-o", folder / "x.pfm", "--size", "16", "--lanes", "4",
+                                             "--format", "fp32", "--report", folder / "x.json"});
+        const RunOutcome run = run_raya(arguments);
+        INFO(run.describe());
         REQUIRE(run.code == 0);
         return Document::parse(file_contents(folder / "x.json"));
     };
     for (const char* machine : {"grande", "torus"}) {
         CAPTURE(machine);
         const Document by_file = report_of(folder / "other.nff", {"--machine", machine});
-        Words words = words_of(options_of(other));
-        words.insert(words.end(), {"--machine", machine});
-        const Document by_options = report_of(scene_file("centre"), words);
+        Arguments arguments = arguments_of(options_of(other));
+        arguments.insert(arguments.end(), {"--machine", machine});
+        const Document by_options = report_of(scene_file("centre"), arguments);
         CHECK(by_options["image"]["hash"] == by_file["image"]["hash"]);
         CHECK(by_options["view"] == by_file["view"]);
         CHECK(report_of(scene_file("centre"), {"--machine", machine})["image"]["hash"] != by_file["image"]["hash"]);
@@ -144,27 +147,27 @@ TEST_CASE("a picture by options is that of a scene which says the same, and its 
                           .lights = {}};
         for (const Document& light : view["lights"])
             again.lights.push_back(vector(light["position"]) + "," + vector(light["colour"]));
-        words = words_of(again);
-        words.insert(words.end(), {"--machine", machine});
-        CHECK(report_of(scene_file("centre"), words)["image"]["hash"] == by_file["image"]["hash"]);
+        arguments = arguments_of(again);
+        arguments.insert(arguments.end(), {"--machine", machine});
+        CHECK(report_of(scene_file("centre"), arguments)["image"]["hash"] == by_file["image"]["hash"]);
     }
 }
 
-TEST_CASE("bench measures what the options show, and --light leaves the scene to what follows", "[cli]") {
+TEST_CASE("bench: uses view options, and --light does not take the scene as a second value", "[cli]") {
     const ScratchFolder folder;
-    const auto hash_of = [&](Words words) -> std::string {
-        words.insert(words.begin(), "bench");
-        words.insert(words.end(), {"--size", "16", "--samples", "1", "--lanes", "4", "--format", "fp32", "--report",
-                                   folder / "b.json"});
-        const RunOutcome run = run_raya(words);
-        INFO(run.told());
+    const auto hash_of = [&](Arguments arguments) -> std::string {
+        arguments.insert(arguments.begin(), "bench");
+        arguments.insert(arguments.end(), {"--size", "16", "--samples", "1", "--lanes", "4", "--format", "fp32",
+                                           "--report", folder / "b.json"});
+        const RunOutcome run = run_raya(arguments);
+        INFO(run.describe());
         REQUIRE(run.code == 0);
         return Document::parse(file_contents(folder / "b.json"))["rows"][0]["hash"];
     };
-    const std::string usual = hash_of({scene_file("planes")});
+    const std::string plain = hash_of({scene_file("planes")});
     const std::string lit = hash_of({"--light", "1,2,3", "--light=-4,5,6,1,1,0", scene_file("planes")});
-    CHECK(lit != usual);
-    CHECK(hash_of({scene_file("planes"), "--angle", "20"}) != usual);
+    CHECK(lit != plain);
+    CHECK(hash_of({scene_file("planes"), "--angle", "20"}) != plain);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Each of raya's calls that write fails once (disk_faults.cpp): what can be repeated is, and else the exit code is 2,
-// with a message; the file that was there stays, or the new one is there as a whole.
+// Each of raya's writing calls fails once (disk_faults.cpp). raya repeats interrupted and short calls; otherwise it
+// ends with 2 and a message. The old file stays, or the new one is complete.
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
@@ -15,33 +15,33 @@ namespace raya {
 namespace {
 
 namespace fs = std::filesystem;
-using Contents = std::map<std::string, std::string>;  // contents by name
+using Contents = std::map<std::string, std::string>;  // file contents by name
 
-constexpr const char* kOld = "what was there before";
+constexpr const char* kOld = "old content";
 
 struct WritingCommand {
     std::string name;
-    Words arguments;         // with the folder before each file
-    bool replaces = true;    // files that are there
-    bool thorough = false;   // takes long
+    Arguments arguments;     // with the folder before each file
+    bool replaces = true;    // existing files
+    bool thorough = false;   // slow: only if thorough()
     std::string input = "";  // file that it reads
-    bool prints = false;     // the same each time, without seconds
+    bool prints = false;     // stdout is the same in each run
 };
 
-/// The commands that write files, in `folder`.
+/// The commands that write files into `folder`.
 std::vector<WritingCommand> commands(const std::string& folder) {
     const auto file = [&](const std::string& name) { return folder + "/" + name; };
-    const auto render = [&](const Words& more) {
-        Words words = {"render", scene_file("centre"), "--size", "16", "--lanes", "4", "--format", "fp32"};
-        words.insert(words.end(), more.begin(), more.end());
-        return words;
+    const auto render = [&](const Arguments& more) {
+        Arguments arguments = {"render", scene_file("centre"), "--size", "16", "--lanes", "4", "--format", "fp32"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
     };
-    const Words bench = {"bench", scene_file("centre"), "--size", "16", "--samples", "1", "--lanes",
-                         "4",     "--format",           "fp32"};
+    const Arguments bench = {"bench", scene_file("centre"), "--size", "16", "--samples", "1", "--lanes",
+                             "4",     "--format",           "fp32"};
     const auto bench_with = [&](const std::string& option, const std::string& name) {
-        Words words = bench;
-        words.insert(words.end(), {option, file(name)});
-        return words;
+        Arguments arguments = bench;
+        arguments.insert(arguments.end(), {option, file(name)});
+        return arguments;
     };
     return {
         {"generate", {"generate", "balls", "--level", "1", "-o", file("x.nff")}},
@@ -50,8 +50,9 @@ std::vector<WritingCommand> commands(const std::string& folder) {
         {"page", {"page", file("saved.json"), "-o", file("x.html")}, true, false, "saved.json"},
         {"render", render({"-o", file("x.ppm"), "--report", file("x.json"), "--trace", file("t.json")})},
         {"render -o -", render({"-o", "-"}), true, false, "", true},
-        {"keep",
-         render({"-o", file("x.ppm"), "--keep", file("s.rst"), "--keep-every", "0", "--pes", "4", "--group", "1"}),
+        {"checkpoint",
+         render({"-o", file("x.ppm"), "--checkpoint", file("s.rst"), "--checkpoint-every", "0", "--pes", "4", "--group",
+                 "1"}),
          false},
         {"frames", render({"-o", file("x.ppm"), "--frames", "1:2", "--turn", "90"}), false},
         {"cost", render({"-o", file("x.png"), "--cost", file("x.exr")}), true, true},
@@ -73,8 +74,8 @@ Contents files_of(const fs::path& folder) {
     return files;
 }
 
-/// Whether a file is whole: equal to `expected`, but where it has times.
-bool is_whole(const std::string& name, const std::string& content, const Contents& expected) {
+/// Returns true if a file is complete: equal to `expected`, except files with times.
+bool is_complete(const std::string& name, const std::string& content, const Contents& expected) {
     if (name.ends_with(".rst")) return content.starts_with("raya");
     if (!expected.contains(name)) return false;
     if (name.ends_with(".json")) return Document::accept(content);
@@ -82,20 +83,20 @@ bool is_whole(const std::string& name, const std::string& content, const Content
     return content == expected.at(name);
 }
 
-struct Faulty {
+struct FaultRun {
     RunOutcome run;
-    Words calls;  // "write", "open fails", ...
+    Arguments calls;  // "write", "open fails", ...
     Contents files;
-    std::string printed;  // where it is the same each time
+    std::string printed;  // only of commands with `prints`
 };
 
-/// Runs command `index` in a fresh folder; `fault` as RAYA_WRITE_FAULT has it, `old`: names of files that are there.
-Faulty run_with(std::size_t index, const std::string& fault, const Contents& old, const std::string& saved) {
+/// Runs command `index` in a new folder. `fault`: for RAYA_WRITE_FAULT; `old`: names of existing files.
+FaultRun run_with(std::size_t index, const std::string& fault, const Contents& old, const std::string& saved) {
     const ScratchFolder folder, notes;
     const WritingCommand command = commands(folder.path().string())[index];
     for (const auto& [name, content] : old) std::ofstream(folder / name) << kOld;
     if (!command.input.empty()) std::ofstream(folder / command.input) << saved;
-    Faulty result;
+    FaultRun result;
     result.run =
         run_raya(command.arguments, {.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
                                                    {"RAYA_WRITE_FAULT", fault},
@@ -109,12 +110,12 @@ Faulty run_with(std::size_t index, const std::string& fault, const Contents& old
     return result;
 }
 
-void check_fault(const std::string& fault, const Faulty& one, const Faulty& good) {
+void check_fault(const std::string& fault, const FaultRun& one, const FaultRun& good) {
     const bool fails =
         std::any_of(one.calls.begin(), one.calls.end(), [](auto& call) { return call.ends_with("fails"); });
     const bool of_stdout = std::find(one.calls.begin(), one.calls.end(), "stdout fails") != one.calls.end();
     const bool repeated = fault.ends_with(" short") || fault.ends_with(" " + std::to_string(EINTR));
-    INFO(one.run.told());
+    INFO(one.run.describe());
     if (!fails || (repeated && !of_stdout)) {
         CHECK(one.run.code == 0);
         if (!good.printed.empty()) CHECK((one.run.out == good.printed));
@@ -127,11 +128,11 @@ void check_fault(const std::string& fault, const Faulty& one, const Faulty& good
     }
     for (const auto& [name, content] : one.files) {
         CAPTURE(name);
-        CHECK((is_whole(name, content, good.files) || (one.run.code == 2 && content == kOld)));
+        CHECK((is_complete(name, content, good.files) || (one.run.code == 2 && content == kOld)));
     }
 }
 
-TEST_CASE("a call that writes fails once: it is repeated, or the old file stays", "[cli]") {
+TEST_CASE("every command that writes: repeats a call that failed once, or keeps the old file", "[cli]") {
     const ScratchFolder folder;
     const std::string report = folder / "x.json";
     REQUIRE(run_raya({"render", scene_file("centre"), "--size", "16", "--lanes", "4", "-o", folder / "x.ppm",
@@ -144,15 +145,14 @@ TEST_CASE("a call that writes fails once: it is repeated, or the old file stays"
     for (std::size_t index = 0; index < all.size(); ++index) {
         if (all[index].thorough && !thorough()) continue;
         CAPTURE(all[index].name);
-        const Faulty good = run_with(index, "0 0", {}, saved);
-        INFO(good.run.told());
+        const FaultRun good = run_with(index, "0 0", {}, saved);
+        INFO(good.run.describe());
         REQUIRE(good.run.code == 0);
         REQUIRE(!good.calls.empty());
         const Contents old = all[index].replaces ? good.files : Contents{};
         std::size_t calls = 0;
         for (std::size_t call = 1; call <= good.calls.size(); ++call) {
-            // Of a run of writes the first, the second and the last, but in the full tests of the commands that are
-            // quick.
+            // Of consecutive equal calls only the first two and the last fail, unless the test is thorough and quick.
             const auto is = [&](std::size_t at) { return at <= good.calls.size() ? good.calls[at - 1] : "end"; };
             const bool all_writes = thorough() && !all[index].thorough;
             if (!all_writes && call > 2 && is(call) == is(call - 1) && is(call) == is(call + 1)) continue;

@@ -8,7 +8,7 @@ namespace {
 
 using Document = nlohmann::ordered_json;
 
-// What stands for text that the library would not write; the rest of the value is that text.
+// Prefix of a string value whose rest is written verbatim, for text that the library cannot write.
 constexpr const char* kRaw = "\x01raw";
 
 const char* const kRawValues[] = {"1e400",
@@ -77,7 +77,7 @@ const char* const kTexts[] = {"",
                               "iVBORw0KGgo=",
                               "474a384374e81c5144a0e5405232a750"};
 
-// Every value of a document, with what holds it.
+// A value of a document, by its container and its key or index.
 struct Spot {
     Document* holder;  // null: the document itself
     std::string key;
@@ -128,7 +128,7 @@ void mutate_text(Document& value, Random& random) {
     value = text;
 }
 
-// Lists of three that become lists of hundreds make pages large: of lists little is repeated.
+// Repeats an array's element at most twice, as long arrays make large pages.
 void repeat(const Spot& spot, const Document& value, Random& random) {
     if (spot.holder->is_array())
         for (std::size_t n = random.below(3); n > 0; --n)

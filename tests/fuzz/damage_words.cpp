@@ -35,7 +35,7 @@ std::vector<Piece> lines_of(const std::string& text) {
     return pieces;
 }
 
-// Numbers at the edges of what doubles, floats, whole numbers and readers take.
+// Numbers at the limits of doubles, floats, integers and readers.
 const char* const kNumbers[] = {"0",          "-0",
                                 "1",          "-1",
                                 "2",          "3",

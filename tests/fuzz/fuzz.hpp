@@ -1,4 +1,4 @@
-// What the fuzz targets share.
+// Checks and helpers of the fuzz targets.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,29 +12,30 @@
 
 namespace raya::fuzz {
 
-/// Prints a find and ends the program.
+/// Prints a finding and aborts.
 [[noreturn]] inline void complain(const char* what, std::string_view detail) {
     std::fprintf(stderr, "find: %s: %.*s\n", what, static_cast<int>(detail.size()), detail.data());
     std::abort();
 }
 
-/// A refusal begins with the file's name, behind "raya: " or an option at most, and gives a reason.
+/// Requires that an error message contains the file's name and a reason, and is not too long.
 inline void check_refusal(std::string_view message, std::string_view file) {
     const std::size_t at = message.find(file);
-    if (at == std::string_view::npos) complain("a refusal without the file's name", message);
-    if (message.size() < at + file.size() + 4) complain("a refusal without a reason", message);
-    constexpr std::size_t kLongest = 2000;  // characters: one that repeats the input is of no help
-    if (message.size() > kLongest) complain("a refusal of great length", message);
+    if (at == std::string_view::npos) complain("an error message without the file's name", message);
+    if (message.size() < at + file.size() + 4) complain("an error message without a reason", message);
+    constexpr std::size_t kLongest = 2000;  // characters; a message must not repeat the input
+    if (message.size() > kLongest) complain("an error message that is too long", message);
 }
 
-/// As above, and names a line of the file: "FILE:LINE: " or "FILE, line LINE: ".
+/// As check_refusal(); the message must also name a line of the file: "FILE:LINE: " or "FILE, line LINE: ".
 inline void check_refusal_with_line(std::string_view message, std::string_view file) {
     check_refusal(message, file);
     std::string_view rest = message.substr(message.find(file) + file.size());
     constexpr std::string_view kLine = ", line ";
     rest.remove_prefix(rest.starts_with(kLine) ? kLine.size() : 1);
     const std::size_t end = rest.find_first_not_of("0123456789");
-    if (end == 0 || end == std::string_view::npos || rest[0] == '0') complain("a refusal without a line", message);
+    if (end == 0 || end == std::string_view::npos || rest[0] == '0')
+        complain("an error message without a line", message);
 }
 
 /// A folder in memory for readers that take a file's name.
@@ -42,7 +43,7 @@ class ScratchFolder {
   public:
     ScratchFolder() : folder_(in_memory()) {}
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    /// The path of the file, which now has these bytes.
+    /// Writes the file and returns its path.
     std::string write(const std::string& name, std::string_view bytes) const {
         std::ofstream file(path(name), std::ios::binary | std::ios::trunc);
         file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

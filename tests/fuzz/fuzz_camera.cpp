@@ -1,4 +1,4 @@
-// Camera paths: any bytes are cameras that can be rendered, or refused with file and line.
+// Camera paths: any bytes are either read as valid cameras or refused with file and line.
 #include <algorithm>
 
 #include "host/cli/camera_path.hpp"
@@ -21,7 +21,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
         if (cameras.empty() || cameras.size() > lines) complain("wrong number of cameras", text);
         for (const View& camera : cameras)
-            if (const std::string fault = view_fault(camera); !fault.empty()) complain("an accepted camera", fault);
+            if (const std::string fault = view_error(camera); !fault.empty())
+                complain("an invalid camera is accepted", fault);
     } catch (const UserError& error) {
         const std::string_view message = error.what();
         if (message.find("no camera") != std::string_view::npos)

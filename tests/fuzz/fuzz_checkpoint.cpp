@@ -1,7 +1,7 @@
-// Checkpoints, as `raya render --resume` reads them: any bytes are a checkpoint of this render or refused; one that was
-// read survives being written.
-#include "host/base/say.hpp"
-#include "host/cli/keep_options.hpp"
+// Checkpoints, as `raya render --resume` reads them: any bytes are either read as a checkpoint of this render, which is
+// equal after writing and reading, or refused.
+#include "host/base/log.hpp"
+#include "host/cli/checkpoint_options.hpp"
 #include "host/error.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
@@ -10,7 +10,7 @@ using namespace raya::fuzz;
 
 namespace {
 
-// What the corpus has.
+// The vector sizes of the corpus.
 RingState sizes() {
     RingState state;
     state.image.resize(3);
@@ -30,12 +30,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const ScratchFolder folder;
     static const StateSettings settings = {
         {"image", "4 x 4"}, {"--cost", "yes"}, {"--strict", "no"}, {"another scene", "a"}};
-    set_verbosity(kSilent);
-    const KeepOptions options{.file = folder.write("render.rst", text_of(data, size)), .resume = true};
+    set_verbosity(kErrorsOnly);
+    const CheckpointOptions options{.file = folder.write("render.rst", text_of(data, size)), .resume = true};
     try {
-        const StateFile file(options);
-        const auto state = file.keeping()->resume(settings, sizes());
-        if (!state) complain("the file is not there", options.file);
+        const CheckpointFile file(options);
+        const auto state = file.checkpointing()->resume(settings, sizes());
+        if (!state) complain("an existing file is not found", options.file);
         const std::string written = state_bytes(*state, settings);
         if (state_bytes(read_state(written, settings, sizes()), settings) != written)
             complain("changed by being written and read", text_of(data, size).substr(0, 200));

@@ -1,5 +1,5 @@
-// Records of frames, as `raya render --frames` reads them: any bytes are a record or refused; one that was read
-// survives being written.
+// Frame records, as `raya render --frames` reads them: any bytes are either read as a record, which is equal after
+// writing and reading, or refused.
 #include "host/base/whole_file.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/error.hpp"
@@ -26,8 +26,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         again.add({.number = 1, .settings = "settings", .pixels = {}, .files = {}}, {frame});
         again.write();
         if (again.find(1, "settings", {frame}) == nullptr) complain("a frame that was added is not found", written);
-        if (again.find(1, "others", {frame}) != nullptr) complain("a frame of other settings", written);
-        if (FrameRecord(file + ".none").find(1, "settings", {}) != nullptr) complain("a frame of no record", written);
+        if (again.find(1, "others", {frame}) != nullptr) complain("a frame of other settings is found", written);
+        if (FrameRecord(file + ".none").find(1, "settings", {}) != nullptr)
+            complain("a frame is found without a record", written);
     } catch (const UserError& error) {
         check_refusal(error.what(), file);
     }

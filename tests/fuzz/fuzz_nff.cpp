@@ -1,4 +1,4 @@
-// NFF: any bytes are read or refused, and a scene that was read survives being written.
+// NFF: any bytes are either read as a scene, which is equal after writing and reading, or refused.
 #include <algorithm>
 #include <vector>
 
@@ -15,8 +15,8 @@ using namespace raya::fuzz;
 
 const char* const kFile = "fuzz.nff";
 
-/// The packer cuts patches into n - 2 triangles of three different vertices each. Long outlines take cubic time and are
-/// left out.
+/// The packer cuts patches into n - 2 triangles of three different vertices each. Long outlines, which take cubic time,
+/// are skipped.
 void check_triangles(const Polygon& polygon) {
     constexpr std::size_t kMaxVertices = 32;
     const std::size_t n = polygon.vertices.size();
@@ -25,7 +25,7 @@ void check_triangles(const Polygon& polygon) {
     if (triangles.size() != n - 2) complain("wrong number of triangles", std::to_string(triangles.size()));
     for (const auto& [a, b, c] : triangles)
         if (a == b || b == c || c == a || a < 0 || b < 0 || c < 0 || static_cast<std::size_t>(std::max({a, b, c})) >= n)
-            complain("a wrong triangle", std::to_string(a));
+            complain("an invalid triangle", std::to_string(a));
 }
 
 void check_round_trip(const Scene& scene) {
@@ -33,7 +33,7 @@ void check_round_trip(const Scene& scene) {
     if (!(parse_nff(written, kFile) == scene)) complain("changed by being written and read", written);
 }
 
-/// Reads with remarks: what is left of the file is NFF, and a file that is NFF has no remark.
+/// Reads with remarks: the result can be written as NFF, and a file without remarks is plain NFF.
 void check_leniently(std::string_view text) {
     std::vector<NffRemark> remarks;
     const Scene scene = parse_nff(text, kFile, &remarks);
@@ -63,5 +63,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const UserError& error) {
         check_refusal_with_line(error.what(), kFile);
     }
-    return 0;  // any other exception ends the program: a find
+    return 0;  // any other exception ends the program and is a finding
 }

@@ -1,4 +1,4 @@
-// Reports, as `raya page` and `raya bench --compare` read them: any bytes become a page or rows, or are refused.
+// Reports, as `raya page` and `raya bench --compare` read them: any bytes are either read or refused.
 #include "host/cli/page.hpp"
 #include "host/error.hpp"
 #include "host/report/bench_compare.hpp"
@@ -12,7 +12,7 @@ using namespace raya::fuzz;
 
 void check_page(std::string_view text) try {
     const std::string page = page_of_report(std::string(text), "report.json");
-    if (!page.ends_with("</html>\n")) complain("a page that is cut short", page.substr(0, 200));
+    if (!page.ends_with("</html>\n")) complain("an incomplete page", page.substr(0, 200));
 } catch (const UserError& error) {
     check_refusal(error.what(), "report.json");
 }
@@ -23,7 +23,7 @@ void check_bench(const ScratchFolder& folder, std::string_view text) {
         const BenchReport report = read_bench_report(file);
         const std::string written = to_json(report).dump();
         const BenchReport again = read_bench_report(folder.write("again.json", written));
-        // Seconds are kept as milliseconds, which may round.
+        // Seconds are stored as milliseconds, which may round.
         if (to_json(read_bench_report(folder.write("again.json", to_json(again).dump()))).dump().size() + 64 <
             written.size())
             complain("changed by being written and read", written);

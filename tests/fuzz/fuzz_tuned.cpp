@@ -1,5 +1,4 @@
-// Tuned files, as `raya render` reads them and `raya tune` adds to them: any bytes are used, or ignored with a
-// warning.
+// Tuned files, as `raya render` reads and `raya tune` extends them: any bytes are used, or ignored with a warning.
 #include "host/error.hpp"
 #include "host/tune/store.hpp"
 #include "host/version.hpp"
@@ -21,7 +20,7 @@ const DeviceInfo kDevice = {.name = "device",
                             .max_allocation_bytes = 1u << 28,
                             .max_group_size = 4096};
 
-/// The corpus has @version@ where a file names the version of raya that wrote it.
+/// Replaces the corpus's placeholder @version@ by raya's version.
 std::string with_version(std::string text) {
     constexpr std::string_view kPlace = "@version@";
     if (const std::size_t at = text.find(kPlace); at != std::string::npos)
@@ -31,19 +30,19 @@ std::string with_version(std::string text) {
 
 void check_choices(const std::string& file) {
     int warnings = 0;
-    const TunedSource source = kept_choices([&](const std::string& warning) {
+    const TunedSource source = stored_choices([&](const std::string& warning) {
         check_refusal(warning, file);
         ++warnings;
     });
     for (const bool torus : {false, true})
         for (const std::uint32_t accel : {0u, 1u, 2u}) {
             const auto choice = source(kDevice, {.torus = torus, .accel = accel, .fp32 = true});
-            if (choice && warnings > 0) complain("used in spite of a warning", choice->origin);
+            if (choice && warnings > 0) complain("used despite a warning", choice->origin);
         }
     if (warnings > 1) complain("warned more than once", file);
 }
 
-/// Folders and names that no file has: each is used, or refused with a reason.
+/// Checks unusual device names, folders and environment variables.
 void check_surroundings(const ScratchFolder& folder) {
     DeviceInfo odd = kDevice;
     odd.name = "--a  b/c(R)-- 1.0+x";
@@ -57,18 +56,18 @@ void check_surroundings(const ScratchFolder& folder) {
         return false;
     };
     ::setenv("RAYA_TUNED", "maybe", 1);
-    if (!is_refused([] { kept_choices({}); })) complain("accepted", "RAYA_TUNED=maybe");
+    if (!is_refused([] { stored_choices({}); })) complain("accepted", "RAYA_TUNED=maybe");
     ::setenv("RAYA_TUNED", "off", 1);
-    if (kept_choices({})) complain("used", "RAYA_TUNED=off");
+    if (stored_choices({})) complain("used", "RAYA_TUNED=off");
     ::unsetenv("RAYA_TUNED");
     ::setenv("XDG_CACHE_HOME", "no/absolute/path", 1);
     ::setenv("HOME", folder.path("").c_str(), 1);
-    if (is_refused([] { tuned_place(kDevice); })) complain("refused", "HOME");
-    if (const TunedSource source = kept_choices({}); source && source(kDevice, {})) complain("used", "no file");
+    if (is_refused([] { tuned_path(kDevice); })) complain("refused", "HOME");
+    if (const TunedSource source = stored_choices({}); source && source(kDevice, {})) complain("used", "no file");
     ::unsetenv("HOME");
-    if (!is_refused([] { tuned_place(kDevice); }) || kept_choices({})) complain("accepted", "no folder");
+    if (!is_refused([] { tuned_path(kDevice); }) || stored_choices({})) complain("accepted", "no folder");
     ::setenv("XDG_CACHE_HOME", "/dev/null", 1);
-    if (!is_refused([] { tuned_place(kDevice); })) complain("accepted", "/dev/null");
+    if (!is_refused([] { tuned_path(kDevice); })) complain("accepted", "/dev/null");
 }
 
 }  // namespace
@@ -78,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const bool once = (check_surroundings(folder), true);
     if (!once) return 0;
     ::setenv("XDG_CACHE_HOME", folder.path("").c_str(), 1);
-    static const std::string file = tuned_place(kDevice).string();
+    static const std::string file = tuned_path(kDevice).string();
     const std::string text = with_version(std::string(text_of(data, size)));
     folder.write("raya/" + tuned_file_name(kDevice), text);
     check_choices(file);
@@ -87,9 +86,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::string written = tuned_text(kDevice, read);
         if (tuned_text(kDevice, read_tuned(written, "tuned.json", kDevice)) != written)
             complain("changed by being written and read", written);
-        keep_tuned(kDevice, {.date = "2026-11-24", .entries = {TunedEntry{.what = {}, .values = {}, .scene = "s"}}});
+        save_tuned(kDevice, {.date = "2026-11-24", .entries = {TunedEntry{.what = {}, .values = {}, .scene = "s"}}});
     } catch (const UserError& error) {
-        if (std::string_view(error.what()).empty()) complain("a refusal without a reason", text);
+        if (std::string_view(error.what()).empty()) complain("an error message without a reason", text);
     }
     return 0;
 }

@@ -1,4 +1,4 @@
-// Camera paths whose words and lines are damaged.
+// Mutates camera paths: damages words and lines.
 #include "tests/fuzz/mutate.hpp"
 
 using namespace raya::fuzz;

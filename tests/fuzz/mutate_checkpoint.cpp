@@ -1,4 +1,4 @@
-// Checkpoints whose header or values are damaged and whose hash is right, so that the reader gets beyond it.
+// Mutates checkpoints: damages header or values and recomputes the hash, so that the reader gets past it.
 #include <algorithm>
 
 #include "host/base/encoding.hpp"

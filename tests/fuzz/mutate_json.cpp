@@ -1,4 +1,4 @@
-// JSON files whose values are damaged, and once in a while their bytes.
+// Mutates JSON files: damages values, and sometimes bytes.
 #include "tests/fuzz/mutate.hpp"
 
 using namespace raya::fuzz;

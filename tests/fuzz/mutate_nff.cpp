@@ -1,4 +1,4 @@
-// Scenes for the NFF reader: a grammar makes valid ones, which are then damaged.
+// Mutates NFF scenes: a grammar generates valid scenes, which are then damaged.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +14,7 @@ const std::vector<std::string> kWords = {"v",     "from",  "at",      "up",    "
                                          "#raya", "plane", "checker", "#",     "nff",      "pl",       "k",
                                          "tt",    "g",     "light",   "From:", "Subject:", "viewpoint"};
 
-// Writes entities that the reader accepts.
+// Generates entities that the reader accepts.
 class Grammar {
   public:
     explicit Grammar(Random& random) : random_(random) {}
@@ -100,7 +100,7 @@ class Grammar {
         return "c " + vector() + blank() + radius + "\n" + vector() + blank() + other + "\n";
     }
 
-    // Corners around an ellipse in a random plane, some pulled inwards; rounding leaves them not quite flat.
+    // Corners on an ellipse in a random plane, some pulled inwards; rounding makes them slightly non-planar.
     std::string polygon(bool patch) {
         const std::size_t corners = 3 + random_.below(random_.one_in(8) ? 20 : 5);
         double axes[3][3];

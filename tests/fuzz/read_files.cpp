@@ -1,4 +1,4 @@
-// Feeds a fuzz target each file of the folders and files that are named, as libFuzzer does, without clang.
+// Runs a fuzz target on each file of the given folders and files, as libFuzzer does, without clang.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -26,7 +26,7 @@ int main(int count, char** arguments) {
         std::ifstream file(path, std::ios::binary);
         const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
         if (!file) return std::fprintf(stderr, "%s cannot be read\n", path.c_str()), 2;
-        std::fprintf(stderr, "%s\n", path.c_str());  // the last line names the file of a find
+        std::fprintf(stderr, "%s\n", path.c_str());  // the last line names the file of a finding
         LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
     }
     std::printf("%zu files\n", files.size());

@@ -1,5 +1,4 @@
-// Pictures as files hold them, read by OpenImageIO. Library raya_read_image, so that other tests load none of its
-// libraries.
+// Reads image files with OpenImageIO. A separate library, raya_read_image, so that other tests do not load OpenImageIO.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -9,15 +8,15 @@
 
 namespace raya {
 
-/// The floats of a file; the codes of a PNG become linear values. Throws std::runtime_error if it cannot be read, or
-/// has not three channels, or one.
+/// Reads three channels, or one, as floats; 8-bit codes become linear values. Throws std::runtime_error if the file
+/// cannot be read or has another number of channels.
 Image read_image(const std::filesystem::path& path);
 GreyImage read_grey_image(const std::filesystem::path& path);
 
-/// The linear value in 0..1 that a code of a PNG stands for.
+/// The linear value in 0..1 of an sRGB code.
 float linear_from_srgb_code(std::uint8_t code);
 
-/// The curve of IEC 61966-2-1, from a linear value in 0..1 to a code in 0..1.
+/// The sRGB curve of IEC 61966-2-1, from a linear value in 0..1 to an encoded one in 0..1.
 inline double srgb_curve(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }

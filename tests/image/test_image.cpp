@@ -1,4 +1,4 @@
-// The hash of a picture: fixed by a known value, changed by every bit.
+// pixel_hash: a known value, and sensitivity to every bit.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -16,31 +16,31 @@ Image ramp(int width, int height) {
     return image;
 }
 
-TEST_CASE("pixel_hash is XXH3 of the little-endian words", "[image]") {
+TEST_CASE("pixel_hash: is XXH3 of the little-endian words", "[image]") {
     // XXH3_128bits() of the bytes 01 00 00 00  01 00 00 00  00 00 00 3f  00 00 80 3f  00 00 00 c0, high half first
     CHECK(pixel_hash(Image{1, 1, {0.5f, 1.0f, -2.0f}}) == "ede5021099dc7fb9e634093e89f01db8");
 }
 
-TEST_CASE("pixel_hash is equal for equal pictures", "[image]") {
+TEST_CASE("pixel_hash: equal images have equal hashes", "[image]") {
     CHECK(pixel_hash(ramp(200, 90)) == pixel_hash(ramp(200, 90)));
 }
 
-TEST_CASE("pixel_hash sees the shape, not only the floats", "[image]") {
+TEST_CASE("pixel_hash: depends on width and height", "[image]") {
     const Image wide = ramp(6, 4);
     Image tall = wide;
     std::swap(tall.width, tall.height);
     CHECK(pixel_hash(wide) != pixel_hash(tall));
 }
 
-TEST_CASE("pixel_hash tells -0 from +0", "[image]") {
+TEST_CASE("pixel_hash: distinguishes -0 and +0", "[image]") {
     CHECK(pixel_hash(Image{1, 1, {0.0f, 0, 0}}) != pixel_hash(Image{1, 1, {-0.0f, 0, 0}}));
 }
 
-TEST_CASE("pixel_hash sees a change in the last bit of any float", "[image]") {
+TEST_CASE("pixel_hash: depends on the last bit of every float", "[image]") {
     const std::uint32_t seed = 20260;
     CAPTURE(seed);
     std::mt19937 random(seed);
-    const Image image = ramp(160, 120);  // several blocks of the hash
+    const Image image = ramp(160, 120);  // several blocks of XXH3
     const std::string hash = pixel_hash(image);
     for (int n = 0; n < 40; ++n) {
         const std::size_t at = n == 0 ? image.rgb.size() - 1 : random() % image.rgb.size();

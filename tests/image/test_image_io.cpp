@@ -1,4 +1,4 @@
-// Picture files: what is in them byte by byte where that matters, and that they come back as they went in.
+// Image files: their bytes, and reading back what was written.
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Every value differs, none is symmetric; unclamped, with the awkward ones among them.
+/// An image of different values, some negative, above 1, -0, infinite or denormal.
 Image awkward_image() {
     Image image{5, 3, {}};
     for (int i = 0; i < 45; ++i) image.rgb.push_back(static_cast<float>(i - 5) * 0.37f);
@@ -41,7 +41,7 @@ Image awkward_image() {
     return image;
 }
 
-TEST_CASE("EXR and PFM give back every bit", "[image_io]") {
+TEST_CASE("EXR, PFM: preserve every bit", "[image_io]") {
     const ScratchFolder folder;
     const Image image = awkward_image();
     for (const char* name : {"a.exr", "a.pfm", "A.EXR"}) {
@@ -54,7 +54,7 @@ TEST_CASE("EXR and PFM give back every bit", "[image_io]") {
     }
 }
 
-TEST_CASE("grey images come back too, EXR in a channel Y of floats", "[image_io]") {
+TEST_CASE("EXR, PFM: preserve grey images; EXR has a float channel Y", "[image_io]") {
     const ScratchFolder folder;
     const GreyImage image{3, 2, {0, 1.5f, 1e9f, 16777217.0f, -4, 0.1f}};
     for (const char* name : {"cost.exr", "cost.pfm"}) {
@@ -71,7 +71,7 @@ TEST_CASE("grey images come back too, EXR in a channel Y of floats", "[image_io]
     CHECK(file->spec().format == OIIO::TypeDesc::FLOAT);
 }
 
-TEST_CASE("PFM stores little-endian floats, the bottom row first", "[image_io]") {
+TEST_CASE("PFM: little-endian floats, bottom row first", "[image_io]") {
     const ScratchFolder folder;
     write_image(folder / "grey.pfm", GreyImage{1, 2, {1.0f, -2.0f}}, {});  // 1 above -2
     CHECK(contents(folder / "grey.pfm") == std::string("Pf\n1 2\n-1.0\n\x00\x00\x00\xc0\x00\x00\x80\x3f", 20));
@@ -80,7 +80,7 @@ TEST_CASE("PFM stores little-endian floats, the bottom row first", "[image_io]")
     CHECK(contents(folder / "rgb.pfm").size() == 12 + 24);
 }
 
-TEST_CASE("PPM stores the codes of the PNG, the top row first", "[image_io]") {
+TEST_CASE("PPM: the codes of the PNG, top row first", "[image_io]") {
     const ScratchFolder folder;
     write_image(folder / "two.ppm", Image{2, 2, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0.5f}}, {});
     CHECK(contents(folder / "two.ppm") ==
@@ -92,7 +92,7 @@ TEST_CASE("PPM stores the codes of the PNG, the top row first", "[image_io]") {
     CHECK(ppm.rgb == png.rgb);
 }
 
-TEST_CASE("TIFF holds the codes of the PNG, in either spelling", "[image_io]") {
+TEST_CASE("TIFF: the codes of the PNG, with either extension", "[image_io]") {
     const ScratchFolder folder;
     Image image{31, 17, {}};
     for (int i = 0; i < 3 * 31 * 17; ++i) image.rgb.push_back(static_cast<float>(i % 101) / 97);
@@ -107,14 +107,14 @@ TEST_CASE("TIFF holds the codes of the PNG, in either spelling", "[image_io]") {
     }
 }
 
-/// The sampling factors of the three components, out of the frame header (SOF0) of a JPEG file.
+/// The sampling factors of the three components in the frame header (SOF0) of a JPEG file.
 std::string sampling_factors(const std::string& jpeg) {
     const std::size_t frame = jpeg.find("\xff\xc0");
     REQUIRE(frame != std::string::npos);
     return {jpeg[frame + 11], jpeg[frame + 14], jpeg[frame + 17]};
 }
 
-TEST_CASE("JPEG comes near the codes of the PNG, its colours as fine as its brightness", "[image_io]") {
+TEST_CASE("JPEG: within 4 codes of the PNG, without chroma subsampling", "[image_io]") {
     const ScratchFolder folder;
     Image image{64, 48, {}};
     for (int y = 0; y < 48; ++y)
@@ -133,7 +133,7 @@ TEST_CASE("JPEG comes near the codes of the PNG, its colours as fine as its brig
     CHECK(worst <= 4);
 }
 
-TEST_CASE("TIFF and JPEG say how they were made in their description, line by line", "[image_io]") {
+TEST_CASE("TIFF, JPEG: the description has an attribute per line", "[image_io]") {
     const ScratchFolder folder;
     for (const char* name : {"a.tif", "a.jpg"}) {
         CAPTURE(name);
@@ -147,7 +147,7 @@ TEST_CASE("TIFF and JPEG say how they were made in their description, line by li
     }
 }
 
-TEST_CASE("8-bit files hold the codes of the tone, and PNG says its gamma", "[image_io]") {
+TEST_CASE("8-bit files: have the codes of the tone; PNG has its gamma", "[image_io]") {
     const ScratchFolder folder;
     const Tone tone{1, ToneCurve::kReinhard, 2.2};
     const Image image = awkward_image();
@@ -175,11 +175,11 @@ TEST_CASE("8-bit files hold the codes of the tone, and PNG says its gamma", "[im
         write_image(folder / name, image, {}, tone);
         CHECK(pixel_hash(read_image(folder / name)) == pixel_hash(image));
     }
-    for (const char* name : {"a.png", "a.ppm", "a.tif", "a.tiff", "a.JPG", "a.jpeg", "-"}) CHECK(holds_codes(name));
-    for (const char* name : {"a.exr", "a.pfm"}) CHECK_FALSE(holds_codes(name));
+    for (const char* name : {"a.png", "a.ppm", "a.tif", "a.tiff", "a.JPG", "a.jpeg", "-"}) CHECK(stores_codes(name));
+    for (const char* name : {"a.exr", "a.pfm"}) CHECK_FALSE(stores_codes(name));
 }
 
-TEST_CASE("row 0 is the top row of PNG and EXR", "[image_io]") {
+TEST_CASE("PNG, EXR: row 0 is the top row", "[image_io]") {
     const ScratchFolder folder;
     for (const char* name : {"a.png", "a.exr"}) {
         CAPTURE(name);
@@ -192,18 +192,18 @@ TEST_CASE("row 0 is the top row of PNG and EXR", "[image_io]") {
     }
 }
 
-/// The sRGB curve as IEC 61966-2-1 writes it, in the direction that the program does not use.
-TEST_CASE("srgb_code rounds the curve to the nearest code", "[image_io]") {
+TEST_CASE("srgb_code: rounds the sRGB curve to the nearest code", "[image_io]") {
     for (int i = 0; i <= 100'000; ++i) {
         const float linear = static_cast<float>(i) / 100'000;
         const double exact = 255 * srgb_curve(linear);
         CAPTURE(linear, exact);
-        // Half a code, and what the standard's own constants leave open where its two branches meet (under 1e-5 codes).
+        // Half a code, and the gap between the branches of the curve with the constants of IEC 61966-2-1 (< 1e-5
+        // codes).
         REQUIRE(std::abs(srgb_code(linear) - exact) <= 0.5 + 1e-5);
     }
 }
 
-TEST_CASE("srgb_code clamps", "[image_io]") {
+TEST_CASE("srgb_code: clamps", "[image_io]") {
     CHECK(srgb_code(-3.0f) == 0);
     CHECK(srgb_code(0.0f) == 0);
     CHECK(srgb_code(1.0f) == 255);
@@ -212,7 +212,8 @@ TEST_CASE("srgb_code clamps", "[image_io]") {
     CHECK(srgb_code(std::numeric_limits<float>::quiet_NaN()) == 0);
 }
 
-TEST_CASE("no float lies so near to a border between codes that pow could round it the other way", "[image_io]") {
+TEST_CASE("srgb_code: no float is so close to a border between codes that the error of pow could matter",
+          "[image_io]") {
     for (int code = 0; code < 255; ++code) {
         const double encoded = (code + 0.5) / 255;
         const double border = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
@@ -221,7 +222,7 @@ TEST_CASE("no float lies so near to a border between codes that pow could round 
     }
 }
 
-TEST_CASE("PNG holds all 256 codes and gives them back", "[image_io]") {
+TEST_CASE("PNG: preserves all 256 codes", "[image_io]") {
     const ScratchFolder folder;
     Image image{256, 1, {}};
     for (int code = 0; code < 256; ++code)
@@ -236,7 +237,7 @@ TEST_CASE("PNG holds all 256 codes and gives them back", "[image_io]") {
     for (std::size_t i = 0; i < codes.size(); ++i) REQUIRE(codes[i] == i / 3);
 }
 
-TEST_CASE("attributes stand in PNG and EXR under raya:", "[image_io]") {
+TEST_CASE("PNG, EXR: have attributes with the prefix raya:", "[image_io]") {
     const ScratchFolder folder;
     for (const char* name : {"a.png", "a.exr"}) {
         CAPTURE(name);
@@ -247,7 +248,7 @@ TEST_CASE("attributes stand in PNG and EXR under raya:", "[image_io]") {
     }
 }
 
-TEST_CASE("files say nothing about when, where and by which version they were made", "[image_io]") {
+TEST_CASE("image files: contain no date, host or software version", "[image_io]") {
     const ScratchFolder folder;
     for (const char* name : {"a.png", "a.exr", "a.pfm", "a.ppm", "a.tif", "a.jpg"}) {
         CAPTURE(name);
@@ -260,7 +261,7 @@ TEST_CASE("files say nothing about when, where and by which version they were ma
     }
 }
 
-TEST_CASE("an unknown extension is refused with those that are known", "[image_io]") {
+TEST_CASE("write_image: refuses an unknown extension with the known ones", "[image_io]") {
     const ScratchFolder folder;
     const auto message = Contains("use one of .png, .exr, .pfm, .ppm, .tif, .tiff, .jpg, .jpeg");
     for (const char* name : {"a.gif", "a", ".png", "a.png.gz"}) {
@@ -274,19 +275,19 @@ TEST_CASE("an unknown extension is refused with those that are known", "[image_i
     CHECK(folder.entries() == 0);
 }
 
-TEST_CASE("a bad target is refused before and at writing, and nothing is left", "[image_io]") {
+TEST_CASE("write_image: refuses a file that it cannot write, and leaves no part of it", "[image_io]") {
     const ScratchFolder folder;
     fs::create_symlink("/dev/full", folder / "full.png");
     check_image_name(folder / "new.png", kImageExtensions);
     CHECK_THROWS_WITH(write_image(folder / "missing/a.exr", awkward_image(), {}), Contains("does not exist"));
     CHECK_THROWS_WITH(write_image(folder / "full.png", awkward_image(), {}), Contains("No space left on device"));
-    Image wide{1'000'001, 1, {}};  // libpng's limit is a million
+    Image wide{1'000'001, 1, {}};  // libpng's limit: 1,000,000
     wide.rgb.resize(3'000'003);
     CHECK_THROWS_WITH(write_image(folder / "wide.png", wide, {}), Contains("wide.png") && Contains(".ppm"));
     CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("a picture without all its pixels is a mistake of the program", "[image_io]") {
+TEST_CASE("write_image: an image with missing pixels is an internal error", "[image_io]") {
     const ScratchFolder folder;
     CHECK_THROWS_AS(write_image(folder / "a.exr", Image{2, 2, std::vector<float>(11)}, {}), std::logic_error);
     CHECK_THROWS_AS(write_image(folder / "a.exr", GreyImage{0, 2, {}}, {}), std::logic_error);

@@ -1,4 +1,4 @@
-// PNG files made without a library, read by one.
+// PNG files written without a library, read with one.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -11,12 +11,12 @@
 namespace raya {
 namespace {
 
-TEST_CASE("a plain PNG holds the codes of all pixels", "[image]") {
+TEST_CASE("plain_png: has the codes of all pixels", "[image]") {
     std::mt19937 random(11);
     const ScratchFolder folder;
     for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {1, 3}, {37, 21}, {300, 200}}) {
         Image image{width, height, {}};
-        for (int i = 0; i < 3 * width * height; ++i)  // slopes and steps, beyond both ends as well
+        for (int i = 0; i < 3 * width * height; ++i)  // ramps and steps, also outside 0..1
             image.rgb.push_back(static_cast<float>(i % 97) / 80 - 0.1f + (random() % 5 == 0 ? 0.4f : 0.0f));
         write_whole_file(folder / "x.png", plain_png(image));
         const Image read = read_image(folder / "x.png");
@@ -28,7 +28,7 @@ TEST_CASE("a plain PNG holds the codes of all pixels", "[image]") {
     }
 }
 
-TEST_CASE("an image that lacks pixels makes no plain PNG", "[image]") {
+TEST_CASE("plain_png: an image with missing pixels is an internal error", "[image]") {
     CHECK_THROWS_AS(plain_png({2, 2, {0, 0, 0}}), std::logic_error);
     CHECK_THROWS_AS(plain_png({0, 0, {}}), std::logic_error);
 }

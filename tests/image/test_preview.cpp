@@ -1,4 +1,4 @@
-// Small pictures of pictures: their sides, and that each pixel is the mean of its part.
+// Previews: their size, and pixels as means.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,7 +15,7 @@ Image of_one_colour(int width, int height, float value) {
             std::vector<float>(3u * static_cast<unsigned>(width) * static_cast<unsigned>(height), value)};
 }
 
-TEST_CASE("a preview keeps proportions, and small pictures their pixels", "[image]") {
+TEST_CASE("preview_of: keeps proportions, and leaves small images unchanged", "[image]") {
     struct Row {
         int width, height, small_width, small_height;
     };
@@ -29,7 +29,7 @@ TEST_CASE("a preview keeps proportions, and small pictures their pixels", "[imag
     CHECK_THROWS_AS(preview_of({0, 0, {}}), std::logic_error);
 }
 
-TEST_CASE("a preview's pixel is the mean of its part, clamped", "[image]") {
+TEST_CASE("preview_of: a pixel is the mean of its clamped source pixels", "[image]") {
     Image image{4, 2, {}};
     for (int i = 0; i < 24; ++i) image.rgb.push_back(static_cast<float>(i) / 16 - 0.25f);
     image.rgb[0] = std::nanf("");
@@ -47,21 +47,21 @@ TEST_CASE("a preview's pixel is the mean of its part, clamped", "[image]") {
         }
 }
 
-TEST_CASE("a picture as it is shown has the codes of its tone", "[image]") {
+TEST_CASE("as_displayed: the image has the codes of the tone", "[image]") {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> light(-0.5f, 4);
     Image image = of_one_colour(40, 30, 0);
     for (float& value : image.rgb) value = light(random);
     for (const Tone& tone : {Tone{}, Tone{.exposure = -1.5, .curve = ToneCurve::kReinhard}, Tone{.gamma = 1.8}}) {
-        const Image shown = as_shown(image, tone);
-        const ToneCodes codes(tone), usual(Tone{});
+        const Image shown = as_displayed(image, tone);
+        const ToneCodes codes(tone), default_codes(Tone{});
         REQUIRE(shown.rgb.size() == image.rgb.size());
         for (std::size_t at = 0; at < image.rgb.size(); at += 3)
-            if (codes(&image.rgb[at]) != usual(&shown.rgb[at])) FAIL("pixel " << at / 3);
+            if (codes(&image.rgb[at]) != default_codes(&shown.rgb[at])) FAIL("pixel " << at / 3);
     }
 }
 
-TEST_CASE("a preview is as bright as its picture", "[image]") {
+TEST_CASE("preview_of: keeps the mean brightness", "[image]") {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> light(0, 1);
     Image image = of_one_colour(768, 512, 0);
@@ -71,7 +71,7 @@ TEST_CASE("a preview is as bright as its picture", "[image]") {
         return std::accumulate(i.rgb.begin(), i.rgb.end(), 0.0) / static_cast<double>(i.rgb.size());
     };
     CHECK(small.width == 256);
-    CHECK(mean(small) == Approx(mean(image)).epsilon(2e-3));  // some pixels stand for one more column than others
+    CHECK(mean(small) == Approx(mean(image)).epsilon(2e-3));  // some pixels are means of one more column than others
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// From linear colours to codes: exposure, tone curve and gamma, each by what it must hold to.
+// From linear colours to codes: exposure, tone curve and gamma.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -12,7 +12,7 @@ namespace {
 
 using Codes = std::array<std::uint8_t, 3>;
 
-/// The sRGB curve as IEC 61966-2-1 writes it, in the direction that the program does not use.
+/// Combinations of exposure, curve and gamma.
 std::vector<Tone> some_tones() {
     std::vector<Tone> tones;
     for (const double exposure : {0.0, -2.0, 1.0, 0.3})
@@ -31,7 +31,7 @@ std::array<float, 3> random_colour(SplitMix& random) {
     return rgb;
 }
 
-TEST_CASE("the usual tone gives the sRGB code of each value", "[tone]") {
+TEST_CASE("ToneCodes: the default tone gives the sRGB code of each value", "[tone]") {
     const ToneCodes codes{Tone{}};
     SplitMix random(41);
     for (int i = 0; i < 20'000; ++i) {
@@ -41,7 +41,7 @@ TEST_CASE("the usual tone gives the sRGB code of each value", "[tone]") {
     }
 }
 
-TEST_CASE("codes are those of the formulas, to rounding", "[tone]") {
+TEST_CASE("ToneCodes: equal the formulas up to rounding", "[tone]") {
     SplitMix random(42);
     for (const Tone& tone : some_tones()) {
         const ToneCodes codes(tone);
@@ -50,20 +50,20 @@ TEST_CASE("codes are those of the formulas, to rounding", "[tone]") {
             const std::array<float, 3> rgb = random_colour(random);
             const double stops = std::pow(2.0, tone.exposure);
             const double luminance = stops * (0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]);
-            const Codes told = codes(rgb.data());
+            const Codes found = codes(rgb.data());
             for (std::size_t c = 0; c < 3; ++c) {
                 double v = stops * rgb[c];
                 if (tone.curve == ToneCurve::kReinhard) v /= 1 + luminance;
                 v = std::min(v, 1.0);
                 const double exact = 255 * (tone.gamma ? std::pow(v, 1 / *tone.gamma) : srgb_curve(v));
                 CAPTURE(i, c, rgb[c], exact);
-                REQUIRE(std::abs(told[c] - exact) <= 0.5 + 1e-5);
+                REQUIRE(std::abs(found[c] - exact) <= 0.5 + 1e-5);
             }
         }
     }
 }
 
-TEST_CASE("one stop more is twice the light", "[tone]") {
+TEST_CASE("ToneCodes: one stop more is twice the light", "[tone]") {
     SplitMix random(43);
     for (Tone tone : some_tones()) {
         const ToneCodes codes(tone);
@@ -78,37 +78,37 @@ TEST_CASE("one stop more is twice the light", "[tone]") {
     }
 }
 
-TEST_CASE("brighter greys never have lower codes, and greys stay grey", "[tone]") {
+TEST_CASE("ToneCodes: codes of greys are monotonic and grey", "[tone]") {
     for (const Tone& tone : some_tones()) {
         const ToneCodes codes(tone);
         int last = 0;
         for (double v = 1e-6; v < 1e6; v *= 1.01) {
             const auto value = static_cast<float>(v);
             const std::array<float, 3> grey = {value, value, value};
-            const Codes told = codes(grey.data());
+            const Codes found = codes(grey.data());
             CAPTURE(v, tone.exposure);
-            REQUIRE(told[0] >= last);
-            REQUIRE(told[0] == told[1]);
-            REQUIRE(told[1] == told[2]);
-            last = told[0];
+            REQUIRE(found[0] >= last);
+            REQUIRE(found[0] == found[1]);
+            REQUIRE(found[1] == found[2]);
+            last = found[0];
         }
         CHECK(last == 255);
     }
 }
 
-TEST_CASE("Reinhard's curve keeps what clipping loses: differences among bright greys, and hues", "[tone]") {
+TEST_CASE("ToneCodes: Reinhard's curve preserves differences of bright greys, and hues", "[tone]") {
     const ToneCodes clip{Tone{}}, reinhard{Tone{0, ToneCurve::kReinhard, {}}};
     const std::array<float, 3> bright = {2, 2, 2}, brighter = {4, 4, 4};
     CHECK(clip(bright.data()) == clip(brighter.data()));
     CHECK(reinhard(bright.data())[0] < reinhard(brighter.data())[0]);
     const ToneCodes linear{Tone{0, ToneCurve::kReinhard, 1.0}};
     const std::array<float, 3> orange = {1.5f, 0.75f, 0.3f};
-    const Codes told = linear(orange.data());
-    CHECK(told[0] / 1.5 == Approx(told[1] / 0.75).margin(1.5));
-    CHECK(told[1] / 0.75 == Approx(told[2] / 0.3).margin(3));
+    const Codes found = linear(orange.data());
+    CHECK(found[0] / 1.5 == Approx(found[1] / 0.75).margin(1.5));
+    CHECK(found[1] / 0.75 == Approx(found[2] / 0.3).margin(3));
 }
 
-TEST_CASE("no colour is too odd for a code", "[tone]") {
+TEST_CASE("ToneCodes: infinities and NaNs have codes", "[tone]") {
     const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
     for (const Tone& tone : some_tones()) {
         const ToneCodes codes(tone);
@@ -120,7 +120,7 @@ TEST_CASE("no colour is too odd for a code", "[tone]") {
     }
 }
 
-TEST_CASE("a picture says what is unusual about its codes", "[tone]") {
+TEST_CASE("tone_attributes: only values that are not the default", "[tone]") {
     CHECK(tone_attributes({}).empty());
     const ImageAttributes all = {{"exposure", "-1.5"}, {"tone", "reinhard"}, {"gamma", "2.2"}};
     CHECK(tone_attributes({-1.5, ToneCurve::kReinhard, 2.2}) == all);

@@ -1,4 +1,4 @@
-// Numbers that a kernel finds along a ray against the reference's, and which differences rounding may make.
+// Compares the numbers that a kernel finds along a ray with the reference's, and excuses differences due to rounding.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,23 +9,23 @@
 
 namespace raya {
 
-/// What is found along a ray: first the object's number (-1: none), then any numbers.
+/// The result along a ray: first the object's number (-1: none), then any numbers.
 using Found = std::vector<double>;
 
 inline void append(Found& found, const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) found.push_back(v[axis]);
 }
 
-/// A ray may differ by more than the limits only if a ray moved sideways by at most `reach` does so in the reference as
-/// well: then the ray grazes an edge, an outline or a shadow, or strikes so flat that its distance is ill-conditioned.
+/// Counts of compared rays. A ray may differ by more than the limits only if a ray moved sideways by at most `reach`
+/// does so in the reference as well: it grazes an edge, an outline or a shadow, or its distance is ill-conditioned.
 struct Agreement {
     double reach = 0;  // scene units
     std::size_t rays = 0;
-    std::size_t grazing = 0;  // beyond a limit, but excused so
-    double largest = 0;       // difference within the limits, as a share of its limit
+    std::size_t grazing = 0;  // beyond a limit, but excused
+    double largest = 0;       // largest difference within the limits, as a fraction of its limit
 
-    /// True if `actual` is within `limits` (one for each number) of the reference, or excused. `find(ray)` gives what
-    /// the reference finds.
+    /// Returns true if `actual` is within `limits` (one for each number) of the reference, or excused. `find(ray)`
+    /// returns the reference's result.
     template <class Find>
     bool accepts(const Find& find, const reference::Ray& ray, const Found& actual, const Found& limits) {
         ++rays;

@@ -1,5 +1,5 @@
-// Which operands of x86's floating-point unit were denormal: a flag that stays until it is cleared. On PoCL's basic
-// device kernels run in the thread that waits for them, so it tells of kernels too.
+// Detects denormal operands by x86's sticky DE flag. PoCL's basic device runs kernels in the thread that waits for
+// them, so the flag covers kernels too.
 #pragma once
 #if defined(__x86_64__)
 #include <xmmintrin.h>
@@ -10,7 +10,7 @@
 
 namespace raya {
 
-/// Whether the tests that look for denormals can: on x86, with PoCL's basic device (POCL_DEVICES=basic).
+/// Returns true if denormals in kernels can be detected: on x86, with PoCL's basic device (POCL_DEVICES=basic).
 inline bool denormals_can_be_seen() {
     const char* devices = std::getenv("POCL_DEVICES");
 #if defined(__x86_64__)
@@ -20,7 +20,7 @@ inline bool denormals_can_be_seen() {
 #endif
 }
 
-/// Does `work` compute with a denormal number, as an operand?
+/// Returns true if `work` computes with a denormal operand.
 template <class Work>
 bool meets_denormals([[maybe_unused]] const Work& work) {
 #if defined(__x86_64__)

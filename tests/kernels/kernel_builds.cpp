@@ -1,6 +1,6 @@
-// kernel_builds TO [GROUP [KERNELS]]: writes to the folder TO the source of every kernel file, as a GPU's driver is
-// given it, and builds.json: with which options, as host/cl makes them. For tools/gpu_check, which has no device.
-// GROUP: work-items of a group, 0 for what raya takes on a GPU; KERNELS: a folder like kernels/.
+// kernel_builds TO [GROUP [KERNELS]]: writes to the folder TO the source of every kernel file, as host/cl passes it to
+// a GPU's driver, and builds.json with the build options. For tools/gpu_check, which has no device. GROUP: work-items
+// of a group, 0 for raya's default on a GPU; KERNELS: a folder like kernels/.
 #include <fmt/core.h>
 
 #include <cstdio>
@@ -24,7 +24,7 @@ struct Build {
     KernelOptions options;
 };
 
-// What GPUs of today say of themselves.
+// The properties that current GPUs report.
 DeviceInfo a_gpu() {
     DeviceInfo device;
     device.name = "a GPU";
@@ -37,17 +37,17 @@ DeviceInfo a_gpu() {
 
 const std::vector<std::pair<std::string, std::uint32_t>> kWalks = {{" grid", RAYA_ACCEL_GRID},
                                                                    {" bvh", RAYA_ACCEL_BVH}};
-constexpr std::uint32_t kDepth = 5;  // of a tree of 16^5 objects
+constexpr std::uint32_t kDepth = 5;  // of a BVH of 16^5 objects
 
 KernelOptions with_walk(KernelOptions options, std::uint32_t accel) {
-    options.words_local = false;  // a scene that is worth one seldom fits
+    options.words_local = false;  // scenes large enough for one seldom fit in local memory
     options.accel = accel;
     options.stack = accel == RAYA_ACCEL_BVH ? (RAYA_BVH_WIDTH - 1) * kDepth : 0;
     return options;
 }
 
-// Kernels that compute in `all.format`, in what else changes their code: the walk, kinds of objects, what the device's
-// arithmetic lacks.
+// Builds of the kernels that compute in `all.format`, in all variants of their code: acceleration structures, kinds of
+// objects, and arithmetic that the device does not support.
 std::vector<Build> builds_in(const std::string& format, const KernelOptions& all) {
     KernelOptions spheres = all, check = all;
     spheres.polygons = spheres.patches = spheres.cones = false;
@@ -75,11 +75,11 @@ std::vector<Build> all_builds(std::uint32_t group) {
     options.group_size = group ? group : default_group_size(a_gpu());
     std::vector<Build> all;
     for (const char* moves :
-         {"torus/route.cl", "torus/accept.cl", "torus/exchange.cl", "checks/machine.cl"})  // and computes nothing
+         {"torus/route.cl", "torus/accept.cl", "torus/exchange.cl", "checks/machine.cl"})  // independent of the format
         all.push_back({moves, "any", options});
     for (const NumberFormat& format : {NumberFormat{}, NumberFormat{6, 15, false}}) {
         options.format = format;
-        options.filter = filters_hold(format, 1);
+        options.filter = filters_are_valid(format, 1);
         for (Build& build : builds_in(format_name(format), options)) all.push_back(std::move(build));
     }
     options.costs = true;

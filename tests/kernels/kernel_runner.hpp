@@ -1,4 +1,4 @@
-// Builds kernels of tests for every width of lanes, with and without the compiler's optimiser.
+// Builds test kernels for all numbers of lanes, with and without the compiler's optimiser.
 #pragma once
 #include <fmt/core.h>
 
@@ -16,12 +16,12 @@
 
 namespace raya {
 
-/// A session that is there before what is built in it.
+/// A base class that makes the session before other bases use it.
 struct OwnSession {
     Session session{choose_device("")};
 };
 
-/// One way to build a kernel. All ways must give the same bits.
+/// A variant of a kernel's build. All variants of a format must give the same bits.
 struct Variant {
     std::uint32_t lanes = 1;
     bool optimised = true;
@@ -34,18 +34,18 @@ struct Variant {
     }
 };
 
-/// The first is the one that the others are compared with.
+/// All variants in fp32; the others are compared with the first.
 inline const std::vector<Variant>& variants() {
     static const std::vector<Variant> all = {{1, true},  {4, true},  {8, true},  {16, true},
                                              {1, false}, {4, false}, {8, false}, {16, false}};
     return all;
 }
 
-/// A program of kernels of its own on the default device.
+/// Builds and runs a file of test kernels on the default device.
 class KernelRunner : private OwnSession, public CheckRunner {
   public:
-    /// Builds a file, a path from the project's root. Throws std::runtime_error where it is missing, DeviceError where
-    /// it does not build.
+    /// Builds a file, a path from the project's root. Throws std::runtime_error if it is missing, DeviceError if it
+    /// does not build.
     KernelRunner(const std::string& file, const Variant& variant)
         : CheckRunner(session, build(session, file, variant), variant.lanes) {}
 
@@ -56,7 +56,7 @@ class KernelRunner : private OwnSession, public CheckRunner {
         KernelOptions options;
         options.lanes = variant.lanes;
         options.format = variant.format;
-        options.words_local = false;  // where the words lie is the ring's business, not that of the pieces
+        options.words_local = false;  // the probes pass the job's words in global memory
         KernelSources sources;
         sources.patches = variant.patches;
         sources.more_options = variant.more_options;

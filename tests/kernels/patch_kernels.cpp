@@ -1,5 +1,5 @@
-// patch_kernels TO [FILE FIND REPLACE]...: writes the kernels to the folder TO, in each FILE with REPLACE in place of
-// FIND, which must be there exactly once. For tests that are shell scripts.
+// patch_kernels TO [FILE FIND REPLACE]...: writes the kernels to the folder TO and replaces FIND, which must occur
+// exactly once, by REPLACE in each FILE. For tests that are shell scripts.
 #include <cstdio>
 #include <exception>
 

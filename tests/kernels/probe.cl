@@ -1,4 +1,4 @@
-// What the geometry and shading headers make of given rays (kernels/checks/rays.clh), beside their hits.
+// Test kernels for the geometry and shading headers on given rays (kernels/checks/rays.clh), in addition to hits.cl.
 #include "kernels/checks/hits.cl"
 #include "kernels/shading/shade.clh"
 
@@ -12,7 +12,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void find_places(__global const uint* restrict job,
                  __global const float* restrict rays,
                  __global uint* restrict leaving,  // [ray]: 0 or 1
-                 __global float* restrict places)  // [ray][6][3]: P, P+, P-, G, N, colour; of a miss undefined
+                 __global float* restrict places)  // [ray][6][3]: P, P+, P-, G, N, colour; undefined for a miss
 {
     const uint first = first_ray();
     const ray r = load_ray(rays, first);
@@ -30,13 +30,13 @@ void find_places(__global const uint* restrict job,
     store_vec(to + 15, 18, surface_colour(job, struck, &p));
 }
 
-// One step of the walk: the given rays are those of `level`, of weight 1/2.
+// One step of a ray tree: shades the given rays, of `level` and weight 1/2.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void shade_once(__global const uint* restrict job,
                 __global const float* restrict rays,
                 const uint level,
                 __global uint* restrict state,     // [ray][3 + RAYA_EVENTS]: walking (0 or 1), level, waits, events
-                __global float* restrict numbers)  // [ray][17]: sum, ray followed now, ray that waits from `level`
+                __global float* restrict numbers)  // [ray][17]: sum, current ray, ray pending at `level`
 {
     const uint first = first_ray();
     const ray r = load_ray(rays, first);

@@ -12,15 +12,15 @@
 
 namespace raya {
 
-/// The words of a scene; camera, image and cycles do not matter to the pieces.
+/// The words of a scene; the probes use neither camera, image nor cycles.
 inline std::vector<std::uint32_t> job_words(const Scene& scene) {
     JobSettings settings;
     settings.image = {16, 16};
     return pack_job(scene, settings).words();
 }
 
-/// Patches of more than three corners are several polygons of a job: the number that the scene gives to each of a job's
-/// objects.
+/// Returns the number in the scene of each object of the job. A patch of more than three corners is several polygons of
+/// the job.
 inline std::vector<int> object_numbers(const Scene& scene) {
     std::vector<int> numbers;
     const std::size_t first_polygon = scene.spheres.size() + scene.planes.size();
@@ -33,7 +33,7 @@ inline std::vector<int> object_numbers(const Scene& scene) {
     return numbers;
 }
 
-/// What rays without another limit have; a miss leaves it as the distance.
+/// The default limit of rays; a miss returns it as the distance.
 inline constexpr float kFarLimit = 0x1p60F;
 
 /// [ray][7]: origin, direction, limit.
@@ -83,7 +83,7 @@ inline ProbedPlaces find_places(KernelRunner& runner, const std::vector<std::uin
     return {runner.read(leaving), runner.read(places)};
 }
 
-/// A ray of the tree as the kernel holds it.
+/// A ray of the ray tree.
 struct ProbedRay {
     Vec3 origin, direction;
     double weight;
@@ -123,7 +123,7 @@ inline ProbedSteps shade_once(KernelRunner& runner, const std::vector<std::uint3
     return {runner.read(state), runner.read(numbers)};
 }
 
-/// The bits of numbers, so that equal means equal to the last one.
+/// The bits of numbers, for exact comparison.
 inline std::vector<std::uint32_t> bits(const std::vector<float>& numbers) {
     std::vector<std::uint32_t> words;
     words.reserve(numbers.size());

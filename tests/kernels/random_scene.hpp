@@ -14,7 +14,7 @@
 
 namespace raya {
 
-/// All objects lie about the origin, within this distance in each coordinate; so do the rays' origins.
+/// Bound of the coordinates of all objects and of the rays' origins.
 inline constexpr double kSceneReach = 3;
 
 inline double whole_uniform(SplitMix& random, int below) { return std::floor(random.uniform(0, below)); }
@@ -31,7 +31,7 @@ inline Vec3 random_direction(SplitMix& random) {
     }
 }
 
-/// A flat outline around a centre: a star, so that it does not cross itself; concave where its arms differ in length.
+/// A flat star-shaped outline around a centre: it does not cross itself and is concave where its arms differ in length.
 inline std::vector<Vec3> random_outline(SplitMix& random, int corners) {
     const Vec3 normal = random_direction(random), centre = random_point(random, 1.5);
     const Vec3 u = normal.cross(random_direction(random)).normalized(), v = normal.cross(u);
@@ -44,8 +44,7 @@ inline std::vector<Vec3> random_outline(SplitMix& random, int corners) {
     return outline;
 }
 
-/// Surfaces of every kind: matte, gloss, glass, glass that does not reflect, and a checker, which only flat objects
-/// take.
+/// Surfaces of every kind: matte, gloss, glass, glass that does not reflect, and a checker, for flat objects only.
 inline std::vector<Surface> every_surface() {
     Surface matte, gloss, glass, clear, checker;
     matte.colour = {0.9, 0.3, 0.1};
@@ -73,7 +72,7 @@ inline void add_polygon(Scene& scene, SplitMix& random) {
     scene.polygons.push_back({random_outline(random, corners), {}, flat_surface(random)});
 }
 
-/// Its shading normals lean by up to more than a right angle, so that some look away from the side that is seen.
+/// Its shading normals deviate by up to more than a right angle, so that some face away from the visible side.
 inline void add_patch(Scene& scene, SplitMix& random) {
     Polygon patch{random_outline(random, 3 + static_cast<int>(whole_uniform(random, 3))), {}, flat_surface(random)};
     const Vec3 normal = newell_normal(patch.vertices).normalized();
@@ -84,7 +83,7 @@ inline void add_patch(Scene& scene, SplitMix& random) {
     scene.polygons.push_back(patch);
 }
 
-/// `taper`: the apex radius over the base radius; below 0 for one of its own for each cone, some of them with a point.
+/// `taper`: the apex radius over the base radius; below 0: a random one for each cone, some of them pointed.
 inline void add_cone(Scene& scene, SplitMix& random, double sign, double taper) {
     const Vec3 base = random_point(random, 1.5), axis = random_direction(random);
     const double r0 = random.uniform(0.2, 0.9), chosen = std::max(0.0, random.uniform(-0.4, 1.5));
@@ -92,7 +91,7 @@ inline void add_cone(Scene& scene, SplitMix& random, double sign, double taper) 
     scene.cones.push_back({base, sign * r0, base + random.uniform(0.4, 1.5) * axis, sign * r1, round_surface(random)});
 }
 
-/// A kind of object, and how one is added to a scene.
+/// A kind of object, and the function that adds one to a scene.
 struct ObjectKind {
     std::string name;
     void (*add)(Scene& scene, SplitMix& random);
@@ -139,7 +138,7 @@ inline Scene mixed_scene(std::uint64_t seed) {
     return scene;
 }
 
-/// Rays from anywhere towards the middle, in fp32 numbers, so that kernel and reference trace the same ones.
+/// Rays from random origins towards the middle, as fp32 numbers, so that kernel and reference trace the same rays.
 inline std::vector<reference::Ray> random_rays(std::uint64_t seed, std::size_t count) {
     SplitMix random(seed);
     std::vector<reference::Ray> rays;

@@ -1,4 +1,4 @@
-// Closest hits of the kernels against the reference, for every kind of object and every way to build them.
+// Compares closest hits of the kernels with the reference, for every kind of object and every variant of the build.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -20,8 +20,8 @@ constexpr std::size_t kRays = 10'000;
 // A coordinate is rounded by 2^-25 of the scene's extent, 3e-8, and a hit passes through some thirty roundings: 9e-7.
 constexpr double kDistanceLimit = 1e-6;  // of the scene's extent
 
-// The share of the rays that may differ by more because they graze an edge or an outline. What reaches 1e-6 of the
-// extent around the outlines of twenty objects is about 1e-4 of what the rays see.
+// The fraction of the rays that may differ by more because they graze an edge or an outline. A margin of 1e-6 of the
+// extent around the outlines of twenty objects covers about 1e-4 of the view.
 constexpr double kMostGrazing = 0.001;
 
 Found reference_hit(const Scene& scene, const reference::Ray& ray) {
@@ -53,7 +53,7 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
 
 }  // namespace
 
-TEST_CASE("closest hits agree with the reference, with the same bits however they are built", "[kernels]") {
+TEST_CASE("closest hits agree with the reference, with the same bits in all variants", "[kernels]") {
     const std::vector<reference::Ray> rays = random_rays(11, kRays);
     const std::vector<float> words = ray_words(rays);
     std::map<std::string, ProbedHits> first;
@@ -76,10 +76,10 @@ TEST_CASE("closest hits agree with the reference, with the same bits however the
     fmt::print("Of {} rays against each kind of object graze and differ:{}.\n", kRays, grazing);
 }
 
-TEST_CASE("of equal distances the lowest object number wins", "[kernels]") {
+TEST_CASE("on a tie the lowest object number wins", "[kernels]") {
     constexpr std::uint64_t kSeed = 21;
     const Scene once = mixed_scene(kSeed);
-    Scene twice = empty_scene();  // every object and, next to it, the same again
+    Scene twice = empty_scene();  // every object twice, side by side in the list
     const auto doubled = [](const auto& objects, auto& to) {
         for (const auto& object : objects) to.insert(to.end(), 2, object);
     };
@@ -102,7 +102,7 @@ TEST_CASE("of equal distances the lowest object number wins", "[kernels]") {
     }
 }
 
-TEST_CASE("a hit counts only nearer than the ray's limit", "[kernels]") {
+TEST_CASE("a hit counts only if it is nearer than the ray's limit", "[kernels]") {
     constexpr std::uint64_t kSeed = 31;
     const std::vector<std::uint32_t> job = job_words(mixed_scene(kSeed));
     std::vector<float> rays = ray_words(random_rays(32, 1600));

@@ -1,4 +1,4 @@
-// The kernels' -D values and what is refused.
+// Build options of the kernels: -D values, defaults, and rejected values.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
@@ -26,7 +26,7 @@ const DeviceInfo kCpu = a_device("cpu", 8, 4096);
 
 }  // namespace
 
-TEST_CASE("every tunable of the kernels is given a value", "[ring]") {
+TEST_CASE("every tunable of the kernels has a -D option", "[ring]") {
     using Options = std::vector<std::string>;
     CHECK(build_options({}, kCpu) == Options{"-cl-std=CL1.2", "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0",
                                              "-DRAYA_LANES=1", "-DRAYA_GROUP=1", "-DRAYA_BOUNCES=8",
@@ -59,7 +59,7 @@ TEST_CASE("every tunable of the kernels is given a value", "[ring]") {
           Options{"-DRAYA_EXACT_DIVIDE=1", "-DRAYA_EXACT_FMA=0", "-cl-fp32-correctly-rounded-divide-sqrt"});
 }
 
-TEST_CASE("division is asked to be correctly rounded only where the device offers it", "[ring]") {
+TEST_CASE("correctly rounded division is requested only if the device supports it", "[ring]") {
     const std::string option = "-cl-fp32-correctly-rounded-divide-sqrt";
     DeviceInfo device = kCpu;
     const auto asked = [&] {
@@ -94,7 +94,7 @@ TEST_CASE("lanes, group sizes and bounces out of range are refused", "[ring]") {
 TEST_CASE("lanes and group size follow the device", "[ring]") {
     CHECK(default_lanes(a_device("cpu", 16, 4096)) == 16);
     CHECK(default_lanes(a_device("cpu", 8, 4096)) == 8);
-    CHECK(default_lanes(a_device("cpu", 2, 4096)) == 4);  // a narrow CPU gains from more work between branches
+    CHECK(default_lanes(a_device("cpu", 2, 4096)) == 4);  // more work between branches pays on narrow vectors too
     CHECK(default_lanes(a_device("gpu", 1, 1024)) == 1);
     CHECK(default_group_size(a_device("cpu", 16, 4096)) == 1);
     CHECK(default_group_size(a_device("gpu", 1, 1024)) == 128);
@@ -102,10 +102,10 @@ TEST_CASE("lanes and group size follow the device", "[ring]") {
     CHECK(default_group_size(a_device("gpu", 1, 1024), true) == 128);
 }
 
-TEST_CASE("llvmpipe, which makes vectors of work-items, has groups of 8 and one lane; its torus nodes one work-item",
+TEST_CASE("llvmpipe, which vectorises over work-items, has groups of 8 and one lane; its torus nodes one work-item",
           "[ring]") {
     DeviceInfo llvmpipe = a_device("cpu", 1, 1024);
-    llvmpipe.loop_turns = 65'535;
+    llvmpipe.max_loop_iterations = 65'535;
     CHECK(default_lanes(llvmpipe) == 1);
     CHECK(default_group_size(llvmpipe) == 8);
     CHECK(default_group_size(llvmpipe, true) == 1);

@@ -1,4 +1,4 @@
-// Kernel sources: includes put in once, and every line still knows its file and number.
+// Kernel sources: includes are expanded once, and #line keeps the file and number of every line.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -40,7 +40,7 @@ bool is_include(const std::string& line) { return line.starts_with("#include \""
 
 }  // namespace
 
-TEST_CASE("includes are put in where they stand, each once, and the line numbers are kept", "[kernels]") {
+TEST_CASE("includes are expanded in place, each once, and line numbers are kept", "[kernels]") {
     const ScratchFolder folder;
     write(folder / "inner.clh", "inner 1\ninner 2\n");
     write(folder / "outer.clh", "#include \"inner.clh\"\nouter 2\n");
@@ -53,7 +53,7 @@ TEST_CASE("includes are put in where they stand, each once, and the line numbers
     CHECK(kernel_source("some.cl", {folder.path()}) == expand_kernel_source(text, "some.cl", {folder.path()}));
 }
 
-TEST_CASE("files that include each other end", "[kernels]") {
+TEST_CASE("files may include each other", "[kernels]") {
     const ScratchFolder folder;
     write(folder / "a.clh", "#include \"b.clh\"\na 2\n");
     write(folder / "b.clh", "#include \"a.clh\"\nb 2\n");
@@ -62,7 +62,7 @@ TEST_CASE("files that include each other end", "[kernels]") {
     CHECK(count(source, "b 2\n") == 1);
 }
 
-TEST_CASE("every line of the trace kernel stands in its file at its number, and none is lost", "[kernels]") {
+TEST_CASE("the trace kernel's source contains every line of its files, with file and line number", "[kernels]") {
     std::istringstream source(kernel_source("ring/trace.cl"));
     std::map<std::string, std::vector<std::string>> files;
     std::map<std::string, std::size_t> taken;
@@ -91,7 +91,7 @@ TEST_CASE("every line of the trace kernel stands in its file at its number, and 
     }
 }
 
-TEST_CASE("the program carries the kernels of the project's folder", "[kernels]") {
+TEST_CASE("the program embeds the kernels of the project's folder", "[kernels]") {
     int kernels = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(kKernels)) {
         if (entry.path().extension() != ".cl") continue;
@@ -103,7 +103,7 @@ TEST_CASE("the program carries the kernels of the project's folder", "[kernels]"
     CHECK(kernels > 0);
 }
 
-TEST_CASE("a file or an include that does not exist is refused by name", "[kernels]") {
+TEST_CASE("the error for a missing file or include names it", "[kernels]") {
     CHECK_THROWS_AS(kernel_source("ring/tarce.cl"), UserError);
     CHECK_THROWS_WITH(kernel_source("ring/tarce.cl"), Contains("'ring/tarce.cl'"));
     CHECK_THROWS_AS(expand_kernel_source("#include \"none.clh\"\n", "t.cl"), UserError);
@@ -114,7 +114,7 @@ TEST_CASE("a file or an include that does not exist is refused by name", "[kerne
                       Contains((folder / "ring/trace.cl").string()) && Contains("--kernel-dir"));
 }
 
-TEST_CASE("a patch changes its file wherever it is put in, and no other text", "[kernels]") {
+TEST_CASE("a patch changes its file wherever it is included, and nothing else", "[kernels]") {
     const ScratchFolder folder;
     write(folder / "inner.clh", "inner 1\ninner 2\n");
     write(folder / "outer.cl", "#include \"inner.clh\"\nouter 2\n");
@@ -124,11 +124,11 @@ TEST_CASE("a patch changes its file wherever it is put in, and no other text", "
     CHECK(kernel_file("outer.cl", sources) == kernel_file("outer.cl", {folder.path()}));
     CHECK(kernel_source("outer.cl", sources) ==
           "#line 1 \"outer.cl\"\n#line 1 \"inner.clh\"\ninner one\ntwo\n#line 2 \"outer.cl\"\nouter 2\n");
-    // Includes are put in afterwards: a patch may bring one.
+    // Includes are expanded after patches, so a patch may add one.
     const SourcePatch include{"outer.cl", "outer 2", "#include \"more.clh\""};
     write(folder / "more.clh", "more 1\n");
     CHECK_THAT(kernel_source("outer.cl", {folder.path(), {include}}), Contains("\"more.clh\"\nmore 1\n"));
-    // Of the program's own kernels as well.
+    // A patch applies to embedded kernels too.
     const SourcePatch own{"ring/trace.cl", "void trace(", "void retrace("};
     CHECK_THAT(kernel_source("ring/trace.cl", {.patches = {own}}), Contains("void retrace("));
 }
@@ -146,7 +146,7 @@ TEST_CASE("a patch that does not find its text exactly once is refused", "[kerne
     CHECK_NOTHROW(check_patches({.patches = {{"ring/trace.cl", "void trace(", "void retrace("}}}));
 }
 
-TEST_CASE("a build log names the file and line of the mistake", "[kernels]") {
+TEST_CASE("a build log names the file and line of an error", "[kernels]") {
     const ScratchFolder folder;
     write(folder / "broken.clh", "// a comment\nint two(void) { return first_mistake; }\n");
     const std::string text = "#include \"broken.clh\"\n\nkernel void f(global int* a) { a[0] = second_mistake; }\n";

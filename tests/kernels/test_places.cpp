@@ -1,4 +1,4 @@
-// What the kernels find at a hit, against the reference: place, normals, side, colour.
+// Compares what the kernels compute at a hit with the reference: place, normals, side, colour.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kPlaceRays = 4'000;
 
 constexpr double kPlaceLimit = 1e-6;          // of the scene's extent, as the distance of a hit
-constexpr double kColourLimit = 1e-7;         // as the words hold it
+constexpr double kColourLimit = 1e-7;         // rounding of the scene's words
 constexpr double kMostPlacesGrazing = 0.002;  // edges and outlines as for hits, and the sides of checker squares
 
 Found reference_place(const Scene& scene, const reference::Ray& ray) {
@@ -33,19 +33,19 @@ Found reference_place(const Scene& scene, const reference::Ray& ray) {
     return found;
 }
 
-// 1 over the smallest radius of curvature there: that of a cone goes to 0 at its apex, the spheres' are 0.2 or more,
-// and the normals of the patches turn no faster than on such a sphere.
+// Returns the largest curvature at the point. The radius of a cone goes to 0 at its apex, those of spheres are 0.2 or
+// more, and the normals of patches turn no faster than on such a sphere.
 double curvature(const Scene& scene, std::size_t object, const Vec3& point) {
     const std::size_t first_cone = scene.object_count() - scene.cones.size();
     if (object < first_cone) return 5;
     const Cone& cone = scene.cones[object - first_cone];
     const Vec3 along = cone.apex - cone.base;
-    const double share = (point - cone.base).dot(along) / along.length2();  // of the way from base to apex
+    const double share = (point - cone.base).dot(along) / along.length2();  // position between base and apex
     const double radius = std::abs(cone.base_radius + share * (cone.apex_radius - cone.base_radius));
     return std::max(5.0, 1 / radius);
 }
 
-// A normal turns by the error of the place over the radius of curvature.
+// A normal turns by the error of the place times the curvature.
 Found limits_of(const Scene& scene, std::size_t object, const Vec3& point) {
     const double place = kPlaceLimit * scene_extent(scene);
     Found limits{0, 0};
@@ -73,7 +73,7 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
         CHECK(agreement.accepts(find, rays[i], found, limits));
         leaving += places.leaving[i];
     }
-    CHECK(leaving > agreement.rays / 50);  // both sides are seen
+    CHECK(leaving > agreement.rays / 50);  // rays hit both sides
     CHECK(static_cast<double>(agreement.grazing) <= kMostPlacesGrazing * static_cast<double>(agreement.rays));
     return agreement.grazing;
 }
@@ -99,7 +99,7 @@ void check_starts(const Scene& scene, const ProbedHits& hits, const ProbedPlaces
 
 }  // namespace
 
-TEST_CASE("places, normals, sides and colours agree with the reference, with the same bits however they are built",
+TEST_CASE("places, normals, sides and colours agree with the reference, with the same bits in all variants",
           "[kernels]") {
     const std::vector<reference::Ray> rays = random_rays(41, kPlaceRays);
     const std::vector<float> words = ray_words(rays);

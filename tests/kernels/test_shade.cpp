@@ -1,5 +1,4 @@
-// One step of the kernels' walk through a ray tree against the reference's formulas: light, reflection, refraction,
-// counts.
+// Compares one step of the kernels' ray tree with the reference's formulas: light, reflection, refraction, counts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,8 +21,8 @@ constexpr std::uint64_t kSceneSeed = 51, kRaySeed = 52;
 constexpr double kWeight = 0.5;  // of the rays that probe.cl shades
 constexpr std::uint32_t kLastLevel = 8;
 
-// A direction turns by twice what the normal does under reflection, by up to 1.5 times under refraction; the normal
-// turns by the error of the place over the radius of curvature, 0.2 or more except near the tips of cones.
+// If the normal turns by an angle, a reflected direction turns by twice the angle, a refracted one by up to 1.5 times.
+// The normal turns by the error of the place over the radius of curvature, 0.2 or more except near the tips of cones.
 constexpr double kDirectionLimit = 2 * kPlaceLimit * 4 / 0.2;
 // A highlight's power multiplies that by its exponent, 100 at most, and by Ks and the lights' weights, 0.1 in all.
 constexpr double kSumLimit = 100 * 0.1 * kDirectionLimit;
@@ -36,8 +35,8 @@ void append_ray(Found& found, const ProbedRay& ray) {
     found.push_back(ray.weight);
 }
 
-// A step in this order: object, shadow rays, shadow hits, reflected rays, refracted rays, sum, then the reflected and
-// the refracted ray where they were made. A miss has object and sum alone.
+// The numbers of a step: object, shadow rays, shadow hits, reflected rays, refracted rays, sum, then the reflected and
+// the refracted ray if they were made. A miss has only object and sum.
 constexpr std::size_t kWholeNumbers = 5, kSumAt = 5, kRaysAt = 8, kRayNumbers = 7;
 
 Found limits_for(const Found& found, double extent) {
@@ -116,14 +115,14 @@ Found probed_step(const ProbedSteps& steps, std::size_t ray, int object) {
     return found;
 }
 
-// Polygons of the job: patches count once for each of their triangles.
+// Returns the number of polygons of the job: a patch counts once for each of its triangles.
 std::size_t face_count(const Scene& scene) {
     return object_numbers(scene).size() - (scene.object_count() - scene.polygons.size());
 }
 
 std::size_t at(int kind) { return static_cast<std::size_t>(kind); }
 
-// What the counters and the state of the walk must say of one step from `level`.
+// Checks the counts and the state of the tree after one step from `level`.
 void check_state(const Scene& scene, std::size_t faces, const ProbedSteps& steps, std::size_t ray, bool hit,
                  std::uint32_t level) {
     const bool reflected = steps.events(ray, at(RAYA_REFLECTED)) != 0,
@@ -146,7 +145,7 @@ void check_state(const Scene& scene, std::size_t faces, const ProbedSteps& steps
 
 }  // namespace
 
-TEST_CASE("a step of the walk agrees with the reference's formulas", "[kernels]") {
+TEST_CASE("a step of a ray tree agrees with the reference's formulas", "[kernels]") {
     const Scene scene = mixed_scene(kSceneSeed);
     const std::vector<reference::Ray> rays = random_rays(kRaySeed, kShadeRays);
     const std::vector<int> numbers = object_numbers(scene);
@@ -172,11 +171,11 @@ TEST_CASE("a step of the walk agrees with the reference's formulas", "[kernels]"
                agreement.grazing);
     CHECK(static_cast<double>(agreement.grazing) <= kMostShadesGrazing * kShadeRays);
     CHECK(both > kShadeRays / 50);     // reflected and refracted
-    CHECK(through > kShadeRays / 50);  // refracted alone
+    CHECK(through > kShadeRays / 50);  // refracted only
     CHECK(total > kShadeRays / 50);    // totally reflected: a weight of Ks + T, 0.92 or 0.95
 }
 
-TEST_CASE("a step at a deeper level differs in its level alone, and the last level makes no ray", "[kernels]") {
+TEST_CASE("a step at a deeper level differs only in its level, and the last level makes no rays", "[kernels]") {
     const Scene scene = mixed_scene(kSceneSeed);
     const std::vector<std::uint32_t> job = job_words(scene);
     const std::vector<float> rays = ray_words(random_rays(kRaySeed, kShadeRays));
@@ -195,7 +194,7 @@ TEST_CASE("a step at a deeper level differs in its level alone, and the last lev
     }
 }
 
-TEST_CASE("a step gives the same bits however it is built", "[kernels]") {
+TEST_CASE("a step gives the same bits in all variants", "[kernels]") {
     const std::vector<std::uint32_t> job = job_words(mixed_scene(kSceneSeed));
     const std::vector<float> rays = ray_words(random_rays(kRaySeed, kShadeRays));
     std::map<std::uint32_t, ProbedSteps> first;  // by level

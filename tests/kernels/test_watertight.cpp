@@ -34,7 +34,7 @@ Scene ball() {
     return scene;
 }
 
-/// From around the ball at points of its edges, corners among them, and not past its rim; numbers of the format.
+/// Rays from around the ball at points of its edges, some of them corners, away from its rim; rounded to the format.
 Rays rays_at_edges(const Scene& scene, const NumberFormat& format, unsigned count) {
     SplitMix random(2013);
     const auto rounded = [&](double x) {
@@ -60,7 +60,7 @@ Rays rays_at_edges(const Scene& scene, const NumberFormat& format, unsigned coun
         }
         const Vec3 arm = middle - from;
         if ((arm - arm.dot(along) * along).length() > 0.8) continue;
-        rays.add(origin, direction, kUsualLimit);
+        rays.add(origin, direction, kDefaultRayLimit);
         ++made;
     }
     return rays;
@@ -87,7 +87,7 @@ TEST_CASE("rays aimed at the edges of a closed mesh hit it, in every format", "[
         }
 }
 
-TEST_CASE("where an edge is judged by the direction in which it is gone along, cracks are seen", "[watertight]") {
+TEST_CASE("an edge test that depends on the edge's direction makes cracks", "[watertight]") {
     const SourcePatch fault{"geometry/polygon.clh", "(choose(rises, rising, falling)",
                             "(choose(rises, rising, num_mul(falling, num_const(0.9375f)))"};
     CHECK(misses({.lanes = 16, .format = parse_format("e5m10"), .patches = {fault}}, 16'384) > 0);

@@ -1,4 +1,4 @@
-"""The cells of a page's tables, and the command that makes a document."""
+"""Cells of a page's tables, and the command line of a document."""
 import pytest
 
 pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
@@ -10,7 +10,7 @@ from raya.lab.document import cells_of_comparisons, cells_of_table, classes_of, 
     ("1.5", "n"), ("-", "n"), ("", "n"), ("inf", "n"), ("-1.1102e-14", "n"), ("1.41 +- 0.053", "n"), ("283 ms", "n"),
     ("1.58 (derived)", "n"), ("653 ms (derived)", "n"), ("8 x 8", ""), ("46x46x3", ""), ("64 PEs: objects", ""),
     ("4.80 without the first", "t"), ("fp32", ""), ("a" * 61, "w")])
-def test_columns_of_numbers_and_of_text(cell, look):
+def test_class_of_a_column_follows_from_its_cells(cell, look):
     assert classes_of([["column"], [cell], ["-"]]) == [look]
 
 
@@ -23,12 +23,12 @@ def test_comparisons_have_no_empty_columns(paper, remark, columns):
     assert cells_of_comparisons(page) == [columns, [row[name] for name in columns]]
 
 
-def test_whole_numbers_stay_whole():
+def test_integers_are_printed_without_rounding():
     table = Table("some", "Some", [{"p": 100000, "u": 0.5}, {"p": 3, "u": 100000.4}])
     assert cells_of_table(table) == [["p", "u"], ["100000", "0.5"], ["3", "100000"]]
 
 
-def test_command_of_a_document():
+def test_command_of_a_document_names_all_scenes():
     pages = [Page({}, run={"command": f"raya study {words} -o DIR"}) for words in ("fig7 a.nff", "images a.nff b.nff")]
     assert command_of(pages[:1]) == "raya study fig7 a.nff -o DIR"
     assert command_of(pages) == "raya study all a.nff b.nff -o DIR"

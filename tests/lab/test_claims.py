@@ -1,4 +1,4 @@
-"""Claims of the studies on rows made so that each verdict occurs, as far as a claim knows all three."""
+"""Claims of the studies, on synthetic rows that give each of a claim's possible verdicts."""
 import re
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,8 +17,8 @@ SEED, SIDE = 32, 64
 VERDICTS = {"yes": REPRODUCED, "no": NOT_REPRODUCED, "?": UNDECIDED}
 
 
-class Given:
-    """A laboratory whose views have these cost images."""
+class FakeLaboratory:
+    """A laboratory with given cost images as views."""
 
     network = None
 
@@ -36,7 +36,7 @@ class Given:
 
 
 def along(p, slot, height=500, side=SIDE):
-    """A cost image that is dearer in the pixels of one slot under offset p."""
+    """A cost image with a higher cost in the pixels of one slot of offset p."""
     return 1000 + height * (raya.owners(side, side, offset=p, pes=side) == slot % side).astype(np.uint64)
 
 
@@ -59,26 +59,26 @@ def verdicts(page):
 
 
 HUMP = 1000 + (1000 * np.exp(-((np.arange(SIDE) - SIDE / 2) / 8.0) ** 2)).astype(int)
-NOT_BEST = several(lambda slot: along(8, slot))
-BUT_8 = several(lambda slot: sum(along(p, slot + 5 * p) for p in range(8)))
+WORST_AT_8 = several(lambda slot: along(8, slot))
+BEST_AT_8 = several(lambda slot: sum(along(p, slot + 5 * p) for p in range(8)))
 
 
 @pytest.mark.parametrize("views, wanted", [
-    (several(lambda slot: along(0, slot)), ["yes", "no", "yes"]), (NOT_BEST, ["no", "no", "?"]),
-    (BUT_8, ["yes", "yes", "no"]), (noise(), ["?", "?", "?"]), (NOT_BEST[:1], ["?", "?", "?"])])
+    (several(lambda slot: along(0, slot)), ["yes", "no", "yes"]), (WORST_AT_8, ["no", "no", "?"]),
+    (BEST_AT_8, ["yes", "yes", "no"]), (noise(), ["?", "?", "?"]), (WORST_AT_8[:1], ["?", "?", "?"])])
 def test_offsets(views, wanted):
-    found = verdicts(imbalance.fig8(Given(views), [raya.example("centre")]))
+    found = verdicts(imbalance.fig8(FakeLaboratory(views), [raya.example("centre")]))
     assert [found[0], found[1]] == [VERDICTS[w] for w in wanted[:2]]
     if wanted[2] != "?":
         assert found[2] == VERDICTS[wanted[2]]
-    assert verdicts(imbalance.fig13(Given(views), [raya.example("centre")])) == found[:2]
+    assert verdicts(imbalance.fig13(FakeLaboratory(views), [raya.example("centre")])) == found[:2]
 
 
 @pytest.mark.parametrize("heights, count, word", [((10, 80), 40, "yes"), ((200, 300), 40, "no"), ((200, 300), 38, "?")])
-def test_printed_imbalance_is_a_draw(heights, count, word):
-    """u(16) of 0.118 among views of which each has one slot dearer by so much per cent."""
+def test_printed_imbalance_among_the_views(heights, count, word):
+    """u(16) = 0.118 among views in each of which one slot costs 0.1 % of `heights` more."""
     views = [along(16, i, 10 * height, 256) for i, height in enumerate(np.linspace(*heights, count).astype(int))]
-    page = imbalance.fig8(Given(views), [raya.example("centre")])
+    page = imbalance.fig8(FakeLaboratory(views), [raya.example("centre")])
     assert page.claims[3].place == "Fig. 8" and page.claims[3].verdict == VERDICTS[word]
 
 
@@ -87,17 +87,17 @@ def test_printed_imbalance_is_a_draw(heights, count, word):
     (noise(2) + [columns(HUMP)], ["?", "yes"]), ([columns(HUMP)], ["?", "?"])])
 def test_hump(views, wanted):
     for study in (loads.fig7, loads.fig12):
-        assert verdicts(study(Given(views), [raya.example("centre")])) == [VERDICTS[w] for w in wanted]
+        assert verdicts(study(FakeLaboratory(views), [raya.example("centre")])) == [VERDICTS[w] for w in wanted]
 
 
-def test_load_that_is_not_flat():
+def test_a_load_that_is_not_flat_is_not_reproduced():
     slots = raya.owners(SIDE, SIDE, offset=16, pes=SIDE)
-    page = loads.fig7(Given([HUMP[slots].astype(np.uint64)] * 3), [raya.example("centre")])
+    page = loads.fig7(FakeLaboratory([HUMP[slots].astype(np.uint64)] * 3), [raya.example("centre")])
     assert page.claims[1].verdict == NOT_REPRODUCED
 
 
 def of_array(speed_16, speed_0, cap, pixel_machine):
-    """What fig9 knows of one view: speed-ups on 1..256 PEs, and of A x A arrays."""
+    """fig9's data of one view: speed-ups on 1..256 PEs, and of A x A arrays."""
     pes = np.arange(1, 257)
     rows = pd.DataFrame({"p = 16, cyclic fold": pes * speed_16 / 256, "p = 0, cyclic fold": pes * speed_0 / 256})
     return rows, {8: pixel_machine, 16: cap * pixel_machine}
@@ -121,7 +121,7 @@ def test_images(scattered, even, wanted):
     assert [claim.verdict for claim in found] == [VERDICTS[w] for w in wanted]
 
 
-def test_images_that_vary_as_strongly_as_is_asked():
+def test_images_at_the_limit_of_variation_are_undecided():
     random = np.random.default_rng(SEED)
     cyclic = 0.9 + 0.05 * random.uniform(-1, 1, 40)
     every = pd.DataFrame({"scene": "one", "columns": 0.5 + 0.1 * random.uniform(-1, 1, 40), "cyclic": cyclic})
@@ -143,7 +143,7 @@ def test_offsets_beyond(beyond, word):
     assert offsets_beyond.claim_of_enough(u, means, 5).verdict == VERDICTS[word]
 
 
-def test_offsets_beyond_that_scatter():
+def test_offsets_beyond_with_large_scatter_are_undecided():
     random = np.random.default_rng(SEED)
     u = 0.2 + random.normal(0, 0.1, (30, 20))
     assert offsets_beyond.claim_of_enough(u, [estimate(column) for column in u.T], 5).verdict == UNDECIDED
@@ -172,8 +172,7 @@ def test_whole_job(balance, word):
 
 
 def choice(near, count=20):
-    """A choice of an offset of 16 PEs, of which the best of 0..sqrt(P) takes about `near` % longer than the best of
-    all."""
+    """A choice of an offset of 16 PEs, of which the best of 0..sqrt(P) takes about `near` % longer than the best of all."""
     def longer(offset, confidence=0.95):
         random = np.random.default_rng(SEED)
         return estimate(near + random.normal(0, 0.1, count), confidence)
@@ -193,7 +192,7 @@ def test_best_offset(nears, word):
     assert best_offset.claim_of_square(choices).verdict == NOT_REPRODUCED
 
 
-def test_square_of_images_without_such_an_offset():
+def test_square_of_images_without_the_offset_is_undecided():
     few = choice(0)
     few.times = few.times[:16]
     assert best_offset.claim_of_square([few]).verdict == UNDECIDED
@@ -208,12 +207,12 @@ def test_cluster(of_scenes, word):
 
 @pytest.mark.parametrize("image, word", [(along(0, 5), "yes"), (along(8, 5), "no")])
 def test_turn(image, word):
-    page = turn.turn(Given([image]), [raya.example("centre")])
+    page = turn.turn(FakeLaboratory([image]), [raya.example("centre")])
     assert verdicts(page) == [VERDICTS[word]]
 
 
 def smoothed(alone, with_first, rotations):
-    """What table4 knows of three offsets, of which the last is to be the better one, and of the filter on them."""
+    """table4's data of three offsets, of which the last should be the best, and of the filter on them."""
     def runs(some):
         return [SimpleNamespace(report={"communication": {"rotations": r, "rotation_words": 768 * r}}) for r in some]
 
@@ -231,7 +230,7 @@ def test_supersampling(alone, with_first, rotations, wanted):
 
 
 def divided(objects, best, falls):
-    """Rows of a scene whose figures fall by so much from 32 to 1024 divisions, least at `best`, and then rise."""
+    """Rows of a scene whose figures have a minimum at `best` divisions and fall by the factors `falls` from 32 to 1024."""
     power = np.arange(14)
     before, after = np.clip(np.log2(best) - power, 0, None) / 5, np.clip(power - np.log2(best), 0, None)
     columns = ("modelled (s)", "measured (ms)", "tests")
@@ -249,7 +248,7 @@ def test_divisions(bests, falls, wanted):
 
 
 def grown(even, random):
-    """Objects over time, and the part of it by logarithms that fewer voxels explain: one even scene, five random."""
+    """Objects over time, and the share of its logarithm due to fewer voxels: one even scene, five random ones."""
     random_numbers = np.random.default_rng(SEED)
 
     def rows(over, share, count):
@@ -286,8 +285,8 @@ def test_two_dimensions(over, word):
     assert scale.claim_of_2d(between, of_views).verdict == VERDICTS[word]
 
 
-def test_no_claim_is_forgotten():
-    """Each function of claims is called above; of some studies the whole page is made, of images."""
+def test_every_claim_is_tested():
+    """Each claim function is called above; of some studies, the whole page is made from images."""
     within = {"imbalance": imbalance.fig8, "loads": loads.fig7, "turn": turn.turn}
     text = Path(__file__).read_text()
     for file in Path(objects.__file__).parent.glob("*.py"):

@@ -1,4 +1,4 @@
-"""A study whose rows are damaged ends with an error that names the place, and leaves no file behind."""
+"""A study with damaged rows ends with an error that names the place, and writes no file."""
 import json
 import os
 import subprocess
@@ -31,7 +31,7 @@ def run(lab, scenes):
                 [Comparison("u(16)", "", 0.118, rows["u"].iloc[-1])], tables=[Table("damaged", "u", rows)],
                 plots=[Plot("damaged", "u", "p", "u", [Series("u", rows["p"], rows["u"])])])
 '''
-# What is done to the rows, and what the error says.
+# Damage to the rows -> parts of the error message.
 DAMAGES = {"rows = rows.drop(columns='u')": ["damaged.py, line 15", "KeyError", "'u'"],
            "rows['u'] = rows['u'].where(rows['p'] < 16)": ["comparison 'u(16)'", "nan", "not a number"],
            "rows = rows[rows['p'] > 16]": ["damaged.py, line 15", "IndexError"],
@@ -39,9 +39,9 @@ DAMAGES = {"rows = rows.drop(columns='u')": ["damaged.py, line 15", "KeyError", 
            "rows['p'] = ['0', 'eight', '16']": ["series u", "eight"],
            "rows.columns = ['u', 'u']": ["damaged.py, line 15"],
            "return Page({}, tables=[Table('damaged', 'u', [])])": ["table damaged", "no rows"],
-           "return Page({})": ["its docstring has {count}, which no setting fills"],
+           "return Page({})": ["its docstring has {count}, which is not a setting"],
            "return Page({'count': 3}, claims=[Claim('', '', 'u falls.', 'yes', '')])": ["u falls.", "verdict 'yes'"],
-           "return Page({'count': 3}, tables=2 * [Table('damaged', 'u', rows)])": ["two files have one name"],
+           "return Page({'count': 3}, tables=2 * [Table('damaged', 'u', rows)])": ["two files have the same name"],
            "return None": ["returns NoneType, not a Page"]}
 
 
@@ -58,7 +58,7 @@ def study_with(folder, damage):
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
-def test_damage_is_named(folder, damage):
+def test_error_names_the_damage(folder, damage):
     options = SimpleNamespace(size=None, network=None, device=None, no_tuned=True)
     with pytest.raises(ValueError) as error:
         worker.run_study(study_with(folder, damage), [], folder, options)
@@ -67,13 +67,13 @@ def test_damage_is_named(folder, damage):
         assert part in str(error.value)
 
 
-def test_rows_without_damage_are_a_page(folder):
+def test_rows_without_damage_give_a_page(folder):
     options = SimpleNamespace(size=None, network=None, device=None, no_tuned=True)
     page, _ = worker.run_study(study_with(folder, "pass"), [], folder, options)
     assert (page.title, page.question, page.method) == ("Damaged rows", "What becomes of them?", ["Of 3 rows."])
 
 
-def test_program_ends_without_files(folder):
+def test_program_with_damaged_rows_writes_no_files(folder):
     settings = {"study": study_with(folder, next(iter(DAMAGES))), "scenes": [], "output": str(folder / "made/x"),
                 "size": None, "network": None, "device": "", "strict": False, "no_tuned": True, "verbosity": 0}
     path = os.pathsep.join([str(Path(raya.__file__).absolute().parents[1]), os.environ.get("PYTHONPATH", "")])
@@ -91,27 +91,27 @@ def page_of(**members):
 
 
 @pytest.mark.parametrize("module, name", [(plots, "files_of"), (document, "json_of"), (document, "environment")])
-def test_page_that_cannot_be_made_leaves_no_file(tmp_path, monkeypatch, module, name):
+def test_page_with_an_error_leaves_no_file(tmp_path, monkeypatch, module, name):
     def fail(*_):
-        raise ValueError("planted")
+        raise ValueError("injected")
 
     monkeypatch.setattr(module, name, fail)
-    with pytest.raises(ValueError, match="planted"):
+    with pytest.raises(ValueError, match="injected"):
         write_page(tmp_path, page_of())
     assert not list(tmp_path.iterdir())
 
 
-def test_file_that_cannot_be_written_leaves_no_part(tmp_path, monkeypatch):
+def test_failed_write_leaves_no_partial_file(tmp_path, monkeypatch):
     def fail(*_):
-        raise OSError("planted")
+        raise OSError("injected")
 
     monkeypatch.setattr(os, "replace", fail)
-    with pytest.raises(OSError, match="planted"):
+    with pytest.raises(OSError, match="injected"):
         write_page(tmp_path, page_of())
     assert not list(tmp_path.iterdir())
 
 
-def test_missing_values_are_shown_as_such(tmp_path):
+def test_missing_and_infinite_values_are_shown(tmp_path):
     table = Table("some", "u", [{"p": 0, "u": np.nan}, {"p": 1, "u": np.inf}])
     page = Page({}, tables=[table], plots=[Plot("some", "u", "p", "u", [Series("u", [0, 1], [np.nan, np.inf])])])
     write_page(tmp_path, page.describe("some", "Some"))
@@ -127,11 +127,11 @@ def test_comparison_needs_a_number(ours):
 
 
 @pytest.mark.parametrize("half_widths, y", [([0.1], [1, 2]), ([], [1])])
-def test_series_has_one_length(half_widths, y):
-    with pytest.raises(ValueError, match="series u: .*one length"):
+def test_series_needs_equal_lengths(half_widths, y):
+    with pytest.raises(ValueError, match="series u: .*differ in length"):
         Series("u", [0, 1], y, half_widths=half_widths)
 
 
-def test_claim_has_a_verdict():
-    with pytest.raises(ValueError, match="no verdict 'perhaps'"):
+def test_claim_needs_a_known_verdict():
+    with pytest.raises(ValueError, match="unknown verdict 'perhaps'"):
         Claim("", "", "u falls.", "perhaps", "")

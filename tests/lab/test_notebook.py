@@ -1,4 +1,4 @@
-"""docs/laboratory.ipynb runs, and prints what it holds."""
+"""docs/laboratory.ipynb runs and prints its recorded outputs."""
 from pathlib import Path
 
 import pytest
@@ -12,7 +12,7 @@ def printed(notebook):
     return [output.text for output in outputs if output.output_type == "stream"]
 
 
-def test_notebook(monkeypatch):
+def test_notebook_prints_its_recorded_outputs(monkeypatch):
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
     import raya
 

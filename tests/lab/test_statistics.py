@@ -1,4 +1,4 @@
-"""The laboratory's statistics: worked examples, and simulation. The seed is printed where a test fails."""
+"""The laboratory's statistics: worked examples and simulations. Failures print the seed."""
 import numpy as np
 import pytest
 
@@ -9,7 +9,7 @@ SEED, DRAWS = 20261124, 2000
 
 
 def covered(distribution, true_mean, count, confidence=0.95):
-    """The part of the intervals, each of `count` values, that hold the mean."""
+    """The share of intervals, each of `count` values, that contain the mean."""
     generator = np.random.default_rng(SEED)
     values = distribution(generator, (DRAWS, count))
     estimates = [s.estimate(row, confidence) for row in values]
@@ -17,18 +17,18 @@ def covered(distribution, true_mean, count, confidence=0.95):
 
 
 @pytest.mark.parametrize("count", [2, 5, 16, 64])
-def test_interval_of_normal_values_holds_the_mean(count):
+def test_interval_of_normal_values_contains_the_mean(count):
     part = covered(lambda g, shape: g.normal(7, 3, shape), 7, count)
     assert 0.93 <= part <= 0.97, f"{part} of {DRAWS} intervals, seed {SEED}"
 
 
-def test_interval_of_64_skewed_values_holds_the_mean():
+def test_interval_of_64_skewed_values_contains_the_mean():
     part = covered(lambda g, shape: g.gamma(4, 1, shape), 4, 64)
     assert 0.93 <= part <= 0.97, f"{part} of {DRAWS} intervals, seed {SEED}"
 
 
 @pytest.mark.parametrize("tests", [3, 16])
-def test_intervals_of_several_means_hold_all_of_them(tests):
+def test_joint_intervals_contain_all_means(tests):
     generator = np.random.default_rng(SEED)
     values = generator.normal(0, 1, (DRAWS, tests, 20))
     all_hold = [all(abs(e.mean) <= e.half for e in (s.estimate(row, s.each_of(tests)) for row in draw))
@@ -38,7 +38,7 @@ def test_intervals_of_several_means_hold_all_of_them(tests):
 
 @pytest.mark.parametrize("count", [39, 64, 200])
 @pytest.mark.parametrize("name", ["normal", "exponential", "uniform"])
-def test_prediction_holds_one_more_value(name, count):
+def test_prediction_interval_contains_one_more_value(name, count):
     generator = np.random.default_rng(SEED)
     values = getattr(generator, name)(size=(DRAWS * 4, count + 1))
     bounds = np.quantile(values[:, 1:], [0.025, 0.975], axis=1, method="weibull")
@@ -59,7 +59,7 @@ def test_estimate_of_a_worked_example():
 def test_estimate_of_one_value_has_no_interval():
     e = s.estimate([0.25])
     assert e.mean == 0.25 and np.isnan(e.half) and e.text() == "0.250"
-    assert not e.low > 0 and not e.high < 1  # so that no claim is decided by it
+    assert not e.low > 0 and not e.high < 1  # so that it decides no claim
 
 
 def test_prediction_of_39_values_is_their_range():
@@ -75,7 +75,7 @@ def test_verdict(seen, contrary, word):
 
 @pytest.mark.parametrize("paper, count, word", [(20, 39, s.REPRODUCED), (50, 39, s.NOT_REPRODUCED),
                                                 (20, 38, s.REPRODUCED), (50, 38, s.UNDECIDED)])
-def test_verdict_among_pictures(paper, count, word):
+def test_verdict_among_values(paper, count, word):
     assert s.verdict_among(paper, np.arange(count)) == word
 
 

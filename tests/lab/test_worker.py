@@ -1,4 +1,4 @@
-"""A driver that crashes in a study ends that study: it is reported, and the next one runs in a new process."""
+"""A driver crash in a study is reported, ends only that study, and the next one runs in a new process."""
 from types import SimpleNamespace
 
 import pytest
@@ -21,7 +21,7 @@ def run(lab, scenes):
 '''
 
 
-def test_a_crash_ends_one_study(tmp_path):
+def test_a_crash_ends_only_its_study(tmp_path):
     crash, good, none = (tmp_path / f"{name}.py" for name in ("crash", "good", "none"))
     crash.write_text(STUDY.format("__import__('os').kill(__import__('os').getpid(), 11)"))
     good.write_text(STUDY.format("pass"))

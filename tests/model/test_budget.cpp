@@ -1,5 +1,4 @@
-// The instruction budgets: events counted by hand, sums, and whether the seeds and steps give the bits that they
-// promise.
+// The instruction budgets: events counted by hand, sums, and the accuracy of seeds and Newton steps.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -28,7 +27,7 @@ double error_bits(Relative&& relative) {
     return std::log2(worst);
 }
 
-/// `value` with 8 fraction bits after its first bit, as a table's word might hold it.
+/// `value` rounded to 8 fraction bits after its leading bit, as in a table's word.
 double word(double value) {
     const int exponent = std::ilogb(value);
     return std::ldexp(std::nearbyint(std::ldexp(value, 9 - exponent)), exponent - 9);
@@ -36,7 +35,7 @@ double word(double value) {
 
 }  // namespace
 
-TEST_CASE("budgets come in the order of the events; only a count for the report is free", "[machine]") {
+TEST_CASE("budgets are in the order of the events, and only primary hits, a count for reports, are free", "[machine]") {
     for (int event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
         CHECK(budget_of(event).event == event);
@@ -48,7 +47,7 @@ TEST_CASE("budgets come in the order of the events; only a count for the report 
 
 // Division: seed 3, e = 1 - b y, y + e y, a y. Root: seed 3, x/2, y y, 3/2 - (x/2)(y y), y times that, x y. A
 // branch: 3.
-TEST_CASE("cycles of one event, counted by hand", "[machine]") {
+TEST_CASE("cycles of each event agree with those counted by hand", "[machine]") {
     CHECK(kDivisionCycles == 6);
     CHECK(kRootCycles == 8);
     CHECK(kBranchCycles == 3);
@@ -67,7 +66,7 @@ TEST_CASE("cycles of one event, counted by hand", "[machine]") {
     CHECK(cycles[RAYA_HIGHLIGHTS] == 22 + 6 + 5 + 3);
 }
 
-TEST_CASE("operations of many events add up to their cycles", "[machine]") {
+TEST_CASE("the operations of many events amount to their cycles", "[machine]") {
     constexpr std::uint64_t kSeed = 5;
     SplitMix random(kSeed);
     for (int i = 0; i < 500; ++i) {
@@ -83,7 +82,7 @@ TEST_CASE("operations of many events add up to their cycles", "[machine]") {
     CHECK(cycles_of(operations_of({})) == 0);
 }
 
-TEST_CASE("operations of one event are its budget's", "[machine]") {
+TEST_CASE("the operations of an event are those of its budget", "[machine]") {
     for (const Budget& b : budgets()) {
         EventCounts events{};
         events[static_cast<std::size_t>(b.event)] = 7;
@@ -99,7 +98,7 @@ TEST_CASE("operations of one event are its budget's", "[machine]") {
 
 // A pixel of the filter: 3 x (4 additions, 1 multiplication), as many moves, 4 branches of 3 cycles: 42.
 // A comparison: 4 sides x 3 colours x 6, one move, 16 branches: 121.
-TEST_CASE("smoothing takes each pixel of a share the same", "[machine]") {
+TEST_CASE("smoothing takes the same number of cycles for each pixel of a share", "[machine]") {
     for (const std::uint64_t pixels : {0ull, 1ull, 256ull, 1ull << 40}) {
         CAPTURE(pixels);
         CHECK(filter_cycles(pixels) == 42 * pixels);
@@ -107,8 +106,8 @@ TEST_CASE("smoothing takes each pixel of a share the same", "[machine]") {
     }
 }
 
-TEST_CASE("a seed of 256 words and one Newton step give the bits that the budget promises", "[machine]") {
-    // 8 bits of the significand choose the word, that of the interval's middle.
+TEST_CASE("a seed of 256 words and one Newton step have the accuracy that the budget assumes", "[machine]") {
+    // 8 bits of the significand select the word, which is that of the interval's middle.
     const auto reciprocal_seed = [](double b) {
         const int exponent = std::ilogb(b);
         const double significand = std::ldexp(b, -exponent);
@@ -131,7 +130,7 @@ TEST_CASE("a seed of 256 words and one Newton step give the bits that the budget
     CHECK(error_bits([&](double b) { return b * reciprocal(b) - 1; }) < -16);
     CHECK(error_bits([&](double x) { return std::sqrt(x) * root_seed(x) - 1; }) < -8);
     CHECK(error_bits([&](double x) { return root(x) / std::sqrt(x) - 1; }) < std::log2(1.5) - 16);
-    CHECK(error_bits([&](double x) { return root(x) / std::sqrt(x) - 1; }) > -23);  // and no more than they can
+    CHECK(error_bits([&](double x) { return root(x) / std::sqrt(x) - 1; }) > -23);  // the accuracy is limited
 }
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// Loads and what the papers make of them.
+// Loads, and the papers' measures of them.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -7,7 +7,7 @@
 
 using namespace raya;
 
-TEST_CASE("a load's mean, imbalance, speed-up and efficiency", "[report]") {
+TEST_CASE("a load has mean, imbalance, speed-up and efficiency", "[report]") {
     const Load load = load_of({1, 4, 2, 3});
     CHECK(load.per_pe == std::vector<std::uint64_t>{1, 4, 2, 3});
     CHECK(load.min == 1);
@@ -18,7 +18,7 @@ TEST_CASE("a load's mean, imbalance, speed-up and efficiency", "[report]") {
     CHECK(load.efficiency == 0.625);       // 2.5 / 4
 }
 
-TEST_CASE("equal loads, a single PE and no load at all are balanced", "[report]") {
+TEST_CASE("equal loads, a single PE and zero loads are balanced", "[report]") {
     for (const auto& per_pe :
          {std::vector<std::uint64_t>(7, 12), std::vector<std::uint64_t>{5}, std::vector<std::uint64_t>(3, 0)}) {
         const Load load = load_of(per_pe);
@@ -38,7 +38,7 @@ TEST_CASE("one PE with all the work leaves the others idle", "[report]") {
 }
 
 // Kohata & Ito 1993, Tables 2 and 3: 64,800 ms on one PE, 653 ms (p = 0) and 283 ms (p = 16) on 256.
-TEST_CASE("the paper's tables give its imbalance and speed-up", "[report]") {
+TEST_CASE("the loads of the paper's tables give its imbalance and speed-up", "[report]") {
     const auto with_busiest = [](std::uint64_t busiest) {
         constexpr std::uint64_t kSum = 64'800'000;  // microseconds
         std::vector<std::uint64_t> per_pe(256, (kSum - busiest) / 255);
@@ -52,7 +52,7 @@ TEST_CASE("the paper's tables give its imbalance and speed-up", "[report]") {
     CHECK(with_busiest(283'000).efficiency == Approx(0.894).margin(0.0005));
 }
 
-TEST_CASE("loads beyond 32 bits are summed whole", "[report]") {
+TEST_CASE("loads beyond 32 bits are summed exactly", "[report]") {
     const Load load = load_of({std::uint64_t{1} << 40, std::uint64_t{3} << 40});
     CHECK(load.mean == 0x1p41);
     CHECK(load.max == std::uint64_t{3} << 40);

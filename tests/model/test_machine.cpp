@@ -1,4 +1,4 @@
-// The machines' descriptions.
+// Descriptions of the machines.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <set>
@@ -10,7 +10,7 @@
 using namespace raya;
 using Catch::Contains;
 
-TEST_CASE("the SPA is the paper's, and comes first", "[machine]") {
+TEST_CASE("the SPA is the paper's machine, and first in the list", "[machine]") {
     const Machine& spa = machine_named("spa");  // Kohata & Ito 1993
     CHECK(machines().front().name == "spa");
     CHECK(spa.pes == 256u);
@@ -20,7 +20,7 @@ TEST_CASE("the SPA is the paper's, and comes first", "[machine]") {
     CHECK(spa.topology == "ring+bus");
 }
 
-TEST_CASE("grande is the same array without the limits", "[machine]") {
+TEST_CASE("grande is the SPA without limits on PEs and memory", "[machine]") {
     const Machine& grande = machine_named("grande");
     CHECK_FALSE(grande.pes.has_value());
     CHECK_FALSE(grande.pe_memory_bytes.has_value());
@@ -46,7 +46,7 @@ TEST_CASE("the SPA's rates are those of the paper's tables", "[machine]") {
     CHECK(machine_named("spa1").pe_memory_bytes == spa.pe_memory_bytes);
 }
 
-TEST_CASE("the arrays of others have their mapping, the SPA's numbers and no times", "[machine]") {
+TEST_CASE("other papers' arrays have their mapping, the SPA's number format and no rates", "[machine]") {
     struct Row {
         const char* name;
         MappingRule mapping;
@@ -68,7 +68,7 @@ TEST_CASE("the arrays of others have their mapping, the SPA's numbers and no tim
     }
 }
 
-TEST_CASE("the torus is the paper's 64 transputers, and no ring", "[machine]") {
+TEST_CASE("the torus is the paper's 64 transputers, and the only torus", "[machine]") {
     const Machine& torus = machine_named("torus");  // Yoshitani & Yamazaki
     CHECK(torus.pes == 64u);
     CHECK(torus.pe_memory_bytes == 4u << 20);
@@ -83,7 +83,7 @@ TEST_CASE("the torus is the paper's 64 transputers, and no ring", "[machine]") {
     }
 }
 
-TEST_CASE("every machine is found by its own name, and no other", "[machine]") {
+TEST_CASE("every machine is found by its exact name only", "[machine]") {
     std::set<std::string> names;
     for (const Machine& machine : machines()) {
         CHECK(&machine_named(machine.name) == &machine);

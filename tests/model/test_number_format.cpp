@@ -1,4 +1,4 @@
-// The number formats as the host knows them: their names, and numbers rounded to them as MPFR rounds.
+// Number formats on the host: names, and rounding compared with MPFR.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 22;
 
-/// Any sign, an exponent a little beyond the format's range, and a fraction that often lies at or next to a tie.
+/// Either sign, an exponent that may lie slightly outside the format's range, and a fraction often at or next to a tie.
 double random_double(SplitMix& random, const NumberFormat& format) {
     const Range range = range_of(format);
     const double units = std::floor(random.uniform(0, std::ldexp(1, format.fraction_bits)));
@@ -58,7 +58,7 @@ TEST_CASE("numbers beyond a format's range saturate or are flushed, with their s
     CHECK(round_to_format(-infinity, spa) == -largest);
     CHECK(round_to_format(-1e300, spa) == -largest);
     CHECK(round_to_format(0x1p-30, spa) == smallest);
-    CHECK(round_to_format(0x1.ffffp-31, spa) == smallest);  // a tie, which goes to the even number
+    CHECK(round_to_format(0x1.ffffp-31, spa) == smallest);  // a tie, rounded to even
     CHECK(round_to_format(0x1.fffep-31, spa) == 0);
     CHECK(round_to_format(0x1.ffffp-31, parse_format("e6m15t")) == 0);
     CHECK(std::signbit(round_to_format(-1e-300, spa)));
@@ -67,7 +67,7 @@ TEST_CASE("numbers beyond a format's range saturate or are flushed, with their s
     CHECK_THROWS_AS(round_to_format(std::nan(""), spa), std::invalid_argument);
 }
 
-TEST_CASE("every legal format is read and written back", "[machine][number]") {
+TEST_CASE("every valid format has a name that is parsed back", "[machine][number]") {
     CHECK(parse_format("fp32") == NumberFormat{});
     CHECK(parse_format("fp32").is_fp32());
     CHECK(format_name(parse_format("fp32")) == "fp32");
@@ -84,7 +84,7 @@ TEST_CASE("every legal format is read and written back", "[machine][number]") {
             }
 }
 
-TEST_CASE("other texts are refused with the legal ones", "[machine][number]") {
+TEST_CASE("invalid formats are refused with the valid ranges", "[machine][number]") {
     for (const std::string text :
          {"",       "fp",      "fp16",   "FP32",    "fp32t",           "spa22t", "spa",   "e6",   "e6m",   "em15",
           "m15",    "e6m15tt", "e6m15x", "e6m15 ",  " e6m15",          "e4m15",  "e9m15", "e6m3", "e6m22", "e8m23",

@@ -1,4 +1,4 @@
-// The T805's time model: cycles of events and messages counted by hand, and links both ways.
+// The T805's time model: cycles of events and messages counted by hand, and links in both directions.
 #include <catch2/catch.hpp>
 #include <cstdint>
 
@@ -11,8 +11,7 @@ namespace {
 
 const T805Work& work_of(std::size_t event) { return t805_work()[event]; }
 
-// What a number of operations take, each with its operand of 4 cycles: addition 10, multiplication 15, division 20,
-// root 123.
+// Cycles of operations, each including 4 for its operand: addition 10, multiplication 15, division 20, root 123.
 std::uint32_t arithmetic(std::uint32_t additions, std::uint32_t multiplications, std::uint32_t divisions = 0,
                          std::uint32_t roots = 0) {
     return 10 * additions + 15 * multiplications + 20 * divisions + 123 * roots;
@@ -25,9 +24,9 @@ std::uint32_t control(std::uint32_t moves, std::uint32_t branches, std::uint32_t
 
 }  // namespace
 
-// A sum of n products is n multiply-accumulates of the budget; here n multiplications and n - 1 additions, n where
-// something is added to it.
-TEST_CASE("the T805 does what the instruction budgets have, split into additions and multiplications", "[machine]") {
+// A sum of n products is n multiply-accumulates in the budget, and here n multiplications and n - 1 additions, or n if
+// another term is added.
+TEST_CASE("the T805's operations are the budgets', split into additions and multiplications", "[machine]") {
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
         const Budget& budget = budgets()[event];
@@ -40,7 +39,7 @@ TEST_CASE("the T805 does what the instruction budgets have, split into additions
     }
 }
 
-TEST_CASE("cycles of one event on a T805, counted by hand", "[machine]") {
+TEST_CASE("cycles of each event on a T805 agree with those counted by hand", "[machine]") {
     const auto cycles = t805_cycles();
     // 9 products; 3 differences, 2 of b, 3 of l, 3 of the discriminant; one branch
     CHECK(cycles[RAYA_SPHERE_TESTS] == arithmetic(11, 9) + control(0, 1));
@@ -58,8 +57,8 @@ TEST_CASE("cycles of one event on a T805, counted by hand", "[machine]") {
     CHECK(cycles[RAYA_DISCARDED] == arithmetic(8 + 25, 12 + 18, 1 + 3, 1) + control(2 + 6 + 6, 1 + 4 + 1));
 }
 
-// A packet of 30 words takes 14 more stores; a ray's one return of 6 words, two stores less, and none for a light.
-TEST_CASE("what packets are charged for is stored where they are made", "[machine]") {
+// A packet of 30 words takes 14 more stores. One return of 6 words per ray takes two stores less, and none per light.
+TEST_CASE("events that make packets take the stores of the charged words", "[machine]") {
     const auto moved = t805_cycles(), charged = t805_cycles({30, true});
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
@@ -78,8 +77,8 @@ TEST_CASE("a message takes 19 cycles of the processor and 2 for each word", "[ma
     CHECK(t805_message_cycles(1000, 16'000) == 51'000);
 }
 
-// 425,000 words a second one way, 600,000 both ways together.
-TEST_CASE("a link carries both ways at once until one of them is done", "[machine]") {
+// 425,000 words a second in one direction, 600,000 in both directions together.
+TEST_CASE("a link carries both directions at once until one of them ends", "[machine]") {
     CHECK(t805_link_ms(425, 0) == Approx(1).epsilon(1e-12));
     CHECK(t805_link_ms(0, 425) == Approx(1).epsilon(1e-12));
     CHECK(t805_link_ms(300, 300) == Approx(1).epsilon(1e-12));
@@ -92,7 +91,7 @@ TEST_CASE("a link carries both ways at once until one of them is done", "[machin
         const std::uint64_t there = random.next() >> (24 + random.next() % 40), back = random.next() >> (24 + i % 40);
         const double time = t805_link_ms(there, back), more = static_cast<double>(std::max(there, back));
         CHECK(time == t805_link_ms(back, there));
-        // No sooner than the longer way alone at its full rate, no later than at the rate that both together leave it.
+        // Between the larger amount at the full rate and at the shared rate.
         CHECK(time >= more / 425 * (1 - 1e-12));
         CHECK(time <= more / 300 * (1 + 1e-12));
     }

@@ -1,4 +1,4 @@
-// Modelled times against times worked out by hand, and against the paper's.
+// Modelled times, compared with times computed by hand and with the paper's.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-/// The busiest of `pes` PEs has `max` cycles, the others none.
+/// A load of `max` cycles on one PE and 0 on the others.
 Load load_with(std::uint64_t max, std::size_t pes = 256) {
     std::vector<std::uint64_t> per_pe(pes);
     per_pe[pes / 2] = max;
@@ -41,8 +41,8 @@ TEST_CASE("rotations of a column of 256 pixels take the paper's time", "[machine
           Approx(34 * (0.1845 + 0.256)).epsilon(1e-12));
 }
 
-// The bus carries one PE's words at a time: a transfer takes what a rotation of all PEs does.
-TEST_CASE("transfers and broadcasts of PEs come one after another", "[machine]") {
+// The bus carries one PE's words at a time: a transfer takes as long as a rotation of all PEs.
+TEST_CASE("transfers and broadcasts of PEs are sequential", "[machine]") {
     const auto ms = [](const Communication& c) { return time_of({load_with(0)}, c).communication_ms; };
     CHECK(ms({.transfers = 1, .transfer_words = 768}) == Approx(0.3125).epsilon(1e-12));
     CHECK(ms({.transfers = 1024, .transfer_words = 1024 * 768}) == Approx(320).epsilon(1e-12));
@@ -51,7 +51,7 @@ TEST_CASE("transfers and broadcasts of PEs come one after another", "[machine]")
           Approx(2 * 0.3125 + 3 * 0.1845 + 0.1).epsilon(1e-12));
 }
 
-TEST_CASE("the image of 256 x 256 takes 140 ms to the host, the objects a few words' time", "[machine]") {
+TEST_CASE("an image of 256 x 256 takes 140 ms to the host, and objects take the same time per word", "[machine]") {
     const ModelledTime time =
         time_of({load_with(0)}, {.broadcasts = 1, .broadcast_words = 1000, .gathers = 1, .gather_words = 196'608});
     CHECK(time.image_ms == Approx(140).epsilon(1e-12));
@@ -69,7 +69,7 @@ TEST_CASE("the machine waits for the busiest PE of each phase", "[machine]") {
     CHECK(time_of(phases, {}, 2.5).factor == 2.5);
 }
 
-TEST_CASE("smoothing is a part of computing, named by itself", "[machine]") {
+TEST_CASE("smoothing is part of the computing time, and also listed separately", "[machine]") {
     const SmoothingCycles smoothing = {.filter = filter_cycles(256), .compare = compare_cycles(256)};
     const ModelledTime time = time_of({load_with(10'000)}, {}, 2, smoothing);
     CHECK(time.filter_ms == Approx(2 * 256 * 42e-4).epsilon(1e-12));
@@ -77,7 +77,7 @@ TEST_CASE("smoothing is a part of computing, named by itself", "[machine]") {
     CHECK(time.compute_ms == Approx(2 + time.filter_ms + time.compare_ms).epsilon(1e-12));
 }
 
-TEST_CASE("the parts add up to the total, and the factor touches computing alone", "[machine]") {
+TEST_CASE("the parts add up to the total, and the factor scales only computing", "[machine]") {
     constexpr std::uint64_t kSeed = 9;
     SplitMix random(kSeed);
     const auto below = [&](std::uint64_t limit) { return random.next() % limit; };
@@ -94,7 +94,7 @@ TEST_CASE("the parts add up to the total, and the factor touches computing alone
     }
 }
 
-TEST_CASE("a machine whose rates nobody printed has no modelled time", "[machine]") {
+TEST_CASE("a machine with unknown rates has no modelled time", "[machine]") {
     const std::vector<Load> phases = {load_with(1)};
     for (const Machine& machine : machines()) {
         CAPTURE(machine.name);

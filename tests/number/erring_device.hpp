@@ -1,11 +1,12 @@
-// A device whose division errs by up to 2 units in the last place and whose square root by up to 3, as patches of the
-// layer.
+// Simulates, by patches of the layer, a device whose division errs by up to 2 units in the last place and whose square
+// root by up to 3.
 #pragma once
 #include "tests/number/number_runs.hpp"
 
 namespace raya {
 
-/// For builds that do not trust the device: what they refine errs, by the operands' bits, where it is certainly normal.
+/// Patches for builds that refine the device's results: normal results err, by an amount that the operands' bits
+/// choose.
 inline std::vector<SourcePatch> erring_device() {
     const std::string file = "number/divide.clh", before = "// The neighbour of z whose bits are";
     const std::string functions = R"(
@@ -21,7 +22,7 @@ static inline real err_by(real z, mask bits, int reach) {
             {file, "real z = sqrt(x);", "real z = err_by(sqrt(x), as_lanes_int(x), 3);"}};
 }
 
-/// The format on a device that errs.
+/// A build of the format on the simulated device.
 inline NumberBuild refined_build(const NumberFormat& format, std::uint32_t lanes = widest_lanes()) {
     return {.format = format, .lanes = lanes, .trusted = false, .sources = {.patches = erring_device()}};
 }

@@ -1,4 +1,4 @@
-// What each operation of the number layer must give, from MPFR: the exact value, rounded once.
+// Expected results of the number layer's operations from MPFR: the exact value, rounded once.
 #pragma once
 #include <mpfr.h>
 
@@ -9,7 +9,7 @@
 
 namespace raya {
 
-/// The range of a format's exponents, biased as in IEEE 754 with no codes kept for infinities, NaNs or denormals.
+/// The range of a format's exponents, biased as in IEEE 754 with no codes reserved for infinities, NaNs or denormals.
 struct Range {
     int lowest, highest;  // the smallest number is 2^lowest, the largest below 2^(highest + 1)
 };
@@ -19,8 +19,8 @@ inline Range range_of(const NumberFormat& format) {
     return {1 - highest, highest};
 }
 
-/// The semantics in kernels/number/README.md, written with MPFR's operations. fp32 is not among its formats: there
-/// IEEE's infinities and denormals hold, and the host's own arithmetic is the oracle.
+/// The semantics of kernels/number/README.md in MPFR's operations, for reduced formats. fp32 has infinities and
+/// denormals of IEEE 754; its oracle is the host's arithmetic.
 class MpfrOracle {
   public:
     explicit MpfrOracle(const NumberFormat& format)
@@ -82,7 +82,7 @@ class MpfrOracle {
 
     float largest(bool negative) const { return static_cast<float>(negative ? -largest_ : largest_); }
 
-    // z is rounded already, its exponent as far out as it likes: now the ends of the format's range.
+    // z is rounded, with an unlimited exponent; this applies the limits of the format's range.
     float fit() const {
         const bool negative = mpfr_signbit(z_) != 0;
         if (mpfr_inf_p(z_)) return largest(negative);

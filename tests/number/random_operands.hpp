@@ -1,4 +1,4 @@
-// Operands that lead an exact operation into its corners: ties, cancellation, the ends of the range.
+// Random operands that favour the hard cases of an exact operation: ties, cancellation, the ends of the range.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -66,7 +66,7 @@ class RandomOperands {
 
     int exponent_of(double value) { return value == 0 ? any_exponent() : std::ilogb(value); }
 
-    // An exponent for b at which something happens beside a.
+    // An exponent for b at which an operation with a has a hard case.
     int partner(float a) {
         const int e = exponent_of(a), reach = format_.fraction_bits + 4;
         switch (below(6)) {
@@ -95,9 +95,9 @@ class RandomOperands {
             case 2:
                 return of_format(to_tie(product));  // a tie, or next to one
             case 3:
-                return number(e - within(y, 3 * y + 10));  // tiny beside the product
+                return number(e - within(y, 3 * y + 10));  // tiny compared with the product
             case 4:
-                return number(e + within(y, 3 * y + 10));  // the product tiny beside it
+                return number(e + within(y, 3 * y + 10));  // the product tiny compared with it
             case 5:
                 return number(e + y + 1);  // product about half a unit
             case 6:
@@ -107,7 +107,7 @@ class RandomOperands {
         }
     }
 
-    // What takes the product to the middle between two numbers of the format.
+    // Returns the distance from the product to the middle between two numbers of the format.
     double to_tie(double product) {
         const int e = exponent_of(product), y = format_.fraction_bits;
         const double unit = std::ldexp(1, e - y);

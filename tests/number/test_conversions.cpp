@@ -1,4 +1,4 @@
-// Operations that are exact in every format, and the ways into a format: rounded fp32 numbers and whole numbers.
+// Operations that are exact in every format, and conversions to a format: of fp32 numbers and of whole numbers.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kSeed = 17;
 constexpr std::size_t kRows = 20'000;
 
-/// What `operation` must give in rows that are appended to `all`.
+/// Appends `rows` to `all` and the expected results of `operations` in them to `expected`.
 void append(NumberRows& all, std::vector<ExpectedNumbers>& expected, const NumberFormat& format, const NumberRows& rows,
             const std::vector<std::size_t>& operations) {
     for (ExpectedNumbers& of : expected_by_mpfr(format, rows, operations)) {

@@ -1,4 +1,4 @@
-// Cases whose results one can see: ties, carries, cancellation, the ends of the range, zeros. No oracle but the eye.
+// Cases with evident results, without an oracle: ties, carries, cancellation, the ends of the range, zeros.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -21,7 +21,7 @@ struct Case {
 
 double two_to(int exponent) { return std::ldexp(1, exponent); }
 
-/// The numbers that a format's cases are made of. `unit` is the distance from 1 to the next number.
+/// The numbers of which a format's cases consist. `unit` is the distance from 1 to the next number.
 struct Landmarks {
     explicit Landmarks(const NumberFormat& format)
         : unit(two_to(-format.fraction_bits)),
@@ -52,8 +52,8 @@ std::vector<Case> sums(const Landmarks& f) {
         {"below a power of two, broken downwards", kSub, b, s / 4 * above, 0, b - s / 2, b - s / 2},
         {"carry into the next binade", kAdd, all_ones, s, 0, 2 * b, 2 * b},
         {"a tie carries into the next binade", kAdd, all_ones, s / 2, 0, 2 * b, all_ones},
-        {"an addend too small to see", kAdd, b, f.smallest, 0, b, b},
-        {"one too small to see still counts below, where truncated", kSub, b, f.smallest, 0, b, b - s / 2},
+        {"an addend far too small to matter", kAdd, b, f.smallest, 0, b, b},
+        {"a tiny subtrahend matters when truncating", kSub, b, f.smallest, 0, b, b - s / 2},
         {"cancellation leaves the last bit", kSub, b + s, b, 0, s, s},
         {"cancellation across a binade", kSub, b, b * below, 0, s / 2, s / 2},
         {"a - a is +0", kSub, b, b, 0, 0.0, 0.0},
@@ -137,15 +137,15 @@ std::vector<Case> accumulations(const Landmarks& f) {
         {"tie to the even number above", kMad, s, 0.5, b + s, b + 2 * s, b + s},
         {"tie broken upwards by the product's last bit", kMad, s * above, 0.5, b, b + s, b},
         {"tie broken by a product far below", kMad, b, 0.5, low, b / 2, b / 2},
-        {"c too small to see, against the product", kMad, b, 0.5, -low, b / 2, b / 2 - s / 4},
-        {"product too small to see, against c", kMad, low, -low, b, b, b - s / 2},
+        {"tiny c of the other sign than the product", kMad, b, 0.5, -low, b / 2, b / 2 - s / 4},
+        {"tiny product of the other sign than c", kMad, low, -low, b, b, b - s / 2},
         {"tie of the product, broken by c upwards", kMad, 1.5, above, low, 1.5 + 2 * u, 1.5 + u},
         {"tie of the product, broken by c downwards", kMad, 1.5, above, -low, 1.5 + u, 1.5 + u},
         {"overflows", kMad, high, high, -high, high, high},
         {"overflows negative", kMad, high, -high, high, -high, -high},
-        {"c takes the product back into the range", kMad, high, 2, -high, high, high},
-        {"a product above the range, all but a little taken away", kMad, high, above, -high, high * u, high * u},
-        {"a product below the range helps", kMad, low, 0.5, low / 2 * 2, low * 1.5, low * 1.5},
+        {"c brings the product back into the range", kMad, high, 2, -high, high, high},
+        {"a product above the range, almost cancelled by c", kMad, high, above, -high, high * u, high * u},
+        {"a product below the range counts", kMad, low, 0.5, low / 2 * 2, low * 1.5, low * 1.5},
         {"two halves of the smallest", kMad, low, -0.5, low, 0.0, 0.0},
         {"flushed with its sign", kMad, low, -0.5, low * 0, -0.0, -0.0},
     };

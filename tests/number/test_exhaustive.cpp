@@ -1,4 +1,4 @@
-// e5m4, the smallest format, on every pair of its numbers; e5m4t likewise.
+// All operations on every pair of numbers of the smallest formats, e5m4 and e5m4t.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-/// All numbers of the format, zeros of both signs among them.
+/// All numbers of the format, including zeros of both signs.
 std::vector<float> all_numbers(const NumberFormat& format) {
     const Range range = range_of(format);
     std::vector<float> numbers = {0.0F, -0.0F};
@@ -27,7 +27,7 @@ std::vector<float> all_numbers(const NumberFormat& format) {
 
 }  // namespace
 
-TEST_CASE("every pair of numbers of e5m4", "[number][exhaustive]") {
+TEST_CASE("operations are exact on every pair of numbers of e5m4", "[number][exhaustive]") {
     constexpr std::uint64_t kSeed = 54;
     for (const bool truncates : {false, true}) {
         const NumberFormat format = {5, 4, truncates};

@@ -1,4 +1,4 @@
-// fp32 in the number layer is IEEE 754's binary32: the host's own arithmetic is the oracle.
+// fp32 in the number layer is IEEE 754's binary32; the oracle is the host's arithmetic.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -25,7 +25,7 @@ void check_fp32(const NumberBuild& build) {
 
 }  // namespace
 
-TEST_CASE("fp32 gives the bits of IEEE 754 from end to end of its range, however it is built", "[number][fp32]") {
+TEST_CASE("fp32 gives the bits of IEEE 754 over its whole range, in all variants", "[number][fp32]") {
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
         for (const bool optimised : {true, false}) {
             if (lanes > widest_lanes()) continue;
@@ -33,7 +33,7 @@ TEST_CASE("fp32 gives the bits of IEEE 754 from end to end of its range, however
         }
 }
 
-TEST_CASE("fp32 gives the same bits on a device that errs, when refined", "[number][fp32][refined]") {
+TEST_CASE("refined fp32 gives the same bits on a device that errs", "[number][fp32][refined]") {
     check_fp32(refined_build(kFp32, 1));
     check_fp32(refined_build(kFp32));
 }

@@ -1,4 +1,4 @@
-// Truth by lanes: choices, counts and masks.
+// Masks: choices, counts and reductions over lanes.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-/// Any sign and fraction, and an exponent from -40 to 40, so that no result leaves the normal range.
+/// A number of any sign and fraction with an exponent from -40 to 40, so that all results are normal.
 float random_float(SplitMix& random) {
     const std::uint64_t word = random.next();
     const auto exponent = static_cast<std::uint32_t>(127 - 40 + (word >> 32) % 81);
@@ -23,7 +23,7 @@ float random_float(SplitMix& random) {
 
 }  // namespace
 
-TEST_CASE("truth by lanes chooses, counts and is seen whichever lane has it", "[number]") {
+TEST_CASE("masks choose, count and reduce correctly for every combination of lanes", "[number]") {
     constexpr std::uint64_t kSeed = 62;
     constexpr std::size_t kColumns = 9;
     // Rows of 16: no lane true, all, each lane alone, each alone false, and random ones. True: a < b.
@@ -37,7 +37,7 @@ TEST_CASE("truth by lanes chooses, counts and is seen whichever lane has it", "[
     for (const bool is_true : truth) {
         operands.push_back(random_float(random));
         const float above = std::nextafter(operands.back(), HUGE_VALF);
-        operands.push_back(is_true ? above : operands.back());  // equal is not less
+        operands.push_back(is_true ? above : operands.back());  // equal: a < b is false
     }
     for (const Variant& variant : variants()) {
         KernelRunner runner("tests/number/masks.cl", variant);
@@ -51,7 +51,7 @@ TEST_CASE("truth by lanes chooses, counts and is seen whichever lane has it", "[
                 return std::find(group, group + variant.lanes, value) != group + variant.lanes;
             };
             const Words expected = {
-                std::bit_cast<std::uint32_t>(operands[2 * i]),  // a, which is b too where m is false
+                std::bit_cast<std::uint32_t>(operands[2 * i]),  // a, which equals b if m is false
                 truth[i] ? i : 12345u,
                 i + truth[i],
                 truth[i] ? i + 5 : i,

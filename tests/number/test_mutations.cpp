@@ -1,5 +1,5 @@
-// The oracle test can fail: each of these faults, put into a copy of the layer, is seen on the operation that it
-// spoils.
+// Mutation tests of the number layer: each fault injected into a copy of the layer makes the comparison with the oracle
+// fail for the operation that it breaks.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -39,7 +39,7 @@ const std::vector<Mutation>& mutations() {
          spa,
          kMul},
         {"flushes the smallest binade", {"number/reduced.clh", "((129 - (1 <<", "((130 - (1 <<"}, spa, kMul},
-        {"keeps a binade too many", {"number/reduced.clh", "((129 - (1 <<", "((128 - (1 <<"}, spa, kDiv},
+        {"does not flush one binade too small", {"number/reduced.clh", "((129 - (1 <<", "((128 - (1 <<"}, spa, kDiv},
         {"multiply, then add",
          {"number/reduced.clh", "const real z = fp32_fma(a, b, c);", "const real z = a * b + c;"},
          spa,
@@ -49,7 +49,7 @@ const std::vector<Mutation>& mutations() {
          {"number/reduced.clh", "num_fit(z, fma(-z, z, x))", "num_fit(z, num_all(0.0f))"},
          spa,
          kSqrt},
-        {"a product too small forgotten",
+        {"tiny product ignored",
          {"number/scaled.clh", "choose(hint, sign * 0x1p-50f, scaled)", "scaled"},
          wide,
          kMad},
@@ -73,7 +73,7 @@ NumberBuild build_of(const Mutation& mutation) {
 
 }  // namespace
 
-TEST_CASE("faults put into the layer are seen", "[number][mutations]") {
+TEST_CASE("faults injected into the number layer are detected", "[number][mutations]") {
     for (const Mutation& mutation : mutations()) {
         CAPTURE(mutation.what, mutation.patch.file, kMutationSeed);
         const NumberRows rows = RandomOperands(mutation.format, kMutationSeed).rows(kMutationRows);

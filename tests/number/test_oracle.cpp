@@ -1,5 +1,5 @@
-// The operations of the reduced formats against MPFR, on random operands, by bits. RAYA_NUMBER_CASES=1000000 asks
-// for that many rows in each format, for more formats and for all widths of lanes.
+// Compares the operations of the reduced formats with MPFR on random operands, bit by bit. RAYA_NUMBER_CASES=1000000
+// asks for that many rows in each format, for more formats and for all numbers of lanes.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -18,8 +18,8 @@ struct Size {
     int exponent_bits, fraction_bits;
 };
 
-/// Y = 4 .. 21 and every X, in both roundings: the smallest, the largest and the SPA's format, and, as the layer has
-/// other code for X = 8 and for Y > 15, both of these with and without the other.
+/// Y = 4 .. 21 and every X, in both roundings: the smallest, the largest and the SPA's format; X = 8 and Y > 15, for
+/// which the layer has other code, together and apart.
 std::vector<NumberFormat> tested_formats() {
     std::vector<Size> sizes = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
     if (is_long_run(kUsualRows)) sizes.insert(sizes.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
@@ -30,7 +30,7 @@ std::vector<NumberFormat> tested_formats() {
     return formats;
 }
 
-/// All widths in a long run; else the widest, and a single lane for the formats of which much depends.
+/// All numbers of lanes in a long run; else the largest, and also one lane for the most important formats.
 std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
     if (is_long_run(kUsualRows)) return {1, 4, 8, 16};
     if (format == NumberFormat{6, 15, false} || format == NumberFormat{8, 21, false}) return {1, widest_lanes()};
@@ -51,7 +51,7 @@ TEST_CASE("every operation rounds the exact value once, as MPFR does", "[number]
     }
 }
 
-TEST_CASE("a device that errs in division and square root gives the same bits when refined", "[number][refined]") {
+TEST_CASE("refined division and square root give the same bits on a device that errs", "[number][refined]") {
     for (const NumberFormat& format :
          {NumberFormat{6, 15, false}, NumberFormat{8, 21, false}, NumberFormat{5, 12, true}})
         for (const std::uint32_t lanes : {1u, widest_lanes()}) {

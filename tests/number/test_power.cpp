@@ -1,4 +1,5 @@
-// x^n, log2 and 2^y in the reduced formats keep the errors that kernels/number/README.md derives, whatever the lanes.
+// x^n, log2 and 2^y stay within the error bounds that kernels/number/README.md derives, with the same bits for all
+// numbers of lanes.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -22,7 +23,7 @@ double result_of(const NumberResults& results, std::size_t operation, std::size_
     return std::bit_cast<float>(results[operation][row]);
 }
 
-/// x in (0, 4), a third of them crowded below 1; n in [0, 1000), many small; y in [-126, 0].
+/// x in (0, 4), a third of them just below 1; n in [0, 1000), many small; y in [-126, 0].
 NumberRows power_rows(const NumberFormat& format) {
     SplitMix random(kPowerSeed);
     const double smallest = std::ldexp(1, range_of(format).lowest);
@@ -41,11 +42,11 @@ NumberRows power_rows(const NumberFormat& format) {
     return rows;
 }
 
-/// x from 0x1p-126 to 2, crowded at 1; n of highlights; y from 0 to -126.
+/// x from 0x1p-126 to 2, many near 1; n of highlights; y from 0 to -126.
 NumberRows fp32_rows() {
     std::vector<float> xs = {1, 2, std::nextafter(1.0F, 0.0F), std::sqrt(0.5F), 0x1p-126F, 1e-30F};
     for (int i = 1; i <= 500; ++i) xs.push_back(static_cast<float>(i) / 500);
-    for (int i = 0; i <= 400; ++i) xs.push_back(static_cast<float>(1 - std::exp2(-24 + 0.06 * i)));  // crowded at 1
+    for (int i = 0; i <= 400; ++i) xs.push_back(static_cast<float>(1 - std::exp2(-24 + 0.06 * i)));  // many near 1
     for (int i = 0; i <= 400; ++i) xs.push_back(static_cast<float>(std::exp2(-0.3 * i)));
     const std::vector<float> ns = {0, 0.5F, 1, 3.08F, 11, 101.148F, 1000, 100'000};
     NumberRows rows;
@@ -67,14 +68,14 @@ class PowerBounds {
 
     double log(double value) const { return (gamma(7) + kLogSeries) * std::abs(value) + 6 * flush_; }
     double exp(double y) const { return (gamma(5) + kExpSeries) * std::exp2(y) + 2 * flush_; }
-    /// Of n log2(x), where log2 errs as above and the product is rounded.
+    /// Error of n log2(x), with the error of log2 as above and a rounded product.
     double exponent(double n, double log_x) const {
         return (gamma(8) + kLogSeries) * std::abs(n * log_x) + (7 * n + 1) * flush_;
     }
 
   private:
-    // What k factors 1 + d, |d| <= unit, differ from 1 (N. J. Higham, Accuracy and Stability of Numerical
-    // Algorithms, 3.1).
+    // The largest difference from 1 of a product of k factors 1 + d, |d| <= unit (N. J. Higham, Accuracy and Stability
+    // of Numerical Algorithms, 3.1).
     double gamma(int k) const { return k * unit_ / (1 - k * unit_); }
 
     static constexpr double kLogSeries = 2.5e-7, kExpSeries = 2.4e-7;
@@ -105,7 +106,7 @@ void check_row(const PowerBounds& bounds, double x, double n, double y, const Nu
 
 }  // namespace
 
-TEST_CASE("powers keep the errors that they state, the same bits for all lanes", "[number][power]") {
+TEST_CASE("powers stay within their error bounds, with the same bits for all numbers of lanes", "[number][power]") {
     for (const NumberFormat& format : power_formats()) {
         const NumberRows rows = power_rows(format);
         CAPTURE(format_name(format), kPowerSeed);
@@ -117,12 +118,12 @@ TEST_CASE("powers keep the errors that they state, the same bits for all lanes",
     }
 }
 
-TEST_CASE("in fp32 powers keep their errors however they are built", "[number][power]") {
-    // num_log2: the series leaves 8e-8 of the result, the roundings 1.7e-7. num_exp2: its Taylor series leaves
-    // (ln 2 / 2)^7 / 7! at f = -1/2, 1.7e-7 of the result, and the last additions 7e-8.
+TEST_CASE("fp32 powers stay within their error bounds in all variants", "[number][power]") {
+    // num_log2: the relative error of the series is 8e-8, of the roundings 1.7e-7. num_exp2: that of the Taylor series
+    // is (ln 2 / 2)^7 / 7! at f = -1/2, 1.7e-7 of the result, and of the last additions 7e-8.
     constexpr double kLogError = 2.5e-7, kExpError = 2.4e-7;
-    // The product n log2(x) is rounded too, so that 2^y is asked for at a y wrong by 3.1e-7 of it; the largest value of
-    // |y| ln 2 2^y is 1 / e. What is below 2^-30 is 0.
+    // The product n log2(x) is rounded too, so the argument y of 2^y has a relative error of 3.1e-7; the largest value
+    // of |y| ln 2 2^y is 1 / e. Results below 2^-30 are 0.
     const double kPowerError = (kLogError + 0x1p-24) / std::exp(1.0) + kExpError + 0x1p-30;
     const NumberRows rows = fp32_rows();
     const NumberResults first = run_numbers(number_build({}, 1), rows, true);

@@ -1,10 +1,9 @@
-// What OpenCL implementations do wrong, each as the smallest kernel that shows it: run on one device and compared with
-// what is right and with what is known to be wrong there.
-//   defects [DEVICE]     a line for each kernel of tests/portability: right, an expected failure with its reason, or
-//   WRONG
-// Each kernel runs in a process of its own: some crash the compiler.
-// Exit code 0 where all is right or as expected, 1 where something is WRONG. An expected failure that is right by now
-// is said.
+// Known defects of OpenCL implementations, each with a minimal kernel: runs the kernels on a device and compares the
+// results with the right ones and with the known wrong ones.
+//   defects [DEVICE]     prints a line per kernel of tests/portability: right, an expected failure with its reason, or
+//                        WRONG; also if an expected failure no longer occurs
+// Each kernel runs in its own process, as some crash the compiler.
+// Exit code: 0 if all results are right or expected, 1 if one is WRONG.
 #include <fmt/core.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,8 +24,8 @@ using namespace raya;
 
 struct KnownFailure {
     std::string platform, device;  // parts of their names; empty: any
-    cl_uint wrong = 0;             // what each work-item gives there, or
-    bool crashes = false;          // the process ends by a signal
+    cl_uint wrong = 0;             // the result of each work-item there
+    bool crashes = false;          // instead of a result, the process ends with a signal
     std::string reason;
 };
 
@@ -39,7 +38,7 @@ struct Defect {
     std::string name;  // of the .cl file
     cl_uint n = 0;
     std::size_t groups = 1, group_size = 1;
-    cl_uint right = 0;  // what each work-item must give
+    cl_uint right = 0;  // the right result of each work-item
     std::vector<KnownFailure> known;
 };
 
@@ -50,7 +49,7 @@ const std::vector<Defect> kDefects = {
      1,
      1,
      100'000,
-     {{"rusticl", "llvmpipe", 65'535, false, "Mesa's llvmpipe ends every loop after 65,535 turns"}}},
+     {{"rusticl", "llvmpipe", 65'535, false, "Mesa's llvmpipe ends every loop after 65,535 iterations"}}},
     {"nested_loops", 200, 1, 1, 40'000, {}},
     {"nested_loops",
      1'000,
@@ -58,7 +57,7 @@ const std::vector<Defect> kDefects = {
      1,
      1'000'000,
      {{"rusticl", "llvmpipe", 65'405, false,
-       "Mesa's llvmpipe counts the turns of all loops of a work-item together and ends them after 65,535"}}},
+       "Mesa's llvmpipe counts the iterations of all loops of a work-item together and ends them after 65,535"}}},
     {"struct_argument",
      20,
      1,
@@ -97,7 +96,7 @@ bool is_of(const KnownFailure& known, const DeviceInfo& device) {
            device.name.find(known.device) != std::string::npos;
 }
 
-/// The line on one defect; true: right or expected.
+/// Prints the line for a defect; returns true if the result is right or expected.
 bool report(const Defect& defect, Session& session) {
     std::vector<cl_uint> all;
     const cl_uint got = answer(defect, session, all);
@@ -105,24 +104,24 @@ bool report(const Defect& defect, Session& session) {
     for (const KnownFailure& known : defect.known) {
         if (!is_of(known, session.device())) continue;
         if (got == defect.right) {
-            fmt::print("{}: right by now, {} was expected: {}\n", what,
+            fmt::print("{}: right, {} was expected: {}\n", what,
                        known.crashes ? "a crash" : std::to_string(known.wrong), known.reason);
             return true;
         }
         if (known.crashes || got != known.wrong) break;
-        fmt::print("{}: expected failure, {} in place of {}: {}\n", what, got, defect.right, known.reason);
+        fmt::print("{}: expected failure, {} instead of {}: {}\n", what, got, defect.right, known.reason);
         return true;
     }
     fmt::print("{}: {}\n", what,
-               got == defect.right ? "right" : fmt::format("WRONG: {} in place of {}", got, defect.right));
+               got == defect.right ? "right" : fmt::format("WRONG: {} instead of {}", got, defect.right));
     return got == defect.right;
 }
 
-/// The line on a defect whose process was ended by a signal.
+/// Prints the line for a defect whose process a signal has ended.
 bool report_crash(const Defect& defect, int signal, const DeviceInfo& device) {
     for (const KnownFailure& known : defect.known) {
         if (!known.crashes || !is_of(known, device)) continue;
-        fmt::print("{}: expected failure, signal {} in place of {}: {}\n", text_of(defect), signal, defect.right,
+        fmt::print("{}: expected failure, signal {} instead of {}: {}\n", text_of(defect), signal, defect.right,
                    known.reason);
         return true;
     }
@@ -130,9 +129,9 @@ bool report_crash(const Defect& defect, int signal, const DeviceInfo& device) {
     return false;
 }
 
-/// Runs `body`, which returns an exit code, in a process of its own; gives its status as waitpid() does. This process
-/// never uses OpenCL itself: drivers do not survive a fork.
-int in_process_of_its_own(const std::function<int()>& body) {
+/// Runs `body`, which returns an exit code, in a child process; returns its status as of waitpid(). The parent never
+/// uses OpenCL, as drivers do not survive a fork.
+int run_in_child(const std::function<int()>& body) {
     std::fflush(stdout);
     const pid_t child = ::fork();
     if (child == 0) {
@@ -156,19 +155,19 @@ bool is_good(int status) { return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 
 int main(int argc, char** argv) {
     const std::string device = argc > 1 ? argv[1] : "";
-    bool good = is_good(in_process_of_its_own([&] {
+    bool good = is_good(run_in_child([&] {
         const DeviceInfo info = device_info(choose_device(device));
         fmt::print("{}, {}, driver {}\n", info.platform, info.name, info.driver);
         return 0;
     }));
     if (!good) return 1;
     for (const Defect& defect : kDefects) {
-        int status = in_process_of_its_own([&] {
+        int status = run_in_child([&] {
             Session session(choose_device(device));
             return report(defect, session) ? 0 : 1;
         });
         if (WIFSIGNALED(status))
-            status = in_process_of_its_own([&, signal = WTERMSIG(status)] {
+            status = run_in_child([&, signal = WTERMSIG(status)] {
                 return report_crash(defect, signal, device_info(choose_device(device))) ? 0 : 1;
             });
         good = is_good(status) && good;

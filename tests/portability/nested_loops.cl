@@ -1,14 +1,14 @@
-// n loops of n turns, one within the other: how many turns they took together.
-//   out    one number for each work-item: n * n where right
-// A count of turns that is kept for a whole kernel, and not for each loop, ends them all early: pixels x rays
-// x objects pass any such limit.
+// Counts the iterations of two nested loops of n.
+//   out    one number per work-item; right: n * n
+// A limit on the iterations of a whole kernel, rather than of each loop, ends the loops early: pixels x rays x objects
+// exceed any such limit.
 __kernel void defect(
-    __global uint *out,  // one for each work-item
-    uint n               // turns of each loop
+    __global uint *out,  // one per work-item
+    uint n               // iterations of each loop
 ) {
     uint turns = 0;
     for (uint i = 0; i < n; ++i)
-        // out holds zeros: the loops must be run to know
+        // out contains zeros, which the compiler cannot know: it must execute the loops
         for (uint j = 0; j < n; ++j) turns += 1 + (out[get_global_id(0)] & j & 1);
     out[get_global_id(0)] = turns;
 }

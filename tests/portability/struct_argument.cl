@@ -1,13 +1,12 @@
-// An array inside a structure that is a kernel's argument, at an index that the compiler
-// does not know: what lies there.
-//   out    one number for each work-item: 10, 20 or 30, and n where right
-// raya's kernels take structures from buffers, not as arguments, since this crashes a compiler.
+// Reads an array inside a structure argument at an index that the compiler does not know.
+//   out    one number per work-item: 10, 20 or 30; right: n
+// raya's kernels read structures from buffers instead of arguments, as this crashes a compiler.
 typedef struct {
     uint side[3];
 } sides;
 
 __kernel void defect(
-    __global uint *out,  // one for each work-item
+    __global uint *out,  // one per work-item
     const sides s        // 10, 20, 30
 ) {
     out[get_global_id(0)] = s.side[(get_global_id(0) + 1) % 3];

@@ -1,4 +1,4 @@
-"""Finds the package `raya` in the build folder: RAYA_BUILD, or build/ of this checkout."""
+"""Adds the package `raya` of the build folder to the path: RAYA_BUILD, or build/ of this checkout."""
 import os
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The module `raya`: what the command line says, as arrays. Random cases print their seed where they fail."""
+"""The Python module `raya`: results of the command line as arrays. Failing random cases print their seed."""
 import json
 import os
 import pickle
@@ -30,7 +30,7 @@ def small(centre):
     return raya.render(centre, cost=True, **SMALL)
 
 
-def test_picture_of_the_readme(centre):
+def test_image_of_the_readme(centre):
     result = raya.render(centre)
     assert result.hash.startswith("474a3843")
     assert result.image.shape == (256, 256, 3) and result.image.dtype == np.float32
@@ -43,10 +43,10 @@ def test_imbalance_of_all_offsets(centre):
     assert u.argmin() == 207 and round(u.min(), 4) == 0.0848
 
 
-def test_render_is_that_of_the_program(centre, tmp_path):
+def test_render_agrees_with_the_program(centre, tmp_path):
     report = tmp_path / "r.json"
-    words = ["--size", "32", "--pes", "32", "--offset", "4", "--report", str(report), "-o", str(tmp_path / "i.png")]
-    subprocess.run([raya.program(), "render", str(SCENES / "centre.nff"), "-q", *words], check=True)
+    arguments = ["--size", "32", "--pes", "32", "--offset", "4", "--report", str(report), "-o", str(tmp_path / "i.png")]
+    subprocess.run([raya.program(), "render", str(SCENES / "centre.nff"), "-q", *arguments], check=True)
     theirs, ours = json.loads(report.read_text()), raya.render(centre, **SMALL).report
     assert ours.keys() == theirs.keys()
     for member in ours.keys() - {"scene", "image", "device", "measured"}:
@@ -64,7 +64,7 @@ def test_loads_are_sums_of_costs(small):
 
 
 def test_owners_of_the_cyclic_mapping():
-    """Kohata & Ito: the slot of a pixel is (column + p row) mod width; the cyclic fold deals slots out in turn."""
+    """Kohata & Ito: the slot of a pixel is (column + p row) mod width; the cyclic fold assigns slots to PEs in turn."""
     random = np.random.default_rng(SEED)
     for _ in range(50):
         width, height = random.integers(2, 60, 2)
@@ -88,13 +88,13 @@ def test_imbalances_agree_with_loads():
             assert u[p] == pytest.approx(loads.max() / loads.mean() - 1, rel=1e-12), f"p = {p}, {fold}, seed {SEED}"
 
 
-def test_dynamic_schedule_gives_every_pixel_once(small):
+def test_dynamic_schedule_assigns_every_pixel_once(small):
     run = raya.schedule(small.cost, "dynamic:16", pes=8)
     assert run["loads"].sum() == small.cost.sum() and len(run["loads"]) == 8
     assert run["makespan"] >= run["loads"].max() and run["requests"] >= 32 * 32 // 16
 
 
-def test_torus_and_its_packets(centre):
+def test_torus_packets_loads_and_supersteps_agree(centre):
     result = raya.render(centre, machine="torus", size=16, packets=True)
     packets = result.packets
     crossing = packets[packets["source"] != packets["destination"]]
@@ -122,7 +122,7 @@ def test_bad_options_raise_value_error(centre, options, words):
         raya.render(centre, **options)
 
 
-def test_message_is_the_command_lines(centre):
+def test_error_message_is_that_of_the_command_line(centre):
     run = subprocess.run([raya.program(), "render", str(SCENES / "centre.nff"), "--machine", "sap", "-o", os.devnull],
                          text=True, capture_output=True)
     with pytest.raises(ValueError) as raised:
@@ -130,7 +130,7 @@ def test_message_is_the_command_lines(centre):
     assert run.returncode == 2 and str(raised.value).splitlines()[0] in run.stderr
 
 
-def test_no_such_device(centre):
+def test_unknown_device_raises_device_error(centre):
     with pytest.raises(raya.DeviceError):
         raya.render(centre, device="no such device")
 
@@ -157,7 +157,7 @@ def test_arrays_outlive_their_result(centre):
     assert (image == copy).all()
 
 
-def test_one_session_keeps_its_programs(centre):
+def test_session_can_be_reused(centre):
     session = raya.Session()
     first, second = (session.render(centre, **SMALL) for _ in range(2))
     assert first.hash == second.hash
@@ -165,8 +165,8 @@ def test_one_session_keeps_its_programs(centre):
     assert set(session.device) == {"name", "platform", "version", "driver"}
 
 
-def test_progress_and_threads(centre):
-    """The GIL is free while the engine works: another thread counts on."""
+def test_progress_is_reported_and_the_gil_is_released(centre):
+    """Another Python thread runs while the engine works."""
     shares, counted, done = [], [0], threading.Event()
 
     def count():
@@ -189,7 +189,7 @@ import ctypes, signal
 signal.signal(signal.SIGUSR1, lambda *_: None)
 def state():
     lines = [line.split() for line in open('/proc/self/status') if line[:3] == 'Sig' and line[3] != 'Q']
-    signals = {name: int(bits, 16) & (2**31 - 1) for name, bits in lines}  # those above are the C library's own
+    signals = {name: int(bits, 16) & (2**31 - 1) for name, bits in lines}  # higher ones belong to the C library
     variables, environ = [], ctypes.POINTER(ctypes.c_char_p).in_dll(ctypes.CDLL(None), 'environ')
     while environ[len(variables)]:
         variables.append(environ[len(variables)])
@@ -210,27 +210,27 @@ def test_ctrl_c_interrupts(centre):
 
     with pytest.raises(KeyboardInterrupt):
         raya.render(centre, size=256, progress=interrupt)
-    assert raya.render(centre, **SMALL).hash  # and the session still works
+    assert raya.render(centre, **SMALL).hash  # the session still works
 
 
-def test_skipped_parts_of_a_scene_are_warned_of(tmp_path):
+def test_skipped_parts_of_a_scene_give_warnings(tmp_path):
     (tmp_path / "odd.nff").write_text(raya.example("centre").nff + "tex 1 2 3\n")
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         raya.load(tmp_path / "odd.nff")
-    assert [str(one.message).split(":", 1)[1] for one in said] == ["57: entity 'tex' of another dialect, skipped"]
+    assert [str(one.message).split(":", 1)[1] for one in caught] == ["57: entity 'tex' of another dialect, skipped"]
     with pytest.raises(ValueError, match="unknown entity 'tex'"):
         raya.load(tmp_path / "odd.nff", strict=True)
 
 
-def test_every_public_function_tells_what_it_returns():
-    silent = [name for name in dir(raya) if not name.startswith("_") and callable(getattr(raya, name))
-              and not (getattr(raya, name).__doc__ or "").strip()]
-    assert not silent
+def test_every_public_function_has_a_docstring():
+    undocumented = [name for name in dir(raya) if not name.startswith("_") and callable(getattr(raya, name))
+                    and not (getattr(raya, name).__doc__ or "").strip()]
+    assert not undocumented
 
 
-def test_type_stubs_name_what_there_is():
-    """Every name and argument of host/python/raya/_engine.pyi, and no other."""
+def test_type_stubs_agree_with_the_module():
+    """host/python/raya/_engine.pyi has exactly the module's names and arguments."""
     import ast
     import inspect
 
@@ -241,14 +241,14 @@ def test_type_stubs_name_what_there_is():
         assigned = [node.target.id for node in body if isinstance(node, ast.AnnAssign)]
         return {name for name in [node.name for node in named] + assigned if not name.startswith("_")}
 
-    def there(owner):
+    def names_of(owner):
         return {name for name, value in vars(owner).items() if not name.startswith("_")}
 
     classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
-    assert public(tree.body) == there(raya._engine)
+    assert public(tree.body) == names_of(raya._engine)
     for name in ("Scene", "Result", "Session"):
-        assert public(classes[name].body) == there(getattr(raya._engine, name)), name
-    assert public(classes["_Generators"].body) == there(raya.generate)
+        assert public(classes[name].body) == names_of(getattr(raya._engine, name)), name
+    assert public(classes["_Generators"].body) == names_of(raya.generate)
     for node in tree.body:
         if isinstance(node, ast.FunctionDef) and node.name != "render":
             declared = re.match(r"\w+\((.*)\)", getattr(raya._engine, node.name).__doc__).group(1)

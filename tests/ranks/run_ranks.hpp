@@ -1,5 +1,5 @@
-// Runs raya on ranks as a user does: mpirun, a process for each rank, seen from outside by what they print, the exit
-// code, and what is left of them.
+// Runs raya on ranks as a user does, under mpirun with a process per rank, and collects output, exit code and processes
+// that remain.
 #pragma once
 #include <catch2/catch.hpp>
 #include <functional>
@@ -11,32 +11,31 @@
 
 namespace raya {
 
-/// An MPI: its launcher, and a raya with a module for it.
+/// An MPI: its launcher, and a raya program with a module for it.
 struct Mpi {
     std::string launcher, program;
 };
 
-/// The MPI that this raya was built with and, where there is another one, that too; without any a test says so and
-/// passes.
+/// The MPI that raya was built with, and the other MPI if installed. If there is none, warns, and the test passes.
 inline std::vector<Mpi> mpis_here() {
     std::vector<Mpi> all;
     for (const Mpi& mpi : {Mpi{RAYA_MPIRUN_OWN, RAYA_PROGRAM}, Mpi{RAYA_MPIRUN_OTHER, RAYA_OTHER_MPI "/raya"}})
         if (!mpi.launcher.empty()) all.push_back(mpi);
-    if (all.empty()) WARN("no MPI here: nothing is tested on ranks that are processes");
+    if (all.empty()) WARN("no MPI found: tests of ranks as processes are skipped");
     return all;
 }
 
-/// What happens to a run: one process gets a signal some time after all ranks have started.
+/// Fault injection: one process gets a signal some time after all ranks have started.
 struct RanksFault {
-    int signal = 0;                       // 0: nothing happens
-    std::optional<std::uint32_t> rank{};  // whom it hits; empty: mpirun
+    int signal = 0;                       // 0: no fault
+    std::optional<std::uint32_t> rank{};  // receives the signal; empty: mpirun does
     int after_ms = 700;
 };
 
 struct RanksOutcome : RunOutcome {
-    double seconds = 0;        // from the fault, or else from the start, to the end of the last process
+    double seconds = 0;        // from the fault (without one, the start) to the end of the last process
     std::size_t left = 0;      // processes that did not end
-    std::size_t messages = 0;  // lines of raya's own on stderr
+    std::size_t messages = 0;  // lines of raya on stderr
 };
 
 namespace run_ranks_detail {
@@ -49,13 +48,13 @@ struct RankProcess {
     std::uint32_t rank = 0;
 };
 
-/// The value of a variable in /proc's environ; empty where it is not there.
+/// The value of a variable in /proc's environ; empty if it is not set.
 inline std::string variable_of(const std::string& environment, const std::string& name) {
     const std::size_t at = ('\0' + environment).find('\0' + name + "=");
     return at == environment.npos ? "" : std::string(environment.c_str() + at + name.size() + 1);
 }
 
-/// Processes that bear the mark and live; those that have ended and are not waited for have no environment.
+/// Live processes with the mark in their environment; zombies have no environment.
 inline std::vector<std::pair<pid_t, std::string>> marked(const std::string& mark) {
     std::vector<std::pair<pid_t, std::string>> found;
     std::error_code gone;
@@ -82,10 +81,11 @@ inline std::vector<RankProcess> rank_processes(const std::string& mark, const st
     return ranks;
 }
 
-inline pid_t start(const Mpi& mpi, std::vector<std::string> words, std::vector<std::string> variables, std::FILE* out,
-                   std::FILE* err) {
-    words.insert(words.begin(), {mpi.launcher, "--bind-to", "none"});
-    const std::vector<char*> argv = run_program_detail::pointers(words), envp = run_program_detail::pointers(variables);
+inline pid_t start(const Mpi& mpi, std::vector<std::string> arguments, std::vector<std::string> variables,
+                   std::FILE* out, std::FILE* err) {
+    arguments.insert(arguments.begin(), {mpi.launcher, "--bind-to", "none"});
+    const std::vector<char*> argv = run_program_detail::pointers(arguments);
+    const std::vector<char*> envp = run_program_detail::pointers(variables);
     const pid_t child = ::fork();
     if (child != 0) return child;
     ::setsid();
@@ -97,19 +97,20 @@ inline pid_t start(const Mpi& mpi, std::vector<std::string> words, std::vector<s
     ::_exit(127);
 }
 
-/// Sends the signal when `ranks` of them have started; false where they have not within 30 s.
-inline bool strike(const Mpi& mpi, const std::string& mark, pid_t launcher, std::size_t ranks, const RanksFault& f) {
-    const Clock::time_point late = Clock::now() + std::chrono::seconds(30);
-    std::vector<RankProcess> there;
-    while ((there = rank_processes(mark, mpi.program)).size() < ranks) {
-        if (Clock::now() > late || run_program_detail::has_ended(launcher)) return false;
+/// Sends the signal after `ranks` ranks have started; false if they have not within 30 s.
+inline bool send_signal(const Mpi& mpi, const std::string& mark, pid_t launcher, std::size_t ranks,
+                        const RanksFault& f) {
+    const Clock::time_point deadline = Clock::now() + std::chrono::seconds(30);
+    std::vector<RankProcess> started;
+    while ((started = rank_processes(mark, mpi.program)).size() < ranks) {
+        if (Clock::now() > deadline || run_program_detail::has_ended(launcher)) return false;
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(f.after_ms));
-    pid_t whom = launcher;
-    for (const RankProcess& p : there)
-        if (f.rank == p.rank) whom = p.process;
-    return ::kill(whom, f.signal) == 0;
+    pid_t target = launcher;
+    for (const RankProcess& p : started)
+        if (f.rank == p.rank) target = p.process;
+    return ::kill(target, f.signal) == 0;
 }
 
 inline std::size_t own_lines(const std::string& text) {
@@ -120,10 +121,10 @@ inline std::size_t own_lines(const std::string& text) {
 
 }  // namespace run_ranks_detail
 
-/// `words`: what follows the launcher's name, the program among them. Ends what does not end within `limit_s`, with
-/// exit code 124.
-inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& words, std::size_t ranks = 0,
-                              const RanksFault& fault = {}, Surroundings around = {}) {
+/// `arguments` follow the launcher's name and include the program. A run that does not end within 60 s is killed and
+/// has the exit code 124.
+inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& arguments, std::size_t ranks = 0,
+                              const RanksFault& fault = {}, RunOptions around = {}) {
     namespace detail = run_ranks_detail;
     using detail::Clock;
     constexpr int kLimit_s = 60;
@@ -135,19 +136,19 @@ inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& wo
                                                      {"RAYA_TEST_RUN", value}});
     RanksOutcome outcome;
     outcome.command = mpi.launcher;
-    for (const std::string& word : words) outcome.command += " " + word;
+    for (const std::string& argument : arguments) outcome.command += " " + argument;
     const run_program_detail::File out = run_program_detail::temporary_file(),
                                    err = run_program_detail::temporary_file();
-    const pid_t child = detail::start(mpi, words, run_program_detail::environment(around), out.get(), err.get());
-    const bool struck = fault.signal == 0 || detail::strike(mpi, mark, child, ranks, fault);
+    const pid_t child = detail::start(mpi, arguments, run_program_detail::environment(around), out.get(), err.get());
+    const bool sent = fault.signal == 0 || detail::send_signal(mpi, mark, child, ranks, fault);
     const Clock::time_point start = Clock::now();
     const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(10)); };
     int status = 0;
     const auto late = [&] { return Clock::now() - start > std::chrono::seconds(kLimit_s); };
     while (::waitpid(child, &status, WNOHANG) == 0 && !late()) pause();
     outcome.code = late() ? 124 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    const Clock::time_point patience = Clock::now() + std::chrono::seconds(8);
-    while (!detail::marked(mark).empty() && Clock::now() < patience && !late()) pause();
+    const Clock::time_point deadline = Clock::now() + std::chrono::seconds(8);
+    while (!detail::marked(mark).empty() && Clock::now() < deadline && !late()) pause();
     for (const auto& [process, environment] : detail::marked(mark)) {
         ++outcome.left;
         ::kill(process, SIGKILL);
@@ -157,7 +158,7 @@ inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& wo
     outcome.out = run_program_detail::contents(out.get());
     outcome.err = run_program_detail::contents(err.get());
     outcome.messages = detail::own_lines(outcome.err);
-    if (!struck) throw std::runtime_error("the ranks were not there to be hit: " + outcome.told());
+    if (!sent) throw std::runtime_error("the ranks did not start in time for the signal: " + outcome.describe());
     return outcome;
 }
 

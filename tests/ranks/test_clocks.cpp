@@ -1,4 +1,4 @@
-// Clocks of ranks against rank 0's: what is found lies within what it says of itself.
+// Clock offsets of ranks to rank 0 lie within their stated uncertainty.
 #include <catch2/catch.hpp>
 #include <chrono>
 
@@ -7,7 +7,7 @@
 
 namespace raya {
 
-TEST_CASE("clocks that are hours apart are aligned within the uncertainty that is told", "[ranks]") {
+TEST_CASE("clocks that are hours apart are aligned within the stated uncertainty", "[ranks]") {
     const std::int64_t ahead[] = {0, 5'000'000'000'000, -7'000'000'000'000, 12'345};  // nanoseconds, of each rank
     std::mutex mutex;
     std::vector<std::pair<std::uint32_t, RankClock>> found;

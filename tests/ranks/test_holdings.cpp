@@ -1,4 +1,4 @@
-// What a rank holds: its own PEs' and nodes' part of everything, and no more.
+// Memory of a rank: only the data of its own PEs and nodes.
 #include <catch2/catch.hpp>
 #include <mutex>
 
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-/// [rank]: bytes that a render takes on its device.
+/// [rank]: bytes that a render allocates on its device.
 template <class Renderer, class Settings>
 std::vector<std::uint64_t> bytes_of_ranks(std::uint32_t count, const Scene& scene, const Settings& settings) {
     std::vector<std::uint64_t> bytes(count);
@@ -26,7 +26,7 @@ std::vector<std::uint64_t> bytes_of_ranks(std::uint32_t count, const Scene& scen
 
 }  // namespace
 
-TEST_CASE("a rank has the words of its own nodes, as one rank has them", "[ranks]") {
+TEST_CASE("a rank holds only its own nodes' words, equal to those of a single rank", "[ranks]") {
     constexpr std::uint64_t kSeed = 31;
     SplitMix random(kSeed);
     for (int i = 0; i < 40; ++i) {
@@ -37,7 +37,7 @@ TEST_CASE("a rank has the words of its own nodes, as one rank has them", "[ranks
         const std::uint32_t nodes = raya_nodes(settings.torus), count = 1 + random_below(random, std::min(nodes, 8u));
         CAPTURE(kSeed, i, case_text(c), count);
         Session session(choose_device(""));
-        const DeviceMemory memory = least_memory(session.device(), Ranks::alone());
+        const DeviceMemory memory = smallest_device_memory(session.device(), Ranks::alone());
         const TorusJob all =
             make_torus_job(session, scene, settings, NodeShare(settings.torus), memory, Ranks::alone());
         std::vector<TorusJob> jobs(count, all);
@@ -68,7 +68,7 @@ TEST_CASE("a rank has the words of its own nodes, as one rank has them", "[ranks
     }
 }
 
-TEST_CASE("of the torus a rank's device holds its part of the nodes, with an inbox more for each link from elsewhere",
+TEST_CASE("torus: a rank's device holds its share of the nodes, plus an inbox for each link from another rank",
           "[ranks]") {
     const TorusSettings settings = settings_of(TorusCase{.nodes = {4, 4, 4}, .queue = 400});
     const Scene scene = project_scene("spheres");
@@ -77,7 +77,8 @@ TEST_CASE("of the torus a rank's device holds its part of the nodes, with an inb
         const std::vector<std::uint64_t> of_ranks = bytes_of_ranks<TorusRenderer>(count, scene, settings);
         for (std::uint32_t rank = 0; rank < count; ++rank) {
             const NodeShare share(settings.torus, count, rank);
-            // Boxes are nearly all that these nodes hold: inboxes half of them, which those from elsewhere add to.
+            // Mailboxes take nearly all memory of these nodes. Half of them are inboxes, which grow by those of other
+            // ranks' links.
             const double inboxes = static_cast<double>(share.inboxes()) / share.nodes();
             CAPTURE(count, rank, all, of_ranks[rank], inboxes);
             CHECK(static_cast<double>(of_ranks[rank]) < 1.05 * static_cast<double>(all) / count * (1 + inboxes) / 2);
@@ -85,7 +86,7 @@ TEST_CASE("of the torus a rank's device holds its part of the nodes, with an inb
     }
 }
 
-TEST_CASE("of the ring a rank's device holds the scene and its own PEs' pixels", "[ranks]") {
+TEST_CASE("ring: a rank's device holds the scene and its own PEs' pixels", "[ranks]") {
     RingSettings settings = settings_of(RingCase{.width = 256, .height = 256, .pes = 64, .offset = 0});
     settings.antialias.method = AntialiasMethod::kFilter;
     const Scene scene = project_scene("spheres");

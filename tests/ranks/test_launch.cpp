@@ -1,4 +1,4 @@
-// How a process learns that it is one of several, and what it takes of its host.
+// Detection of a launcher, and a rank's share of its host's threads.
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -18,9 +18,9 @@ std::optional<Launch> launch_in(const std::map<std::string, std::string>& enviro
 
 }  // namespace
 
-TEST_CASE("launchers are known by their variables", "[ranks]") {
+TEST_CASE("launchers are detected by their environment variables", "[ranks]") {
     CHECK(!launch_in({}));
-    CHECK(!launch_in({{"OMPI_COMM_WORLD_SIZE", "4"}, {"SLURM_NTASKS", "4"}}));  // a shell that Slurm gave
+    CHECK(!launch_in({{"OMPI_COMM_WORLD_SIZE", "4"}, {"SLURM_NTASKS", "4"}}));  // a shell in a Slurm allocation
     CHECK(!launch_in({{"PMI_RANK", ""}}));
     CHECK(!launch_in({{"PMI_RANK", "two"}}));
     const auto open_mpi = launch_in({{"OMPI_COMM_WORLD_RANK", "2"}, {"OMPI_COMM_WORLD_SIZE", "4"}, {"PMIX_RANK", "9"}});
@@ -36,7 +36,7 @@ TEST_CASE("launchers are known by their variables", "[ranks]") {
     CHECK(!pmix->count);
 }
 
-TEST_CASE("threads of a rank: the cores that it is bound to, else its part of the host's", "[ranks]") {
+TEST_CASE("a rank has as many threads as bound cores, or its share of the host's cores", "[ranks]") {
     CHECK(threads_of_rank(1, 8, 2) == 1);
     CHECK(threads_of_rank(3, 8, 2) == 3);
     CHECK(threads_of_rank(8, 8, 1) == 8);
@@ -44,7 +44,7 @@ TEST_CASE("threads of a rank: the cores that it is bound to, else its part of th
     CHECK(threads_of_rank(2, 2, 8) == 1);
 }
 
-TEST_CASE("a rank with other arguments than rank 0 refuses to go on, the others go on", "[ranks]") {
+TEST_CASE("only a rank with other arguments than rank 0 refuses to run", "[ranks]") {
     for (const std::uint32_t other : {1u, 3u}) {
         const auto arguments = [&](std::uint32_t rank) {
             return std::vector<std::string>{"render", rank == other ? "b.nff" : "a.nff"};
@@ -53,7 +53,7 @@ TEST_CASE("a rank with other arguments than rank 0 refuses to go on, the others 
         std::vector<std::uint32_t> refused;
         on_ranks(4, [&](Ranks& ranks) {
             try {
-                check_alike(ranks, arguments(ranks.rank()));
+                check_same_program(ranks, arguments(ranks.rank()));
             } catch (const UserError& error) {
                 const std::lock_guard lock(mutex);
                 refused.push_back(ranks.rank());

@@ -1,4 +1,4 @@
-// Ranks with devices of their own: kinds that differ, memories that are too small for one; and what is told of them.
+// Ranks with one device each: different kinds of devices, memories too small for one device, and traces and reports.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -16,7 +16,7 @@ std::string hash_of(const std::filesystem::path& report) {
 
 }  // namespace
 
-TEST_CASE("ranks with devices of different kinds make one image", "[ranks][.mpirun]") {
+TEST_CASE("ranks with devices of different kinds give the image of one process", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
     const std::filesystem::path one = folder.path() / "one.json", many = folder.path() / "many.json";
     const std::string image = folder.path() / "i.pfm";
@@ -30,7 +30,7 @@ TEST_CASE("ranks with devices of different kinds make one image", "[ranks][.mpir
         words.insert(words.end(), render.begin(), render.end());
         words.insert(words.end(), {"--report", many, "--device", "pthread,basic"});
         const RanksOutcome outcome = run_ranks(mpi, words, 0, {}, {.variables = {{"POCL_DEVICES", "pthread basic"}}});
-        INFO(outcome.told());
+        INFO(outcome.describe());
         REQUIRE(outcome.code == 0);
         CHECK(hash_of(many) == hash_of(one));
         std::vector<std::string> devices;
@@ -41,7 +41,7 @@ TEST_CASE("ranks with devices of different kinds make one image", "[ranks][.mpir
     }
 }
 
-TEST_CASE("a torus's scene that no device here could hold is rendered on several", "[ranks][.mpirun]") {
+TEST_CASE("a torus scene too large for one device is rendered on several ranks", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
     const std::string scene = folder.path() / "u.nff", image = folder.path() / "i.pfm";
     const std::filesystem::path one = folder.path() / "one.json", many = folder.path() / "many.json";
@@ -53,10 +53,10 @@ TEST_CASE("a torus's scene that no device here could hold is rendered on several
                                             "32",      "--queue", "64",        "--pe-memory", "100000000",
                                             "--quiet", "-o",      image,       "--report",    many};
     // CL_DEVICE_MAX_MEM_ALLOC_SIZE: the words of all nodes take 1.4 MB.
-    const Surroundings small{
+    const RunOptions small{
         .variables = {{"LD_PRELOAD", RAYA_CL_FAULTS}, {"RAYA_FAULT", "clGetDeviceInfo 4112 1000000"}}};
     const RunOutcome refused = run_raya(torus, small);
-    INFO(refused.told());
+    INFO(refused.describe());
     CHECK(refused.code == 3);
     CHECK(contains(refused.err, "node memories"));
     for (const Mpi& mpi : mpis_here()) {
@@ -68,13 +68,13 @@ TEST_CASE("a torus's scene that no device here could hold is rendered on several
                                           mpi.program};
         words.insert(words.end(), torus.begin(), torus.end());
         const RanksOutcome outcome = run_ranks(mpi, words);
-        INFO(outcome.told());
+        INFO(outcome.describe());
         REQUIRE(outcome.code == 0);
         CHECK(hash_of(many) == hash_of(one));
     }
 }
 
-TEST_CASE("a trace has host and device of every rank, by one clock", "[ranks][.mpirun]") {
+TEST_CASE("a trace has host and device of every rank, on one clock", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
     const std::filesystem::path trace = folder.path() / "t.json", report = folder.path() / "r.json";
     for (const Mpi& mpi : mpis_here())
@@ -82,7 +82,7 @@ TEST_CASE("a trace has host and device of every rank, by one clock", "[ranks][.m
             const RanksOutcome outcome =
                 run_ranks(mpi, {"-n", "3", mpi.program, "render", scene_file("spheres"), "--size", "32", "--machine",
                                 machine, "-o", folder.path() / "i.pfm", "--trace", trace, "--report", report});
-            INFO(outcome.told());
+            INFO(outcome.describe());
             REQUIRE(outcome.code == 0);
             CHECK(contains(outcome.out, "ranks   3 on 1 host"));
             const Document file = Document::parse(file_contents(trace));

@@ -1,4 +1,4 @@
-// Ranks that are processes: what mpirun starts makes the files of one process.
+// Ranks as processes: a run under mpirun writes the files of a single process.
 #include <map>
 
 #include "tests/cli/refusals.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kCounts[] = {1, 2, 3, 4, 7, 8};
 
-/// A render's files, by name; the report without what was measured.
+/// A render's files by name; reports without the measured part.
 using Files = std::map<std::string, std::string>;
 
 Files files_in(const ScratchFolder& folder) {
@@ -28,17 +28,17 @@ Files files_in(const ScratchFolder& folder) {
     return files;
 }
 
-void check_all_counts(const ScratchFolder& folder, const Words& render) {
+void check_all_counts(const ScratchFolder& folder, const Arguments& render) {
     const RunOutcome alone = run_raya(render);
-    INFO(alone.told());
+    INFO(alone.describe());
     REQUIRE(alone.code == 0);
     const Files one = files_in(folder);
     for (const Mpi& mpi : mpis_here())
         for (const std::uint32_t count : kCounts) {
-            Words words = {"-n", std::to_string(count), mpi.program};
+            Arguments words = {"-n", std::to_string(count), mpi.program};
             words.insert(words.end(), render.begin(), render.end());
             const RanksOutcome run = run_ranks(mpi, words);
-            INFO(run.told());
+            INFO(run.describe());
             REQUIRE(run.code == 0);
             CHECK(run.messages == 0);
             CHECK(run.left == 0);
@@ -51,29 +51,29 @@ void check_all_counts(const ScratchFolder& folder, const Words& render) {
         }
 }
 
-TEST_CASE("mpirun: pictures, counts and loads of the ring are those of one process", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: images, counts and loads of the ring are those of one process", "[ranks][.mpirun]") {
     const ScratchFolder folder;
-    const Words common = {"render",   scene_file("centre"), "-o",      folder / "x.pfm", "--cost", folder / "c.pfm",
+    const Arguments common = {"render",   scene_file("centre"), "-o",      folder / "x.pfm", "--cost", folder / "c.pfm",
                           "--report", folder / "x.json",    "--quiet", "--lanes",        "4",      "--size",
                           "40x24"};
-    for (const Words& options : {Words{"--pes", "8", "--accel", "bvh", "--from", "3,-6,4", "--light", "5,5,9"},
-                                 Words{"--pes", "13", "--antialias", "supersample", "--mask", folder / "m.pfm"}}) {
-        Words render = common;
+    for (const Arguments& options : {Arguments{"--pes", "8", "--accel", "bvh", "--from", "3,-6,4", "--light", "5,5,9"},
+                                 Arguments{"--pes", "13", "--antialias", "supersample", "--mask", folder / "m.pfm"}}) {
+        Arguments render = common;
         render.insert(render.end(), options.begin(), options.end());
         check_all_counts(folder, render);
     }
 }
 
-TEST_CASE("mpirun: picture, counts, loads and packets of the torus are those of one process", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: image, counts, loads and packets of the torus are those of one process", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     check_all_counts(folder, {"render", scene_file("spheres"), "-o", folder / "x.pfm", "--report", folder / "x.json",
                               "--packets", folder / "p.csv.gz", "--machine", "torus", "--nodes", "3x2x2", "--size",
                               "16", "--group", "1", "--quiet"});
 }
 
-TEST_CASE("mpirun: frames are those of one process, and not made twice", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: frames are those of one process, and existing frames are not rendered again", "[ranks][.mpirun]") {
     const ScratchFolder folder;
-    const Words render = {"render",   scene_file("centre"),
+    const Arguments render = {"render",   scene_file("centre"),
                           "-o",       folder / "x.ppm",
                           "--frames", "1:3",
                           "--turn",   "360",
@@ -84,19 +84,19 @@ TEST_CASE("mpirun: frames are those of one process, and not made twice", "[ranks
     const Files one = files_in(folder);
     REQUIRE(one.size() == 4);
     for (const Mpi& mpi : mpis_here()) {
-        Words words = {"-n", "3", mpi.program};
+        Arguments words = {"-n", "3", mpi.program};
         words.insert(words.end(), render.begin(), render.end());
-        for (const char* told : {"3 frames, 3 rendered", "3 frames, 0 rendered"}) {
+        for (const char* summary : {"3 frames, 3 rendered", "3 frames, 0 rendered"}) {
             const RanksOutcome run = run_ranks(mpi, words);
-            INFO(run.told());
+            INFO(run.describe());
             CHECK(run.code == 0);
-            CHECK_THAT(run.out, Catch::Contains(told));
+            CHECK_THAT(run.out, Catch::Contains(summary));
         }
         CHECK((files_in(folder) == one));
     }
 }
 
-TEST_CASE("mpirun: rank 0 alone has stdin and stdout", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: only rank 0 reads stdin and writes stdout", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     const std::string small = " --quiet --lanes 4 --pes 8 --size 16 --background 1,0.5,0 ";
     const auto shell = [&](const std::string& line) {
@@ -113,13 +113,13 @@ TEST_CASE("mpirun: rank 0 alone has stdin and stdout", "[ranks][.mpirun]") {
     }
 }
 
-TEST_CASE("mpirun: rank 0 alone says what it does", "[ranks][.mpirun][verbosity]") {
+TEST_CASE("mpirun: only rank 0 prints verbose messages", "[ranks][.mpirun][verbosity]") {
     const ScratchFolder folder;
     for (const Mpi& mpi : mpis_here()) {
         const RanksOutcome run =
             run_ranks(mpi, {"-n", "3", mpi.program, "render", scene_file("planes"), "-o", folder / "x.pfm", "--size",
                             "16", "--lanes", "4", "--pes", "8", "-vv"});
-        INFO(run.told());
+        INFO(run.describe());
         CHECK(run.code == 0);
         for (const char* line :
              {"raya: device ", "raya: read scene: ", "raya: trace: ", "raya: on the device: trace (kernel)"}) {
@@ -130,11 +130,11 @@ TEST_CASE("mpirun: rank 0 alone says what it does", "[ranks][.mpirun][verbosity]
     }
 }
 
-TEST_CASE("mpirun: what ranks send arrives, of any size, and from all to all", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: messages of any size arrive, point to point and collective", "[ranks][.mpirun]") {
     for (const Mpi& mpi : mpis_here())
         for (const std::uint32_t count : {2u, 3u, 7u}) {
             const RanksOutcome run = run_ranks(mpi, {"-n", std::to_string(count), RAYA_TRANSPORT_CHECK, mpi.program});
-            INFO(run.told());
+            INFO(run.describe());
             CHECK(run.code == 0);
             CHECK_THAT(run.out,
                        Catch::Contains(" on " + std::to_string(count) + " ranks") && Catch::Contains(", 0 wrong\n"));

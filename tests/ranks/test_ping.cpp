@@ -1,4 +1,4 @@
-// The network that is fitted to a ping-pong, and what a ping-pong reports.
+// The network model fitted to a ping-pong, and the report of a ping-pong.
 #include <catch2/catch.hpp>
 #include <mutex>
 
@@ -8,25 +8,25 @@
 namespace raya {
 namespace {
 
-TEST_CASE("alpha and beta of messages that follow them exactly, and of some that do not", "[ranks]") {
+TEST_CASE("the network fit recovers exact alpha and beta, and keeps both at 0 or above", "[ranks]") {
     const MessageTime exact[] = {{1, 2e-6 + 1e-9}, {1000, 3e-6}, {1'000'000, 1.002e-3}};
     const Network network = fitted_network(exact);
     CHECK(network.alpha_s == Approx(2e-6));
     CHECK(network.beta_s == Approx(1e-9));
     CHECK(network.seconds(500) == Approx(2.5e-6));
-    // Of two lengths both times are met, unless that takes a number below 0: what falls with the length has no beta,
-    // and alpha is then the mean of 2 and 1 by weights of 1/4 and 1, (1/2 + 1) / (1/4 + 1).
+    // Two lengths are fitted exactly unless a parameter would be negative. Times that fall with the length give
+    // beta = 0; alpha then is the mean of 2 and 1 with the weights 1/4 and 1, (1/2 + 1) / (1/4 + 1).
     const MessageTime falling[] = {{0, 2}, {10, 1}};
     CHECK(fitted_network(falling).alpha_s == Approx(1.2));
     CHECK(fitted_network(falling).beta_s == 0);
-    // What grows by more than the length has no alpha: beta of 1 and 3 a byte by equal weights of b/t,
+    // Times that grow faster than the length give alpha = 0; beta then is the weighted fit to 1 and 3 per byte,
     // (1 + 2/6) / (1 + 1/9).
     const MessageTime steep[] = {{1, 1}, {2, 6}};
     CHECK(fitted_network(steep).alpha_s == 0);
     CHECK(fitted_network(steep).beta_s == Approx(1.2));
 }
 
-TEST_CASE("a ping-pong reports every rank", "[ranks]") {
+TEST_CASE("a ping-pong report contains every rank", "[ranks]") {
     PingReport report;
     on_ranks(
         3,
@@ -36,7 +36,7 @@ TEST_CASE("a ping-pong reports every rank", "[ranks]") {
         },
         2);
     CHECK(report.library == "threads");
-    CHECK(report.partner == 2);  // of another host than ranks 0 and 1
+    CHECK(report.partner == 2);  // on another host than ranks 0 and 1
     REQUIRE(report.ranks.size() == 3);
     CHECK(report.ranks[1].host == "host0");
     CHECK(report.ranks[2].host == "host1");

@@ -1,5 +1,5 @@
-// What goes wrong on one of several ranks, or before there are any: one message, the exit code of one process where
-// mpirun lets it through and never 0, no file, and no process that stays.
+// Failures on one of several ranks or at the start: one message, the exit code of a single process if mpirun passes it
+// on and never 0, no output file, and no remaining process.
 #include <sys/stat.h>
 
 #include "tests/cli/failing_device.hpp"
@@ -10,23 +10,23 @@
 namespace raya {
 namespace {
 
-constexpr double kEnd_s = 10;  // after the fault all have ended
+constexpr double kEnd_s = 10;  // all processes must end within this time after the fault
 
-Words on(const Mpi& mpi, std::uint32_t ranks, const Words& arguments) {
-    Words words = {"-n", std::to_string(ranks), mpi.program};
+Arguments on(const Mpi& mpi, std::uint32_t ranks, const Arguments& arguments) {
+    Arguments words = {"-n", std::to_string(ranks), mpi.program};
     words.insert(words.end(), arguments.begin(), arguments.end());
     return words;
 }
 
-Words render(const ScratchFolder& outputs, const Words& options = {}) {
-    Words words = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--quiet", "--lanes", "4"};
+Arguments render(const ScratchFolder& outputs, const Arguments& options = {}) {
+    Arguments words = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--quiet", "--lanes", "4"};
     words.insert(words.end(), options.begin(), options.end());
     return words;
 }
 
 void check_ended(const ScratchFolder& outputs, const RanksOutcome& run, std::size_t most_messages,
                  double limit_s = kEnd_s) {
-    INFO(run.told());
+    INFO(run.describe());
     CHECK(run.code != 0);
     CHECK(run.messages <= most_messages);
     CHECK(run.left == 0);
@@ -34,16 +34,16 @@ void check_ended(const ScratchFolder& outputs, const RanksOutcome& run, std::siz
     CHECK(outputs.entries() == 0);
 }
 
-/// Ends with this code, and one message with these words.
-void check_told(const ScratchFolder& outputs, const RanksOutcome& run, int code, const Words& message) {
-    INFO(run.told());
+/// Checks the exit code, and that the run prints one message with these parts.
+void check_message(const ScratchFolder& outputs, const RanksOutcome& run, int code, const Arguments& message) {
+    INFO(run.describe());
     CHECK(run.code == code);
     CHECK(run.messages == 1);
     for (const std::string& part : message) CHECK_THAT(run.err, Catch::Contains(part));
     check_ended(outputs, run, 1);
 }
 
-/// A script that runs a program, in one rank after a command of the shell's.
+/// A script that runs a program, on one rank after a shell command.
 class OneRank {
   public:
     OneRank() {
@@ -53,9 +53,9 @@ class OneRank {
         ::chmod(script_.c_str(), 0755);
     }
 
-    Words words(const Mpi& mpi, std::uint32_t ranks, std::uint32_t rank, const std::string& command,
-                const Words& arguments) const {
-        Words all = {"-n", std::to_string(ranks), script_, std::to_string(rank), command, mpi.program};
+    Arguments words(const Mpi& mpi, std::uint32_t ranks, std::uint32_t rank, const std::string& command,
+                const Arguments& arguments) const {
+        Arguments all = {"-n", std::to_string(ranks), script_, std::to_string(rank), command, mpi.program};
         all.insert(all.end(), arguments.begin(), arguments.end());
         return all;
     }
@@ -69,8 +69,8 @@ std::string preload(const std::string& library, const std::string& variable, con
     return "export LD_PRELOAD=" + library + " " + variable + "='" + value + "'";
 }
 
-// Longer than it takes to start the ranks and to hit one.
-Words long_render(const ScratchFolder& outputs, const std::string& machine) {
+// Takes longer than starting the ranks and signalling one.
+Arguments long_render(const ScratchFolder& outputs, const std::string& machine) {
     return {"render",
             scene_file("centre"),
             "-o",
@@ -84,12 +84,12 @@ Words long_render(const ScratchFolder& outputs, const std::string& machine) {
 
 }  // namespace
 
-TEST_CASE("mpirun: what one process would refuse is refused once, with rank and host", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: an error of all ranks is reported once, with rank and host", "[ranks][.mpirun]") {
     struct Case {
         std::uint32_t ranks;
-        Words arguments;
+        Arguments arguments;
         int code;
-        Words message;
+        Arguments message;
     };
     const ScratchFolder outputs;
     const Case cases[] = {
@@ -106,119 +106,119 @@ TEST_CASE("mpirun: what one process would refuse is refused once, with rank and 
     for (const Mpi& mpi : mpis_here())
         for (const Case& c : cases) {
             const RanksOutcome run = run_ranks(mpi, on(mpi, c.ranks, c.arguments));
-            Words message = c.message;
+            Arguments message = c.message;
             message.push_back("raya: rank ");
-            check_told(outputs, run, c.code, message);
+            check_message(outputs, run, c.code, message);
         }
 }
 
-TEST_CASE("mpirun: ranks with other arguments refuse to start together", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: ranks with different arguments refuse to run", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     for (const Mpi& mpi : mpis_here()) {
-        Words words = on(mpi, 1, render(outputs)), others = on(mpi, 2, render(outputs, {"--pes", "8"}));
+        Arguments words = on(mpi, 1, render(outputs)), others = on(mpi, 2, render(outputs, {"--pes", "8"}));
         words.push_back(":");
         words.insert(words.end(), others.begin(), others.end());
-        check_told(outputs, run_ranks(mpi, words), 2, {"raya: rank ", "other arguments than rank 0"});
+        check_message(outputs, run_ranks(mpi, words), 2, {"raya: rank ", "other arguments than rank 0"});
     }
 }
 
-TEST_CASE("mpirun: of another MPI is refused by one line", "[ranks][.mpirun]") {
+TEST_CASE("mpirun of another MPI is refused with one message", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     const std::vector<Mpi> mpis = mpis_here();
     for (const Mpi& mpi : mpis)
         for (const Mpi& other : mpis)
             if (mpi.launcher != other.launcher)
-                check_told(outputs, run_ranks(mpi, on(other, 2, render(outputs))), 2,
-                           {"raya: started as one of 2 processes, but ", "remedy: the mpirun of that MPI"});
+                check_message(outputs, run_ranks(mpi, on(other, 2, render(outputs))), 2,
+                           {"raya: started as one of 2 processes, but ", "remedy: use the mpirun of that MPI"});
 }
 
-TEST_CASE("mpirun: a device that fails, or its driver, on one rank", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: a failing device or driver on one rank ends all ranks", "[ranks][.mpirun]") {
     if (kSanitized) return;
     const ScratchFolder outputs;
     const OneRank one;
     for (const Mpi& mpi : mpis_here())
         for (const std::uint32_t rank : quick(1, {2u, 0u})) {
             const std::string name = "raya: rank " + std::to_string(rank) + " on ";
-            const auto run = [&](const std::string& fault, const Words& options) {
+            const auto run = [&](const std::string& fault, const Arguments& options) {
                 return run_ranks(mpi, one.words(mpi, 3, rank, preload(RAYA_CL_FAULTS, "RAYA_FAULT", fault),
                                                 render(outputs, options)));
             };
-            const Words ring = {"--size", "64", "--pes", "8"}, torus = {"--size", "32", "--machine", "torus"};
-            const Words failed = {name, "clEnqueueNDRangeKernel failed"};
-            check_told(outputs, run("clEnqueueNDRangeKernel 1 -4", ring), 3, failed);
-            check_told(outputs, run("clEnqueueNDRangeKernel 20 -4", torus), 3, failed);
-            check_told(outputs, run("clCreateContext 1 -6", ring), 3, {name});
+            const Arguments ring = {"--size", "64", "--pes", "8"}, torus = {"--size", "32", "--machine", "torus"};
+            const Arguments failed = {name, "clEnqueueNDRangeKernel failed"};
+            check_message(outputs, run("clEnqueueNDRangeKernel 1 -4", ring), 3, failed);
+            check_message(outputs, run("clEnqueueNDRangeKernel 20 -4", torus), 3, failed);
+            check_message(outputs, run("clCreateContext 1 -6", ring), 3, {name});
             const RanksOutcome crash = run("clEnqueueNDRangeKernel 1 crash", ring);
             CHECK_THAT(crash.err, Catch::Contains(name));
             CHECK_THAT(crash.err, Catch::Contains("the OpenCL driver crashed (SIGSEGV)"));
-            check_ended(outputs, crash, 2);  // MPICH's mpirun has a code of its own, and rank 0 is interrupted
+            check_ended(outputs, crash, 2);  // MPICH's mpirun returns its own code, and rank 0 is interrupted
             check_ended(outputs, run("clEnqueueNDRangeKernel 1 exit", ring), 1);
         }
 }
 
-TEST_CASE("mpirun: a rank out of memory", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: a rank out of memory ends all ranks", "[ranks][.mpirun]") {
     if (kSanitized) return;
     const ScratchFolder outputs;
     const OneRank one;
-    const Words large = render(outputs, {"--machine", "grande", "--size", "600"});
+    const Arguments large = render(outputs, {"--machine", "grande", "--size", "600"});
     for (const Mpi& mpi : mpis_here()) {
-        run_ranks(mpi, on(mpi, 2, large));  // its kernels are built now
+        run_ranks(mpi, on(mpi, 2, large));  // builds the kernels
         std::filesystem::remove(outputs / "x.pfm");
         for (const std::uint32_t rank : quick(1, {2u, 0u}))
-            check_told(
+            check_message(
                 outputs,
                 run_ranks(mpi, one.words(mpi, 3, rank, preload(RAYA_CL_FAULTS, "RAYA_FAULT", "new 1000000 0"), large)),
                 2, {"raya: rank " + std::to_string(rank) + " on ", "out of memory on the host"});
-        // The system's limit may meet raya, the driver or MPI.
+        // The system's limit may affect raya, the driver or MPI.
         check_ended(outputs, run_ranks(mpi, one.words(mpi, 3, 0, "ulimit -v 400000", large)), 2);
     }
 }
 
-TEST_CASE("mpirun: a full disk where rank 0 writes", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: a full disk on rank 0 ends all ranks", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     const std::string folder = std::filesystem::canonical(outputs.path()).string();
-    const Surroundings full{.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
+    const RunOptions full{.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
                                           {"RAYA_FULL_DISK", "100000 " + folder},
                                           {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
     for (const Mpi& mpi : mpis_here())
-        check_told(outputs, run_ranks(mpi, on(mpi, 3, render(outputs, {"--size", "512"})), 0, {}, full), 2,
+        check_message(outputs, run_ranks(mpi, on(mpi, 3, render(outputs, {"--size", "512"})), 0, {}, full), 2,
                    {"raya: rank 0 on ", "x.pfm", "No space left on device"});
 }
 
-// Whether mpirun still passes on what an interrupted rank writes is mpirun's affair: rank 0 writes into a file here.
-// Open MPI kills, after one second, what a signal has not ended: too soon for a rank to write on a busy machine.
-TEST_CASE("mpirun: a rank that is killed, Ctrl-C and its kin end all ranks", "[ranks][.mpirun]") {
+// mpirun need not forward the output of an interrupted rank, so rank 0 writes to a file here. Open MPI kills a rank one
+// second after a signal, which is too early on a busy machine.
+TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.mpirun]") {
     const ScratchFolder outputs, messages;
     const OneRank one;
     const std::string file = messages / "rank_0.txt";
-    const Surroundings patient{.variables = {{"OMPI_MCA_odls_base_sigkill_timeout", "4"}}};
+    const RunOptions patient{.variables = {{"OMPI_MCA_odls_base_sigkill_timeout", "4"}}};
     for (const Mpi& mpi : mpis_here())
         for (const char* machine : quick(1, {"grande", "torus"})) {
-            const Words words = on(mpi, 3, long_render(outputs, machine));
+            const Arguments words = on(mpi, 3, long_render(outputs, machine));
             for (const std::uint32_t rank : quick(1, {2u, 0u}))
                 check_ended(outputs, run_ranks(mpi, words, 3, {.signal = SIGKILL, .rank = rank}), 1);
             for (const int signal : quick(1, {SIGINT, SIGTERM})) {
-                const Words redirected = one.words(mpi, 3, 0, "exec 2>" + file, long_render(outputs, machine));
+                const Arguments redirected = one.words(mpi, 3, 0, "exec 2>" + file, long_render(outputs, machine));
                 check_ended(outputs, run_ranks(mpi, redirected, 3, {.signal = signal}, patient), 0);
                 CHECK(file_contents(file) == "raya: interrupted\n");
             }
         }
 }
 
-TEST_CASE("mpirun: a rank that hangs is given up after RAYA_RANK_TIMEOUT", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: a rank that hangs ends the run after RAYA_RANK_TIMEOUT", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     for (const Mpi& mpi : mpis_here()) {
         const RanksOutcome run = run_ranks(mpi, on(mpi, 3, long_render(outputs, "torus")), 3,
                                            {.signal = SIGSTOP, .rank = 2}, {.variables = {{"RAYA_RANK_TIMEOUT", "2"}}});
-        check_told(outputs, run, 3, {"has waited for the other ranks for 2 s", "RAYA_RANK_TIMEOUT"});
+        check_message(outputs, run, 3, {"has waited for the other ranks for 2 s", "RAYA_RANK_TIMEOUT"});
     }
 }
 
-TEST_CASE("mpirun: a process that ends before it has reached MPI does not leave the others waiting",
+TEST_CASE("mpirun: a process that ends before MPI_Init ends the others",
           "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     const OneRank one;
-    const Surroundings hasty{.variables = {{"RAYA_RANK_TIMEOUT", "2"}}};
+    const RunOptions hasty{.variables = {{"RAYA_RANK_TIMEOUT", "2"}}};
     for (const Mpi& mpi : mpis_here())
         for (const char* end : {"exit 1", "kill -KILL $$"})
             check_ended(outputs, run_ranks(mpi, one.words(mpi, 3, 2, end, render(outputs)), 0, {}, hasty), 1);

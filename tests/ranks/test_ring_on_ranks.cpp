@@ -1,4 +1,4 @@
-// The ring divided over ranks: pixels, costs, marks, loads and counts are those of one rank, to the last bit.
+// The ring distributed over ranks: pixels, costs, marks, loads and counts are those of one rank, bit for bit.
 #include <catch2/catch.hpp>
 #include <mutex>
 
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-/// What rank 0 makes of the settings; every rank has a session of its own.
+/// Rank 0's result; every rank has its own session.
 RingResult render_on(std::uint32_t count, const Scene& scene, const RingSettings& settings) {
     RingResult result;
     on_ranks(count, [&](Ranks& ranks) {
@@ -22,7 +22,7 @@ RingResult render_on(std::uint32_t count, const Scene& scene, const RingSettings
         if (ranks.first())
             result = std::move(own);
         else if (!own.image.rgb.empty() || !own.mask.rgb.empty())
-            throw std::logic_error("a rank that writes nothing holds an image");
+            throw std::logic_error("a rank other than 0 holds an image");
     });
     return result;
 }
@@ -57,15 +57,16 @@ raya_mapping random_mapping(SplitMix& random) {
 Antialias random_antialias(SplitMix& random) {
     Antialias a;
     const AntialiasMethod methods[] = {AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample};
-    const ExchangeWay ways[] = {ExchangeWay::kRing, ExchangeWay::kRing, ExchangeWay::kBus, ExchangeWay::kBroadcast};
+    const ExchangeMethod exchanges[] = {ExchangeMethod::kRing, ExchangeMethod::kRing, ExchangeMethod::kBus,
+                                        ExchangeMethod::kBroadcast};
     a.method = methods[random_below(random, 3)];
-    a.exchange = ways[random_below(random, 4)];
+    a.exchange = exchanges[random_below(random, 4)];
     return a;
 }
 
 }  // namespace
 
-TEST_CASE("one image, and one load of each PE, on any number of ranks", "[ranks]") {
+TEST_CASE("random rings: image, loads and counts are the same on 1 to 8 ranks", "[ranks]") {
     constexpr std::uint64_t kSeed = 4711;
     SplitMix random(kSeed);
     std::vector<Scene> scenes;
@@ -102,7 +103,7 @@ TEST_CASE("more ranks than PEs are refused with both numbers", "[ranks]") {
                       Catch::Contains("4 ranks for 3 PEs") && Catch::Contains("start 3 ranks or fewer"));
 }
 
-TEST_CASE("every PE has a rank, consecutive ones the same or the next", "[ranks]") {
+TEST_CASE("every PE belongs to one rank, and each rank has a contiguous, even segment", "[ranks]") {
     for (const std::uint32_t pes : {1u, 2u, 5u, 8u, 256u, 1000u, 65'536u})
         for (std::uint32_t ranks = 1; ranks <= std::min(pes, 9u); ++ranks) {
             CAPTURE(pes, ranks);

@@ -1,4 +1,4 @@
-// The torus divided over ranks: image, counts, loads, supersteps and the traffic are those of one rank.
+// The torus distributed over ranks: image, counts, loads, supersteps and traffic are those of one rank.
 #include <catch2/catch.hpp>
 
 #include "host/torus/node_share.hpp"
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-struct Told {
+struct RenderOutput {
     TorusResult result;
     std::string packets;
 };
@@ -21,16 +21,16 @@ std::string text_of(const PacketRecord& r) {
                        r.head.state);
 }
 
-Told render_on(Ranks& ranks, const Scene& scene, const TorusSettings& settings) {
+RenderOutput render_on(Ranks& ranks, const Scene& scene, const TorusSettings& settings) {
     Session session(choose_device(""));
-    Told told;
+    RenderOutput output;
     const Scene nothing;
     TorusRenderer renderer(session, ranks.first() ? scene : nothing, settings, ranks);
-    told.result = renderer.render({}, [&](const PacketRecord& r) { told.packets += text_of(r); });
-    return told;
+    output.result = renderer.render({}, {.packets = [&](const PacketRecord& r) { output.packets += text_of(r); }});
+    return output;
 }
 
-void check_same(const Told& one, const Told& many) {
+void check_same(const RenderOutput& one, const RenderOutput& many) {
     const TorusResult &a = one.result, &b = many.result;
     CHECK(a.image.rgb == b.image.rgb);
     CHECK(a.events == b.events);
@@ -45,8 +45,8 @@ void check_same(const Told& one, const Told& many) {
     CHECK(a.node_bytes == b.node_bytes);
     REQUIRE(a.supersteps.size() == b.supersteps.size());
     for (std::size_t i = 0; i < a.supersteps.size(); ++i) {
-        CHECK(a.supersteps[i].most_cycles == b.supersteps[i].most_cycles);
-        CHECK(a.supersteps[i].most_link_words == b.supersteps[i].most_link_words);
+        CHECK(a.supersteps[i].max_node_cycles == b.supersteps[i].max_node_cycles);
+        CHECK(a.supersteps[i].max_link_words == b.supersteps[i].max_link_words);
         CHECK(a.supersteps[i].live == b.supersteps[i].live);
     }
     CHECK(one.packets == many.packets);
@@ -61,14 +61,14 @@ TorusCase random_case(SplitMix& random, const Scene& scene) {
     c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
     c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
     c.packets = random_charge(random);
-    const std::uint32_t shortest = raya_shortest_queue(static_cast<std::uint32_t>(scene.lights.size()), c.bounces);
+    const std::uint32_t shortest = raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), c.bounces);
     c.queue = random.next() % 2 ? 0 : shortest * (1 + random_below(random, 20));
     return c;
 }
 
 }  // namespace
 
-TEST_CASE("nodes are divided into bricks, whole, even and with the root in rank 0", "[ranks]") {
+TEST_CASE("nodes are distributed in even, contiguous bricks, and the root is on rank 0", "[ranks]") {
     constexpr std::uint64_t kSeed = 99;
     SplitMix random(kSeed);
     for (int i = 0; i < 300; ++i) {
@@ -78,31 +78,31 @@ TEST_CASE("nodes are divided into bricks, whole, even and with the root in rank 
         const std::vector<std::uint32_t> rank_of = ranks_of_nodes(torus, ranks);
         CHECK(rank_of[RAYA_ROOT] == 0);
         for (std::uint32_t rank = 0; rank < ranks; ++rank) {
-            raya_place least{{~0u, ~0u, ~0u}}, most{};
+            raya_place low{{~0u, ~0u, ~0u}}, high{};
             std::uint32_t count = 0;
             for (std::uint32_t node = 0; node < nodes; ++node) {
                 if (rank_of[node] != rank) continue;
                 const raya_place p = raya_torus_place(torus, node);
                 for (int axis = 0; axis < 3; ++axis) {
-                    least.at[axis] = std::min(least.at[axis], p.at[axis]);
-                    most.at[axis] = std::max(most.at[axis], p.at[axis]);
+                    low.at[axis] = std::min(low.at[axis], p.at[axis]);
+                    high.at[axis] = std::max(high.at[axis], p.at[axis]);
                 }
                 ++count;
             }
             REQUIRE(count > 0);
             std::uint32_t box = 1;
-            for (int axis = 0; axis < 3; ++axis) box *= 1 + most.at[axis] - least.at[axis];
+            for (int axis = 0; axis < 3; ++axis) box *= 1 + high.at[axis] - low.at[axis];
             CHECK(box == count);
         }
     }
     const raya_torus even = make_torus({4, 4, 4}, Links::kTorus3d);
     for (const std::uint32_t ranks : {1u, 2u, 4u, 8u, 16u, 32u, 64u})
-        CHECK(NodeShare(even, ranks, 0).most_nodes() == 64 / ranks);
-    CHECK(NodeShare(even, 3, 0).most_nodes() <= 32);
-    CHECK(NodeShare(even, 7, 0).most_nodes() <= 16);
+        CHECK(NodeShare(even, ranks, 0).max_nodes_of_rank() == 64 / ranks);
+    CHECK(NodeShare(even, 3, 0).max_nodes_of_rank() <= 32);
+    CHECK(NodeShare(even, 7, 0).max_nodes_of_rank() <= 16);
 }
 
-TEST_CASE("slots, borders and inboxes of a rank follow from the links of its nodes", "[ranks]") {
+TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its nodes", "[ranks]") {
     constexpr std::uint64_t kSeed = 5;
     SplitMix random(kSeed);
     for (int i = 0; i < 200; ++i) {
@@ -132,12 +132,12 @@ TEST_CASE("slots, borders and inboxes of a rank follow from the links of its nod
     }
 }
 
-TEST_CASE("one image, one traffic: random toruses on 1 to 8 ranks", "[ranks]") {
+TEST_CASE("random toruses: image, traffic or deadlock is the same on 1 to 8 ranks", "[ranks]") {
     constexpr std::uint64_t kSeed = 77;
     SplitMix random(kSeed);
     std::vector<Scene> scenes;
     for (const std::string& name : project_scenes()) scenes.push_back(project_scene(name));
-    std::uint32_t cases = 0, stands = 0;
+    std::uint32_t cases = 0, deadlocks = 0;
     for (std::uint32_t i = 0; i < quick_cases(20, 100); ++i) {
         const Scene& scene = scenes[i % scenes.size()];
         const TorusCase c = random_case(random, scene);
@@ -146,39 +146,39 @@ TEST_CASE("one image, one traffic: random toruses on 1 to 8 ranks", "[ranks]") {
         const std::uint32_t counts[] = {2, 3, 4, 7, 8};
         const std::uint32_t count = counts[i % 5];
         if (count > raya_nodes(settings.torus)) continue;
-        Told one;
-        std::string stand;
+        RenderOutput one;
+        std::string deadlock;
         try {
             one = render_on(Ranks::alone(), scene, settings);
-        } catch (const Standstill& still) {
-            stand = still.what();
+        } catch (const TorusDeadlock& error) {
+            deadlock = error.what();
         }
-        if (!stand.empty()) {
+        if (!deadlock.empty()) {
             on_ranks(count, [&](Ranks& ranks) {
-                std::string told;
+                std::string message;
                 try {
                     render_on(ranks, scene, settings);
-                } catch (const Standstill& still) {
-                    told = still.what();
+                } catch (const TorusDeadlock& error) {
+                    message = error.what();
                 }
-                if (ranks.first() && told != stand) throw std::logic_error(told + " is not " + stand);
-                if (told.empty()) throw std::logic_error("a rank does not see that the machine stands");
+                if (ranks.first() && message != deadlock) throw std::logic_error(message + " is not " + deadlock);
+                if (message.empty()) throw std::logic_error("a rank does not detect the deadlock");
             });
-            ++stands;
+            ++deadlocks;
             continue;
         }
-        Told many;
+        RenderOutput many;
         on_ranks(count, [&](Ranks& ranks) {
-            Told own = render_on(ranks, scene, settings);
+            RenderOutput own = render_on(ranks, scene, settings);
             if (ranks.first())
                 many = std::move(own);
             else if (!own.packets.empty() || !own.result.image.rgb.empty())
-                throw std::logic_error("only rank 0 is told");
+                throw std::logic_error("a rank other than 0 has packets or an image");
         });
         check_same(one, many);
         ++cases;
     }
-    WARN(cases << " machines rendered, " << stands << " stood still");
+    WARN(cases << " machines rendered, " << deadlocks << " deadlocked");
     CHECK(cases > 8);
 }
 

@@ -1,4 +1,4 @@
-// Ranks that are threads of one process: what goes from one to another is copied, waits end when one of them fails.
+// Ranks as threads of one process: messages are copied, and waits end when a rank fails.
 #pragma once
 #include <condition_variable>
 #include <cstring>
@@ -18,29 +18,29 @@
 
 namespace raya {
 
-/// Where all ranks of a test leave what they send.
-struct Letterbox {
+/// The messages that the ranks of a test have sent and not yet received.
+struct MessageStore {
     using Key = std::tuple<std::uint32_t, std::uint32_t, int>;  // from, to, tag
     std::mutex mutex{};
     std::condition_variable changed{};
-    std::map<Key, std::deque<std::vector<std::byte>>> letters{};
+    std::map<Key, std::deque<std::vector<std::byte>>> messages{};
     bool failed = false;
 
     void put(const Key& key, std::span<const std::byte> bytes) {
         const std::lock_guard lock(mutex);
-        letters[key].emplace_back(bytes.begin(), bytes.end());
+        messages[key].emplace_back(bytes.begin(), bytes.end());
         changed.notify_all();
     }
 
     void take(const Key& key, std::span<std::byte> bytes) {
         std::unique_lock lock(mutex);
-        changed.wait(lock, [&] { return failed || !letters[key].empty(); });
-        if (letters[key].empty()) throw RankFailure("another rank failed", 1);
-        const std::vector<std::byte> letter = std::move(letters[key].front());
-        letters[key].pop_front();
-        if (letter.size() != bytes.size())
-            throw std::logic_error("a rank expects another number of bytes than it gets");
-        std::copy(letter.begin(), letter.end(), bytes.begin());
+        changed.wait(lock, [&] { return failed || !messages[key].empty(); });
+        if (messages[key].empty()) throw RankFailure("another rank failed", 1);
+        const std::vector<std::byte> message = std::move(messages[key].front());
+        messages[key].pop_front();
+        if (message.size() != bytes.size())
+            throw std::logic_error("a rank expects another number of bytes than were sent");
+        std::copy(message.begin(), message.end(), bytes.begin());
     }
 
     void fail() {
@@ -52,7 +52,7 @@ struct Letterbox {
 
 class ThreadTransport final : public Transport {
   public:
-    ThreadTransport(Letterbox& box, std::uint32_t rank, std::uint32_t count, std::uint32_t of_host)
+    ThreadTransport(MessageStore& box, std::uint32_t rank, std::uint32_t count, std::uint32_t of_host)
         : box_(box), rank_(rank), count_(count), of_host_(of_host) {}
 
     std::uint32_t rank() const override { return rank_; }
@@ -84,7 +84,7 @@ class ThreadTransport final : public Transport {
         waits_.clear();
     }
 
-    void look() override {}
+    void poll_failures() override {}
     void report_failure(const std::string&, int) override {}
     [[noreturn]] void abort(int) override { throw std::logic_error("a rank of threads does not abort"); }
     void close() override {}
@@ -92,16 +92,16 @@ class ThreadTransport final : public Transport {
   private:
     static constexpr int kBroadcast = -1, kGather = -2;
 
-    Letterbox& box_;
+    MessageStore& box_;
     std::uint32_t rank_, count_, of_host_;
     std::vector<Incoming> waits_;
 };
 
-/// Runs `work` in so many ranks at once, `of_host` on each host, and throws what one of them has thrown. What all have
-/// sent must have been received.
+/// Runs `work` on `count` concurrent ranks, `of_host` per host, and rethrows an exception of one of them. Throws
+/// std::logic_error if a sent message was not received.
 inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& work, std::uint32_t of_host = 8) {
-    all_devices();  // PoCL 3.1 has no device for threads that ask for the first time while another one does
-    Letterbox box;
+    all_devices();  // PoCL 3.1 has no device for threads whose first query is concurrent with another one
+    MessageStore box;
     std::exception_ptr thrown;
     std::mutex of_thrown;
     std::vector<std::thread> threads;
@@ -110,7 +110,7 @@ inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& wor
             try {
                 Ranks ranks(std::make_unique<ThreadTransport>(box, rank, count, of_host));
                 work(ranks);
-            } catch (const RankFailure&) {  // because of another one, which tells why
+            } catch (const RankFailure&) {  // another rank throws the cause
                 box.fail();
             } catch (...) {
                 const std::lock_guard lock(of_thrown);
@@ -120,8 +120,8 @@ inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& wor
         });
     for (std::thread& thread : threads) thread.join();
     if (thrown) std::rethrow_exception(thrown);
-    for (const auto& [key, letters] : box.letters)
-        if (!letters.empty()) throw std::logic_error("something was sent that nobody received");
+    for (const auto& [key, messages] : box.messages)
+        if (!messages.empty()) throw std::logic_error("a message was sent that no rank received");
 }
 
 }  // namespace raya

@@ -1,5 +1,5 @@
-// Every call of MPI's transport with bytes that are known, from none to more than a message of MPI's eager kind: under
-// mpirun, and there under Valgrind or with sanitizers, which learn little of a whole render in a driver.
+// Checks every call of the MPI transport with known bytes, from empty messages to sizes beyond MPI's eager limit. Runs
+// under mpirun, also with Valgrind or sanitizers, which find little in a whole render inside an OpenCL driver.
 #include <fmt/core.h>
 
 #include <memory>
@@ -17,7 +17,7 @@ constexpr int kTags = 4;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// What a rank sends by a tag: no two ranks or tags the same, and no two neighbouring bytes.
+/// The bytes that a rank sends with a tag; they differ between ranks, tags and neighbouring bytes.
 Bytes known_bytes(std::size_t size, std::uint32_t rank, std::uint32_t to, int tag) {
     Bytes bytes(size);
     for (std::size_t i = 0; i < size; ++i)
@@ -41,7 +41,7 @@ void check_broadcast(Ranks& ranks, std::size_t size, Checks& checks) {
     checks.same(bytes, expected);
 }
 
-// Of some ranks nothing.
+// Every third rank contributes no bytes.
 void check_gathers(Ranks& ranks, std::size_t size, Checks& checks) {
     const auto bytes_of = [size](std::uint32_t rank) { return known_bytes(size * (rank % 3), rank, 0, 0); };
     Bytes expected;
@@ -57,8 +57,8 @@ void check_gathers(Ranks& ranks, std::size_t size, Checks& checks) {
     checks.same(ranks.gather(span, sizes), ranks.first() ? expected : Bytes());
 }
 
-// To both neighbours of a ring of ranks at once, by several tags, which arrive out of turn; of two ranks both
-// neighbours are the same one, and of one it is itself.
+// Sends to both neighbours in a ring of ranks at once, with several tags that are received in reverse order. With two
+// ranks both neighbours are the same one; a single rank sends to itself.
 void check_neighbours(Ranks& ranks, std::size_t size, Checks& checks) {
     const std::uint32_t count = ranks.count(), own = ranks.rank();
     struct Message {
@@ -89,7 +89,7 @@ int check_all(Ranks& ranks) {
         check_broadcast(ranks, size, checks);
         check_gathers(ranks, size, checks);
         check_neighbours(ranks, size, checks);
-        ranks.look();
+        ranks.poll_failures();
     }
     std::uint32_t wrong = 0;
     for (const std::uint32_t of_rank : ranks.all_gather(checks.wrong)) wrong += of_rank;
@@ -101,7 +101,7 @@ int check_all(Ranks& ranks) {
 }  // namespace
 }  // namespace raya
 
-// transport_check PROGRAM: raya, from which the module for MPI is found.
+// transport_check PROGRAM: the MPI module is looked up next to PROGRAM, which is raya.
 int main(int argc, char** argv) {
     constexpr double kPatience = 60;  // seconds
     if (argc > 1) raya::set_own_file(argv[1]);

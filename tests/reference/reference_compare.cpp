@@ -1,4 +1,4 @@
-// An image against the reference, and where the two may rightly differ.
+// Compares an image with the reference, and finds the pixels in which the two may correctly differ.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -8,8 +8,8 @@
 namespace raya::reference {
 namespace {
 
-/// Largest difference of any channel, clamped to 0..1; infinite where a value is not finite. Adds the squares to
-/// `squares`.
+/// Returns the largest difference of any channel, clamped to 0..1; infinite if a value is not finite. Adds the squares
+/// to `squares`.
 double channel_difference(const Colour& a, const Colour& b, double& squares) {
     double largest = 0;
     for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Rays against the four kinds of objects: kernels/README.md, Hits and Checker.
+// Intersection of rays with the four kinds of objects: kernels/README.md, Hits and Checker.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,8 +17,8 @@ Imath::V2d flattened(const Vec3& point, const Vec3& normal) {
     return {point[axis == 0 ? 1 : 0], point[axis == 2 ? 1 : 2]};
 }
 
-/// Crossing number: odd where a line from the point towards larger u crosses the outline. Of an edge's two ends only
-/// the lower one in v belongs to it, so that a vertex is counted once.
+/// Tests whether the crossing number of a line from the point towards larger u is odd. Only the end of an edge with
+/// lower v belongs to it, so that a vertex is counted once.
 bool inside_outline(const std::vector<Vec3>& vertices, const Vec3& normal, const Vec3& point) {
     const Imath::V2d p = flattened(point, normal);
     bool inside = false;
@@ -30,7 +30,7 @@ bool inside_outline(const std::vector<Vec3>& vertices, const Vec3& normal, const
     return inside;
 }
 
-/// The cone in the terms of kernels/README.md; radii are taken as positive.
+/// The cone in the terms of kernels/README.md; radii count as positive.
 struct ConeFrame {
     Vec3 axis;
     double height, base_radius, slope;
@@ -57,8 +57,8 @@ std::vector<double> quadratic_roots(double a, double b, double c) {
     return {std::min(q / a, c / q), std::max(q / a, c / q)};
 }
 
-/// Normal of a patch at a point: linear over the triangle in which the point lies, which is the one whose smallest
-/// barycentric coordinate is the largest; so a point on an edge that rounding puts outside both still has one.
+/// Normal of a patch at a point, linear over the triangle of the point. That is the triangle with the largest minimum
+/// of the barycentric coordinates, so that a point on an edge has one even if rounding puts it outside of both.
 Vec3 interpolated_normal(const Polygon& patch, const Vec3& normal, const Vec3& point) {
     double best_inside = -kFar;
     Vec3 best(0, 0, 0);
@@ -70,7 +70,7 @@ Vec3 interpolated_normal(const Polygon& patch, const Vec3& normal, const Vec3& p
             share[index(i)] = (next - point).cross(after - point).dot(normal);
         }
         const double sum = share[0] + share[1] + share[2];
-        if (sum <= 0) continue;  // a flat triangle holds no point
+        if (sum <= 0) continue;  // a degenerate triangle contains no point
         const double inside = *std::min_element(share.begin(), share.end()) / sum;
         if (inside <= best_inside) continue;
         best_inside = inside;
@@ -80,7 +80,8 @@ Vec3 interpolated_normal(const Polygon& patch, const Vec3& normal, const Vec3& p
     return best.normalized();
 }
 
-/// A hit of object `number` at distance t with outward normals `geometric` and `shading`: turned, coloured.
+/// Completes a hit of object `number` at distance t: turns the outward normals `geometric` and `shading`, sets the
+/// colour.
 Hit finished(const Scene& scene, const Ray& ray, double t, int number, int surface, const Vec3& geometric,
              const Vec3& shading) {
     Hit hit;

@@ -9,9 +9,9 @@
 namespace raya::reference {
 namespace {
 
-constexpr double kMarginShare = 1e-9;  // of the scene's size; some 10^7 roundings of double
+constexpr double kMarginShare = 1e-9;  // of the scene's size; about 10^7 roundings of double
 
-// What a History says beside object numbers, which are written as 2 * number, + 1 on an odd checker square.
+// The codes of a History. Object numbers are written as 2 * number, + 1 on an odd checker square.
 constexpr int kMiss = -1, kLit = -2, kUnlit = -3, kTotalReflection = -4;
 
 double margin_of(const Scene& scene, const Options& options) {
@@ -27,7 +27,7 @@ class Tree {
     Tree(const Scene& scene, int bounces, double margin, Counts& counts, History* history)
         : scene_(scene), bounces_(bounces), margin_(margin), counts_(counts), history_(history) {}
 
-    /// What is seen along a ray after so many `bounces`.
+    /// The radiance along a ray after `bounces` bounces.
     Colour seen(const Ray& ray, int bounces) {
         const std::optional<Hit> hit = closest_hit(scene_, ray);
         note(hit ? 2 * hit->object + hit->odd_square : kMiss);
@@ -43,7 +43,7 @@ class Tree {
 
     Vec3 in_front(const Hit& hit) const { return hit.point + margin_ * hit.geometric; }
 
-    /// Ambient light and all lights that reach the hit.
+    /// The contribution of ambient light and of all lights that reach the hit.
     Colour lit(const Ray& ray, const Hit& hit) {
         const Surface& look = surface(hit);
         const Vec3 mirrored = reflected_direction(ray.direction, hit.shading);
@@ -68,7 +68,7 @@ class Tree {
         return blocked;
     }
 
-    /// What the reflected and then the refracted ray see.
+    /// The contribution of the reflected ray, then of the refracted ray.
     Colour bounced(const Ray& ray, const Hit& hit, int bounces) {
         const Surface& look = surface(hit);
         double reflected_share = look.specular;
@@ -130,7 +130,7 @@ Ray primary_ray(const Scene& scene, const Options& options, double x, double y) 
     const View& view = scene.view;
     const auto length = [&](int pixels) { return std::max(1.0, pixels - (options.corners ? 1.0 : 0.0)); };
     const auto share = [&](double position, int pixels) {
-        const double first = options.corners && pixels > 1 ? 0 : 0.5;  // where the side's first sample lies
+        const double first = options.corners && pixels > 1 ? 0 : 0.5;  // position of the side's first sample
         return (position + first) / length(pixels);
     };
     const Vec3 gaze = (view.at - view.from).normalized();

@@ -16,7 +16,7 @@ Surface matt(const Colour& colour) { return {.colour = colour, .diffuse = 1, .ch
 Surface mirror(double ks) { return {.diffuse = 0, .specular = ks, .checker = {}}; }
 Surface glass(double t, double ior) { return {.diffuse = 0, .transmittance = t, .refraction = ior, .checker = {}}; }
 
-/// A scene seen from (0, 0, eye) towards the origin, y up, 30 degrees.
+/// A scene viewed from (0, 0, eye) towards the origin, y up, 30 degrees.
 Scene scene_from(double eye) {
     Scene scene;
     scene.view = {.from = {0, 0, eye}, .at = {0, 0, 0}, .up = {0, 1, 0}, .angle_degrees = 30};
@@ -39,7 +39,7 @@ void check_colour(const Colour& colour, const Colour& expected, double tolerance
     CHECK((colour - expected).length() <= tolerance);
 }
 
-TEST_CASE("primary rays span the angle from top to bottom, by centres and by corners") {
+TEST_CASE("primary rays span the view angle from top to bottom, with centres and with corners") {
     const Scene scene = scene_from(5);
     const double h = std::tan(15 * kDegree);
     const Options corners{.width = 9, .height = 5, .corners = true};
@@ -76,7 +76,7 @@ TEST_CASE("a sphere lit from the eye follows the closed formula") {
     check_colour(seen(scene, options, 0, 0), scene.background, 0);
 }
 
-TEST_CASE("lights add in colour, and neither shadowed nor averted faces see them") {
+TEST_CASE("the colours of lights add up; shadowed and averted faces get none") {
     Scene scene = scene_from(5);
     scene.surfaces = {matt({1, 1, 1})};
     scene.planes = {{{0, 0, 1}, 0, 0}};
@@ -91,14 +91,14 @@ TEST_CASE("lights add in colour, and neither shadowed nor averted faces see them
     check_colour(trace_pixel(scene, options, 0, 0, counts), Colour(ambient) + Colour(0.5, 0, 0), 1e-8);
     CHECK(counts == Counts{.primary = 1, .primary_hits = 1, .shadow = 2, .shadow_hits = 1});
 
-    scene.spheres[0].centre = {-2, 0, -2};  // behind the plane: nobody's shadow
+    scene.spheres[0].centre = {-2, 0, -2};  // behind the plane: no shadow
     scene.lights[0].position = {0, 0, -4};
     counts = {};
     check_colour(trace_pixel(scene, options, 0, 0, counts), Colour(ambient) + Colour(0, 0.5 * std::sqrt(0.5), 0), 1e-8);
     CHECK(counts == Counts{.primary = 1, .primary_hits = 1, .shadow = 1});
 }
 
-TEST_CASE("in a furnace nothing can be seen") {
+TEST_CASE("furnace test: objects in uniform light are invisible") {
     Scene scene = scene_from(5);
     scene.spheres = {{{-0.7, 0, 0}, 0.6, 0}, {{0.7, 0.1, 0.4}, 0.6, 0}};
     const Options options{.width = 24, .height = 24, .bounces = 60};
@@ -151,7 +151,7 @@ TEST_CASE("refraction obeys Snell's law") {
     CHECK(reflected_direction(Vec3(0.6, 0, -0.8), normal) == Vec3(0.6, 0, 0.8));
 }
 
-TEST_CASE("a glass sphere shows the checkered plane behind it where the closed formula says") {
+TEST_CASE("a glass sphere shows the checkered plane behind it as the closed formula predicts") {
     constexpr double kEye = 5, kIor = 1.5, kBehind = 3, kSize = 0.05;
     Scene scene = scene_from(kEye);
     Surface checkered = matt({1, 1, 1});
@@ -169,7 +169,7 @@ TEST_CASE("a glass sphere shows the checkered plane behind it where the closed f
         const double out_direction = theta - 2 * (incidence - inner);
         const double lands = std::sin(out_at) + (std::cos(out_at) + kBehind) * std::tan(out_direction);
         const double square = lands / kSize;
-        if (std::abs(square - std::round(square)) < 1e-4) continue;  // the margin moves it that far: undecided
+        if (std::abs(square - std::round(square)) < 1e-4) continue;  // too near to an edge: the margin shifts it
         CAPTURE(x, lands);
         const bool even = std::fmod(std::floor(square), 2) == 0;
         odd += !even;
@@ -183,7 +183,7 @@ TEST_CASE("under total reflection the refracted share is reflected too, as one r
     Scene scene;
     scene.surfaces = {{.diffuse = 0, .specular = kKs, .transmittance = kT, .refraction = kIor, .checker = {}},
                       matt({1, 1, 1})};
-    scene.planes = {{{0, 0, 1}, 0, 0}, {{0, 0, 1}, -2, 1}};  // water seen from below, a bright ground
+    scene.planes = {{{0, 0, 1}, 0, 0}, {{0, 0, 1}, -2, 1}};  // water from below, a bright ground
     const double critical = std::asin(1 / kIor);
     const auto looking_up = [&](double incidence, Counts& counts) {
         scene.view.from = {0, 0, -1};

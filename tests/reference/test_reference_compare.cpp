@@ -1,4 +1,4 @@
-// The comparison that judges the kernels must itself be able to refuse; and the threads must not matter.
+// The comparison with the reference detects wrong pixels; the number of threads does not change the reference.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -35,10 +35,10 @@ std::vector<float> floats(const Image& image) {
 
 constexpr Options kOptions{.width = 33, .height = 33};
 
-/// First of the three values of pixel (x, y) in `rgb`.
+/// Index in `rgb` of the first of the three values of pixel (x, y).
 std::size_t value_of(int x, int y) { return static_cast<std::size_t>(3 * (y * kOptions.width + x)); }
 
-TEST_CASE("an image agrees with itself, and a render with its pixels") {
+TEST_CASE("an image agrees with itself, and render() with trace_pixel()") {
     const Scene scene = two_spheres();
     const Image image = render(scene, kOptions);
     const Difference same = compare(image, floats(image), scene, kOptions);
@@ -80,7 +80,7 @@ TEST_CASE("pixels on an edge are excused, others are not") {
     CHECK_FALSE(grazes_edge(scene, kOptions, x, 16, 0.1 * std::abs(edge - x)));
 }
 
-TEST_CASE("an edge between objects of one colour is an edge too") {
+TEST_CASE("an edge between objects of the same colour counts as an edge") {
     Scene scene = two_spheres();
     scene.spheres.clear();
     scene.lights.clear();
@@ -91,7 +91,7 @@ TEST_CASE("an edge between objects of one colour is an edge too") {
     CHECK_FALSE(grazes_edge(scene, options, 1, 1, 0.49));
 }
 
-TEST_CASE("wrong colours beyond 1 and below 0 do not count, wrong sizes are refused") {
+TEST_CASE("differences above 1 and below 0 do not count, and wrong sizes throw") {
     Scene scene = two_spheres();
     scene.background = {2, 0, 0};
     const Image image = render(scene, kOptions);

@@ -1,4 +1,4 @@
-// The reference's hits against implicit equations, sampling and known answers.
+// Compares the reference's hits with implicit equations, sampling and known answers.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -34,8 +34,8 @@ class Random {
 
 Vec3 at(const Ray& ray, double t) { return ray.origin + t * ray.direction; }
 
-/// The smallest sampled t at which `outside` (a signed distance, NaN where the surface ends) passes through zero; only
-/// from negative to positive where `outward_only`. Empty where it does not before `end`.
+/// The smallest sampled t at which `outside` (a signed distance, NaN where the surface ends) passes through zero, with
+/// `outward_only` only from negative to positive. Empty if there is none before `end`.
 template <class Outside>
 std::optional<double> first_crossing(const Outside& outside, double end, bool outward_only) {
     constexpr int kSteps = 500;
@@ -49,7 +49,7 @@ std::optional<double> first_crossing(const Outside& outside, double end, bool ou
     return {};
 }
 
-TEST_CASE("spheres are hit where the implicit equation says, and first") {
+TEST_CASE("spheres: the hit is the first zero of the implicit equation") {
     constexpr std::uint64_t kSeed = 1;
     Random random(kSeed);
     int hits = 0;
@@ -72,7 +72,7 @@ TEST_CASE("spheres are hit where the implicit equation says, and first") {
     CHECK(hits > kRays / 5);
 }
 
-TEST_CASE("planes are hit where n.x = d") {
+TEST_CASE("planes: the hit is where n.x = d") {
     constexpr std::uint64_t kSeed = 2;
     Random random(kSeed);
     int hits = 0;
@@ -91,7 +91,7 @@ TEST_CASE("planes are hit where n.x = d") {
     CHECK_FALSE(hit_plane({{0, 0, 1}, 1, 0}, {{0, 0, 0}, {1, 0, 0}}));
 }
 
-TEST_CASE("cones are hit where the implicit equation says, and first") {
+TEST_CASE("cones: the hit is the first zero of the implicit equation") {
     constexpr std::uint64_t kSeed = 3;
     Random random(kSeed);
     int hits = 0;
@@ -117,7 +117,7 @@ TEST_CASE("cones are hit where the implicit equation says, and first") {
         if (!t) continue;
         ++hits;
         REQUIRE(*t > 0);
-        // Off the surface by rounding only; the slope magnifies it on flat cones.
+        // Only rounding moves it off the surface; on flat cones the slope magnifies it.
         const double slope = std::abs(top - bottom) / height;
         REQUIRE(std::abs(outside(*t)) < 1e-11 * (1 + slope));
         if (sampled) REQUIRE(*t <= *sampled);
@@ -143,7 +143,7 @@ TEST_CASE("a cylinder has no caps, and its normal is radial") {
     CHECK((inside->geometric - Vec3(1, 0, 0)).length() < 1e-15);
 }
 
-/// Angles under which the outline is seen from the point, summed: +-2 pi inside, 0 outside. z = 0 for all.
+/// The winding angle of the outline around the point: +-2 pi inside, 0 outside. z = 0 for all.
 bool winds_around(const std::vector<Vec3>& outline, const Vec3& p) {
     double sum = 0;
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -153,7 +153,7 @@ bool winds_around(const std::vector<Vec3>& outline, const Vec3& p) {
     return std::abs(sum) > 3;
 }
 
-TEST_CASE("concave polygons and polygons with a hole are hit inside their outline only") {
+TEST_CASE("concave polygons and polygons with a hole are hit only inside their outline") {
     constexpr std::uint64_t kSeed = 5;
     Random random(kSeed);
     const Polygon notched{
@@ -191,7 +191,7 @@ TEST_CASE("a triangle's normals are interpolated linearly and normalised") {
         CHECK((below->shading + expected.normalized()).length() < 1e-8);
         CHECK((below->leaving && !above->leaving));
     };
-    constexpr double kInward = 1e-9;  // from the border, which belongs to one side only
+    constexpr double kInward = 1e-9;  // away from the border, which belongs to one side only
     const Vec3 middle(2.0 / 3, 2.0 / 3, 0);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t next = (i + 1) % 3;
@@ -202,8 +202,8 @@ TEST_CASE("a triangle's normals are interpolated linearly and normalised") {
     check_normal(middle, normals[0] + normals[1] + normals[2]);
 }
 
-TEST_CASE("a patch of more vertices reproduces a linear field, and turns a normal that looks away") {
-    // The normals keep their unequal lengths: the field is linear only before it is normalised.
+TEST_CASE("a patch of more vertices reproduces a linear field, and turns a normal that faces away") {
+    // The normals have unequal lengths: the field is linear only before it is normalised.
     constexpr std::uint64_t kSeed = 6;
     Random random(kSeed);
     Scene scene;
@@ -223,7 +223,7 @@ TEST_CASE("a patch of more vertices reproduces a linear field, and turns a norma
     }
     CHECK(hits > 500);
 
-    // No linear field: near a vertex its own normal counts, not what another triangle would give there.
+    // Not a linear field: near a vertex its own normal counts, not the extrapolation of another triangle.
     scene.polygons[0].normals[0] = Vec3(1, 0, 1).normalized();
     scene.polygons[0].normals[3] = Vec3(0, 1, 1).normalized();
     for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
@@ -240,7 +240,7 @@ TEST_CASE("a patch of more vertices reproduces a linear field, and turns a norma
     CHECK((hit->shading - field({1, 0.5, 0}).normalized()).length() < 1e-14);
 }
 
-TEST_CASE("of equal distances the lowest number wins, and far ends the ray") {
+TEST_CASE("on a tie the lowest number wins, and hits beyond far do not count") {
     Scene scene;
     scene.surfaces.resize(4);
     scene.spheres.push_back({{0, 0, 0}, 1, 0});

@@ -1,4 +1,4 @@
-// A report of raya bench survives its file, wrong files are refused, and a comparison fails exactly where it must.
+// Reports of raya bench: reading, refused files, and comparison with a baseline.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <random>
@@ -47,7 +47,7 @@ std::string refusal(const ScratchFolder& folder, const std::string& text) {
     return "accepted";
 }
 
-TEST_CASE("a bench report is read back as it was", "[bench]") {
+TEST_CASE("read_bench_report: inverts to_json", "[bench]") {
     const ScratchFolder folder;
     std::mt19937 random(1);
     for (int i = 0; i < 200; ++i) {
@@ -63,7 +63,7 @@ TEST_CASE("a bench report is read back as it was", "[bench]") {
         const BenchReport read = read_bench_report(folder / "b.json");
         CHECK(read.driver == written.driver);
         REQUIRE(read.rows.size() == written.rows.size());
-        // Milliseconds in the file: what the second writing gives must be what the first gave, to a last bit.
+        // The file has milliseconds: the conversion may change the last bit.
         CHECK(rows_in_common(read, written) == static_cast<int>(written.rows.size()));
         const BenchComparison same = compare_bench(read, written, 1e-9);
         CHECK(same.compared == static_cast<int>(written.rows.size()));
@@ -71,7 +71,7 @@ TEST_CASE("a bench report is read back as it was", "[bench]") {
     }
 }
 
-TEST_CASE("files that are no bench report are refused with a remedy", "[bench]") {
+TEST_CASE("read_bench_report: refuses other files with a remedy", "[bench]") {
     const ScratchFolder folder;
     const std::string good = to_json(report({row(1, 2, 3)})).dump();
     const auto changed = [&](const auto& change) {
@@ -102,8 +102,8 @@ TEST_CASE("files that are no bench report are refused with a remedy", "[bench]")
                        Contains("rays or times that are not positive"));
 }
 
-TEST_CASE("a row is slower where best and median have both lost more than the tolerance", "[bench]") {
-    // Rates against 100 %: a row of 10 ms becomes one of 10 / share ms.
+TEST_CASE("compare_bench: a row is slower if best and median both exceed the tolerance", "[bench]") {
+    // Relative rates: a time of 10 ms becomes 10 / rate ms.
     struct Case {
         double best, median, tolerance;
         bool slower;
@@ -124,7 +124,7 @@ TEST_CASE("a row is slower where best and median have both lost more than the to
     }
 }
 
-TEST_CASE("another image fails however fast it is", "[bench]") {
+TEST_CASE("compare_bench: another image fails, however fast", "[bench]") {
     BenchMeasurement other = row(4, 1, 1);
     other.hash = "fedcba9876543210";
     const BenchComparison result = compare_bench(report({row(4, 10, 10)}), report({other}), 100);
@@ -134,7 +134,7 @@ TEST_CASE("another image fails however fast it is", "[bench]") {
     CHECK_THAT(result.text, Contains("OTHER IMAGE: fedcba98, was 01234567"));
 }
 
-TEST_CASE("another device is a warning, rows of one side are a remark", "[bench]") {
+TEST_CASE("compare_bench: another device is a warning, unmatched rows are listed", "[bench]") {
     BenchReport now = report({row(4, 10, 10), row(8, 10, 10)});
     now.device = "gpu";
     const BenchComparison result = compare_bench(report({row(1, 10, 10), row(4, 10, 10)}), now, 10);
@@ -148,7 +148,7 @@ TEST_CASE("another device is a warning, rows of one side are a remark", "[bench]
                Contains("warning: another driver: OpenCL 3.0, 4.0, the baseline's is OpenCL 3.0, 3.1"));
 }
 
-TEST_CASE("rows are the same where everything but times and image is", "[bench]") {
+TEST_CASE("rows_in_common: rows match if all but times, image, samples and build options are equal", "[bench]") {
     const BenchReport baseline = report({row(4, 10, 10)});
     const auto in_common = [&](const auto& change) {
         BenchMeasurement other = row(4, 20, 30);

@@ -1,4 +1,4 @@
-// A report within its page: nothing of it can end its element or run, and it comes back as it was.
+// The page of a report: the embedded report is inert and unchanged.
 #include <catch2/catch.hpp>
 
 #include "host/report/page/page.hpp"
@@ -11,14 +11,14 @@ namespace {
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
-// What a browser takes for the text of <pre id="report">, where nothing was an entity.
+// Returns the content of <pre id="report">, which has no entities.
 std::string report_in(const std::string& page) {
     const std::string begin = "<pre id=\"report\" tabindex=\"0\">";
     const std::size_t from = page.find(begin) + begin.size();
     return page.substr(from, page.find("</pre>", from) - from);
 }
 
-TEST_CASE("a report comes back from its page, whatever is in its texts", "[page]") {
+TEST_CASE("report_page: embeds the report unchanged, whatever its texts contain", "[page]") {
     const std::string hostile =
         "</pre></script><script>x()</script><img src=x onerror=x()>&lt;&amp;{{style.css}}{{report}}<!--\u2028'\"`\\\n";
     const Json report = {
@@ -29,7 +29,7 @@ TEST_CASE("a report comes back from its page, whatever is in its texts", "[page]
     CHECK(page == report_page(report));
 }
 
-TEST_CASE("a page is one file, which may fetch nothing", "[page]") {
+TEST_CASE("report_page: one file, which may not load resources", "[page]") {
     const std::string page = report_page({{"kind", "raya render"}});
     CHECK_THAT(page, StartsWith("<!doctype html>"));
     CHECK_THAT(page, Contains("default-src 'none'") && Contains("<noscript>"));
@@ -48,7 +48,7 @@ std::string decoded(const std::string& base64) {
     return bytes;
 }
 
-TEST_CASE("costs come back from their bytes", "[page]") {
+TEST_CASE("cost_json: the cycles can be decoded exactly", "[page]") {
     for (const std::uint32_t bits : {0u, 1u, 7u, 8u, 9u, 16u, 31u, 33u, 52u, 64u}) {
         std::vector<std::uint64_t> cycles = {0, bits == 0 ? 0 : ~std::uint64_t{0} >> (64 - bits)};
         for (std::uint64_t i = 0; i < 209; ++i) cycles.push_back(bits == 0 ? 0 : i * 0x9e3779b97f4a7c15 >> (64 - bits));

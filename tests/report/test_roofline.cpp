@@ -1,4 +1,4 @@
-// The roofline: figures that can be worked out by hand.
+// The roofline, on figures that can be computed by hand.
 #include <catch2/catch.hpp>
 
 #include "host/model/budget.hpp"
@@ -31,7 +31,7 @@ RooflineRow row_of(const KernelWork& work, std::uint64_t ns, const DevicePeak& p
 
 }  // namespace
 
-TEST_CASE("a kernel of many operations is under the roof of computing", "[report]") {
+TEST_CASE("roofline: a kernel with many operations is compute bound", "[report]") {
     const KernelWork work = {
         .label = "trace", .rays = 5, .operations = 970, .divisions = 20, .roots = 10, .bytes = 100};
     const RooflineRow row = row_of(work, 100);
@@ -42,17 +42,17 @@ TEST_CASE("a kernel of many operations is under the roof of computing", "[report
     CHECK(*row.of_format == Approx((97 + 20 + 5) / 100.0));
 }
 
-TEST_CASE("a kernel of many bytes is under the roof of bandwidth", "[report]") {
+TEST_CASE("roofline: a kernel with many bytes is bandwidth bound", "[report]") {
     const RooflineRow row = row_of({.label = "move", .operations = 0, .bytes = 1000}, 100);
     CHECK(row.bound == Bound::kBandwidth);
     CHECK(row.share == Approx(0.5));  // 10 GB/s of 20
     CHECK_FALSE(row.of_format);
-    // The ridge lies at 100 / 20 = 5 operations a byte.
+    // The ridge point is at 100 / 20 = 5 operations per byte.
     CHECK(row_of({.label = "a", .operations = 501, .bytes = 100}, 1).bound == Bound::kCompute);
     CHECK(row_of({.label = "a", .operations = 499, .bytes = 100}, 1).bound == Bound::kBandwidth);
 }
 
-TEST_CASE("there is a row only for kernels that ran and were timed", "[report]") {
+TEST_CASE("roofline: has rows only for kernels that ran and were timed", "[report]") {
     const KernelWork work = {.label = "a", .operations = 1};
     CHECK(roofline(kPeak, {work}, {}).rows.empty());
     CHECK(roofline(kPeak, {work}, {kernel("b", 1)}).rows.empty());
@@ -64,7 +64,7 @@ TEST_CASE("there is a row only for kernels that ran and were timed", "[report]")
     CHECK_THAT(roofline_table(roofline({}, {work}, {kernel("a", 1)})), Contains("does not time"));
 }
 
-TEST_CASE("events are worth their budgets", "[report]") {
+TEST_CASE("work_of: sums the budgets of the events", "[report]") {
     EventCounts events{};
     events[RAYA_SPHERE_TESTS] = 10;
     events[RAYA_PLANE_TESTS] = 3;
@@ -78,7 +78,7 @@ TEST_CASE("events are worth their budgets", "[report]") {
     CHECK(work.all_operations() == 177 + 6 + 3);
 }
 
-TEST_CASE("the table says which roof each kernel is under and what share it reached", "[report]") {
+TEST_CASE("roofline_table: names the bound of each kernel and its share", "[report]") {
     const Roofline all = roofline(
         kPeak, {{.label = "trace", .rays = 5, .operations = 1000, .bytes = 100}, {.label = "route", .bytes = 1000}},
         {kernel("trace", 100), kernel("route", 100)});
@@ -96,7 +96,7 @@ TEST_CASE("the table says which roof each kernel is under and what share it reac
     CHECK(json[1]["share_of_format"].is_null());
 }
 
-TEST_CASE("the profile keeps builds and waiting apart from the commands", "[report]") {
+TEST_CASE("profile_table: lists builds and waiting times separately from commands", "[report]") {
     LabelSummary c = kernel("trace", 2'000'000);
     c.submit_ns = 3'000'000;
     c.start_ns = 5'000'000;

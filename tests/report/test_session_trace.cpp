@@ -1,4 +1,4 @@
-// Host steps and device commands in a trace: their times, whatever the device's clock says.
+// Host steps and device commands in a trace, and their times on different clocks.
 #include <catch2/catch.hpp>
 
 #include "host/report/session_trace.hpp"
@@ -28,7 +28,7 @@ Document slice_named(const Document& trace, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("steps of the host lie in each other as their scopes did", "[report]") {
+TEST_CASE("add_host_steps: slices nest like the scopes of the steps", "[report]") {
     const std::uint64_t begin = host_clock_ns();
     StepLog log;
     const int answer = log.during("outer", [&] {
@@ -51,7 +51,7 @@ TEST_CASE("steps of the host lie in each other as their scopes did", "[report]")
     for (std::size_t i : {1u, 2u}) CHECK((slices[0].start <= slices[i].start && slices[i].end <= slices[0].end));
 }
 
-TEST_CASE("a command's slice has its times, its bytes and its launch", "[report]") {
+TEST_CASE("add_device_commands: a slice has times, bytes and launch parameters", "[report]") {
     Profile profile(true);
     profile.add({.label = "trace",
                  .kind = "kernel",
@@ -77,7 +77,7 @@ TEST_CASE("a command's slice has its times, its bytes and its launch", "[report]
     CHECK(json["otherData"]["device_clock"]["same_as_host"] == true);
 }
 
-TEST_CASE("another clock is moved to the host's, and what comes too early is kept", "[report]") {
+TEST_CASE("add_device_commands: times of another clock are converted, and early ones clamped to 0", "[report]") {
     Profile profile(true);
     profile.add(command("early", 90, 95));
     profile.add(command("later", 200, 260));
@@ -92,7 +92,7 @@ TEST_CASE("another clock is moved to the host's, and what comes too early is kep
     CHECK(json["otherData"]["device_clock"]["offset_ns"] == 900);
 }
 
-TEST_CASE("commands that overlap, or end before they begin, still make a trace", "[report]") {
+TEST_CASE("add_device_commands: commands that overlap or end before they start make a valid trace", "[report]") {
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
         CAPTURE(seed);
         SplitMix random(seed);

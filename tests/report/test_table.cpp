@@ -1,32 +1,32 @@
-// Plain text tables.
+// Text tables.
 #include <catch2/catch.hpp>
 
 #include "host/report/table.hpp"
 
 using namespace raya;
 
-TEST_CASE("columns stand under their headers, words to the left and numbers to the right", "[report]") {
+TEST_CASE("text_table: aligns text to the left and numbers to the right", "[report]") {
     CHECK(text_table({{"label", "launches", "ns"}, {"trace", "12", "345678"}, {"bus.gather", "1", "90"}}) ==
           "label       launches      ns\n"
           "trace             12  345678\n"
           "bus.gather         1      90\n");
 }
 
-TEST_CASE("one cell that is no number makes a column of words", "[report]") {
+TEST_CASE("text_table: one cell that is not a number makes a text column", "[report]") {
     CHECK(text_table({{"name", "time"}, {"a", "1.5 ms"}, {"b", "none"}}) ==
           "name  time\n"
           "a     1.5 ms\n"
           "b     none\n");
 }
 
-TEST_CASE("a dash stands for a number that is not there", "[report]") {
+TEST_CASE("text_table: a dash is a missing number", "[report]") {
     CHECK(text_table({{"name", "time"}, {"a", "1.5"}, {"b", "-"}}) ==
           "name  time\n"
           "a      1.5\n"
           "b        -\n");
 }
 
-TEST_CASE("short rows, wide headers and the header alone", "[report]") {
+TEST_CASE("text_table: short rows, wide headers, and a header without rows", "[report]") {
     CHECK(text_table({{"a", "b"}, {"long word"}, {"x", "7"}}) ==
           "a          b\n"
           "long word\n"

@@ -1,4 +1,4 @@
-// The report of a torus: its keys, what it leaves out, and its summary.
+// The report and the summary of a torus.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -44,7 +44,7 @@ RenderReport report_with_figures() {
     return report;
 }
 
-TEST_CASE("a torus reports its own figures and none of a ring", "[report]") {
+TEST_CASE("to_json: a torus has its own members and none of a ring", "[report]") {
     const Document json = read_back(to_json(report_with_figures()));
     const Document& torus = json["torus"];
     CHECK(torus["nodes"] == Document({4, 4, 4}));
@@ -76,9 +76,9 @@ TEST_CASE("a torus reports its own figures and none of a ring", "[report]") {
     CHECK(read_back(to_json(async))["modelled_ms"]["asynchronous"] ==
           Document::parse(R"({"finish": 5.5, "processor": 3.5, "links": 4.5, "port": 0.5, "delivered": 77,
         "queue_max": 8})"));
-    CHECK_THAT(human_summary(async),
+    CHECK_THAT(summary_text(async),
                Catch::Contains("async   5.5 ms without supersteps (busiest processor 3.5 ms, link "
-                               "4.5 ms; a main task waited for links 0.5 ms at most; 77 messages)"));
+                               "4.5 ms; longest wait of a main task for links 0.5 ms; 77 messages)"));
     CHECK(json["load"]["per_pe"].size() == 64);
     for (const char* ring : {"antialias", "communication"}) CHECK_FALSE(json.contains(ring));
     RenderReport ring = report_with_figures();
@@ -87,8 +87,8 @@ TEST_CASE("a torus reports its own figures and none of a ring", "[report]") {
     for (const char* key : {"antialias", "communication", "modelled_ms"}) CHECK(to_json(ring).find(key) != nullptr);
 }
 
-// Reflected rays take one multiplication each, ten moves and two branches, and make a packet of 16 words.
-TEST_CASE("a torus's budget is a T805's operations", "[report]") {
+// A reflected ray takes one multiplication, ten moves and two branches, and makes a packet of 16 words.
+TEST_CASE("t805_budget_json: has the operations of a T805", "[report]") {
     EventCounts events{};
     events[RAYA_REFLECTED] = 3;
     events[RAYA_SPHERE_TESTS] = 2;
@@ -97,21 +97,21 @@ TEST_CASE("a torus's budget is a T805's operations", "[report]") {
               "packet_words": 48, "branches": 8})"));
 }
 
-TEST_CASE("the summary of a torus names nodes, packets, links, memory and both bounds of its time", "[report]") {
-    const std::string text = human_summary(report_with_figures());
+TEST_CASE("summary_text: a torus has nodes, packets, links, memory and both bounds of its time", "[report]") {
+    const std::string text = summary_text(report_with_figures());
     INFO(text);
     for (const char* part :
          {"512 x 256 pixels on torus (4x4x4 nodes, torus2d, 8x4x4 voxels), fp32",
           "packets 150 = 10 primary + 20 reflected + 30 refracted + 40 shadow + 50 return; 31 supersteps",
-          "70 returns of rays, 24 words a ray and 6 a return; 90 primary rays thrown away",
-          "400 messages over 256 links, 128.0 MB in all; 512.0 KB over one on average, 3.0 MB over the busiest",
+          "70 returns of rays, 24 words a ray and 6 a return; 90 primary rays discarded",
+          "400 messages over 256 links, 128.0 MB in all; mean 512.0 KB, maximum 3.0 MB over one link",
           "1536.0 KB in the fullest node of 4096 KB; queues of 2048 packets, at most 77 used; 5 copies of objects",
           "5.0 ms if nothing waits", "6.0 ms step by step"})
         CHECK_THAT(text, Catch::Contains(part));
     CHECK_THAT(text, !Catch::Contains("mapping"));
     RenderReport one = report_with_figures();
     one.torus->link = {};
-    CHECK_THAT(human_summary(one), Catch::Contains("over 0 links, 0 bytes in all"));
+    CHECK_THAT(summary_text(one), Catch::Contains("over 0 links, 0 bytes in all"));
 }
 
 }  // namespace

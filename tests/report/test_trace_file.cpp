@@ -1,4 +1,4 @@
-// The writer of traces, by the schema's rules, and the schema by traces that break them.
+// The trace writer, checked by TraceSchema, and TraceSchema, checked by invalid traces.
 #include <catch2/catch.hpp>
 #include <functional>
 
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-// Slices within a slice, within a slice, ...
+// Adds nested slices.
 void add_slices(TraceFile& trace, TraceTrack track, SplitMix& random, std::uint64_t start, std::uint64_t end,
                 int depth) {
     std::uint64_t at = start;
@@ -23,9 +23,9 @@ void add_slices(TraceFile& trace, TraceTrack track, SplitMix& random, std::uint6
     }
 }
 
-TraceFile random_trace(std::uint64_t seed, std::size_t most) {
+TraceFile random_trace(std::uint64_t seed, std::size_t limit) {
     SplitMix random(seed);
-    TraceFile trace(most);
+    TraceFile trace(limit);
     const auto processes = static_cast<std::uint32_t>(1 + random.next() % 3);
     for (std::uint32_t p = 1; p <= processes; ++p) {
         trace.name_process(p, "process \"" + std::to_string(p) + "\" \\ \xff");
@@ -47,7 +47,7 @@ TraceFile random_trace(std::uint64_t seed, std::size_t most) {
 
 }  // namespace
 
-TEST_CASE("what the writer writes keeps the rules", "[report]") {
+TEST_CASE("TraceFile: random traces are valid", "[report]") {
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
         CAPTURE(seed);
         const TraceFile trace = random_trace(seed, 1'000'000);
@@ -61,21 +61,21 @@ TEST_CASE("what the writer writes keeps the rules", "[report]") {
     }
 }
 
-TEST_CASE("events beyond the limit are left out and counted, flows as a whole", "[report]") {
+TEST_CASE("TraceFile: leaves out and counts events beyond the limit, flows as a whole", "[report]") {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
-        const std::size_t all = random_trace(seed, 1'000'000).events(), most = seed % (all + 2);
-        CAPTURE(seed, all, most);
-        const TraceFile trace = random_trace(seed, most);
+        const std::size_t all = random_trace(seed, 1'000'000).events(), limit = seed % (all + 2);
+        CAPTURE(seed, all, limit);
+        const TraceFile trace = random_trace(seed, limit);
         const Document json = json_of(trace);
-        CHECK(trace.events() <= most);
+        CHECK(trace.events() <= limit);
         CHECK(trace.events() + trace.left_out() == all);
-        CHECK(trace.events() + 1 >= std::min(most, all));  // a flow takes two
+        CHECK(trace.events() + 1 >= std::min(limit, all));  // a flow takes two
         const std::vector<std::string> faults = TraceSchema(json).faults();
         for (const std::string& fault : faults) CHECK_THAT(fault, Catch::Contains("outside all slices"));
     }
 }
 
-TEST_CASE("a small trace, letter for letter", "[report]") {
+TEST_CASE("TraceFile: the text of a small trace", "[report]") {
     TraceFile trace(10);
     trace.name_process(1, "host");
     trace.name_track({1, 7}, "steps");
@@ -91,10 +91,10 @@ TEST_CASE("a small trace, letter for letter", "[report]") {
 {"ph":"C","name":"u","pid":1,"ts":1.000,"args":{"u":0.5}}
 ],"otherData":{"events":2,"events_left_out":0}}
 )");
-    CHECK(TraceSchema(Document::parse(TraceFile(1).finish(false))).faults().empty());  // nothing at all
+    CHECK(TraceSchema(Document::parse(TraceFile(1).finish(false))).faults().empty());  // empty trace
 }
 
-TEST_CASE("the writer refuses what readers would misread", "[report]") {
+TEST_CASE("TraceFile: refuses events that readers would misinterpret", "[report]") {
     TraceFile trace(100);
     trace.name_process(1, "host");
     trace.name_track({1, 1}, "steps");
@@ -104,14 +104,14 @@ TEST_CASE("the writer refuses what readers would misread", "[report]") {
     CHECK_THROWS_AS(trace.slice({1, 1}, "crossing", 15, 21), std::logic_error);
     CHECK_THROWS_AS(trace.slice({1, 1}, "late", 5, 6), std::logic_error);
     trace.slice({1, 1}, "inner", 10, 20);
-    trace.slice({1, 1}, "next, as long as it likes", 20, 35);
+    trace.slice({1, 1}, "next, longer", 20, 35);
     CHECK_THROWS_AS(trace.flow("f", {1, 1}, 12, {1, 1}, 11), std::logic_error);
     CHECK_THROWS_AS(trace.flow("f", {1, 1}, 12, {2, 1}, 13), std::logic_error);
     CHECK_THROWS_AS(trace.counter(1, "c", 0, {{"a", std::nan("")}}), std::logic_error);
 }
 
-TEST_CASE("the schema finds each broken rule", "[report]") {
-    struct Break {
+TEST_CASE("TraceSchema: finds each broken rule", "[report]") {
+    struct Defect {
         std::string fault;
         std::function<void(Document&)> apply;  // to the trace's events
     };
@@ -119,7 +119,7 @@ TEST_CASE("the schema finds each broken rule", "[report]") {
         return *std::find_if(events.begin(), events.end(), [&](const Document& e) { return e["ph"] == phase; });
     };
     const Document slice = {{"ph", "X"}, {"name", "x"}, {"pid", 1}, {"tid", 1}, {"ts", 999'999'999.5}, {"dur", 2.0}};
-    const std::vector<Break> breaks = {
+    const std::vector<Defect> breaks = {
         {"unknown phase", [&](Document& e) { first(e, "X")["ph"] = "Z"; }},
         {"no name", [&](Document& e) { first(e, "X").erase("name"); }},
         {"pid is no integer", [&](Document& e) { first(e, "X")["pid"] = "1"; }},
@@ -149,7 +149,7 @@ TEST_CASE("the schema finds each broken rule", "[report]") {
         {"outside all slices", [&](Document& e) { first(e, "f")["ts"] = 1e12; }},
         {"does not count the events", [&](Document& e) { e.erase(e.size() - 1); }},
     };
-    for (const Break& b : breaks) {
+    for (const Defect& b : breaks) {
         CAPTURE(b.fault);
         Document json = json_of(random_trace(3, 1'000'000));
         REQUIRE(TraceSchema(json).faults().empty());

@@ -1,4 +1,4 @@
-// Which PEs a trace shows.
+// The choice of PEs in a trace.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -7,15 +7,15 @@
 
 namespace raya {
 
-TEST_CASE("the PEs of a trace are as many as asked for, the busiest and the idlest among them", "[report]") {
+TEST_CASE("traced_pes: returns the given number of PEs, with the busiest and the idlest", "[report]") {
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
         SplitMix random(seed);
         std::vector<std::uint64_t> loads(1 + random.next() % 70);
         for (std::uint64_t& load : loads) load = random.next() % (1 + random.next() % 100);
-        const std::size_t most = random.next() % 80;
-        CAPTURE(seed, most, loads);
-        const std::vector<TracedPe> traced = traced_pes(loads, most);
-        REQUIRE(traced.size() == std::min(most, loads.size()));
+        const std::size_t limit = random.next() % 80;
+        CAPTURE(seed, limit, loads);
+        const std::vector<TracedPe> traced = traced_pes(loads, limit);
+        REQUIRE(traced.size() == std::min(limit, loads.size()));
         std::vector<std::uint32_t> numbers;
         for (const TracedPe& t : traced) numbers.push_back(t.pe);
         CHECK(std::is_sorted(numbers.begin(), numbers.end()));
@@ -24,12 +24,12 @@ TEST_CASE("the PEs of a trace are as many as asked for, the busiest and the idle
         const auto shows = [&](auto place) {
             return std::count(numbers.begin(), numbers.end(), static_cast<std::uint32_t>(place - loads.begin())) == 1;
         };
-        if (most > 0) CHECK(shows(std::max_element(loads.begin(), loads.end())));
-        if (most > 3) CHECK(shows(std::min_element(loads.begin(), loads.end())));
+        if (limit > 0) CHECK(shows(std::max_element(loads.begin(), loads.end())));
+        if (limit > 3) CHECK(shows(std::min_element(loads.begin(), loads.end())));
     }
 }
 
-TEST_CASE("of sixteen PEs four are the busiest and four the idlest", "[report]") {
+TEST_CASE("traced_pes: of 16 PEs, four are the busiest and four the idlest", "[report]") {
     std::vector<std::uint64_t> loads(256);
     for (std::size_t pe = 0; pe < 256; ++pe) loads[pe] = 1000 + (pe * 37) % 256;
     std::string names;

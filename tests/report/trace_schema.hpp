@@ -1,4 +1,4 @@
-// The rules by which Perfetto reads a trace in Chrome's JSON format, and what raya's own promise beyond them.
+// The rules of traces in Chrome's JSON format as Perfetto reads them, and raya's additional rules.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@
 
 namespace raya {
 
-/// Looks at a whole trace and says what is wrong with it, in words.
+/// Checks a whole trace and lists the broken rules.
 class TraceSchema {
   public:
     using Track = std::pair<std::int64_t, std::int64_t>;  // pid, tid
@@ -30,7 +30,7 @@ class TraceSchema {
             faults_.emplace_back("no traceEvents");
             return;
         }
-        for (const Document& event : trace["traceEvents"]) look_at(event);
+        for (const Document& event : trace["traceEvents"]) check_event(event);
         check_names();
         for (auto& [track, slices] : slices_) check_nesting(track, slices);
         check_flows();
@@ -59,15 +59,15 @@ class TraceSchema {
     };
 
     static std::int64_t ns(const Document& us) { return std::llround(us.get<double>() * 1000); }
-    void fault(const std::string& what, const Document& event) { faults_.push_back(what + ": " + event.dump()); }
+    void fault(const std::string& rule, const Document& event) { faults_.push_back(rule + ": " + event.dump()); }
 
     bool is_time(const Document& event, const char* key) {
-        const bool right = event.contains(key) && event[key].is_number() && event[key].get<double>() >= 0;
-        if (!right) fault(std::string("no time ") + key, event);
-        return right;
+        const bool valid = event.contains(key) && event[key].is_number() && event[key].get<double>() >= 0;
+        if (!valid) fault(std::string("no time ") + key, event);
+        return valid;
     }
 
-    void look_at(const Document& event) {
+    void check_event(const Document& event) {
         const std::string phase = event.is_object() ? event.value("ph", "") : "";
         const bool counter = phase == "C";
         if (phase.size() != 1 || std::string("MXCsf").find(phase) == std::string::npos)
@@ -78,38 +78,38 @@ class TraceSchema {
         if (!counter && (!event.contains("tid") || !event["tid"].is_number_integer()))
             return fault("tid is no integer", event);
         const Track track = {event["pid"], counter ? Document(0) : event["tid"]};
-        if (phase == "M") return look_at_name(event, track);
+        if (phase == "M") return check_name(event, track);
         begun_ = true;
         ++events_;
         used_processes_.insert(track.first);
         if (!counter) used_tracks_.insert(track);
         if (!is_time(event, "ts")) return;
-        if (phase == "X") look_at_slice(event, track);
-        if (counter) look_at_counter(event);
-        if (phase == "s" || phase == "f") look_at_flow(event, track, phase);
+        if (phase == "X") check_slice(event, track);
+        if (counter) check_counter(event);
+        if (phase == "s" || phase == "f") check_flow(event, track, phase);
     }
 
-    void look_at_name(const Document& event, const Track& track) {
+    void check_name(const Document& event, const Track& track) {
         if (begun_) fault("a name after other events", event);
-        const std::string what = event["name"];
-        const bool sort = what.ends_with("_sort_index"), process = what.starts_with("process_");
+        const std::string name = event["name"];
+        const bool sort = name.ends_with("_sort_index"), process = name.starts_with("process_");
         const char* key = sort ? "sort_index" : "name";
         if (!event.contains("args") || !event["args"].contains(key)) return fault("a name without its value", event);
         const Document& value = event["args"][key];
         if (sort ? !value.is_number_integer() : !value.is_string() || value == "")
             return fault("a name of the wrong kind", event);
-        if (!named_.insert({what, track.first, process ? 0 : track.second}).second) fault("named twice", event);
-        if (what == "thread_name") tracks_[track] = value;
+        if (!named_.insert({name, track.first, process ? 0 : track.second}).second) fault("named twice", event);
+        if (name == "thread_name") tracks_[track] = value;
     }
 
-    void look_at_slice(const Document& event, const Track& track) {
+    void check_slice(const Document& event, const Track& track) {
         if (!is_time(event, "dur")) return;
         if (event.contains("args") && !event["args"].is_object()) fault("args are no object", event);
         const std::int64_t start = ns(event["ts"]);
         slices_[track].push_back({start, start + ns(event["dur"]), event["name"]});
     }
 
-    void look_at_counter(const Document& event) {
+    void check_counter(const Document& event) {
         ++counters_;
         if (!event.contains("args") || !event["args"].is_object() || event["args"].empty())
             return fault("a counter without values", event);
@@ -117,7 +117,7 @@ class TraceSchema {
             if (!value.is_number() || !std::isfinite(value.get<double>())) fault("a counter that is no number", event);
     }
 
-    void look_at_flow(const Document& event, const Track& track, const std::string& phase) {
+    void check_flow(const Document& event, const Track& track, const std::string& phase) {
         if (!event.contains("id") || !event["id"].is_number_integer()) return fault("a flow without id", event);
         if (phase == "f" && event.value("bp", "") != "e") fault("a flow's end that binds to the next slice", event);
         auto& ends = phase == "s" ? begins_ : ends_;
@@ -127,14 +127,14 @@ class TraceSchema {
 
     void check_names() {
         for (const std::int64_t pid : used_processes_)
-            for (const char* what : {"process_name", "process_sort_index"})
-                if (!named_.contains({what, pid, 0}))
-                    faults_.push_back("process " + std::to_string(pid) + " has no " + what);
+            for (const char* name : {"process_name", "process_sort_index"})
+                if (!named_.contains({name, pid, 0}))
+                    faults_.push_back("process " + std::to_string(pid) + " has no " + name);
         for (const auto& [pid, tid] : used_tracks_)
-            for (const char* what : {"thread_name", "thread_sort_index"})
-                if (!named_.contains({what, pid, tid}))
+            for (const char* name : {"thread_name", "thread_sort_index"})
+                if (!named_.contains({name, pid, tid}))
                     faults_.push_back("track " + std::to_string(tid) + " of process " + std::to_string(pid) +
-                                      " has no " + what);
+                                      " has no " + name);
     }
 
     void check_nesting(const Track& track, std::vector<Slice>& slices) {
@@ -180,7 +180,7 @@ class TraceSchema {
     }
 
     std::vector<std::string> faults_;
-    bool begun_ = false;  // events other than names
+    bool begun_ = false;  // an event other than a name was seen
     std::uint64_t events_ = 0;
     std::size_t counters_ = 0;
     std::set<std::tuple<std::string, std::int64_t, std::int64_t>> named_;

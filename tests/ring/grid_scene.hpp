@@ -1,4 +1,4 @@
-// A small scene for tests, seen in such a way that every primary ray is exact in every format.
+// A small test scene with a camera whose primary rays are exact in every number format.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace raya {
 
-/// Two shiny spheres above a checkered floor, whose edges cross the middle of the image; brighter than 1 in places.
+/// Two shiny spheres above a checkered floor, with edges across the middle of the image and some values above 1.
 inline Scene grid_objects() {
     Scene scene;
     scene.name = "grid";
@@ -24,9 +24,9 @@ inline Scene grid_objects() {
     return scene;
 }
 
-/// The scene looked at along an axis, in an image of so many rows, with 1 / `pixels_of_unit` from one pixel to the next
-/// at distance 1. Where that is a power of two, corner and steps of the primary rays have few bits and rays are exact.
-/// So images with different steps send the very same ray through the same point, however many pixels they have.
+/// The scene seen along an axis, in an image of `rows` rows with a pixel spacing of 1 / `pixels_of_unit` at distance 1.
+/// If the spacing is a power of two, corner and steps of the primary rays have few bits and the rays are exact. Images
+/// with different spacings then send the same ray through the same point.
 inline Scene grid_scene(std::uint32_t rows, Sampling sampling, double pixels_of_unit) {
     Scene scene = grid_objects();
     const double steps = sampling == Sampling::kCorners ? std::max(1.0, rows - 1.0) : rows;

@@ -1,16 +1,16 @@
-// What holds for every mapping: shares and owners tell the same story, and it is the one that was defined.
+// Properties of every mapping: shares and owners agree with each other and with the definition.
 #pragma once
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
-#include "kernels/shared/mapping.h"
+#include "kernels/shared/share_pixels.h"
 
 namespace raya {
 
-/// How many pixels, of all that the PEs' shares list, lie outside the image, come twice, have another owner by
-/// raya_owner or by `defined(row, column)`, another number by raya_index_of, or another place in a run of pixels; and
-/// how many come in no share. Notes the size of each share.
+/// Counts the listed pixels of all shares that lie outside the image, occur twice, have another owner by raya_owner or
+/// by `defined(row, column)`, another number by raya_index_of, or another place in a run of pixels; and the pixels of
+/// the image that no share lists. Appends the size of each share to `sizes`.
 template <class Defined>
 std::uint32_t strays(const raya_mapping& m, const Defined& defined, std::vector<std::uint32_t>& sizes) {
     std::vector<bool> seen(std::size_t{m.width} * m.height);
@@ -18,7 +18,7 @@ std::uint32_t strays(const raya_mapping& m, const Defined& defined, std::vector<
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
         const raya_share share = raya_share_of(m, pe);
         sizes.push_back(raya_share_size(share));
-        if (sizes.back() > seen.size()) return ~0u;  // a size that wrapped round: no use in listing it
+        if (sizes.back() > seen.size()) return ~0u;  // the size overflowed
         raya_pixel_run run{};
         for (std::uint32_t k = 0; k < sizes.back(); ++k) {
             const raya_pixel pixel = raya_pixel_of(m, share, k);
@@ -35,7 +35,7 @@ std::uint32_t strays(const raya_mapping& m, const Defined& defined, std::vector<
     return wrong + static_cast<std::uint32_t>(std::count(seen.begin(), seen.end(), false));
 }
 
-/// Whether the pixel's owner lists it under the number that raya_index_of gives.
+/// Returns true if the pixel's owner lists it under the number that raya_index_of gives.
 inline bool round_trip_holds(const raya_mapping& m, const raya_pixel& pixel) {
     const raya_share share = raya_share_of(m, raya_owner(m, pixel.row, pixel.column));
     const std::uint32_t k = raya_index_of(m, share, pixel);

@@ -1,5 +1,4 @@
-// Renders on the ring machine in a line, for tests. A device is required: without one these tests fail, they are not
-// skipped.
+// One-call renders on the ring machine, for tests. Without an OpenCL device these tests fail; they are not skipped.
 #pragma once
 #include <optional>
 #include <string>
@@ -19,8 +18,8 @@ struct RingCase {
     std::uint32_t pes = 64, offset = 8;
     Fold fold = Fold::kCyclic;
     std::string machine = "grande";
-    std::optional<MappingRule> mapping{};                         // empty: the cyclic one, by offset and fold
-    std::uint32_t lanes = usual_lanes(), group = 0, bounces = 8;  // lanes, group 0: the device's own
+    std::optional<MappingRule> mapping{};                         // empty: cyclic, with offset and fold
+    std::uint32_t lanes = default_test_lanes(), group = 0, bounces = 8;  // lanes, group 0: the device's own
     Sampling sampling = Sampling::kCentres;
     std::string format = "fp32";
     bool filter = true;
@@ -52,7 +51,7 @@ inline RingResult render_scene(const Scene& scene, const RingCase& c) {
 
 inline Scene project_scene(const std::string& name) { return read_nff(RAYA_SOURCE_DIR "/scenes/" + name + ".nff"); }
 
-/// The scenes of scenes/, which together hold every kind of object and surface.
+/// The scenes of scenes/, which together contain every kind of object and surface.
 inline const std::vector<std::string>& project_scenes() {
     static const std::vector<std::string> names = {"centre",   "spheres", "mirrors", "glass",
                                                    "polygons", "cones",   "planes"};

@@ -1,4 +1,4 @@
-// Mappings of small images for tests, with every relation of P to W and H now and then.
+// Random mappings of small images for tests, with all relations of P to W and H.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -20,15 +20,15 @@ inline raya_mapping small_mapping(SplitMix& random, std::uint32_t largest_side) 
     return {width, height, choices[random_below(random, 6)], random_below(random, width), fold};
 }
 
-/// A divisor of `side`, each as often as any other.
+/// A divisor of `side`; all are equally likely.
 inline std::uint32_t random_divisor(SplitMix& random, std::uint32_t side) {
     std::uint32_t divisor = 1 + random_below(random, side);
     while (side % divisor) divisor = 1 + random_below(random, side);
     return divisor;
 }
 
-/// The mapping turned into one of that kind, with a parameter at random. A grid may have lines or columns of PEs beyond
-/// the image's, as long as there are no more PEs than pixels.
+/// Changes the mapping's kind and draws its parameter. A grid may have more rows or columns of PEs than the image has,
+/// but no more PEs than pixels.
 inline raya_mapping of_kind(SplitMix& random, raya_mapping m, std::uint32_t kind) {
     const std::uint32_t pixels = m.width * m.height;
     m.kind = kind;

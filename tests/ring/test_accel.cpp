@@ -1,4 +1,4 @@
-// The grid or tree of a PE decides which objects are tested, never what comes out (`--accel grid`, `--accel bvh`).
+// A PE's grid or BVH decides which objects are tested and never changes the image (`--accel grid`, `--accel bvh`).
 #include <catch2/catch.hpp>
 #include <map>
 #include <numbers>
@@ -12,7 +12,7 @@
 namespace raya {
 namespace {
 
-// What must not depend on the grid: the image and everything that is counted but tests and ways through voxels.
+// The results that do not depend on the grid: the image, and all counts except those of tests, walks and steps.
 std::string image_and_events(const RingResult& r) { return one_image(r.image, r.all.events); }
 
 RingResult render_with(Session& session, const Scene& scene, const RingCase& c, const Accel& accel) {
@@ -33,11 +33,11 @@ std::uint64_t tests_of(const EventCounts& e) {
 
 }  // namespace
 
-TEST_CASE("a grid or a tree changes no bit of the image, whatever its voxels and the format", "[ring][accel][slow]") {
+TEST_CASE("a grid or BVH changes no bit of the image, for any voxels and format", "[ring][accel][slow]") {
     Session session(choose_device(""));
     const std::string name = GENERATE("centre", "glass", "polygons", "cones", "planes");
     const std::string format = GENERATE("fp32", "spa22");
-    // One scene in each format, where one waits; the others' objects are seen elsewhere.
+    // The fast tests take one scene per format; other tests cover the remaining objects.
     if (!thorough() && name != (format == "fp32" ? "polygons" : "cones")) return;
     const Scene scene = project_scene(name);
     const RingCase c{.width = 32, .height = 24, .pes = 8, .format = format};
@@ -51,7 +51,7 @@ TEST_CASE("a grid or a tree changes no bit of the image, whatever its voxels and
     }
 }
 
-TEST_CASE("scenes of all kinds of objects look alike with a grid or a tree, in coarse formats too",
+TEST_CASE("scenes of all kinds of objects have the same image with a grid or BVH, in coarse formats too",
           "[ring][accel][slow]") {
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(2, {"fp32", "e5m10", "e6m15t", "e8m12", "e5m6"})));
@@ -69,7 +69,7 @@ TEST_CASE("scenes of all kinds of objects look alike with a grid or a tree, in c
     }
 }
 
-// A polygon across `at` of any number of corners, concave from six on.
+// A polygon around `at` with 3 to 42 corners, concave from six corners on.
 Polygon star(SplitMix& random, const Vec3& at, const Vec3& u, const Vec3& v, int surface) {
     Polygon polygon{{}, {}, surface};
     const auto corners = 3 + random_below(random, 40);
@@ -80,8 +80,7 @@ Polygon star(SplitMix& random, const Vec3& at, const Vec3& u, const Vec3& v, int
     return polygon;
 }
 
-// Spheres, polygons and cones that are tiny and huge, touch, nest, coincide, and lie in planes along the axes, as rays
-// do that are sent along them.
+// Spheres, polygons and cones of very different sizes that touch, nest and coincide; many polygons are axis-aligned.
 Scene crowded_scene(std::uint64_t seed) {
     Scene scene = random_view_scene(kRichScenes[0]);
     SplitMix random(seed);
@@ -95,14 +94,14 @@ Scene crowded_scene(std::uint64_t seed) {
         const Vec3 at = place();
         const double r = size();
         scene.spheres.push_back({at, r, surface()});
-        if (i % 5 == 0) scene.spheres.push_back({at, r, surface()});                      // the same again
-        if (i % 5 == 1) scene.spheres.push_back({at, -r / 2, surface()});                 // within, seen from inside
+        if (i % 5 == 0) scene.spheres.push_back({at, r, surface()});                      // a duplicate
+        if (i % 5 == 1) scene.spheres.push_back({at, -r / 2, surface()});                 // nested, seen from inside
         if (i % 5 == 2) scene.spheres.push_back({at + Vec3(2 * r, 0, 0), r, surface()});  // touching
     }
     for (int i = 0; i < 40; ++i) {
         const Vec3 at = place();
         Vec3 u(size(), 0, 0), v(0, size(), 0);
-        if (i % 2) std::swap(v.y, v.z);  // along axes, all of them
+        if (i % 2) std::swap(v.y, v.z);  // all are axis-aligned
         scene.polygons.push_back({{at, at + u, at + u + v, at + v}, {}, surface()});
         scene.polygons.push_back(star(random, place(), u, v, surface()));
         const Vec3 to = at + 0.3 * place();
@@ -111,7 +110,7 @@ Scene crowded_scene(std::uint64_t seed) {
     return scene;
 }
 
-TEST_CASE("crowds of objects of all sizes look alike with a tree", "[ring][accel][slow]") {
+TEST_CASE("scenes of many objects of all sizes have the same image with a BVH", "[ring][accel][slow]") {
     Session session(choose_device(""));
     const std::string format = GENERATE("fp32", "spa22");
     for (unsigned seed = 1; seed <= quick_cases(2, 200); ++seed) {
@@ -124,7 +123,7 @@ TEST_CASE("crowds of objects of all sizes look alike with a tree", "[ring][accel
     }
 }
 
-TEST_CASE("tests and steps are counted for each ray, whatever lanes, groups and PEs", "[ring][accel]") {
+TEST_CASE("counts of tests and steps do not depend on lanes, groups and PEs", "[ring][accel]") {
     Session session(choose_device(""));
     const Scene scene = project_scene("polygons");
     const std::string format = GENERATE("fp32", "spa22");
@@ -148,7 +147,7 @@ TEST_CASE("tests and steps are counted for each ray, whatever lanes, groups and 
     CHECK(RingRenderer(session, scene, global).render().all.events == expected);
 }
 
-TEST_CASE("rays of how many trees and lights wait together changes no bit and no count", "[ring][accel]") {
+TEST_CASE("the number of ray trees and lights whose rays are batched changes no bit and no count", "[ring][accel]") {
     Session session(choose_device(""));
     Scene scene = project_scene("polygons");
     for (int i = 0; i < 5; ++i) scene.lights.push_back({{3.0 * i - 6, 5.0 - i, 4}, Colour{0.2, 0.1 * i, 0.3}});
@@ -167,8 +166,7 @@ TEST_CASE("rays of how many trees and lights wait together changes no bit and no
     }
 }
 
-// Every object twice or three times, far apart in number, in surfaces of their own: each hit is at several equal
-// distances.
+// Duplicates every object about twice, with distant numbers and other surfaces: each hit has several equal distances.
 Scene doubled_scene(std::uint64_t seed) {
     Scene scene = random_view_scene(seed);
     SplitMix random(seed);
@@ -188,7 +186,7 @@ Scene doubled_scene(std::uint64_t seed) {
     return scene;
 }
 
-TEST_CASE("of objects at equal distances the lowest number is hit, in whichever voxels they are", "[ring][accel]") {
+TEST_CASE("of objects at equal distances the lowest number is hit, in any voxels", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(2, {"fp32", "spa22", "e5m6"})));
     for (const std::uint64_t seed : quick_of(1, kRichScenes)) {
@@ -203,8 +201,8 @@ TEST_CASE("of objects at equal distances the lowest number is hit, in whichever 
     }
 }
 
-// A floor of many squares, one that is larger than all of them and an infinite plane: all hits are at equal distances.
-TEST_CASE("of a plane, a polygon held apart and listed ones at equal distances the lowest number is hit",
+// A floor of many squares, a square that is larger than all of them, and an infinite plane: all at equal distances.
+TEST_CASE("of a plane, a separately listed polygon and others at equal distances the lowest number is hit",
           "[ring][accel]") {
     Session session(choose_device(""));
     Scene scene = project_scene("planes");
@@ -238,9 +236,8 @@ TEST_CASE("of a plane, a polygon held apart and listed ones at equal distances t
     }
 }
 
-// Lights in a ceiling of squares: a shadow ray meets the square around its light where it ends, or just before, or
-// behind.
-TEST_CASE("a hit where a ray ends is none, in whichever voxel it is found", "[ring][accel]") {
+// Lights in a ceiling of squares: a shadow ray meets the square around its light at its end, just before or just after.
+TEST_CASE("a hit at the end of a shadow ray does not count, in any voxel", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(1, {"spa22", "fp32", "e5m10"})));
     Scene scene = project_scene("planes");
@@ -266,7 +263,7 @@ TEST_CASE("a hit where a ray ends is none, in whichever voxel it is found", "[ri
     }
 }
 
-TEST_CASE("supersampling through a grid or a tree gives the same pixels", "[ring][accel]") {
+TEST_CASE("supersampling with a grid or BVH gives the same pixels", "[ring][accel]") {
     Session session(choose_device(""));
     RingCase c{.width = 32, .height = 24, .pes = 8};
     c.antialias.method = AntialiasMethod::kSupersample;
@@ -277,7 +274,7 @@ TEST_CASE("supersampling through a grid or a tree gives the same pixels", "[ring
     CHECK(image_and_events(render_with(session, scene, c, bvh)) == image_and_events(plain));
 }
 
-TEST_CASE("a grid or a tree saves nearly all tests of many small spheres", "[ring][accel]") {
+TEST_CASE("a grid or BVH saves 95 % of the tests of many small spheres", "[ring][accel]") {
     Session session(choose_device(""));
     const Scene scene = generate_balls(3);
     const RingCase c{.width = 48, .height = 48, .pes = 48};
@@ -293,9 +290,9 @@ TEST_CASE("a grid or a tree saves nearly all tests of many small spheres", "[rin
     CHECK(tree.pe_memory.job_words == plain.pe_memory.job_words + tree.accel->words);
 }
 
-// Lines of the tree's own kernels, each of which must show in an image or in what is counted. One scene has every kind
-// of object, and several nodes on the way to most; in the other many hits are at equal distances.
-TEST_CASE("a fault in the walk down a tree is seen", "[ring][accel][faults]") {
+// Each fault in the BVH's kernels must change an image or a count. One scene has every kind of object, most of them
+// several nodes deep; in the other many hits are at equal distances.
+TEST_CASE("every injected fault in the BVH traversal is detected", "[ring][accel][faults]") {
     Session session(choose_device(""));
     Scene copies = crowded_scene(3);  // more of each sphere than a leaf holds
     const std::vector<Sphere> spheres(copies.spheres.begin(), copies.spheres.begin() + 10);
@@ -342,7 +339,7 @@ TEST_CASE("a fault in the walk down a tree is seen", "[ring][accel][faults]") {
     }
 }
 
-TEST_CASE("a grid that does not fit a PE is refused with both figures", "[ring][accel]") {
+TEST_CASE("a grid that does not fit a PE is refused with the memory and the remedy", "[ring][accel]") {
     Session session(choose_device(""));
     const Scene scene = project_scene("centre");
     RingCase c{.machine = "spa"};

@@ -1,5 +1,5 @@
-// Anti-aliasing on the ring against plain functions of whole images (whole_image.hpp), bit for bit, for random ways of
-// spreading an image over PEs. RAYA_ANTIALIAS_CASES=1000 asks for more of them than the usual run.
+// Anti-aliasing on the ring, compared with plain functions of whole images (whole_image.hpp) bit for bit, for random
+// distributions of the image over PEs. RAYA_ANTIALIAS_CASES=1000 tests more of them than the default.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -19,7 +19,7 @@ using whole_image::value_at;
 
 constexpr double kPixelsOfUnit = 32;
 
-/// Few sizes, so that few images are rendered to compare with; sides of one and two pixels have few neighbours.
+/// Few sizes, to render few reference images; sides of one and two pixels have few neighbours.
 constexpr std::array<std::array<std::uint32_t, 2>, 10> kSizes = {
     {{1, 1}, {1, 9}, {8, 1}, {2, 2}, {3, 2}, {7, 5}, {17, 13}, {32, 20}, {8, 40}, {39, 40}}};
 
@@ -28,7 +28,7 @@ int cases() {
     return given ? std::atoi(given) : 30;
 }
 
-/// P divides W as often as not, and is 1..W H.
+/// P is 1..W H and often divides W.
 RingCase random_case(SplitMix& random, const std::string& format) {
     const auto& size = kSizes[random_below(random, kSizes.size())];
     RingCase c{.width = size[0], .height = size[1], .format = format};
@@ -57,8 +57,8 @@ class PlainImages {
     /// Without anti-aliasing.
     const RingResult& of(const RingCase& c) { return render(c, c.width, c.height, kPixelsOfUnit); }
 
-    /// The same picture from points half a pixel apart: point (2 j + 1, 2 x + 1) is the own one of pixel (j, x), and
-    /// half a pixel of the surroundings shows.
+    /// The image sampled every half pixel, with a margin of half a pixel: point (2 j + 1, 2 x + 1) is that of pixel
+    /// (j, x).
     const RingResult& fine(const RingCase& c) {
         RingCase centres = c;
         centres.sampling = Sampling::kCentres;
@@ -90,7 +90,7 @@ RingResult render_grid(Session& session, RingCase c) {
     return RingRenderer(session, grid_scene(c.height, c.sampling, kPixelsOfUnit), settings_of(c)).render();
 }
 
-// Where a pixel's new points lie, in half pixels down and to the right, in the order of their sum.
+// Offsets of a pixel's additional points, in half pixels down and to the right, in the order of summation.
 using Offsets = std::array<std::array<int, 2>, 4>;
 constexpr Offsets kAxes = {{{0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
 constexpr Offsets kDiagonals = {{{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}};
@@ -99,7 +99,7 @@ const Offsets& offsets_of(const Antialias& antialias) {
     return antialias.points == RAYA_POINTS_AXES ? kAxes : kDiagonals;
 }
 
-/// The mean of the point (row, column) of an image twice as fine and of the four new ones around it.
+/// The mean of the point (row, column) of the finer image and the four additional ones around it.
 float mean_of_points(const Image& fine, int row, int column, int colour, const RingCase& c) {
     std::array<float, 5> values = {value_at(fine, row, column, colour)};
     for (std::size_t n = 0; n < 4; ++n) {
@@ -117,7 +117,7 @@ Image supersampled(const Image& plain, const Image& fine, const Image& mask, con
     });
 }
 
-/// What the four new points of each pixel of the mask cost; 0 in the others.
+/// The cost of the four additional points of each pixel of the mask; 0 in the others.
 std::vector<std::uint64_t> supersampling_cost(const CostImage& fine, const Image& mask, const RingCase& c) {
     std::vector<std::uint64_t> cost;
     for (int row = 0; row < mask.height; ++row)
@@ -134,7 +134,7 @@ std::size_t pixels_of(const Image& mask) {
     return static_cast<std::size_t>(std::count(mask.rgb.begin(), mask.rgb.end(), 1.0f)) / 3;
 }
 
-/// The pixels' own points among finer ones.
+/// The pixels' own points in the finer image.
 Image own_points(const Image& fine) {
     return whole_image::make_image(fine.width / 2, fine.height / 2, [&](int row, int column, int colour) {
         return value_at(fine, 2 * row + 1, 2 * column + 1, colour);
@@ -157,7 +157,7 @@ void check_supersampled(const RingResult& result, const RingResult& plain, const
 
 }  // namespace
 
-TEST_CASE("the ring's filter is the filter of the whole image", "[ring][antialias]") {
+TEST_CASE("the ring's filter gives the filtered whole image", "[ring][antialias]") {
     constexpr std::uint64_t kSeed = 31;
     SplitMix random(kSeed);
     Session session(choose_device(""));
@@ -199,18 +199,18 @@ TEST_CASE("supersampling takes the mean of five points where a neighbour differs
             recomputed += result.recomputed;
             pixels += size;
         }
-    CHECK(recomputed > pixels / 10);  // these cases hold marked pixels and others
+    CHECK(recomputed > pixels / 10);  // the cases have marked and unmarked pixels
     CHECK(recomputed < pixels * 9 / 10);
     CHECK(mixed > std::size_t(cases()) / 2);
 }
 
-TEST_CASE("with any camera the new points lie half a pixel away", "[ring][antialias]") {
+TEST_CASE("the additional points lie half a pixel away, for any camera", "[ring][antialias]") {
     const Scene scene = project_scene("spheres");
     Session session(choose_device(""));
     constexpr int kWidth = 33, kHeight = 21;
     for (const char* format : {"fp32", "spa22"}) {
-        // Steps between pixel corners are halved exactly where the number of intervals is doubled. Points outside of
-        // the outermost pixels' own are not in the finer image: those pixels, 104 of 693, are left out.
+        // Doubling the number of intervals halves the steps between pixel corners exactly. The finer image has no
+        // points beyond the outermost pixels' own, so those pixels, 104 of 693, are not compared.
         const RingCase fine_case{
             .width = 2 * kWidth - 1, .height = 2 * kHeight - 1, .sampling = Sampling::kCorners, .format = format};
         const Image fine = RingRenderer(session, scene, settings_of(fine_case)).render().image;
@@ -233,11 +233,11 @@ TEST_CASE("with any camera the new points lie half a pixel away", "[ring][antial
     }
 }
 
-TEST_CASE("a difference equal to the threshold counts, one beyond 0..1 does not", "[ring][antialias]") {
+TEST_CASE("a difference equal to the threshold counts, a difference outside 0..1 does not", "[ring][antialias]") {
     Session session(choose_device(""));
     const std::string format = GENERATE("fp32", "spa22");
     const double last_place = format == "fp32" ? 0x1p-23 : 0x1p-15;
-    // Without a light, a surface of Kd = 1 shows its colour: this image has two colours that differ in one component.
+    // Without lights, a surface of Kd = 1 shows its colour: the image has two colours that differ in one component.
     const auto recomputed = [&](double surrounding, double object, double threshold, int component) {
         Scene scene = grid_scene(24, Sampling::kCentres, kPixelsOfUnit);
         scene.background = scene.surfaces[1].colour = {0.5, 0.5, 0.5};

@@ -1,5 +1,5 @@
-// What anti-aliasing counts: phases, loads, rotations and their words, and that neither counts nor pixels depend on how
-// the work is spread.
+// Counts of anti-aliasing: phases, loads, rotations and their words. Neither counts nor pixels depend on the
+// distribution of the work.
 #include <catch2/catch.hpp>
 #include <numeric>
 
@@ -19,7 +19,7 @@ RingResult render_case(Session& session, RingCase c) {
     return RingRenderer(session, scene, settings_of(c)).render();
 }
 
-/// All that must not depend on PEs, mapping, lanes or groups.
+/// The results that do not depend on PEs, mapping, lanes or groups.
 struct AntialiasAnswer {
     std::string image, mask;
     std::vector<EventCounts> events;  // of each phase
@@ -56,7 +56,7 @@ void check_phase(const Phase& phase, const raya_mapping& m) {
     CHECK(phase.load.max == *std::max_element(phase.load.per_pe.begin(), phase.load.per_pe.end()));
 }
 
-/// `all` is the sum of the phases.
+/// Checks that `all` is the sum of the phases.
 void check_sums(const RingResult& result) {
     EventCounts events{};
     std::vector<std::uint64_t> loads(result.all.load.per_pe.size());
@@ -75,7 +75,7 @@ void check_sums(const RingResult& result) {
     CHECK(result.cost().cycles == cost);
 }
 
-/// Rotations send every PE's block of `band` pixels, 3 words each.
+/// Each rotation sends every PE's block of `band` pixels, 3 words per pixel.
 void check_words(const RingResult& result, const RingCase& c) {
     const Communication& words = result.communication;
     CHECK(words.rotation_words == words.rotations * c.pes * 3 * result.pe_memory.band_pixels);
@@ -87,7 +87,7 @@ void check_words(const RingResult& result, const RingCase& c) {
 }  // namespace
 
 TEST_CASE("lanes and group size change no bit, mark or count of anti-aliasing", "[ring][antialias]") {
-    // Lanes, group size; few of them, as each pair builds kernels.
+    // Lanes and group size; few pairs, as each builds kernels.
     using Choices = std::vector<std::array<std::uint32_t, 2>>;
     const std::pair<std::string, Choices> formats[] = {{"fp32", {{1, 1}, {4, 8}, {16, 8}}},
                                                        {"spa22", {{1, 8}, {16, 1}}}};
@@ -129,7 +129,7 @@ TEST_CASE("PEs, offset and fold change no bit, mark or count of anti-aliasing", 
     }
 }
 
-TEST_CASE("phases are named after what was done", "[ring][antialias]") {
+TEST_CASE("phases are named after their passes", "[ring][antialias]") {
     Session session(choose_device(""));
     const auto names = [&](const Antialias& antialias) {
         std::vector<std::string> all;
@@ -141,7 +141,7 @@ TEST_CASE("phases are named after what was done", "[ring][antialias]") {
     CHECK(names(kSupersample) == std::vector<std::string>{"trace", "supersample"});
 }
 
-TEST_CASE("a second anti-aliased render of the same renderer gives the same answer", "[ring][antialias]") {
+TEST_CASE("a second anti-aliased render with the same renderer gives the same result", "[ring][antialias]") {
     Session session(choose_device(""));
     for (const Antialias& antialias : {kFilter, kSupersample}) {
         const RingCase c{.antialias = antialias, .keep_costs = true};
@@ -155,10 +155,9 @@ TEST_CASE("a second anti-aliased render of the same renderer gives the same answ
     }
 }
 
-TEST_CASE("with a column of pixels for each PE the neighbours are p PEs away", "[ring][antialias]") {
+TEST_CASE("with one column of pixels per PE the vertical neighbours are p PEs away", "[ring][antialias]") {
     Session session(choose_device(""));
-    // Left and right are one rotation each, above and below p each and, as a route starts at the PE's own block, none
-    // for p = 0: 2 + 2 p.
+    // Left and right take one rotation each, above and below p each (none for p = 0, the PE's own block): 2 + 2 p.
     for (const auto& [offset, rotations] : {std::pair{0u, 2u}, {8u, 18u}, {16u, 34u}, {240u, 34u}}) {
         const RingCase c{.width = 256, .height = 256, .pes = 256, .offset = offset, .antialias = kFilter};
         const RingResult result = render_case(session, c);
@@ -171,9 +170,9 @@ TEST_CASE("with a column of pixels for each PE the neighbours are p PEs away", "
     CHECK(render_case(session, c).communication.rotations == 34);
 }
 
-TEST_CASE("where a PE's memory is short pixels go round in bands, with the same image", "[ring][antialias]") {
+TEST_CASE("if a PE's memory is short, pixels rotate in bands, with the same image", "[ring][antialias]") {
     Session session(choose_device(""));
-    // The last bands are shorter than the others where the share is odd or PEs own less than it.
+    // The last band is shorter than the others if the share is odd or a PE owns fewer pixels.
     const RingCase cases[] = {{.width = 512, .height = 512, .pes = 256, .offset = 16, .antialias = kFilter},
                               {.width = 45, .height = 45, .pes = 2, .antialias = kFilter},
                               {.width = 41, .height = 77, .pes = 3, .fold = Fold::kBlock, .antialias = kFilter},

@@ -1,6 +1,6 @@
-// Lanes without work compute with ordinary numbers: a denormal operand costs some CPUs a hundred cycles. Kernels are
-// built as they are written: an optimising compiler computes ahead what it then does not choose, of garbage too, a
-// little of it. Hidden, as they need PoCL's basic device: ctest runs them as ring.denormals.
+// Idle lanes compute with normal numbers: a denormal operand costs some CPUs a hundred cycles. The kernels are built
+// without optimisation, as an optimising compiler speculates and may compute with garbage that it then discards. The
+// tests are hidden, as they need PoCL's basic device: ctest runs them as ring.denormals.
 #include <catch2/catch.hpp>
 
 #include "tests/kernels/denormals.hpp"
@@ -10,14 +10,14 @@
 namespace raya {
 namespace {
 
-struct Way {
+struct DenormalCase {
     const char* name;
     RingCase c;
     AccelKind accel = AccelKind::kNone;
 };
 
-const std::vector<Way>& ways() {
-    static const std::vector<Way> all = {
+const std::vector<DenormalCase>& denormal_cases() {
+    static const std::vector<DenormalCase> all = {
         {"none", {.width = 20, .height = 15, .pes = 7}},
         {"one lane", {.width = 20, .height = 15, .pes = 7, .lanes = 1}},
         {"spa22", {.width = 20, .height = 15, .pes = 7, .format = "spa22"}},
@@ -31,10 +31,10 @@ const std::vector<Way>& ways() {
     return all;
 }
 
-bool render_meets_denormals(Session& session, const Scene& scene, const Way& way,
+bool render_meets_denormals(Session& session, const Scene& scene, const DenormalCase& denormal_case,
                             const std::vector<SourcePatch>& patches) {
-    RingSettings settings = settings_of(way.c);
-    settings.accel.kind = way.accel;
+    RingSettings settings = settings_of(denormal_case.c);
+    settings.accel.kind = denormal_case.accel;
     settings.kernels.sources.patches = patches;
     settings.kernels.sources.more_options = {"-cl-opt-disable"};
     RingRenderer renderer(session, scene, settings);
@@ -47,18 +47,18 @@ TEST_CASE("no lane of the ring's kernels computes with denormals", "[.][denormal
     Session session(choose_device(""));
     for (const std::string& name :
          quick<std::string>(2, {"polygons", "cones", "spheres", "centre", "mirrors", "glass", "planes"}))
-        for (const Way& way : ways()) {
-            CAPTURE(name, way.name);
-            CHECK_FALSE(render_meets_denormals(session, project_scene(name), way, {}));
+        for (const DenormalCase& c : denormal_cases()) {
+            CAPTURE(name, c.name);
+            CHECK_FALSE(render_meets_denormals(session, project_scene(name), c, {}));
         }
 }
 
-TEST_CASE("a kernel whose idle lanes read counts as numbers is seen", "[.][denormals]") {
+TEST_CASE("a kernel whose idle lanes read counts as floats is detected", "[.][denormals]") {
     REQUIRE(denormals_can_be_seen());
     Session session(choose_device(""));
     const SourcePatch word_0{"geometry/scene.clh", "(index)(first_object_at(all))", "(index)(0)"};
-    for (const Way& way : {ways()[0], ways()[4]})
-        CHECK(render_meets_denormals(session, project_scene("planes"), way, {word_0}));
+    for (const DenormalCase& c : {denormal_cases()[0], denormal_cases()[4]})
+        CHECK(render_meets_denormals(session, project_scene("planes"), c, {word_0}));
 }
 
 }  // namespace

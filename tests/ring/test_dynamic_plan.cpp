@@ -1,4 +1,4 @@
-// Plans of dynamic distribution: their text, and what is refused.
+// Plans of dynamic distribution: their text, and invalid plans.
 #include <catch2/catch.hpp>
 #include <limits>
 #include <stdexcept>
@@ -7,13 +7,13 @@
 
 using namespace raya;
 
-TEST_CASE("a plan's text has what differs from the plainest one", "[schedule]") {
+TEST_CASE("a plan's text omits default values at its end", "[schedule]") {
     CHECK(dynamic_text({4, 0, 0}) == "dynamic:4");
     CHECK(dynamic_text({4, 9, 0}) == "dynamic:4,9");
     CHECK(dynamic_text({4, 0, 0.5}) == "hybrid:4,0,0.5");
 }
 
-TEST_CASE("schedules refuse what does not fit together", "[schedule]") {
+TEST_CASE("schedules reject cost images, mappings and plans that do not match", "[schedule]") {
     const CostImage image{2, 2, {1, 2, 3, 4}};
     const raya_mapping fits{2, 2, 2, 0, RAYA_FOLD_CYCLIC};
     const auto refuses = [](const CostImage& costs, const raya_mapping& m) {

@@ -1,4 +1,4 @@
-// Ring, bus and broadcasts by PEs: the same neighbours, so the same bits; each is counted by a formula of its own.
+// Ring, bus and broadcasts by PEs bring the same neighbours, so the same bits; each has its own formula for moves.
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -13,9 +13,9 @@
 namespace raya {
 namespace {
 
-constexpr ExchangeWay kWays[] = {ExchangeWay::kRing, ExchangeWay::kBus, ExchangeWay::kBroadcast};
+constexpr ExchangeMethod kExchanges[] = {ExchangeMethod::kRing, ExchangeMethod::kBus, ExchangeMethod::kBroadcast};
 
-/// Pixels of all PEs, [PE][3][capacity], and bands of them that move.
+/// Pixels of all PEs, [PE][3][capacity], and the size of the bands that move.
 struct Shares {
     raya_mapping mapping{};
     std::uint32_t capacity = 1, band = 1;
@@ -23,14 +23,14 @@ struct Shares {
     float threshold = 0;
 };
 
-/// What both methods make of the shares, and what they moved.
+/// Results of filter and contrast, and their communication.
 struct Smoothed {
     std::vector<float> filtered;
     std::vector<std::uint8_t> marks;
     Communication of_filter, of_contrast;
 };
 
-Smoothed smoothed(Kernels& kernels, const Shares& s, ExchangeWay way) {
+Smoothed smoothed(Kernels& kernels, const Shares& s, ExchangeMethod method) {
     Session& session = kernels.session();
     raya_job job{};
     job.mapping = s.mapping;
@@ -45,11 +45,11 @@ Smoothed smoothed(Kernels& kernels, const Shares& s, ExchangeWay way) {
     Buffer<float> pixels = session.buffer<float>("pixels", s.pixels.size());
     session.write("pixels", pixels, s.pixels);
     Smoothed answer{s.pixels, std::vector<std::uint8_t>(std::size_t{s.mapping.pes} * s.capacity), {}, {}};
-    NeighbourExchange for_contrast(session, answer.of_contrast, s.mapping, s.capacity, s.band, way);
+    NeighbourExchange for_contrast(session, answer.of_contrast, s.mapping, s.capacity, s.band, method);
     RingContrast contrast(kernels, setup, s.threshold);
     contrast.apply(pixels, for_contrast);
     session.read("marks", contrast.marks(), answer.marks);
-    NeighbourExchange for_filter(session, answer.of_filter, s.mapping, s.capacity, s.band, way);
+    NeighbourExchange for_filter(session, answer.of_filter, s.mapping, s.capacity, s.band, method);
     RingFilter(kernels, setup).apply(pixels, for_filter);
     session.read("pixels", pixels, answer.filtered);
     return answer;
@@ -73,9 +73,9 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 
 std::uint64_t moved(const Communication& c) { return c.rotations + c.transfers + c.pe_broadcasts; }
 
-/// The image and all that was counted, but for the moves.
-std::string rendered(Session& session, RingCase c, ExchangeWay way, Communication& counted) {
-    c.antialias.exchange = way;
+/// Hashes of image and mask, and the number of recomputed pixels; sets `counted` to the communication.
+std::string rendered(Session& session, RingCase c, ExchangeMethod method, Communication& counted) {
+    c.antialias.exchange = method;
     const RingResult result = RingRenderer(session, grid_scene(c.height, c.sampling, 16), settings_of(c)).render();
     counted = result.communication;
     return pixel_hash(result.image) + pixel_hash(result.mask) + std::to_string(result.recomputed);
@@ -83,38 +83,38 @@ std::string rendered(Session& session, RingCase c, ExchangeWay way, Communicatio
 
 }  // namespace
 
-TEST_CASE("ring, bus and broadcasts smooth to the same bits and move what their formulas say", "[ring][bus]") {
+TEST_CASE("ring, bus and broadcasts give the same bits, and as many moves as their formulas", "[ring][bus]") {
     constexpr std::uint64_t kSeed = 16;
     SplitMix random(kSeed);
     Session session(choose_device(""));
     Kernels kernels(session, {.lanes = 1, .format = parse_format("e6m15")});
-    std::size_t alone = 0, narrow = 0, moving = 0;
+    std::size_t single = 0, narrow = 0, moving = 0;
     for (unsigned i = 0; i < quick_cases(300, 1500); ++i) {
         const Shares s = random_shares(random, i % 4 == 0 ? 2 : 12);
         const raya_mapping& m = s.mapping;
         CAPTURE(kSeed, i, m.width, m.height, m.pes, mapping_text(m), m.kind, s.capacity, s.band);
-        const Smoothed by_ring = smoothed(kernels, s, ExchangeWay::kRing);
+        const Smoothed by_ring = smoothed(kernels, s, ExchangeMethod::kRing);
         const std::uint64_t bands = (s.capacity + s.band - 1) / s.band;
-        for (const ExchangeWay way : kWays) {
-            CAPTURE(exchange_name(way));
-            const Smoothed other = way == ExchangeWay::kRing ? by_ring : smoothed(kernels, s, way);
+        for (const ExchangeMethod method : kExchanges) {
+            CAPTURE(exchange_name(method));
+            const Smoothed other = method == ExchangeMethod::kRing ? by_ring : smoothed(kernels, s, method);
             CHECK(same_bits(other.filtered, by_ring.filtered));
             CHECK(other.marks == by_ring.marks);
-            CHECK(moved(other.of_filter) == bands * sum_of(exchange_moves(m, way, false)));
-            CHECK(moved(other.of_contrast) == bands * sum_of(exchange_moves(m, way, true)));
+            CHECK(moved(other.of_filter) == bands * sum_of(exchange_moves(m, method, false)));
+            CHECK(moved(other.of_contrast) == bands * sum_of(exchange_moves(m, method, true)));
         }
-        alone += m.pes == 1;
+        single += m.pes == 1;
         narrow += std::min(m.width, m.height) <= 2;
         moving += moved(by_ring.of_filter) > 0;
     }
-    CHECK((alone > 20 && narrow > 50 && moving > 150));
+    CHECK((single > 20 && narrow > 50 && moving > 150));
 }
 
-TEST_CASE("a render has the same image by ring, bus and broadcasts", "[ring][bus]") {
+TEST_CASE("a render gives the same image with ring, bus and broadcasts", "[ring][bus]") {
     constexpr std::uint64_t kSeed = 17;
     SplitMix random(kSeed);
     Session session(choose_device(""));
-    for (const char* machine : {"grande", "spa"})  // without bands and with
+    for (const char* machine : {"grande", "spa"})  // without and with bands
         for (const AntialiasMethod method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample})
             for (unsigned i = 0; i < quick_cases(2, 20); ++i) {
                 const bool large = machine == std::string("spa") && i == 0;
@@ -127,9 +127,9 @@ TEST_CASE("a render has the same image by ring, bus and broadcasts", "[ring][bus
                 c.antialias.method = method;
                 CAPTURE(kSeed, machine, antialias_name(method), i, c.width, c.height, c.pes, c.offset);
                 Communication by_ring, by_bus, by_broadcast;
-                const std::string image = rendered(session, c, ExchangeWay::kRing, by_ring);
-                CHECK(rendered(session, c, ExchangeWay::kBus, by_bus) == image);
-                CHECK(rendered(session, c, ExchangeWay::kBroadcast, by_broadcast) == image);
+                const std::string image = rendered(session, c, ExchangeMethod::kRing, by_ring);
+                CHECK(rendered(session, c, ExchangeMethod::kBus, by_bus) == image);
+                CHECK(rendered(session, c, ExchangeMethod::kBroadcast, by_broadcast) == image);
                 CHECK((by_ring.transfers == 0 && by_bus.rotations == 0 && by_broadcast.rotations == 0));
                 CHECK((by_ring.rotations > 0) == (by_bus.transfers > 0));
                 CHECK((by_ring.rotations > 0) == (by_broadcast.pe_broadcasts > 0));

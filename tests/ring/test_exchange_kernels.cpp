@@ -1,5 +1,5 @@
-// The kernels of the neighbour exchange: a PE reads its own memory alone and writes its own memory alone. Poison in all
-// other PEs' memory changes nothing, and faults put into the kernels on purpose are seen.
+// Kernels of the neighbour exchange: a PE reads and writes only its own memory. Poison in all other PEs' memory changes
+// nothing, and injected kernel faults are detected.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -32,7 +32,7 @@ struct Launch {
     float threshold = 0;
 };
 
-/// The memory of all PEs, block after block, and of one more that does not exist: nobody may touch it.
+/// The memory of all PEs, block after block, followed by a guard block that no PE may touch.
 struct Memory {
     std::vector<float> arrived, pixels;  // [PE][3][band], [PE][3][capacity]: pixels or their sums
     std::vector<std::uint8_t> marks;     // [PE][capacity]
@@ -43,7 +43,7 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b, std::size_t fro
     return from == to || std::memcmp(a.data() + from, b.data() + from, (to - from) * sizeof(T)) == 0;
 }
 
-/// Whether the memories agree to the bit in the blocks first..end-1.
+/// Returns true if the memories have the same bits in the blocks first..end-1.
 bool same_blocks(const Launch& l, const Memory& a, const Memory& b, std::size_t first, std::size_t end) {
     const std::size_t band = 3 * l.band, block = 3 * l.capacity;
     return same_bits(a.arrived, b.arrived, first * band, end * band) &&
@@ -51,7 +51,7 @@ bool same_blocks(const Launch& l, const Memory& a, const Memory& b, std::size_t 
            same_bits(a.marks, b.marks, first * l.capacity, end * l.capacity);
 }
 
-/// The kernel of a step, which may hold a fault.
+/// The kernel of a step, possibly with an injected fault.
 class Runner {
   public:
     Runner(Session& session, Step step, std::uint32_t group, const std::string& format,
@@ -120,7 +120,7 @@ class Runner {
     Kernels kernels_;
 };
 
-/// A launch as an exchange makes it: of a block that holds neighbours, mostly.
+/// A launch as in an exchange, mostly of a block that contains neighbours.
 Launch random_launch(SplitMix& random) {
     Launch l{.m = small_mapping(random, 9), .side = random_below(random, RAYA_SIDES)};
     const std::vector<std::uint32_t> distances = neighbour_distances(l.m, l.side);
@@ -133,7 +133,7 @@ Launch random_launch(SplitMix& random) {
     return l;
 }
 
-/// Colours around 0..1, and a mark here and there.
+/// Random colours around 0..1, and marks for every eighth pixel.
 Memory random_memory(SplitMix& random, const Launch& l) {
     const auto colours = [&](std::size_t count) {
         std::vector<float> words(count);
@@ -146,8 +146,8 @@ Memory random_memory(SplitMix& random, const Launch& l) {
     return memory;
 }
 
-/// Poison in everything but what PE i may read: its own memory, and of the block that has arrived in it the pixels that
-/// the sender has (a band that ends behind the sender's share is stale there).
+/// Poisons all memory that the PE may not read. It may read its own memory, except pixels of the arrived block beyond
+/// the end of the sender's share, which are stale.
 Memory poisoned(SplitMix& random, const Launch& l, const Memory& clean, std::size_t pe) {
     const float poison = random.next() % 2 ? std::numeric_limits<float>::quiet_NaN() : 1e30f;
     Memory memory = clean;
@@ -164,9 +164,9 @@ Memory poisoned(SplitMix& random, const Launch& l, const Memory& clean, std::siz
 }
 
 struct Findings {
-    int poison_read = 0;    // PEs whose result another PE's memory, or stale words, changed
-    int stray_writes = 0;   // PEs that changed more than their own block
-    int blocks_worked = 0;  // PEs whose block a launch changed: without them nothing is shown
+    int poison_read = 0;    // PEs whose result depends on another PE's memory or on stale words
+    int stray_writes = 0;   // PEs that wrote outside their own block
+    int blocks_worked = 0;  // PEs whose block a launch changed; if 0, the test is void
 };
 
 Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
@@ -178,13 +178,13 @@ Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
         for (int choice = 0; choice < 2; ++choice) {
             const std::size_t pe = random_below(random, l.m.pes);
             const Memory seen = runner.run(l, poisoned(random, l, before, pe), l.m.pes);
-            Memory expected = after;  // but for the stale words, which stay what they were
+            Memory expected = after;  // except stale words, which do not change
             const auto at = static_cast<std::ptrdiff_t>(3 * pe * l.band);
             std::copy_n(seen.arrived.begin() + at, 3 * l.band, expected.arrived.begin() + at);
             found.poison_read += !same_blocks(l, expected, seen, pe, pe + 1);
             found.blocks_worked += !same_blocks(l, before, after, pe, pe + 1);
         }
-        // What the last of the first `groups` PEs adds to the work of those before it.
+        // The writes of the last of the first `groups` PEs.
         const std::size_t groups = 1 + random_below(random, l.m.pes);
         const Memory without = runner.run(l, before, groups - 1), with = runner.run(l, before, groups);
         found.stray_writes += !same_blocks(l, without, with, 0, groups - 1) ||
@@ -197,11 +197,11 @@ struct Fault {
     const char* what;
     Step step;
     SourcePatch patch;
-    bool reads, writes;  // which of the two findings must show it
+    bool reads, writes;  // the findings that must detect it
 };
 
 const Fault kFaults[] = {
-    {"the block that arrived next door",
+    {"the block that arrived in the next PE",
      Step::kAddNeighbours,
      {"ring/arrived.clh", "arrived + (size_t)group * band", "arrived + (size_t)((group + 1) % m.pes) * band"},
      true,
@@ -216,14 +216,14 @@ const Fault kFaults[] = {
      {"ring/arrived.clh", "a.sender = raya_share_of(m, a.source)", "a.sender = a.share"},
      true,
      false},
-    {"the sums next door",
+    {"the sums of the next PE",
      Step::kAddNeighbours,
      {"ring/filter.cl",
       "(size_t)group * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)",
       "(size_t)(group + 1) * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)"},
      false,
      true},
-    {"the sums next door",
+    {"the sums of the next PE",
      Step::kTakeMeans,
      {"ring/filter.cl", "(size_t)group * capacity * 3;\n    const uint end = min(capacity, raya_share_size(share)",
       "(size_t)(group + 1) * capacity * 3;\n    const uint end = min(capacity, raya_share_size(share)"},
@@ -239,13 +239,13 @@ const Fault kFaults[] = {
      {"ring/filter.cl", "min(capacity, raya_share_size(share))", "raya_share_size(share) + 1"},
      false,
      true},
-    {"the pixels next door",
+    {"the pixels of the next PE",
      Step::kMarkContrasts,
      {"ring/contrast.cl", "pixels + (size_t)group * capacity",
       "pixels + (size_t)((group + 1) % block.mapping.pes) * capacity"},
      true,
      false},
-    {"the marks next door",
+    {"the marks of the next PE",
      Step::kMarkContrasts,
      {"ring/contrast.cl", "marks + (size_t)group * capacity", "marks + (size_t)(group + 1) * capacity"},
      false,
@@ -254,12 +254,12 @@ const Fault kFaults[] = {
 
 }  // namespace
 
-TEST_CASE("poison in other PEs' memory changes no PE's result, and none writes there", "[ring][exchange]") {
+TEST_CASE("no PE reads or writes another PE's memory", "[ring][exchange]") {
     constexpr std::uint64_t kSeed = 13;
     Session session(choose_device(""));
     for (const Step step : kSteps)
         for (const std::uint32_t group : {1u, 3u}) {
-            const std::string format = group == 1 ? "fp32" : "e6m15";  // a build of a kernel takes most of the time
+            const std::string format = group == 1 ? "fp32" : "e6m15";  // few builds: they take most of the time
             CAPTURE(kSeed, step_name(step), group, format);
             Runner runner(session, step, group, format);
             const Findings found = find_faults(runner, kSeed + group, 100);
@@ -269,7 +269,7 @@ TEST_CASE("poison in other PEs' memory changes no PE's result, and none writes t
         }
 }
 
-TEST_CASE("kernels that reach into another PE are found out", "[ring][exchange]") {
+TEST_CASE("injected accesses to another PE's memory are detected", "[ring][exchange]") {
     constexpr std::uint64_t kSeed = 14;
     Session session(choose_device(""));
     for (const Fault& fault : kFaults) {

@@ -1,4 +1,4 @@
-// Scenes whose images are known beforehand, through the kernels.
+// Scenes whose images are known analytically, rendered by the kernels.
 #include <catch2/catch.hpp>
 
 #include "tests/ring/render_scene.hpp"
@@ -31,7 +31,7 @@ TEST_CASE("a sphere of Kd = 1 without lights is as bright as the ambient light",
     for (const float value : result.image.rgb) CHECK(value == 1.0f);
 }
 
-TEST_CASE("a perfect mirror in a uniform surrounding cannot be seen", "[ring]") {
+TEST_CASE("a perfect mirror in uniform surroundings is invisible", "[ring]") {
     Scene scene = dark_scene();
     scene.background = {0.25, 0.5, 0.75};
     scene.surfaces = {{.diffuse = 0, .specular = 1}, {.diffuse = 0, .transmittance = 1, .refraction = 1.5}};
@@ -43,7 +43,7 @@ TEST_CASE("a perfect mirror in a uniform surrounding cannot be seen", "[ring]") 
         CHECK(result.image.rgb[i] == Approx(0.25 * double(1 + i % 3)).epsilon(1e-6));
 }
 
-TEST_CASE("between two mirrors the light is a geometric series, one term a bounce", "[ring]") {
+TEST_CASE("the light between two mirrors is a geometric series with one term per bounce", "[ring]") {
     Scene scene = dark_scene();
     scene.view.from = {0, 0, 0.5};
     scene.view.at = {0, 0, 1};
@@ -59,7 +59,7 @@ TEST_CASE("between two mirrors the light is a geometric series, one term a bounc
     }
 }
 
-TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre and has no light at its rim",
+TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre and half way to its rim",
           "[ring]") {
     Scene scene = dark_scene();
     scene.lights = {{{0, 0, 0}, Colour(1, 1, 1)}};
@@ -71,14 +71,15 @@ TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre
     CHECK(pixel(result, 32, 32, 1) == Approx(0.2 * (ambient + 1) + 0.3).epsilon(1e-5));
     CHECK(pixel(result, 32, 32, 2) == Approx(0.3).epsilon(1e-5));
     CHECK(pixel(result, 0, 0, 0) == 0);
-    // Half way to the rim, seen from the eye: sin(a) = 5 sin(b) for the normal's angle a + b against the ray's angle b.
+    // Half way to the rim, as seen from the eye: the ray's angle is b, and a with sin(a) = 5 sin(b) is its angle to the
+    // normal.
     const double slope = std::tan(20 * M_PI / 180) * 16 / 32.5, b = std::atan(slope), a = std::asin(5 * std::sin(b));
     const double along = std::cos(a), mirror = std::cos(2 * a);
     const double highlight = mirror > 0 ? 0.3 * std::pow(mirror, 20) : 0;
     CHECK(pixel(result, 32, 48, 0) == Approx(0.4 * (ambient + along) + highlight).epsilon(1e-4));
 }
 
-TEST_CASE("glass of index 1 cannot be seen, and a ray through the centre of a glass sphere goes straight", "[ring]") {
+TEST_CASE("glass of index 1 is invisible, and a ray through the centre of a glass sphere is not deflected", "[ring]") {
     Scene scene = dark_scene();
     scene.surfaces = {{.diffuse = 0, .transmittance = 1, .refraction = 1},
                       {.colour = {0.2, 0.6, 1}, .checker = Checker{{1, 0, 0}, {0, 0, 1}, 0.37}}};

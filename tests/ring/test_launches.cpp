@@ -1,4 +1,4 @@
-// Launches of trace end by themselves after a bounded amount of work, keep their trees, and the next ones go on.
+// Launches of trace end after a bounded amount of work and save their ray trees; the next launches continue them.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -12,14 +12,14 @@
 namespace raya {
 namespace {
 
-struct LoadsAnswer {
+struct LaunchResult {
     std::string hash;
     EventCounts events;
     std::vector<std::uint64_t> loads, costs;
-    bool operator==(const LoadsAnswer&) const = default;
+    bool operator==(const LaunchResult&) const = default;
 };
 
-LoadsAnswer loads_answer(const RingResult& r) {
+LaunchResult launch_result_of(const RingResult& r) {
     return {pixel_hash(r.image), r.all.events, r.all.load.per_pe, r.cost().cycles};
 }
 
@@ -50,14 +50,14 @@ RingSettings random_settings(SplitMix& random, const AccelKind accel) {
 
 }  // namespace
 
-TEST_CASE("however little a launch may do, image, counts and costs are the same", "[ring][slow]") {
+TEST_CASE("image, counts and costs do not depend on the work per launch", "[ring][slow]") {
     const auto accel = GENERATE(AccelKind::kNone, AccelKind::kGrid, AccelKind::kBvh);
     const Scene scene = project_scene("centre");
     Session session(choose_device(""));
     const std::uint64_t seed = 20261122;
     SplitMix random(seed);
     const unsigned cases = quick_cases(40, 200);
-    unsigned more = 0;  // that took several launches
+    unsigned more = 0;  // cases that took several launches
     for (unsigned i = 0; i < cases; ++i) {
         RingSettings settings = random_settings(random, accel);
         CAPTURE(accel, seed, i, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
@@ -67,12 +67,12 @@ TEST_CASE("however little a launch may do, image, counts and costs are the same"
         const RingResult cut = RingRenderer(session, scene, settings).render();
         CAPTURE(settings.work_per_launch);
         more += launches_of(cut) > launches_of(whole);
-        CHECK(loads_answer(cut) == loads_answer(whole));
+        CHECK(launch_result_of(cut) == launch_result_of(whole));
     }
     CHECK(2 * more > cases);
 }
 
-TEST_CASE("a launch may do a turn of its loop and no more, and still all comes to its end", "[ring]") {
+TEST_CASE("a render completes if each launch runs one iteration of its loop", "[ring]") {
     const Scene scene = project_scene("glass");
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 12, .height = 9, .pes = 3, .group = 1});
@@ -80,11 +80,11 @@ TEST_CASE("a launch may do a turn of its loop and no more, and still all comes t
     const RingResult whole = RingRenderer(session, scene, settings).render();
     settings.work_per_launch = 1;
     const RingResult cut = RingRenderer(session, scene, settings).render();
-    CHECK(loads_answer(cut) == loads_answer(whole));
-    CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more than one for the pixels of a lane
+    CHECK(launch_result_of(cut) == launch_result_of(whole));
+    CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more than one per pixel of a lane
 }
 
-TEST_CASE("launches report progress, which never goes back, as soon as a pixel a lane is done", "[ring]") {
+TEST_CASE("launches report monotonic progress, first when each lane has done a few pixels", "[ring]") {
     const Scene scene = project_scene("centre");
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 96, .height = 96, .pes = 4});
@@ -97,36 +97,35 @@ TEST_CASE("launches report progress, which never goes back, as soon as a pixel a
     CHECK(reported.size() > 1);
     CHECK(reported.front() < 6 * first.lanes * first.group_size / (96 * 96 / 4.0));
     CHECK(reported.back() == 1);
-    CHECK(launches_of(renderer.render()) == 1);  // nobody watches, and it takes less than a second
+    CHECK(launches_of(renderer.render()) == 1);  // no progress callback, and less than a second of work
     settings.work_per_launch = 5000;
     RingRenderer sliced(session, scene, settings);
     reported.clear();
     const RingResult second = sliced.render(report);
     CHECK(std::is_sorted(reported.begin(), reported.end()));
     CHECK(reported.back() == 1);
-    CHECK(loads_answer(second) == loads_answer(first));
+    CHECK(launch_result_of(second) == launch_result_of(first));
     CHECK(launches_of(second) == reported.size());
     CHECK(reported.size() > 4);
 }
 
-bool is_seen(Session& session, const Scene& scene, const RingSettings& settings, const LoadsAnswer& right) {
+bool is_detected(Session& session, const Scene& scene, const RingSettings& settings, const LaunchResult& right) {
     try {
-        return !(loads_answer(RingRenderer(session, scene, settings).render()) == right);
+        return !(launch_result_of(RingRenderer(session, scene, settings).render()) == right);
     } catch (const DeviceError&) {  // pixels are counted
         return true;
     }
 }
 
-// What the state's faults would look like, and a device that ends loops in silence.
-TEST_CASE("faults in what launches keep are seen", "[ring][faults]") {
+TEST_CASE("every injected fault in the state saved between launches is detected", "[ring][faults]") {
     const SourcePatch faults[] = {
-        {"ring/kept_trees.clh", "    keep_index(k, &t->level);\n", ""},
-        {"ring/kept_trees.clh", "    keep_vec(k, &sum);\n", ""},
-        {"ring/kept_trees.clh", "if (mask_any((t->waits.all & (index)(1u << level)) != (index)(0)))",
+        {"ring/saved_trees.clh", "    save_index(k, &t->level);\n", ""},
+        {"ring/saved_trees.clh", "    save_vec(k, &sum);\n", ""},
+        {"ring/saved_trees.clh", "if (mask_any((t->waits.all & (index)(1u << level)) != (index)(0)))",
          "if (level == 0)"},
-        {"ring/kept_trees.clh", "keep_index(k, &t->events[e].all)", ""},
-        {"ring/kept_trees.clh", "    keep_vec(k, &p->colour);\n", ""},
-        {"ring/trace.cl", "const int goes_on = progress[group].left > 0;", "const int goes_on = 0;"},
+        {"ring/saved_trees.clh", "save_index(k, &t->events[e].all)", ""},
+        {"ring/saved_trees.clh", "    save_vec(k, &p->colour);\n", ""},
+        {"ring/trace.cl", "const int resumes = progress[group].left > 0;", "const int resumes = 0;"},
         {"ring/trace.cl", "progress[group].left = mine->left;", "progress[group].left = 0;"},
     };
     const Scene scene = project_scene("glass");
@@ -135,15 +134,15 @@ TEST_CASE("faults in what launches keep are seen", "[ring][faults]") {
     c.antialias.method = AntialiasMethod::kSupersample;
     RingSettings settings = settings_of(c);
     settings.work_per_launch = 300;
-    const LoadsAnswer right = loads_answer(RingRenderer(session, scene, settings).render());
+    const LaunchResult right = launch_result_of(RingRenderer(session, scene, settings).render());
     for (const SourcePatch& fault : faults) {
         CAPTURE(fault.file, fault.find);
         settings.kernels.sources.patches = {fault};
-        CHECK(is_seen(session, scene, settings, right));
+        CHECK(is_detected(session, scene, settings, right));
     }
 }
 
-// A launch of more work than this is cut: counts, costs, pixels and kept trees are wrong afterwards.
+// A launch of more work than this is cut: counts, costs, pixels and saved trees are wrong afterwards.
 constexpr std::uint32_t kUncut = 40;
 
 std::vector<SourcePatch> cut_launches() {
@@ -153,13 +152,13 @@ std::vector<SourcePatch> cut_launches() {
                  "        atomic_inc(&mine->cut);\n"
                  "        for (uint e = 0; e < RAYA_EVENTS; ++e) counted[e] += 1000;\n"
                  "        for (uint i = item; i < capacity; i += RAYA_GROUP) store.pixels[i] = store.cycles[i] = 7;\n"
-                 "        for (uint w = 0; w < 3; ++w) kept[(w * get_global_size(0) + get_global_id(0)) * RAYA_LANES] "
+                 "        for (uint w = 0; w < 3; ++w) saved[(w * get_global_size(0) + get_global_id(0)) * RAYA_LANES] "
                  "= 9;\n"
                  "    }}",
                  kUncut)}};
 }
 
-TEST_CASE("a launch whose loops are cut is repeated with half the work, and nothing of it remains", "[ring]") {
+TEST_CASE("a launch whose loops are cut is repeated with half the work, and its results are discarded", "[ring]") {
     const auto accel = GENERATE(AccelKind::kNone, AccelKind::kGrid, AccelKind::kBvh);
     const auto method = GENERATE(AntialiasMethod::kNone, AntialiasMethod::kSupersample);
     CAPTURE(accel, antialias_name(method));
@@ -173,11 +172,11 @@ TEST_CASE("a launch whose loops are cut is repeated with half the work, and noth
     settings.kernels.sources.patches = cut_launches();
     session.launch_limit(kTracePass) = session.launch_limit(kSupersamplePass) = 300;
     const RingResult first = RingRenderer(session, scene, settings).render();
-    CHECK(loads_answer(first) == loads_answer(whole));
+    CHECK(launch_result_of(first) == launch_result_of(whole));
     CHECK(session.launch_limit(kTracePass) == 37);
     CHECK(session.launch_limit(kSupersamplePass) == (method == AntialiasMethod::kNone ? 300 : 37));
     const RingResult second = RingRenderer(session, scene, settings).render();
-    CHECK(loads_answer(second) == loads_answer(whole));
+    CHECK(launch_result_of(second) == launch_result_of(whole));
     CHECK(launches_of(second) == launches_of(first) - (method == AntialiasMethod::kNone ? 3 : 6));  // 300, 150, 75
 }
 
@@ -186,7 +185,7 @@ TEST_CASE("a device that ends loops early is an error, not an image", "[ring]") 
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 20, .height = 15, .pes = 4});
     settings.kernels.sources.patches = {{"shared/loop_canary.clh", "i < two", "i < two - 1"}};
-    for (const std::uint32_t limit : {UINT32_MAX, 300u}) {  // not repeated, and repeated down to the smallest launch
+    for (const std::uint32_t limit : {UINT32_MAX, 300u}) {  // not repeated; repeated down to the smallest launch
         session.launch_limit(kTracePass) = limit;
         CHECK_THROWS_WITH(RingRenderer(session, scene, settings).render(),
                           Catch::Contains("has ended loops early") && Catch::Contains("remedy"));

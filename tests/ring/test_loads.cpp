@@ -1,5 +1,4 @@
-// The loads of the PEs are the sums of their pixels' costs: what the kernels count for a PE, and what they count for a
-// pixel, are the same events.
+// The load of a PE is the sum of its pixels' costs: the kernels count the same events per PE and per pixel.
 #include <catch2/catch.hpp>
 
 #include "host/ring/schedule.hpp"

@@ -1,4 +1,4 @@
-// Mappings of an image onto PEs: what their parts come to, their text, and what is refused with which words.
+// Mappings of an image onto PEs: their parameters, their text, and the messages that refuse invalid ones.
 #include <catch2/catch.hpp>
 #include <cstdint>
 
@@ -33,7 +33,7 @@ TEST_CASE("a mapping has the image's size, its PEs and its rule's parameter", "[
     CHECK(make_mapping(grid_mapping(16'384, 16'384), {16'384, 16'384}, 268'435'456).pes == 268'435'456);
 }
 
-TEST_CASE("a rule knows its PEs where it is a grid's", "[mapping]") {
+TEST_CASE("only a grid rule determines the number of PEs", "[mapping]") {
     CHECK(grid_mapping(3, 50).pes() == 150u);
     CHECK(grid_mapping(16'384, 16'384).pes() == 268'435'456u);
     for (const MappingRule& rule : {cyclic_mapping(3), column_mapping(), rows_mapping(), blocks_mapping(),
@@ -44,7 +44,7 @@ TEST_CASE("a rule knows its PEs where it is a grid's", "[mapping]") {
     CHECK_FALSE(random_mapping(3).has_slots());
 }
 
-TEST_CASE("no two mappings have the same text, but for the fold", "[mapping]") {
+TEST_CASE("the text of a mapping identifies it, except for the fold", "[mapping]") {
     CHECK(mapping_text(cyclic_mapping(16)) == "cyclic:16");
     CHECK(mapping_text(cyclic_mapping(16, Fold::kBlock)) == "cyclic:16");
     CHECK(mapping_text(column_mapping()) == "cyclic:0");
@@ -55,7 +55,7 @@ TEST_CASE("no two mappings have the same text, but for the fold", "[mapping]") {
     CHECK(mapping_text(random_mapping(99)) == "random:99");
 }
 
-TEST_CASE("a mapping that cannot be is refused with what would be right", "[mapping]") {
+TEST_CASE("an invalid mapping is refused with the valid range or a valid value", "[mapping]") {
     const auto refuses = [](const MappingRule& rule, const ImageSize& image, std::uint32_t pes, const auto& message) {
         CHECK_THROWS_AS(make_mapping(rule, image, pes), UserError);
         CHECK_THROWS_WITH(make_mapping(rule, image, pes), message);
@@ -68,10 +68,10 @@ TEST_CASE("a mapping that cannot be is refused with what would be right", "[mapp
     refuses(rows_mapping(), {8, 6}, 49, Contains("--pes 49") && Contains("1..48"));
     refuses(cyclic_mapping(8), {8, 6}, 8, Contains("--mapping cyclic:8") && Contains("0..7"));
     refuses(grid_mapping(3, 4), {8, 6}, 8,
-            Contains("--pes 8 with --mapping grid:3x4") && Contains("12 PEs") && Contains("or give 12"));
+            Contains("--pes 8 with --mapping grid:3x4") && Contains("12 PEs") && Contains("or use 12"));
     refuses(grid_mapping(7, 7), {8, 6}, 49, Contains("--mapping grid:7x7: 49 PEs") && Contains("1..48"));
     refuses(tiles_mapping(9, 25), {320, 200}, 8,
             Contains("--mapping tiles:9x25") && Contains("320 x 200") && Contains("tiles:8x25"));
     refuses(tiles_mapping(320, 99), {320, 200}, 8, Contains("tiles:320x100"));
-    refuses(tiles_mapping(16'384, 3), {7, 200}, 8, Contains("tiles:7x2"));  // 2 and 4 are as near: the lesser
+    refuses(tiles_mapping(16'384, 3), {7, 200}, 8, Contains("tiles:7x2"));  // 2 and 4 are equally near: the smaller
 }

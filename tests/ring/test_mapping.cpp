@@ -1,4 +1,4 @@
-// The slot mappings: every pixel has one owner, the formulas both ways agree, and neighbours lie where the paper says.
+// Slot mappings: every pixel has one owner, owner and share formulas agree, and neighbours are where the paper says.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -12,7 +12,7 @@ using namespace raya;
 
 namespace {
 
-/// The owner as the words of mapping.h define it, in signed numbers and without its formulas' shortcuts.
+/// The owner by the definition in mapping.h, in signed numbers and without the shortcuts of its formulas.
 std::int64_t defined_owner(const raya_mapping& m, std::int64_t row, std::int64_t column) {
     const std::int64_t width = m.width, height = m.height, pes = m.pes;
     std::int64_t slot = (column - row * m.parameter) % width;
@@ -31,7 +31,7 @@ std::uint32_t ceil_ratio(std::uint32_t a, std::uint32_t b) { return (a + b - 1) 
 
 }  // namespace
 
-TEST_CASE("every pixel has exactly one owner, and shares are as even as the fold allows", "[mapping]") {
+TEST_CASE("slot mappings: every pixel has one owner, and shares are as even as the fold allows", "[mapping]") {
     constexpr std::uint64_t kSeed = 1;
     SplitMix random(kSeed);
     for (int i = 0; i < 600; ++i) {
@@ -42,7 +42,7 @@ TEST_CASE("every pixel has exactly one owner, and shares are as even as the fold
         CHECK(strays(m, defined, sizes) == 0);
         const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
         CHECK(largest_share(m) == *most);
-        if (m.pes <= m.width) {  // PEs own whole slots, of which they have W / P rounded down or up
+        if (m.pes <= m.width) {  // a PE owns W / P whole slots, rounded down or up
             CHECK(*least == m.width / m.pes * m.height);
             CHECK(*most == ceil_ratio(m.width, m.pes) * m.height);
         } else {  // P / W PEs, rounded down or up, share the H pixels of a slot
@@ -52,7 +52,7 @@ TEST_CASE("every pixel has exactly one owner, and shares are as even as the fold
     }
 }
 
-TEST_CASE("with a PE for each column the cyclic mapping is the paper's", "[mapping]") {
+TEST_CASE("cyclic mapping with one PE per column: owners and neighbours are the paper's", "[mapping]") {
     constexpr std::uint64_t kSeed = 2;
     SplitMix random(kSeed);
     for (int i = 0; i < 100; ++i) {
@@ -75,7 +75,7 @@ TEST_CASE("with a PE for each column the cyclic mapping is the paper's", "[mappi
     }
 }
 
-TEST_CASE("with p = n and P = n x n every n x n block has one pixel of each PE", "[mapping]") {
+TEST_CASE("cyclic mapping with p = n and P = n x n: every n x n block has one pixel of each PE", "[mapping]") {
     const raya_mapping m{256, 256, 256, 16, RAYA_FOLD_CYCLIC};
     for (const std::uint32_t top : {0u, 7u, 240u})
         for (const std::uint32_t left : {0u, 100u, 240u}) {
@@ -87,7 +87,7 @@ TEST_CASE("with p = n and P = n x n every n x n block has one pixel of each PE",
         }
 }
 
-TEST_CASE("block folds own runs: of slots where P < W, of a slot's rows where P > W", "[mapping]") {
+TEST_CASE("block fold: a PE owns a run of slots if P < W, a run of a slot's rows if P > W", "[mapping]") {
     const raya_mapping few{10, 3, 4, 0, RAYA_FOLD_BLOCK};  // floor(c 4 / 10)
     std::vector<std::uint32_t> owners;
     for (std::uint32_t x = 0; x < 10; ++x) owners.push_back(raya_owner(few, 2, x));
@@ -99,7 +99,7 @@ TEST_CASE("block folds own runs: of slots where P < W, of a slot's rows where P 
     CHECK(owners == std::vector<std::uint32_t>{0, 0, 0, 1, 1, 2, 2, 3, 3, 4});
 }
 
-TEST_CASE("the largest images and arrays keep to the definition", "[mapping]") {
+TEST_CASE("slot mappings of the largest images and arrays agree with the definition", "[mapping]") {
     constexpr std::uint64_t kSeed = 3;
     constexpr std::uint32_t kSide = kLargestSide, kPixels = kSide * kSide;
     SplitMix random(kSeed);

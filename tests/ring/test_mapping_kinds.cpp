@@ -1,5 +1,5 @@
-// The mappings without slots: every pixel has one owner, the one that a painter of the definition gives it, and shares
-// are as even as the kind promises. And the scramble of the random mapping.
+// The mappings without slots: every pixel has one owner, that of the definition, and shares are as even as the kind
+// guarantees. And the permutation of the random mapping.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -18,7 +18,7 @@ using Owners = std::vector<std::uint32_t>;  // [row][column]
 
 constexpr std::uint32_t kKinds[] = {RAYA_ROWS, RAYA_BLOCKS, RAYA_GRID, RAYA_TILES, RAYA_RANDOM};
 
-/// Gives `pe` every `step_down`-th line from `top`, of it every `step_across`-th pixel from `left`, up to the ends.
+/// Assigns every `step_across`-th pixel of every `step_down`-th line, from `top` and `left` on, to `pe`.
 struct Brush {
     std::uint32_t top, step_down, bottom, left, step_across, right;
 };
@@ -48,7 +48,7 @@ Owners painted_tiles(const raya_mapping& m) {
     return owners;
 }
 
-/// Pixels in the order in which they are dealt to the PEs, like cards: the scramble is what it is, see its own tests.
+/// Assigns the permuted pixels to the PEs in turn; the permutation has its own tests.
 Owners dealt_at_random(const raya_mapping& m) {
     Owners owners(m.width * m.height);
     for (std::uint32_t n = 0; n < owners.size(); ++n)
@@ -56,7 +56,7 @@ Owners dealt_at_random(const raya_mapping& m) {
     return owners;
 }
 
-/// The mapping as the words of mapping.h define it, PE after PE and without its formulas.
+/// The owners by the definition in mapping.h, PE after PE and without its formulas.
 Owners painted(const raya_mapping& m) {
     if (m.kind == RAYA_BLOCKS) return painted_blocks(m);
     if (m.kind == RAYA_TILES) return painted_tiles(m);
@@ -80,7 +80,7 @@ std::uint64_t wide_owner(const raya_mapping& m, std::uint64_t row, std::uint64_t
     return raya_scramble(static_cast<std::uint32_t>(row * width + column), m.width * m.height, m.parameter) % m.pes;
 }
 
-/// By how many pixels shares may differ: a line, a tile, a pixel.
+/// The maximum difference between two shares, in pixels: a line, a tile or a pixel.
 std::uint32_t unevenness(const raya_mapping& m) {
     if (m.kind == RAYA_RANDOM) return 1;
     if (m.kind == RAYA_TILES) return raya_first_of(m.parameter) * raya_second_of(m.parameter);
@@ -89,7 +89,7 @@ std::uint32_t unevenness(const raya_mapping& m) {
 
 }  // namespace
 
-TEST_CASE("rows, blocks, grid, tiles, random: every pixel has one owner, shares are even", "[mapping]") {
+TEST_CASE("rows, blocks, grid, tiles, random: every pixel has one owner, and shares are even", "[mapping]") {
     constexpr std::uint64_t kSeed = 21;
     SplitMix random(kSeed);
     std::uint32_t idle = 0;
@@ -124,7 +124,7 @@ TEST_CASE("a grid's PEs own one pixel of every A x B rectangle", "[mapping]") {
     }
 }
 
-TEST_CASE("the largest images and arrays of every kind keep to the definition", "[mapping]") {
+TEST_CASE("mappings of every kind agree with the definition on the largest images and arrays", "[mapping]") {
     constexpr std::uint64_t kSeed = 22;
     constexpr std::uint32_t kSide = kLargestSide, kPixels = kSide * kSide;
     SplitMix random(kSeed);
@@ -156,7 +156,7 @@ TEST_CASE("the largest images and arrays of every kind keep to the definition", 
     }
 }
 
-TEST_CASE("the scramble is a bijection of every count of numbers, and its inverse undoes it", "[mapping]") {
+TEST_CASE("random mapping: the scramble is a bijection for every count, and unscramble inverts it", "[mapping]") {
     for (std::uint32_t count = 1; count <= 600; ++count)
         for (const std::uint32_t seed : {0u, 1u, 2u, 0x80000000u, 0xffffffffu}) {
             std::vector<bool> seen(count);
@@ -171,7 +171,7 @@ TEST_CASE("the scramble is a bijection of every count of numbers, and its invers
         }
 }
 
-TEST_CASE("a seed always gives the same random mapping, another seed another one", "[mapping]") {
+TEST_CASE("random mapping: the seed determines the mapping, and different seeds give independent ones", "[mapping]") {
     const auto owners = [](std::uint32_t seed) { return painted({64, 64, 16, seed, RAYA_RANDOM}); };
     constexpr std::uint32_t kSeeds = 50;
     std::vector<Owners> all;
@@ -184,12 +184,12 @@ TEST_CASE("a seed always gives the same random mapping, another seed another one
             apart += same > 176 && same < 336;  // 4096 / 16 = 256, standard deviation 15.5: five of them either way
         }
     CHECK(apart == pairs);
-    // Written down once: a report that says random:1 means this mapping for ever.
+    // A recorded result: random:1 in a report must always mean this mapping.
     const Owners first(all[1].begin(), all[1].begin() + 12);
     CHECK(first == Owners{12, 9, 15, 13, 2, 10, 13, 10, 14, 10, 14, 5});
 }
 
-TEST_CASE("a random mapping shows no order: neighbours' owners are independent", "[mapping]") {
+TEST_CASE("random mapping: the owners of neighbouring pixels are independent", "[mapping]") {
     constexpr std::uint32_t kPes = 16;
     for (const std::uint32_t seed : {1u, 2u, 3u, 1000u})
         for (const std::uint32_t side : {64u, 100u, 256u}) {

@@ -1,4 +1,4 @@
-// Promise 1: the pixels do not depend on how the work is spread, nor on the device's lanes, groups or optimiser.
+// Guarantee 1: the pixels do not depend on the distribution of the work, nor on lanes, group size or optimiser.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -8,7 +8,7 @@
 namespace raya {
 namespace {
 
-// One scene with every kind of object and surface: the polygons' scene with the others' objects in it.
+// A scene with every kind of object and surface: the polygons scene plus the objects of three others.
 Scene mixed_scene() {
     Scene scene = project_scene("polygons");
     for (const char* name : {"cones", "glass", "mirrors"}) {
@@ -85,9 +85,9 @@ TEST_CASE("the mapping's kind changes no bit of the image and no count, smoothed
     struct Row {
         MappingRule mapping;
         std::uint32_t pes,
-            supersampled_in;  // smoothed: in groups of so many by supersampling, of the other number by the filter
+            supersampled_in;  // the group size for supersampling; the filter uses the other one
     };
-    // where PEs outnumber lines or tiles, some are idle
+    // If PEs outnumber lines or tiles, some are idle.
     const Row rows[] = {{rows_mapping(), 5, 1},      {rows_mapping(), 40, 4},      {blocks_mapping(), 5, 4},
                         {blocks_mapping(), 40, 1},   {grid_mapping(3, 4), 12, 4},  {grid_mapping(20, 5), 100, 1},
                         {tiles_mapping(6, 3), 7, 1}, {tiles_mapping(8, 9), 40, 4}, {random_mapping(7), 13, 1},
@@ -103,13 +103,13 @@ TEST_CASE("the mapping's kind changes no bit of the image and no count, smoothed
             if (smoothed && row.mapping.kind == RAYA_RANDOM)
                 CHECK_THROWS_WITH(
                     render_scene(scene, c),
-                    Catch::Contains("--mapping random") && Catch::Contains("neighbours live on PEs all over the ring"));
+                    Catch::Contains("--mapping random") && Catch::Contains("neighbours are on PEs all over the ring"));
             else
                 CHECK(answer_of(render_scene(scene, c)) == expected);
         }
 }
 
-TEST_CASE("any image size is traced whole, whatever is left over for the last lane", "[ring]") {
+TEST_CASE("images of any size are traced completely, even if pixels do not fill all lanes", "[ring]") {
     const Scene scene = project_scene("glass");
     const std::uint32_t seed = 20251;
     std::mt19937 random(seed);
@@ -131,7 +131,7 @@ TEST_CASE("any image size is traced whole, whatever is left over for the last la
     }
 }
 
-TEST_CASE("a PE too small for its share is gathered block by block, with the same image", "[ring]") {
+TEST_CASE("a share larger than a PE's memory is gathered block by block, with the same image", "[ring]") {
     const Scene scene = project_scene("centre");
     const RingResult whole = render_scene(scene, {.width = 128, .height = 128, .pes = 128, .machine = "spa"});
     const RingResult blocks = render_scene(scene, {.width = 128, .height = 128, .pes = 1, .machine = "spa"});
@@ -142,7 +142,7 @@ TEST_CASE("a PE too small for its share is gathered block by block, with the sam
     CHECK(answer_of(blocks) == answer_of(whole));
 }
 
-TEST_CASE("a second render of the same renderer gives the same answer", "[ring]") {
+TEST_CASE("a second render with the same renderer gives the same result", "[ring]") {
     Session session(choose_device(""));
     RingRenderer renderer(session, project_scene("cones"), settings_of(RingCase{}));
     const RingResult first = renderer.render(), second = renderer.render();

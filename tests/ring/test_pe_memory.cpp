@@ -1,4 +1,4 @@
-// What fits into a PE.
+// The memory plan of a PE.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <string>
@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Bytes beside words of the job and pixels: the walk through a ray tree, which grows by a waiting ray a bounce.
+/// Bytes of the ray tree's traversal stack, without the job's words and pixels; it grows by one ray per bounce.
 std::uint64_t walk_bytes(std::uint32_t bounces) {
     return plan_pe_memory(machine_named("grande"), {.scene = "s", .bounces = bounces}).bytes();
 }
@@ -27,25 +27,25 @@ PeDemand demand(std::uint64_t job_words, std::uint32_t share, AntialiasMethod me
     return {.scene = "s", .job_words = job_words, .bounces = 8, .share = share, .antialias = method};
 }
 
-/// Bytes of a PE that exchanges pixels, without those on their way round the ring: three words a pixel, as many sums
-/// or a mark.
+/// Bytes of a PE that exchanges pixels, without the pixels in transit: three words a pixel, and three words of sums or
+/// a mark.
 std::uint64_t bytes_at_rest(const PeDemand& d) {
     const std::uint64_t a_pixel = d.antialias == AntialiasMethod::kFilter ? 24 : 13;
     return 4 * d.job_words + walk_bytes(d.bounces) + a_pixel * d.share;
 }
 
-/// The longest band when the share is cut into as few equal parts as fit, each count tried in turn; 0 if none fits.
-std::uint32_t fewest_parts(std::uint32_t share, std::uint64_t room) {
+/// The longest band if the share is cut into the minimum number of equal parts that fit; 0 if none fits.
+std::uint32_t fewest_parts(std::uint32_t share, std::uint64_t free_bytes) {
     for (std::uint32_t parts = 1; parts <= share; ++parts) {
         const std::uint32_t longest = share / parts + (share % parts != 0);
-        if (12ull * longest <= room) return longest;
+        if (12ull * longest <= free_bytes) return longest;
     }
     return 0;
 }
 
 }  // namespace
 
-TEST_CASE("memory is words of the job, the walk and three words a pixel, 4 bytes each", "[ring]") {
+TEST_CASE("a PE's memory is the job's words, the traversal stack and three words a pixel, 4 bytes each", "[ring]") {
     const PeMemory memory = plan_pe_memory(machine_named("spa"), demand(1000, 256));
     CHECK(memory.job_words == 1000);
     CHECK(memory.block_pixels == 256);
@@ -55,7 +55,7 @@ TEST_CASE("memory is words of the job, the walk and three words a pixel, 4 bytes
     CHECK(walk_bytes(0) > 0);
 }
 
-TEST_CASE("anti-aliasing is charged its sums or marks, and the pixels on their way", "[ring]") {
+TEST_CASE("anti-aliasing adds sums or marks, and the pixels in transit", "[ring]") {
     const PeMemory filter = plan_pe_memory(machine_named("spa"), demand(1000, 256, AntialiasMethod::kFilter));
     CHECK((filter.block_pixels == 256 && filter.sum_pixels == 256 && filter.band_pixels == 256 && filter.marks == 0));
     CHECK(filter.bytes() == 4 * 1000 + walk_bytes(8) + (12 + 12 + 12) * 256);
@@ -75,7 +75,7 @@ TEST_CASE("a machine without a limit holds everything", "[ring]") {
     CHECK(filter.bytes() == walk_bytes(8) + (36ull << 28));
 }
 
-TEST_CASE("a share that does not fit is cut into the largest blocks that do", "[ring]") {
+TEST_CASE("a share that does not fit is cut into the largest blocks that fit", "[ring]") {
     const std::uint64_t words = 500;
     for (const std::uint32_t pixels : {1u, 2u, 99u}) {
         const std::uint64_t exact = 4 * words + walk_bytes(8) + 12 * pixels;
@@ -95,22 +95,22 @@ TEST_CASE("a share that does not fit is cut into the largest blocks that do", "[
     CHECK(one.bytes() + 12 > 32 * 1024);
 }
 
-TEST_CASE("what goes round is the whole share, or the fewest equal parts of it that fit", "[ring]") {
+TEST_CASE("PEs exchange the whole share, or the minimum number of equal parts of it that fit", "[ring]") {
     constexpr std::uint64_t kSeed = 4;
     SplitMix random(kSeed);
     int cut = 0;
     for (int i = 0; i < 1000; ++i) {
         const auto method = random.next() % 2 ? AntialiasMethod::kFilter : AntialiasMethod::kSupersample;
         const PeDemand d = demand(random.next() % 300, 1 + static_cast<std::uint32_t>(random.next() % 300), method);
-        const std::uint64_t room = 12 + random.next() % (13 * d.share);
-        CAPTURE(kSeed, i, d.job_words, d.share, room, antialias_name(method));
-        const PeMemory memory = plan_pe_memory(machine_of(bytes_at_rest(d) + room), d);
-        CHECK(memory.block_pixels == d.share);  // all are in the PE at once: neighbours may be asked for any
+        const std::uint64_t free_bytes = 12 + random.next() % (13 * d.share);
+        CAPTURE(kSeed, i, d.job_words, d.share, free_bytes, antialias_name(method));
+        const PeMemory memory = plan_pe_memory(machine_of(bytes_at_rest(d) + free_bytes), d);
+        CHECK(memory.block_pixels == d.share);  // all pixels stay in the PE: any may be a neighbour of another PE's
         CHECK(memory.sum_pixels == (method == AntialiasMethod::kFilter ? d.share : 0));
         CHECK(memory.marks == (method == AntialiasMethod::kSupersample ? d.share : 0));
-        CHECK(memory.band_pixels == fewest_parts(d.share, room));
+        CHECK(memory.band_pixels == fewest_parts(d.share, free_bytes));
         CHECK(memory.bytes() == bytes_at_rest(d) + 12ull * memory.band_pixels);
-        CHECK(memory.bytes() <= bytes_at_rest(d) + room);
+        CHECK(memory.bytes() <= bytes_at_rest(d) + free_bytes);
         cut += memory.band_pixels < d.share;
     }
     CHECK(cut > 500);
@@ -121,12 +121,12 @@ TEST_CASE("what goes round is the whole share, or the fewest equal parts of it t
     CHECK((band(100) == 100 && band(99) == 50 && band(50) == 50 && band(49) == 34 && band(1) == 1));
 }
 
-TEST_CASE("a scene that leaves no room for a pixel is refused with both figures and the remedy", "[ring]") {
+TEST_CASE("a scene that leaves no memory for a pixel is refused with both figures and the remedy", "[ring]") {
     const auto plan = [](std::uint64_t words) {
         return plan_pe_memory(machine_named("spa"),
                               {.scene = "big.nff", .job_words = words, .bounces = 8, .share = 256});
     };
-    const std::uint64_t words = (32 * 1024 - walk_bytes(8) - 12) / 4;  // the most that fit
+    const std::uint64_t words = (32 * 1024 - walk_bytes(8) - 12) / 4;  // the maximum that fits
     CHECK(plan(words).block_pixels == 1);
     try {
         plan(words + 1);
@@ -141,18 +141,19 @@ TEST_CASE("a scene that leaves no room for a pixel is refused with both figures 
                                             !Contains("more PEs"));  // every PE holds the whole scene
 }
 
-TEST_CASE("a share that leaves no room for a pixel on its way is refused with both figures and the remedy", "[ring]") {
+TEST_CASE("a share that leaves no memory for a pixel in transit is refused with both figures and the remedy",
+          "[ring]") {
     for (const auto method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
         const std::string name = antialias_name(method);
         CAPTURE(name);
         PeDemand d = demand(700, 333, method);
-        const std::uint64_t least = bytes_at_rest(d) + 12;
-        CHECK(plan_pe_memory(machine_of(least), d).band_pixels == 1);
-        CHECK_THROWS_AS(plan_pe_memory(machine_of(least - 1), d), DoesNotFit);
-        CHECK_NOTHROW(plan_pe_memory(machine_of(least - 1), demand(700, 333)));
+        const std::uint64_t minimum = bytes_at_rest(d) + 12;
+        CHECK(plan_pe_memory(machine_of(minimum), d).band_pixels == 1);
+        CHECK_THROWS_AS(plan_pe_memory(machine_of(minimum - 1), d), DoesNotFit);
+        CHECK_NOTHROW(plan_pe_memory(machine_of(minimum - 1), demand(700, 333)));
         d.scene = "wide.nff";
         d.share = 1;
-        d.job_words = (50 * 1024 - bytes_at_rest(demand(0, 1, method)) - 12) / 4;  // 50 KB but for a byte or three
+        d.job_words = (50 * 1024 - bytes_at_rest(demand(0, 1, method)) - 12) / 4;  // 50 KB, up to 3 bytes less
         CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), d),
                           Contains("wide.nff with --antialias " + name) && Contains("50.0 KB") && Contains("32 KB") &&
                               Contains("the SPA") && Contains("more PEs") && Contains("smaller image") &&

@@ -1,4 +1,4 @@
-// Rotations move every PE's block to its neighbour, bit for bit, and are counted as what they copy.
+// Rotations move every PE's block to its neighbour, bit for bit, and are counted by the words that they copy.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -17,9 +17,9 @@ using namespace raya;
 
 namespace {
 
-using Bits = std::vector<std::uint32_t>;  // floats as their bits: NaN is compared too
+using Bits = std::vector<std::uint32_t>;  // floats as bits, so that NaNs compare equal
 
-/// Words of a memory; half of them are what a copy through arithmetic would spoil.
+/// Random words; half of them are NaNs and other values that a copy through arithmetic would change.
 Bits random_words(SplitMix& random, std::size_t count) {
     const std::uint32_t odd[] = {0x80000000u, 0x7fc12345u, 0x7f800001u, 0xff923456u, 0x00000001u, 0x7f800000u};
     Bits words(count);
@@ -43,7 +43,7 @@ Buffer<float> filled(Session& session, const std::string& name, const Bits& bits
     return buffer;
 }
 
-/// Block i is what block (i + distance) mod P was.
+/// The blocks after rotation: block i is the former block (i + distance) mod P.
 Bits turned(const Bits& blocks, std::size_t pes, std::size_t distance) {
     Bits moved(blocks.size());
     const std::size_t size = blocks.size() / pes;
@@ -52,7 +52,7 @@ Bits turned(const Bits& blocks, std::size_t pes, std::size_t distance) {
     return moved;
 }
 
-/// Bytes of all copies between buffers whose label begins so.
+/// Bytes of all copies between buffers whose label starts with `label`.
 std::uint64_t copied_bytes(Session& session, const std::string& label) {
     std::uint64_t bytes = 0;
     for (const CommandRecord& command : session.profile().commands())
@@ -60,7 +60,7 @@ std::uint64_t copied_bytes(Session& session, const std::string& label) {
     return bytes;
 }
 
-/// Commands other than copies and the tests' own transfers.
+/// The number of commands that are not copies.
 std::size_t other_commands(Session& session) {
     const auto& all = session.profile().commands();
     return static_cast<std::size_t>(
@@ -71,7 +71,7 @@ constexpr std::size_t kRings[] = {1, 2, 3, 7, 64};
 
 }  // namespace
 
-TEST_CASE("a rotation hands every block to the neighbour, either way", "[ring]") {
+TEST_CASE("a rotation moves every block to the neighbour, in either direction", "[ring]") {
     Session session(choose_device(""));
     for (const std::size_t pes : kRings)
         for (const std::size_t block : {1, 3, 17, 768}) {
@@ -80,7 +80,7 @@ TEST_CASE("a rotation hands every block to the neighbour, either way", "[ring]")
         }
 }
 
-TEST_CASE("P rotations either way bring every block home", "[ring]") {
+TEST_CASE("P rotations in either direction bring every block back", "[ring]") {
     constexpr std::uint64_t kSeed = 9;
     SplitMix random(kSeed);
     Session session(choose_device(""));
@@ -100,7 +100,7 @@ TEST_CASE("P rotations either way bring every block home", "[ring]") {
         }
 }
 
-TEST_CASE("rotations are counted as the words that were copied", "[ring]") {
+TEST_CASE("rotations are counted by the words that were copied", "[ring]") {
     constexpr std::uint64_t kSeed = 10;
     SplitMix random(kSeed);
     Session session(choose_device(""));
@@ -113,7 +113,7 @@ TEST_CASE("rotations are counted as the words that were copied", "[ring]") {
         const Buffer<float> own = filled(session, "own", random_words(random, pes * block));
         session.clear_profile();
         ring.load(own, block, 0);
-        CHECK((counted.rotations == 0 && counted.rotation_words == 0));  // a PE's own words stay where they are
+        CHECK((counted.rotations == 0 && counted.rotation_words == 0));  // a PE's own words do not move
         for (std::uint32_t n = 0; n < down; ++n) ring.rotate(Turn::kDown);
         for (std::uint32_t n = 0; n < up; ++n) ring.rotate(Turn::kUp);
         CHECK(counted.rotations == down + up);
@@ -127,7 +127,7 @@ TEST_CASE("rotations are counted as the words that were copied", "[ring]") {
     }
 }
 
-TEST_CASE("a band at the end of the share loads the words that are left and keeps the rest", "[ring]") {
+TEST_CASE("a band beyond the end of the share loads the remaining words and leaves the rest as it was", "[ring]") {
     constexpr std::uint64_t kSeed = 11;
     SplitMix random(kSeed);
     Session session(choose_device(""));
@@ -154,7 +154,7 @@ TEST_CASE("a band at the end of the share loads the words that are left and keep
     CHECK(shorter > 20);
 }
 
-TEST_CASE("transfers over the bus and broadcasts by PEs bring every block to its place", "[ring][bus]") {
+TEST_CASE("bus transfers and broadcasts by PEs copy every block to its destination", "[ring][bus]") {
     Session session(choose_device(""));
     for (const std::size_t pes : kRings)
         for (const std::size_t block : {1, 3, 17, 768}) {
@@ -163,15 +163,15 @@ TEST_CASE("transfers over the bus and broadcasts by PEs bring every block to its
         }
 }
 
-TEST_CASE("what PEs send over the bus is counted as the words that were copied", "[ring][bus]") {
+TEST_CASE("bus transfers and broadcasts are counted by the words that were copied", "[ring][bus]") {
     constexpr std::uint64_t kSeed = 15;
     SplitMix random(kSeed);
     Session session(choose_device(""));
     for (int i = 0; i < 50; ++i) {
         const std::size_t pes = kRings[i % 5], rows = 1 + i % 3, share = 1 + random_below(random, 40);
         const std::size_t words = 1 + random_below(random, share);
-        const std::uint32_t sent = random_below(random, 5), told = random_below(random, 5);
-        CAPTURE(kSeed, i, pes, rows, share, words, sent, told);
+        const std::uint32_t sent = random_below(random, 5), broadcasts = random_below(random, 5);
+        CAPTURE(kSeed, i, pes, rows, share, words, sent, broadcasts);
         Communication counted;
         Bus bus(session, counted, static_cast<std::uint32_t>(pes));
         const Bits mine = random_words(random, pes * rows * share);
@@ -180,10 +180,10 @@ TEST_CASE("what PEs send over the bus is counted as the words that were copied",
         session.clear_profile();
         for (std::uint32_t n = 0; n < sent; ++n)
             bus.send(own, {n % pes, share, share - words, rows}, blocks, {(n + 1) % pes, words, 0, rows}, words);
-        for (std::uint32_t n = 0; n < told; ++n)
+        for (std::uint32_t n = 0; n < broadcasts; ++n)
             bus.broadcast_from(own, {n % pes, share, 0, rows}, blocks, {n % pes, words, 0, rows}, words);
         CHECK((counted.transfers == sent && counted.transfer_words == sent * rows * words));
-        CHECK((counted.pe_broadcasts == told && counted.pe_broadcast_words == told * rows * words));
+        CHECK((counted.pe_broadcasts == broadcasts && counted.pe_broadcast_words == broadcasts * rows * words));
         CHECK(copied_bytes(session, "bus.send") == 4 * counted.transfer_words);
         CHECK(copied_bytes(session, "bus.broadcast_from") == 4 * counted.pe_broadcast_words);
         CHECK(other_commands(session) == 0);
@@ -192,19 +192,19 @@ TEST_CASE("what PEs send over the bus is counted as the words that were copied",
     }
 }
 
-TEST_CASE("an exchange brings every band from every distance once, and moves as often as it says", "[ring][bus]") {
+TEST_CASE("an exchange brings every band from every distance once, with the predicted number of moves", "[ring][bus]") {
     constexpr std::uint64_t kSeed = 12;
-    const ExchangeWay way = GENERATE(ExchangeWay::kRing, ExchangeWay::kBus, ExchangeWay::kBroadcast);
+    const ExchangeMethod method = GENERATE(ExchangeMethod::kRing, ExchangeMethod::kBus, ExchangeMethod::kBroadcast);
     SplitMix random(kSeed);
     Session session(choose_device(""));
     for (int i = 0; i < 100; ++i) {
         const raya_mapping m = any_mapping(random, 8);
         const std::uint32_t capacity = largest_share(m), band = 1 + random_below(random, capacity);
-        CAPTURE(kSeed, i, exchange_name(way), m.width, m.height, m.pes, mapping_text(m), m.kind, capacity, band);
+        CAPTURE(kSeed, i, exchange_name(method), m.width, m.height, m.pes, mapping_text(m), m.kind, capacity, band);
         const Bits mine = random_words(random, std::size_t{m.pes} * capacity * 3);
         const Buffer<float> own = filled(session, "own", mine);
         Communication counted;
-        NeighbourExchange exchange(session, counted, m, capacity, band, way);
+        NeighbourExchange exchange(session, counted, m, capacity, band, method);
         std::uint32_t wrong = 0;
         for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
             const std::vector<std::uint32_t> distances = neighbour_distances(m, side);
@@ -226,10 +226,10 @@ TEST_CASE("an exchange brings every band from every distance once, and moves as 
             CHECK(came == awaited);
         }
         CHECK(wrong == 0);
-        const std::uint64_t bands = (capacity + band - 1) / band, moves = sum_of(exchange_moves(m, way, false));
+        const std::uint64_t bands = (capacity + band - 1) / band, moves = sum_of(exchange_moves(m, method, false));
         const std::uint64_t whole =
-            3ull * capacity * moves;  // words: a last band that is short moves as many as it has
-        const bool ring = way == ExchangeWay::kRing, bus = way == ExchangeWay::kBus;
+            3ull * capacity * moves;  // words: a short last band moves fewer
+        const bool ring = method == ExchangeMethod::kRing, bus = method == ExchangeMethod::kBus;
         CHECK(counted.rotations == (ring ? moves * bands : 0));
         CHECK(counted.rotation_words == counted.rotations * m.pes * band * 3);
         CHECK(counted.transfers == (bus ? moves * bands : 0));

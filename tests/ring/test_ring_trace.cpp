@@ -1,4 +1,4 @@
-// The modelled ring machine in a trace: its times are those of the time model, its work is what was counted.
+// The modelled ring machine in a trace: its times are those of the time model, its work is the counted work.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -56,7 +56,7 @@ std::uint64_t rotations_of(const std::vector<TraceSchema::Slice>& slices) {
         std::count_if(slices.begin(), slices.end(), [](const auto& s) { return s.name == "rotation"; }));
 }
 
-// A side that takes one rotation has no rotations within it.
+// The number of sides that take a single rotation, for which the trace has no inner slices.
 std::uint64_t single_rotations(const Document& trace) {
     std::uint64_t singles = 0;
     for (const Document& e : trace["traceEvents"])
@@ -66,7 +66,7 @@ std::uint64_t single_rotations(const Document& trace) {
 
 }  // namespace
 
-TEST_CASE("the traced machine ends when the time model says, with the loads that were counted", "[ring]") {
+TEST_CASE("the traced machine ends at the modelled time, with the counted loads", "[ring]") {
     SplitMix random(1);
     const std::optional<MappingRule> mappings[] = {
         {}, column_mapping(), rows_mapping(), blocks_mapping(), grid_mapping(4, 6), tiles_mapping(4, 4)};
@@ -97,11 +97,11 @@ TEST_CASE("the traced machine ends when the time model says, with the loads that
     }
 }
 
-TEST_CASE("the bus's transfers stand in the trace where rotations would, and take the modelled time", "[ring]") {
-    for (const ExchangeWay way : {ExchangeWay::kBus, ExchangeWay::kBroadcast})
+TEST_CASE("the trace has bus transfers instead of rotations, and ends at the modelled time", "[ring]") {
+    for (const ExchangeMethod exchange : {ExchangeMethod::kBus, ExchangeMethod::kBroadcast})
         for (const AntialiasMethod method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
             RingCase c{.width = 24, .height = 16, .pes = 24, .offset = 5, .machine = "spa", .lanes = 4};
-            c.antialias = {.method = method, .exchange = way};
+            c.antialias = {.method = method, .exchange = exchange};
             const Rendered r = render(c);
             const Document json = trace_of(r, 24);
             const TraceSchema schema(json);
@@ -117,7 +117,7 @@ TEST_CASE("the bus's transfers stand in the trace where rotations would, and tak
         }
 }
 
-TEST_CASE("the counter of live rays comes down from all PEs to none", "[ring]") {
+TEST_CASE("the counter of live rays decreases from all PEs to none", "[ring]") {
     const Rendered r = render({.width = 40, .height = 8, .pes = 40, .offset = 0, .machine = "spa", .lanes = 4});
     double last = 41;
     std::size_t points = 0;
@@ -132,17 +132,17 @@ TEST_CASE("the counter of live rays comes down from all PEs to none", "[ring]") 
     CHECK(points == 41);
 }
 
-TEST_CASE("a machine without rates, or without tracks, is left out and says so", "[ring]") {
+TEST_CASE("the trace omits a machine without rates or tracks, and gives the reason", "[ring]") {
     Rendered r = render({.width = 8, .height = 4, .pes = 8, .offset = 2, .machine = "spa", .lanes = 4});
     CHECK(trace_of(r, 0)["otherData"]["machine"].get<std::string>().starts_with("left out"));
     CHECK(trace_of(r, 3)["otherData"]["machine"]["pes"] == 8);
     r.settings.machine.cycle_ns.reset();
     const Document json = trace_of(r, 8);
     CHECK(json["traceEvents"].empty());
-    CHECK_THAT(json["otherData"]["machine"].get<std::string>(), Catch::Contains("rates are not known"));
+    CHECK_THAT(json["otherData"]["machine"].get<std::string>(), Catch::Contains("rates are unknown"));
 }
 
-TEST_CASE("the works of the kernels are what was counted", "[ring]") {
+TEST_CASE("the work of the ring's kernels agrees with the counts", "[ring]") {
     RingCase c{.width = 24, .height = 16, .pes = 24, .machine = "spa", .lanes = 4};
     c.antialias.method = AntialiasMethod::kSupersample;
     const Rendered super = render(c);
@@ -154,7 +154,7 @@ TEST_CASE("the works of the kernels are what was counted", "[ring]") {
     CHECK(works[0].operations + works[1].operations == all.multiply_accumulates);
     CHECK(works[0].divisions + works[1].divisions == all.divisions);
     CHECK(works[0].roots + works[1].roots == all.roots);
-    // One launch: the words by each of 24 PEs, RAYA_EVENTS counters of a PE read and written, 12 + 8 bytes a pixel.
+    // One launch: each of 24 PEs reads the words, reads and writes RAYA_EVENTS counters, and writes 20 bytes a pixel.
     const std::uint64_t words = super.result.communication.broadcast_words;
     CHECK(works[0].bytes == 24 * 4 * words + 24 * 16 * RAYA_EVENTS * super.result.group_size + 20 * 24 * 16);
     const std::uint64_t neighbours = 2 * 23 * 16 + 2 * 24 * 15;

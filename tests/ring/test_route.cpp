@@ -1,4 +1,4 @@
-// Where the neighbours of a PE's pixels are, and the fewest rotations that bring them.
+// Distances to the PEs that own a PE's neighbouring pixels, and the minimum number of rotations that bring them.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "host/ring/mapping.hpp"
 #include "host/ring/neighbour_exchange.hpp"
 #include "host/ring/route.hpp"
+#include "kernels/shared/share_pixels.h"
 #include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
@@ -20,7 +21,7 @@ namespace {
 
 using Distances = std::vector<std::uint32_t>;
 
-/// The image with the number of the PE that lists each pixel in its share.
+/// [row][column]: the PE that lists the pixel in its share.
 std::vector<std::uint32_t> listed_owners(const raya_mapping& m) {
     std::vector<std::uint32_t> owners(std::size_t{m.width} * m.height);
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
@@ -33,7 +34,7 @@ std::vector<std::uint32_t> listed_owners(const raya_mapping& m) {
     return owners;
 }
 
-/// The distances as the words of route.hpp define them, in signed numbers.
+/// The distances by the definition in route.hpp, in signed numbers.
 Distances defined_distances(const raya_mapping& m, raya_u32 side) {
     const std::vector<std::uint32_t> owners = listed_owners(m);
     const std::int64_t right = side == RAYA_LEFT ? -1 : side == RAYA_RIGHT ? 1 : 0;
@@ -55,7 +56,7 @@ std::uint64_t turns_of(const std::vector<Leg>& route) {
                            [](std::uint64_t sum, const Leg& leg) { return sum + leg.turns(); });
 }
 
-/// The distances at which a route stops, ascending, each as often as it does.
+/// The distances of a route's stops, ascending, with repetitions.
 Distances stops_of(const std::vector<Leg>& route, std::uint32_t pes) {
     Distances stops;
     for (const Leg& leg : route)
@@ -64,7 +65,8 @@ Distances stops_of(const std::vector<Leg>& route, std::uint32_t pes) {
     return stops;
 }
 
-/// Legs in their order, none empty, stops in the order in which they are passed, none after a whole round.
+/// Returns true if a route has at most one leg down and one up, in this order, none empty, with ascending stops within
+/// one round.
 bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
     if (route.size() > 2) return false;
     if (route.size() == 2 && (route[0].turn != Turn::kDown || route[1].turn != Turn::kUp)) return false;
@@ -74,8 +76,8 @@ bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
     });
 }
 
-/// The fewest turns of any walk over the ring that sees all `wanted` (a bit for each distance): a turn either way costs
-/// one, to begin again with the PEs' own blocks costs none. Breadth first over (distance, seen).
+/// The minimum number of rotations of any walk over the ring that visits all `wanted` (a bit per distance). A rotation
+/// in either direction costs 1, a restart from the PEs' own blocks 0. Breadth-first search over (distance, seen).
 int fewest_turns(std::uint32_t pes, std::uint32_t wanted) {
     constexpr int kFar = std::numeric_limits<int>::max();
     const std::uint32_t all = 1u << pes;
@@ -99,7 +101,7 @@ int fewest_turns(std::uint32_t pes, std::uint32_t wanted) {
     return kFar;
 }
 
-/// A walk that need not pass the widest gap between 0 and the distances passes all else.
+/// Rotations of a walk that covers the ring except the widest gap between 0 and the distances.
 std::uint32_t turns_round_widest_gap(std::uint32_t pes, Distances stops) {
     stops.push_back(0);
     std::sort(stops.begin(), stops.end());
@@ -110,12 +112,12 @@ std::uint32_t turns_round_widest_gap(std::uint32_t pes, Distances stops) {
 }
 
 std::uint64_t exchange_rotations(const raya_mapping& m, std::uint32_t capacity, std::uint32_t band) {
-    return sum_of(exchange_moves(m, ExchangeWay::kRing, false)) * ((capacity + band - 1) / band);
+    return sum_of(exchange_moves(m, ExchangeMethod::kRing, false)) * ((capacity + band - 1) / band);
 }
 
 }  // namespace
 
-TEST_CASE("the distances are those of the pixels' neighbours", "[ring][route]") {
+TEST_CASE("neighbour distances agree with the owners of all neighbouring pixels", "[ring][route]") {
     constexpr std::uint64_t kSeed = 5;
     SplitMix random(kSeed);
     for (int i = 0; i < 600; ++i) {
@@ -128,7 +130,7 @@ TEST_CASE("the distances are those of the pixels' neighbours", "[ring][route]") 
     }
 }
 
-TEST_CASE("where a PE owns whole columns there is one distance a side, the paper's", "[ring][route]") {
+TEST_CASE("if a PE owns whole columns, each side has one distance, the paper's", "[ring][route]") {
     constexpr std::uint64_t kSeed = 6;
     SplitMix random(kSeed);
     for (int i = 0; i < 300; ++i) {
@@ -136,15 +138,15 @@ TEST_CASE("where a PE owns whole columns there is one distance a side, the paper
         m.pes = m.width;
         const std::uint32_t pes = m.pes, p = m.parameter;
         CAPTURE(kSeed, i, m.width, m.height, p, m.kind);
-        const bool beside = m.width > 1, over = m.height > 1;
-        CHECK(neighbour_distances(m, RAYA_LEFT) == (beside ? Distances{pes - 1} : Distances{}));
-        CHECK(neighbour_distances(m, RAYA_RIGHT) == (beside ? Distances{1} : Distances{}));
-        CHECK(neighbour_distances(m, RAYA_ABOVE) == (over ? Distances{p} : Distances{}));
-        CHECK(neighbour_distances(m, RAYA_BELOW) == (over ? Distances{(pes - p) % pes} : Distances{}));
+        const bool wide = m.width > 1, tall = m.height > 1;
+        CHECK(neighbour_distances(m, RAYA_LEFT) == (wide ? Distances{pes - 1} : Distances{}));
+        CHECK(neighbour_distances(m, RAYA_RIGHT) == (wide ? Distances{1} : Distances{}));
+        CHECK(neighbour_distances(m, RAYA_ABOVE) == (tall ? Distances{p} : Distances{}));
+        CHECK(neighbour_distances(m, RAYA_BELOW) == (tall ? Distances{(pes - p) % pes} : Distances{}));
     }
 }
 
-TEST_CASE("no walk over the ring sees all distances with fewer turns: every set on up to nine PEs", "[ring][route]") {
+TEST_CASE("routes have the minimum number of rotations: every set of distances on up to nine PEs", "[ring][route]") {
     for (std::uint32_t pes = 1; pes <= 9; ++pes)
         for (std::uint32_t wanted = 0; wanted < 1u << pes; ++wanted) {
             Distances distances;
@@ -157,11 +159,11 @@ TEST_CASE("no walk over the ring sees all distances with fewer turns: every set 
             CAPTURE(pes, distances, turns_of(route), fewest_turns(pes, wanted), stops_of(route, pes));
             CHECK(good);
         }
-    CHECK(fewest_turns(9, 0b000101001) == 5);  // the walk that judges: 3 and 5 are down 5 away, up 6 ...
-    CHECK(fewest_turns(9, 0b100000010) == 2);  // ... and 1 and 8 are one turn away either way
+    CHECK(fewest_turns(9, 0b000101001) == 5);  // checks the reference: 3 and 5 are 5 away down, 6 up
+    CHECK(fewest_turns(9, 0b100000010) == 2);  // 1 and 8 are one rotation away, in opposite directions
 }
 
-TEST_CASE("a route leaves out the widest gap of a large ring", "[ring][route]") {
+TEST_CASE("large rings: a route omits the widest gap", "[ring][route]") {
     constexpr std::uint64_t kSeed = 7;
     SplitMix random(kSeed);
     for (int i = 0; i < 500; ++i) {
@@ -177,7 +179,7 @@ TEST_CASE("a route leaves out the widest gap of a large ring", "[ring][route]") 
     }
 }
 
-TEST_CASE("four sides take 2 (min(p, P - p) + 1) rotations where a PE owns whole columns", "[ring][route]") {
+TEST_CASE("if a PE owns whole columns, four sides take 2 (min(p, P - p) + 1) rotations", "[ring][route]") {
     for (const std::uint32_t p : {0u, 8u, 16u}) {  // the paper's image and array: 2, 18, 34
         CAPTURE(p);
         CHECK(exchange_rotations({256, 256, 256, p, RAYA_FOLD_CYCLIC}, 256, 256) == 2 * p + 2);
@@ -188,13 +190,13 @@ TEST_CASE("four sides take 2 (min(p, P - p) + 1) rotations where a PE owns whole
             const raya_mapping m{pes, 20, pes, p, RAYA_FOLD_CYCLIC};
             const std::uint64_t rotations = 2 * (std::min(p, pes - p) + 1);
             CHECK(exchange_rotations(m, 20, 20) == rotations);
-            CHECK(exchange_rotations(m, 20, 10) == 2 * rotations);  // a round for each band,
-            CHECK(exchange_rotations(m, 20, 7) == 3 * rotations);   // the last of which may be shorter
+            CHECK(exchange_rotations(m, 20, 10) == 2 * rotations);  // once per band,
+            CHECK(exchange_rotations(m, 20, 7) == 3 * rotations);   // the last of which is shorter
         }
-    CHECK(exchange_rotations({6, 4, 1, 3, RAYA_FOLD_BLOCK}, 24, 5) == 0);  // one PE has all neighbours itself
+    CHECK(exchange_rotations({6, 4, 1, 3, RAYA_FOLD_BLOCK}, 24, 5) == 0);  // one PE owns all neighbours
 }
 
-TEST_CASE("over the bus each PE costs a transfer for each distant offset, or one broadcast", "[ring][route]") {
+TEST_CASE("on the bus each PE takes one transfer per distant offset, or one broadcast", "[ring][route]") {
     constexpr std::uint64_t kSeed = 8;
     SplitMix random(kSeed);
     for (int i = 0; i < 300; ++i) {
@@ -208,14 +210,14 @@ TEST_CASE("over the bus each PE costs a transfer for each distant offset, or one
             sides += !d.empty();
         }
         for (const bool together : {false, true}) {
-            CHECK(sum_of(exchange_moves(m, ExchangeWay::kBus, together)) == m.pes * distant);
+            CHECK(sum_of(exchange_moves(m, ExchangeMethod::kBus, together)) == m.pes * distant);
             const std::uint64_t rounds = together ? sides > 0 : sides;
-            CHECK(sum_of(exchange_moves(m, ExchangeWay::kBroadcast, together)) == m.pes * rounds);
+            CHECK(sum_of(exchange_moves(m, ExchangeMethod::kBroadcast, together)) == m.pes * rounds);
         }
     }
     // The paper's array: 4 offsets of 256 PEs.
     const raya_mapping paper{256, 256, 256, 16, RAYA_FOLD_CYCLIC};
-    CHECK(exchange_moves(paper, ExchangeWay::kRing, false) == MovesOfSides{1, 1, 16, 16});
-    CHECK(exchange_moves(paper, ExchangeWay::kBus, false) == MovesOfSides{256, 256, 256, 256});
-    CHECK(exchange_moves(paper, ExchangeWay::kBroadcast, true) == MovesOfSides{256, 0, 0, 0});
+    CHECK(exchange_moves(paper, ExchangeMethod::kRing, false) == MovesOfSides{1, 1, 16, 16});
+    CHECK(exchange_moves(paper, ExchangeMethod::kBus, false) == MovesOfSides{256, 256, 256, 256});
+    CHECK(exchange_moves(paper, ExchangeMethod::kBroadcast, true) == MovesOfSides{256, 0, 0, 0});
 }

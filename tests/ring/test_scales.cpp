@@ -1,5 +1,4 @@
-// Scenes in other units: times a power of two the image keeps its bits, times a power of ten what rounding leaves of
-// it.
+// Scenes in other units: scaled by a power of two the image keeps its bits, by a power of ten it agrees to rounding.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -38,8 +37,8 @@ double mean_difference(const Image& a, const Image& b) {
 
 }  // namespace
 
-// Where no number of either comes near the format's limits: in e5mY, with numbers down to 2^-14 only, some always do.
-TEST_CASE("a scene times a power of two gives the same bits and counts", "[ring][scales]") {
+// Holds if no number comes near the format's limits; in e5mY, with numbers down to 2^-14 only, some always do.
+TEST_CASE("a scene scaled by a power of two gives the same bits and counts", "[ring][scales]") {
     for (const char* format : quick(2, {"spa22", "fp32", "e8m7t", "e7m12", "e6m10"}))
         for (const char* name : quick(2, {"mirrors", "cones", "polygons", "centre", "glass", "spheres"})) {
             const Scene scene = without_planes(name);
@@ -54,7 +53,7 @@ TEST_CASE("a scene times a power of two gives the same bits and counts", "[ring]
         }
 }
 
-TEST_CASE("so does a random scene, with a grid too", "[ring][scales]") {
+TEST_CASE("a random scene scaled by a power of two gives the same bits, with and without a grid", "[ring][scales]") {
     for (std::uint32_t seed = 1; seed <= quick_cases(2, 60); ++seed) {
         Scene scene = mixed_scene(seed);
         scene.planes.clear();
@@ -70,8 +69,8 @@ TEST_CASE("so does a random scene, with a grid too", "[ring][scales]") {
     }
 }
 
-// A plane ends where hits no longer count; the scale leaves it 256 times the scene's largest length.
-TEST_CASE("where a scene is scaled its planes end nearer, and only there the image differs", "[ring][scales]") {
+// A plane ends at the maximum hit distance, which is 256 times the scene's largest length after scaling.
+TEST_CASE("scaling a scene into the format moves only the horizon of its planes", "[ring][scales]") {
     const Scene scene = project_scene("spheres");
     const RingResult as_is = render_scene(scene, in_format("spa22"));
     const RingResult scaled = render_scene(scaled_scene(scene, 0x1p14), in_format("spa22"));
@@ -82,8 +81,8 @@ TEST_CASE("where a scene is scaled its planes end nearer, and only there the ima
     CHECK(scaled.all.events[RAYA_PRIMARY_HITS] > as_is.all.events[RAYA_PRIMARY_HITS] * 95 / 100);
 }
 
-TEST_CASE("a scene times a power of ten is the same picture, to rounding", "[ring][scales]") {
-    // Lengths that are rounded otherwise move edges by a fraction of a pixel, and rays between mirrors by more.
+TEST_CASE("a scene scaled by a power of ten gives the same image to rounding", "[ring][scales]") {
+    // Different rounding of lengths moves edges by a fraction of a pixel, and rays between mirrors by more.
     for (const auto& [format, most] : {std::pair{"fp32", 2e-6}, {"spa22", 2e-4}, {"e5m10", 5e-3}})
         for (const char* name : quick(1, {"mirrors", "polygons", "cones", "centre"}))
             for (const int k : {-5, 4, -12, 12}) {

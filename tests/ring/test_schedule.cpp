@@ -1,4 +1,4 @@
-// Loads from cost images: against plain sums, against a simulation event by event, and within the bounds of theory.
+// Loads from cost images, compared with plain sums, with an event-by-event simulation and with theoretical bounds.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -8,6 +8,7 @@
 
 #include "host/ring/schedule.hpp"
 #include "host/scene/split_mix.hpp"
+#include "kernels/shared/share_pixels.h"
 #include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
@@ -16,8 +17,8 @@ namespace {
 
 using Cycles = std::vector<std::uint64_t>;
 
-/// Costs of one kind a picture: none, few values (so that many PEs are free at the same time), even, or a few pixels
-/// that cost far more than all others.
+/// A cost image of one random kind: zero, few values (so that many PEs become free at the same time), even, or a few
+/// pixels that cost far more than all others.
 CostImage random_image(SplitMix& random, std::uint32_t width, std::uint32_t height) {
     CostImage image{width, height, {}};
     const std::uint64_t kind = random.next() % 8;
@@ -43,7 +44,7 @@ struct Simulated {
     std::uint64_t requests = 0;
 };
 
-/// The definition, one event after the other: shares by asking every pixel for its owner, the next PE by asking all.
+/// The definition, event by event: shares from every pixel's owner, the next PE by a search over all.
 Simulated simulated(const CostImage& image, const raya_mapping& m, const DynamicPlan& plan) {
     std::vector<std::vector<std::uint64_t>> shares(m.pes);  // pixel numbers
     for (std::uint32_t j = 0; j < image.height; ++j)
@@ -63,7 +64,7 @@ Simulated simulated(const CostImage& image, const raya_mapping& m, const Dynamic
         }
     }
     while (!queue.empty()) {
-        const auto first_free = std::min_element(run.finished.begin(), run.finished.end());  // of equals the first
+        const auto first_free = std::min_element(run.finished.begin(), run.finished.end());  // the first of equals
         *first_free += plan.overhead;
         ++run.requests;
         for (std::uint32_t i = 0; i < plan.chunk && !queue.empty(); ++i, queue.pop_front())
@@ -87,7 +88,7 @@ TEST_CASE("a static load is the sum of its pixels' costs", "[schedule]") {
         CAPTURE(kSeed, i, width, height, pes, offset, fold);
         const CostImage image = random_image(random, width, height);
         Cycles sums;
-        for (std::uint32_t pe = 0; pe < pes; ++pe) {  // by the list of its pixels: the other way round than by owner
+        for (std::uint32_t pe = 0; pe < pes; ++pe) {  // by the PE's list of pixels instead of by owner
             const raya_share own = raya_share_of(m, pe);
             sums.push_back(0);
             for (std::uint32_t k = 0; k < raya_share_size(own); ++k) {
@@ -102,7 +103,7 @@ TEST_CASE("a static load is the sum of its pixels' costs", "[schedule]") {
     }
 }
 
-TEST_CASE("imbalances of many offsets are those of the static loads to the bit", "[schedule]") {
+TEST_CASE("imbalance_of_offsets() agrees with static_load() to the bit", "[schedule]") {
     constexpr std::uint64_t kSeed = 2;
     SplitMix random(kSeed);
     const auto compare = [&](const CostImage& image, std::uint32_t pes, std::uint32_t fold,
@@ -126,7 +127,7 @@ TEST_CASE("imbalances of many offsets are those of the static loads to the bit",
             compare(large, pes, fold, {0, 1, 16, 23, 255, 256, 511});
 }
 
-TEST_CASE("dynamic and hybrid schedules are those of the simulation", "[schedule]") {
+TEST_CASE("dynamic and hybrid schedules agree with the simulation", "[schedule]") {
     const CostImage six{6, 1, {5, 1, 1, 1, 1, 2}};
     const raya_mapping two{6, 1, 2, 0, RAYA_FOLD_BLOCK};  // PE 0 owns 5 1 1, PE 1 owns 1 1 2
     CHECK(dynamic_schedule(six, two, {1, 0, 0}).load.per_pe == Cycles{5, 6});
@@ -148,7 +149,7 @@ TEST_CASE("dynamic and hybrid schedules are those of the simulation", "[schedule
     }
 }
 
-TEST_CASE("schedules lose no work and keep to Graham's bounds", "[schedule]") {
+TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]") {
     constexpr std::uint64_t kSeed = 4;
     SplitMix random(kSeed);
     for (int i = 0; i < 1'500; ++i) {
@@ -173,13 +174,13 @@ TEST_CASE("schedules lose no work and keep to Graham's bounds", "[schedule]") {
         }
         CHECK(list.requests == (width * height + plan.chunk - 1) / plan.chunk);
         CHECK(pes * makespan(list) <= total + (pes - 1) * largest_chunk);
-        CHECK(speedup(list, image) == list.load.speedup);  // no overhead: the two are one
+        CHECK(speedup(list, image) == list.load.speedup);  // equal without overhead
         plan.chunk = 1;
         CHECK(pes * makespan(dynamic_schedule(image, m, plan)) <= (2 * pes - 1) * least);  // 2 - 1 / P of the optimum
     }
 }
 
-TEST_CASE("the ends of a plan: all at once, all static, one PE, more PEs than chunks", "[schedule]") {
+TEST_CASE("extreme plans: one chunk, all static, one PE, more PEs than chunks", "[schedule]") {
     constexpr std::uint64_t kSeed = 5;
     SplitMix random(kSeed);
     for (int i = 0; i < 300; ++i) {
@@ -200,7 +201,7 @@ TEST_CASE("the ends of a plan: all at once, all static, one PE, more PEs than ch
         CHECK(all_static.load.per_pe == static_load(image, m).per_pe);
         CHECK(all_static.requests == 0);
 
-        m.pes = pixels;  // a PE for each pixel: where pixels cost something each PE has one request, in order
+        m.pes = pixels;  // a PE per pixel: if every pixel has a cost, each PE makes one request, in order
         if (*std::min_element(image.cycles.begin(), image.cycles.end()) > 0)
             CHECK(dynamic_schedule(image, m, {1, 0, 0}).load.per_pe == image.cycles);
         const Schedule idle = dynamic_schedule(image, m, {plan.chunk, plan.overhead + 1, 0});
@@ -213,13 +214,13 @@ TEST_CASE("the ends of a plan: all at once, all static, one PE, more PEs than ch
     }
 }
 
-TEST_CASE("speed-up is of the pure work, and defined where nothing costs anything", "[schedule]") {
+TEST_CASE("speed-up counts only the pixels' work, and is defined if all costs are 0", "[schedule]") {
     const CostImage even{4, 1, {30, 30, 30, 30}};
     const raya_mapping two{4, 1, 2, 0, RAYA_FOLD_CYCLIC};
     const Schedule asked = dynamic_schedule(even, two, {1, 10, 0});
     CHECK(makespan(asked) == 80);
     CHECK(speedup(asked, even) == 1.5);  // 120 / 80
-    CHECK(asked.load.speedup == 2);      // 160 / 80: both are busy all the time
+    CHECK(asked.load.speedup == 2);      // 160 / 80: both are always busy
     const CostImage nothing{4, 1, {0, 0, 0, 0}};
     CHECK(speedup(dynamic_schedule(nothing, two, {1, 0, 0}), nothing) == 2);
     CHECK(speedup(dynamic_schedule(nothing, two, {1, 10, 0}), nothing) == 0);
@@ -230,7 +231,7 @@ TEST_CASE("speed-up is of the pure work, and defined where nothing costs anythin
     CHECK(lower_bound(nothing, 3) == 0);
 }
 
-TEST_CASE("a large image on as many PEs as it has pixels, and on few", "[schedule]") {
+TEST_CASE("large images: schedules contain all work on few PEs, and on as many PEs as pixels", "[schedule]") {
     constexpr std::uint64_t kSeed = 6;
     constexpr std::uint32_t kSide = 1'024, kPixels = kSide * kSide;
     SplitMix random(kSeed);

@@ -1,6 +1,6 @@
-// Rays by kind against the counts that SPD publishes for its scenes: 513 x 513 rays through pixel corners, tree depth 5
-// with the eye ray as 1. "Implementations should agree within about 10 %"; these bounds are tighter, two published
-// implementations and a percent around them.
+// Ray counts by kind, compared with the counts that SPD publishes for its scenes: 513 x 513 rays through pixel corners,
+// tree depth 5 with the eye ray as 1. SPD: "Implementations should agree within about 10 %". The bounds here are
+// tighter: the range of two published implementations, extended by 1 %.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -25,7 +25,7 @@ void check_between(std::uint64_t value, double low, double high) {
     CHECK(double(value) <= high);
 }
 
-// A file of the SPD programs, where they are at hand.
+// The path of an output file of the SPD programs, which may not exist.
 std::filesystem::path spd_file(const std::string& name) {
     const char* folder = std::getenv("RAYA_SPD_DIR");
     return std::filesystem::path(folder ? folder : RAYA_SOURCE_DIR "/../shared/spd") / name;
@@ -45,7 +45,7 @@ TEST_CASE("balls gives SPD's ray counts", "[ring]") {
     CHECK(e[RAYA_POLYGON_TESTS] == rays);
 }
 
-TEST_CASE("SPD's own files give SPD's ray counts, where they are at hand", "[.][long][ring]") {
+TEST_CASE("SPD's own files, if present, give SPD's ray counts", "[.][long][ring]") {
     if (!std::filesystem::exists(spd_file("tetra.nff"))) {
         WARN("no SPD files: set RAYA_SPD_DIR to a folder with tetra.nff and mount.nff");
         return;

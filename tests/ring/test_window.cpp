@@ -1,4 +1,4 @@
-// Large images: the device holds a part of the pixels at a time, and nobody sees it.
+// Large images: the device holds a window of the pixels at a time, which changes no result.
 #include <catch2/catch.hpp>
 
 #include "tests/ring/render_scene.hpp"
@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("how many pixels lie on the device changes nothing that comes out", "[ring]") {
+TEST_CASE("the number of pixels on the device changes no image, count, load or cost", "[ring]") {
     Session session(choose_device(""));
     const Scene scene = project_scene("planes");
     for (const char* machine : {"grande", "spa"}) {
@@ -30,7 +30,7 @@ TEST_CASE("how many pixels lie on the device changes nothing that comes out", "[
     }
 }
 
-TEST_CASE("costs that nobody asks for are not kept, and all else is the same", "[ring]") {
+TEST_CASE("costs are kept only on request, which changes no other result", "[ring]") {
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 20, .height = 16, .pes = 5, .lanes = 4, .bounces = 3});
     const RingResult not_kept = RingRenderer(session, project_scene("planes"), settings).render();

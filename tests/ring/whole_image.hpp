@@ -1,4 +1,4 @@
-// Anti-aliasing as plain functions of whole images, for tests: no PE, no mapping, no block, no rotation.
+// Reference anti-aliasing for tests: plain functions of whole images, without PEs, mappings, blocks or rotations.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace raya::whole_image {
 
-/// Arithmetic of a format: each operation in double, then rounded to the format. The two roundings are the one of the
-/// machine: to add, subtract or divide numbers of p bits, a detour through 2 p + 2 bits or more changes nothing
-/// (S. Figueroa, "When is double rounding innocuous?", 1995), and 53 >= 2 * 24 + 2. Not so for formats that truncate.
+/// Arithmetic of a format: each operation in double, then rounded to the format. The double rounding is innocuous for
+/// addition, subtraction and division of p-bit numbers in at least 2 p + 2 bits (S. Figueroa, "When is double rounding
+/// innocuous?", 1995), and 53 >= 2 * 24 + 2. It is not for formats that truncate.
 class Arithmetic {
   public:
     explicit Arithmetic(const NumberFormat& format) : format_(format) {}
@@ -48,18 +48,18 @@ Image make_image(int width, int height, Value&& value) {
     return image;
 }
 
-/// (own + the pixel (-down, -right) away) + the pixel (down, right) away; what lies outside of the image is left out.
+/// (own + the pixel (-down, -right) away) + the pixel (down, right) away; pixels outside the image are omitted.
 inline Image line_sums(const Image& image, int down, int right, const Arithmetic& in) {
     return make_image(image.width, image.height, [&](int row, int column, int colour) {
         float sum = value_at(image, row, column, colour);
-        for (const int way : {-1, 1})
-            if (inside(image, row + way * down, column + way * right))
-                sum = in.add(sum, value_at(image, row + way * down, column + way * right, colour));
+        for (const int sign : {-1, 1})
+            if (inside(image, row + sign * down, column + sign * right))
+                sum = in.add(sum, value_at(image, row + sign * down, column + sign * right, colour));
         return sum;
     });
 }
 
-/// The mean of each pixel's 3 x 3 neighbourhood, of as much of it as there is: sums along rows, then along columns.
+/// The mean of each pixel's 3 x 3 neighbourhood within the image: sums along rows, then along columns.
 inline Image filtered(const Image& image, const NumberFormat& format) {
     const Arithmetic in(format);
     const Image sums = line_sums(line_sums(image, 0, 1, in), 1, 0, in);
@@ -71,7 +71,8 @@ inline Image filtered(const Image& image, const NumberFormat& format) {
     });
 }
 
-/// True where a colour of the two pixels, clamped to 0..1, differs by `threshold`, a number of the format, or more.
+/// Returns true if a colour of the two pixels, clamped to 0..1, differs by at least `threshold`, a number of the
+/// format.
 inline bool differ(const Image& image, int row, int column, int other_row, int other_column, float threshold,
                    const Arithmetic& in) {
     const auto clamped = [&](int j, int x, int colour) {
@@ -85,20 +86,21 @@ inline bool differ(const Image& image, int row, int column, int other_row, int o
     return found;
 }
 
-/// 1 in the pixels that differ from the one on the left, right, above or below, else 0.
+/// 1 in pixels that differ from the left, right, upper or lower neighbour, else 0.
 inline Image contrast_mask(const Image& image, double threshold, const NumberFormat& format) {
     const Arithmetic in(format);
     const float rounded = in.round(threshold);
     return make_image(image.width, image.height, [&](int row, int column, int) {
         constexpr std::array<std::array<int, 2>, 4> kSides = {{{0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
         return float(std::any_of(kSides.begin(), kSides.end(), [&](const auto& side) {
-            const int beside = row + side[0], across = column + side[1];
-            return inside(image, beside, across) && differ(image, row, column, beside, across, rounded, in);
+            const int other_row = row + side[0], other_column = column + side[1];
+            return inside(image, other_row, other_column) &&
+                   differ(image, row, column, other_row, other_column, rounded, in);
         }));
     });
 }
 
-/// The mean of a pixel's own value and of its four new points.
+/// The mean of a pixel's own value and of its four additional points.
 inline float mean_of_five(const std::array<float, 5>& values, const NumberFormat& format) {
     const Arithmetic in(format);
     float sum = values[0];
@@ -106,7 +108,7 @@ inline float mean_of_five(const std::array<float, 5>& values, const NumberFormat
     return in.divide(sum, 5);
 }
 
-/// Values that are not the same bits; all of them where the sizes differ.
+/// The number of values with different bits; the number of all values if the sizes differ.
 inline std::size_t unlike_values(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height || a.rgb.size() != b.rgb.size())
         return std::max(a.rgb.size(), b.rgb.size());

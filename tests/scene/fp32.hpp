@@ -1,11 +1,11 @@
-// Numbers of a scene as fp32 holds them.
+// Numbers of a scene rounded to fp32.
 #pragma once
 #include "host/scene/scene.hpp"
 
 namespace raya {
 
-/// Rounded to fp32. Volatile, since gcc 12.2 at -O2 forgets the rounding where neighbours go from double to float and
-/// back: its vectoriser takes the two conversions of a pair for none.
+/// Rounds to fp32. The variable is volatile because gcc 12.2 at -O2 drops the rounding of adjacent values: its
+/// vectoriser cancels the pair of conversions.
 inline double fp32(double value) {
     const volatile float rounded = static_cast<float>(value);
     return rounded;

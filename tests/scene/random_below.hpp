@@ -1,4 +1,4 @@
-// Random whole numbers for tests.
+// Random integers for tests.
 #pragma once
 #include <cstdint>
 
@@ -6,7 +6,7 @@
 
 namespace raya {
 
-/// In [0, end).
+/// A random integer in [0, end).
 inline std::uint32_t random_below(SplitMix& random, std::uint64_t end) {
     return static_cast<std::uint32_t>(random.next() % end);
 }

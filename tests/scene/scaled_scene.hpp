@@ -1,10 +1,10 @@
-// The same scene in other units.
+// Scenes in other units.
 #pragma once
 #include "host/scene/scene.hpp"
 
 namespace raya {
 
-/// Every length times `factor`: places, radii, the sides of checkers; colours, directions and angles stay.
+/// Multiplies all lengths (positions, radii, checker sizes) by `factor`; colours, directions and angles do not change.
 inline Scene scaled_scene(Scene scene, double factor) {
     scene.view.from *= factor;
     scene.view.at *= factor;

@@ -1,4 +1,4 @@
-// Scenes of the Standard Procedural Databases, which are no part of raya.
+// Scenes of the Standard Procedural Databases (SPD), which are not part of raya.
 #pragma once
 #include <cstdlib>
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace raya {
 
-/// RAYA_SPD_DIR, or a folder beside the project's; tests of what it lacks are left out.
+/// RAYA_SPD_DIR, or ../shared/spd next to the project's folder. Tests skip files that are missing.
 inline std::filesystem::path spd_folder() {
     const char* given = std::getenv("RAYA_SPD_DIR");
     return given ? given : RAYA_SOURCE_DIR "/../shared/spd";

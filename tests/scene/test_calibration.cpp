@@ -1,4 +1,4 @@
-// The promise of scenes/README.md: the main scene is as uneven as the paper's, and by the figures printed there.
+// The main scene has the imbalance of the paper's scene, and the figures in scenes/README.md are right.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -21,7 +21,7 @@ RingResult render_on_spa(Session& session, const Scene& scene, std::uint32_t p) 
     return RingRenderer(session, scene, settings).render();
 }
 
-TEST_CASE("the centre scene has the imbalance on which it was calibrated", "[calibration]") {
+TEST_CASE("the centre scene has the imbalance to which it was calibrated", "[calibration]") {
     Session session(choose_device(""));
     const Scene scene = parse_nff(file_contents(RAYA_SOURCE_DIR "/scenes/centre.nff"), "centre");
     const Load columns = render_on_spa(session, scene, 0).all.load, cyclic = render_on_spa(session, scene, 16).all.load;

@@ -40,7 +40,7 @@ double turn_of(const Vec3& a, const Vec3& b, const Vec3& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Whether edges of two outlines cross, seen from above.
+/// Returns true if edges of two outlines cross, seen from above.
 bool cross(const Polygon& one, const Polygon& other) {
     const auto ends = [](const Polygon& polygon, std::size_t i) {
         return std::pair{polygon.vertices[i], polygon.vertices[(i + 1) % polygon.vertices.size()]};
@@ -60,7 +60,7 @@ Vec3 middle_of(const Polygon& polygon) {
     return sum / static_cast<double>(polygon.vertices.size());
 }
 
-/// The voxel in which the whole sphere lies, or -1.
+/// The voxel that contains the whole sphere, or -1.
 int voxel_of(const Sphere& sphere, const std::array<int, 3>& voxels) {
     int index = 0;
     for (int axis = 2; axis >= 0; --axis) {
@@ -75,13 +75,13 @@ int voxel_of(const Sphere& sphere, const std::array<int, 3>& voxels) {
 
 }  // namespace
 
-TEST_CASE("SplitMix64 gives the published numbers", "[generate]") {
+TEST_CASE("SplitMix64 generates the published numbers", "[generate]") {
     SplitMix random(1234567);
     CHECK(random.next() == 6457827717110365317u);
     CHECK(random.next() == 3203168211198807973u);
 }
 
-TEST_CASE("balls: counts, sizes, and every sphere touches the one that carries it", "[generate]") {
+TEST_CASE("balls: counts and sizes, and every sphere touches its parent", "[generate]") {
     std::size_t expected = 0, power = 1;
     for (int level = 0; level <= 5; ++level, power *= 9) {
         expected += power;
@@ -100,7 +100,7 @@ TEST_CASE("balls: the same scene in the same order as SPD's files", "[generate]"
     for (const int level : {2, 4}) {
         const auto path = spd_folder() / ("balls" + std::to_string(level) + ".nff");
         if (!std::filesystem::exists(path)) {
-            WARN("not there, left out: " << path);
+            WARN("file missing, skipped: " << path);
             continue;
         }
         const Scene theirs = read_nff(path), ours = generate_balls(level);
@@ -133,7 +133,7 @@ TEST_CASE("lattice: counts, and every cylinder joins two spheres", "[generate]")
             const Vec3 middle = (c.base + c.apex) / 2, along = c.apex - c.base;
             const Vec3 halves = middle * 2 / distance;
             middles.insert({std::lround(halves.x), std::lround(halves.y), std::lround(halves.z)});
-            const int axis = c.surface - 1;  // a colour for each
+            const int axis = c.surface - 1;  // one surface per axis
             CHECK(along[axis] == Approx((1 - 0.99 / 4) * distance));
             CHECK(along.length() == Approx(along[axis]));
             CHECK(c.base_radius == c.apex_radius);
@@ -150,7 +150,7 @@ TEST_CASE("lattice: counts, and every cylinder joins two spheres", "[generate]")
 TEST_CASE("lattice: the same scene in the same order as SPD's file", "[generate]") {
     const auto path = spd_folder() / "lattice.nff";
     if (!std::filesystem::exists(path)) {
-        WARN("not there, left out: " << path);
+        WARN("file missing, skipped: " << path);
         return;
     }
     const Scene theirs = read_nff(path), ours = generate_lattice(12);
@@ -171,7 +171,7 @@ TEST_CASE("lattice: the same scene in the same order as SPD's file", "[generate]
     }
     compare(ours.view.from, theirs.view.from);
     compare(ours.view.at, theirs.view.at);
-    CHECK(farthest < 5e-6);  // they have six digits
+    CHECK(farthest < 5e-6);  // the file has six digits
     CHECK(ours.view.up == theirs.view.up);
     CHECK(ours.view.angle_degrees == theirs.view.angle_degrees);
     CHECK(ours.background == theirs.background);
@@ -179,7 +179,7 @@ TEST_CASE("lattice: the same scene in the same order as SPD's file", "[generate]
     CHECK(ours.surfaces == theirs.surfaces);
 }
 
-TEST_CASE("gears: as many polygons as SPD's, flat outlines of 144 vertices and quadrilaterals", "[generate]") {
+TEST_CASE("gears: as many polygons as SPD's: valid outlines of 144 vertices and quadrilaterals", "[generate]") {
     for (const int size : {1, 2, 4}) {
         CAPTURE(size);
         const Scene s = generate_gears(size);
@@ -191,7 +191,7 @@ TEST_CASE("gears: as many polygons as SPD's, flat outlines of 144 vertices and q
         CHECK(s.lights.size() == 5);
         for (Polygon polygon : s.polygons) {
             const Polygon given = polygon;
-            REQUIRE(tidy_outline(polygon).reason.empty());
+            REQUIRE(clean_outline(polygon).reason.empty());
             REQUIRE(polygon == given);
         }
     }
@@ -200,7 +200,7 @@ TEST_CASE("gears: as many polygons as SPD's, flat outlines of 144 vertices and q
     CHECK(generate_gears(3).surfaces.size() == 5);
 }
 
-TEST_CASE("gears: wheels are closed, and show their fronts to the outside", "[generate]") {
+TEST_CASE("gears: wheels are closed surfaces whose fronts face outwards", "[generate]") {
     const Scene s = generate_gears(2);
     std::set<std::pair<Point, Point>> edges;
     double volume = 0;
@@ -211,15 +211,15 @@ TEST_CASE("gears: wheels are closed, and show their fronts to the outside", "[ge
         volume += corners[0].dot(newell_normal(corners)) / 6;
     }
     for (const auto& [from, to] : edges) REQUIRE(edges.contains({to, from}));
-    const double disc = 3.14159265 * 0.5 * 0.5 * 0.4;  // a wheel without teeth: radius a half, distance 1
+    const double disc = 3.14159265 * 0.5 * 0.5 * 0.4;  // a wheel without teeth: radius 0.5
     CHECK(volume == Approx(8 * disc).epsilon(0.05));
 }
 
-TEST_CASE("gears: teeth stand in the neighbours' gaps and touch nothing", "[generate]") {
+TEST_CASE("gears: teeth mesh with the neighbours' gaps without touching", "[generate]") {
     const Scene s = generate_gears(2);
     std::vector<Polygon> layer;  // the upper faces of the lower wheels
     for (std::size_t wheel = 0; wheel < 8; wheel += 2) layer.push_back(s.polygons[1 + 146 * wheel]);
-    double reach = 0;  // of a wheel from its axis
+    double reach = 0;  // radius of a wheel with teeth
     for (const Vec3& v : layer[0].vertices) reach = std::max(reach, (v - middle_of(layer[0])).length());
     for (std::size_t i = 0; i < layer.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) {
@@ -234,7 +234,7 @@ TEST_CASE("gears: teeth stand in the neighbours' gaps and touch nothing", "[gene
         }
 }
 
-TEST_CASE("uniform: equal shares of voxels, whole spheres, no two alike or touching", "[generate]") {
+TEST_CASE("uniform: voxels have equal shares of whole spheres, no two of which are equal or touch", "[generate]") {
     struct Row {
         int count;
         std::array<int, 3> voxels;
@@ -264,7 +264,7 @@ TEST_CASE("uniform: equal shares of voxels, whole spheres, no two alike or touch
     }
 }
 
-TEST_CASE("random: centres in the cube, sensible volume, the seed decides", "[generate]") {
+TEST_CASE("random: centres lie in the cube, the volume is moderate, and the seed determines the scene", "[generate]") {
     for (const int count : {1, 30, 1000, 20000}) {
         CAPTURE(count);
         const Scene s = generate_random(count, 7);
@@ -284,7 +284,7 @@ TEST_CASE("random: centres in the cube, sensible volume, the seed decides", "[ge
     CHECK(generate_random(1000, 7).surfaces.size() == 12);
 }
 
-TEST_CASE("clusters are seven spheres that do not touch and lie above the floor", "[generate]") {
+TEST_CASE("cluster: seven spheres above the floor that do not touch", "[generate]") {
     const ClusterShape shape;
     int apart = 0;
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
@@ -313,13 +313,13 @@ TEST_CASE("clusters are seven spheres that do not touch and lie above the floor"
         CHECK(mirrors == shape.mirrors);
         apart += !touching;
     }
-    CHECK(apart >= 297);  // 200 tries nearly always find a place
+    CHECK(apart >= 297);  // 200 attempts nearly always find a free position
     ClusterShape none;
     none.glass = none.mirrors = none.matt = 0;
     CHECK(generate_cluster(1, none).spheres.empty());
 }
 
-TEST_CASE("centre: the committed file is what the generator makes", "[generate]") {
+TEST_CASE("centre: the committed file is the generator's output", "[generate]") {
     const Scene s = generate_centre();
     CHECK(s.object_count() >= 20);
     CHECK(s.object_count() <= 30);
@@ -331,13 +331,13 @@ TEST_CASE("centre: the committed file is what the generator makes", "[generate]"
     CHECK(read_nff(RAYA_SOURCE_DIR "/scenes/centre.nff") == s);
 }
 
-TEST_CASE("generated scenes read back equal", "[generate]") {
+TEST_CASE("generated scenes are equal after writing and reading", "[generate]") {
     for (const Scene& s : {generate_balls(3), generate_lattice(4), generate_gears(2), generate_uniform(100, {3, 3, 3}),
                            generate_random(100, 1), generate_centre(), generate_cluster(1)})
         CHECK(parse_nff(write_nff(s), s.name) == s);
 }
 
-TEST_CASE("generators refuse what is out of range", "[generate]") {
+TEST_CASE("generators refuse parameters out of range", "[generate]") {
     CHECK_THROWS_WITH(generate_balls(-1), "balls: level -1: must lie in 0..6");
     CHECK_THROWS_WITH(generate_balls(7), "balls: level 7: must lie in 0..6");
     CHECK_THROWS_WITH(generate_lattice(0), "lattice: size 0: must lie in 1..64");

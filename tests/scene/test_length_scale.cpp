@@ -1,5 +1,4 @@
-// The power of two that brings a scene into the range of a format: nothing where it lies there, and else into its
-// middle.
+// The power of two that scales a scene into the middle of a format's range; 1 if the scene lies within the range.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -17,7 +16,7 @@ using Catch::Matchers::Contains;
 
 const NumberFormat kFp32{}, kSpa22{6, 15, false}, kSmall{5, 10, false};
 
-/// A sphere of that radius, seen from that far.
+/// A sphere of `radius`, seen from `distance`.
 Scene sphere_seen_from(double radius, double distance) {
     Scene scene;
     scene.name = "one.nff";
@@ -27,7 +26,7 @@ Scene sphere_seen_from(double radius, double distance) {
     return scene;
 }
 
-TEST_CASE("the project's scenes are packed as they are, in fp32 and in the SPA's format", "[length_scale]") {
+TEST_CASE("the project's scenes need no scaling in fp32 and in the SPA's format", "[length_scale]") {
     for (const char* name : {"centre", "spheres", "mirrors", "glass", "polygons", "cones", "planes"}) {
         const Scene scene = read_nff(std::string(RAYA_SOURCE_DIR "/scenes/") + name + ".nff");
         CAPTURE(name);
@@ -39,7 +38,7 @@ TEST_CASE("the project's scenes are packed as they are, in fp32 and in the SPA's
     for (const int level : {0, 4, 5}) CHECK(length_scale(generate_balls(level), kSpa22).exponent == 0);
 }
 
-TEST_CASE("the limits of the formats are those of the kernels", "[length_scale]") {
+TEST_CASE("the limits of formats are those of the kernels", "[length_scale]") {
     CHECK(farthest_hit(kFp32) == std::ldexp(1, 60));
     CHECK(farthest_hit(kSpa22) == 32768);
     CHECK(farthest_hit(kSmall) == 128);
@@ -48,9 +47,9 @@ TEST_CASE("the limits of the formats are those of the kernels", "[length_scale]"
     CHECK(smallest_number(kSmall) == std::ldexp(1, -14));
 }
 
-TEST_CASE("a scene inside the range is left alone to its edges, and beyond them comes into the middle",
+TEST_CASE("a scene within a format's range is not scaled; outside the range it is scaled to the middle",
           "[length_scale]") {
-    // e6m15: hits count up to 2^15, so lengths up to 2^13; radii from 2^-15 on, with two powers to spare 2^-13.
+    // e6m15: hits count up to 2^15, so lengths up to 2^13; radii from 2^-15 on, with a margin of two powers 2^-13.
     CHECK(length_scale(sphere_seen_from(1, 8192), kSpa22).exponent == 0);
     CHECK(length_scale(sphere_seen_from(1, 8193), kSpa22).exponent == -8);
     CHECK(length_scale(sphere_seen_from(0x1p-13, 8), kSpa22).exponent == 0);
@@ -66,7 +65,7 @@ TEST_CASE("a scene inside the range is left alone to its edges, and beyond them 
     CHECK(length_scale(far_plane, kSpa22).exponent < -7);
 }
 
-TEST_CASE("a scene 2^k times as large has the scale 2^-k, wherever it is not 1", "[length_scale]") {
+TEST_CASE("if a scene is scaled, a scene 2^k times as large has a scale 2^-k times as large", "[length_scale]") {
     std::mt19937 random(14);
     for (int i = 0; i < 300; ++i) {
         const double radius = std::pow(10, std::uniform_real_distribution<double>(-3, 1)(random));
@@ -86,7 +85,7 @@ TEST_CASE("a scene 2^k times as large has the scale 2^-k, wherever it is not 1",
     }
 }
 
-TEST_CASE("what a format cannot hold beside the largest length is counted, and a scene of nothing else refused",
+TEST_CASE("objects too small for the format are counted, and a scene of only such objects is refused",
           "[length_scale]") {
     Scene scene = sphere_seen_from(1, 1e6);
     scene.spheres.push_back({{0, 0, 0}, 1e-5, 0});
@@ -94,12 +93,12 @@ TEST_CASE("what a format cannot hold beside the largest length is counted, and a
     const LengthScale scale = length_scale(scene, kSpa22);
     CHECK(scale.vanishing == 2);
     CHECK(scale.smallest == 2e-6);
-    CHECK(scale.least > 1e-5);
-    CHECK(scale.least < 1);
+    CHECK(scale.min_visible > 1e-5);
+    CHECK(scale.min_visible < 1);
     CHECK(length_scale(scene, kFp32).vanishing == 0);
     const Scene speck = sphere_seen_from(1e-4, 1e6);
     CHECK_THROWS_AS(length_scale(speck, kSpa22), UserError);
-    CHECK_THROWS_WITH(length_scale(speck, kSpa22), Contains("one.nff") && Contains("from 0.0001 to 1e+06") &&
+    CHECK_THROWS_WITH(length_scale(speck, kSpa22), Contains("one.nff") && Contains("0.0001 to 1e+06") &&
                                                        Contains("e6m15") && Contains("--format fp32"));
     CHECK_NOTHROW(length_scale(speck, kFp32));
 }

@@ -1,4 +1,4 @@
-// Damaged files: each is either read, and then survives being written and read again, or refused with file and line.
+// Damaged files: each is either read, and is then equal after writing and reading, or refused with file and line.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -39,7 +39,7 @@ class Mutator {
   private:
     std::size_t below(std::size_t limit) { return static_cast<std::size_t>(random_.next() % limit); }
 
-    /// A place in the text, its end included, and a length from there.
+    /// A position in the text, its end included, and a length from there.
     std::pair<std::size_t, std::size_t> piece(const std::string& text) {
         const std::size_t start = below(text.size() + 1);
         return {start, below(std::min<std::size_t>(40, text.size() - start) + 1)};
@@ -86,7 +86,7 @@ class Mutator {
     SplitMix random_;
 };
 
-/// Whether a message starts with "m.nff:LINE: " and goes on.
+/// Returns true if a message starts with "m.nff:LINE: " and continues.
 bool has_place(const std::string& message) {
     const std::string name = "m.nff:";
     if (!message.starts_with(name)) return false;
@@ -95,7 +95,7 @@ bool has_place(const std::string& message) {
            message.substr(end, 2) == ": " && message.size() > end + 2;
 }
 
-/// What is wrong with the reader's answer to a text, or nothing. Counts the accepted ones.
+/// The error in the reader's handling of a text, or an empty string. Counts accepted texts.
 std::string complaint(const std::string& text, int& accepted) {
     try {
         const Scene scene = parse_nff(text, "m.nff");
@@ -110,7 +110,7 @@ std::string complaint(const std::string& text, int& accepted) {
 
 }  // namespace
 
-TEST_CASE("mutated files are read or refused, never anything else", "[nff]") {
+TEST_CASE("mutated files are either read or refused", "[nff]") {
     const char* given = std::getenv("RAYA_MUTATIONS");
     const int count = given ? std::atoi(given) : 4000;
     int accepted = 0;
@@ -122,6 +122,6 @@ TEST_CASE("mutated files are read or refused, never anything else", "[nff]") {
         FAIL_CHECK(wrong);
     }
     INFO(accepted << " of " << count << " accepted");
-    CHECK(accepted > count / 20);  // the mutations leave some files whole,
-    CHECK(accepted < count / 2);   // and break most
+    CHECK(accepted > count / 20);  // some mutated files stay valid,
+    CHECK(accepted < count / 2);   // most do not
 }

@@ -43,7 +43,7 @@ TEST_CASE("every entity is read as written", "[nff]") {
     CHECK(s.object_count() == 5);
 }
 
-TEST_CASE("white space, comments and line ends do not matter", "[nff]") {
+TEST_CASE("white space, comments and line ends do not change a scene", "[nff]") {
     const std::string entities = "l 1 2 3 1 1 1\nc 0 0 0 1 0 0 2 0.5\np 3\n0 0 0\n1 0 0\n0 1 0\n#raya plane 0 0 1 0\n";
     const Scene plain = scene_of(entities);
     CHECK(scene_of("l 1 2\n3\n1 1 1\n\n  c 0 0 0 1\n\t0 0 2 0.5\np\n3 0 0 0 1\n0 0 0 1 0\n  #raya plane 0 0 1 0") ==
@@ -57,7 +57,7 @@ TEST_CASE("white space, comments and line ends do not matter", "[nff]") {
     CHECK(scene_of(replaced(entities, " 1 ", " +1.0e0 ")) == plain);
 }
 
-TEST_CASE("the parts of v may stand in any order", "[nff]") {
+TEST_CASE("the parts of v may have any order", "[nff]") {
     const Scene s =
         parse_nff("v resolution 320 200 hither 0.5 up 0 0 1\nangle 40 at 0 0 1\nfrom 0 -5 1\ns 0 0 0 1", "t.nff");
     CHECK(s.view == scene_of("s 0 0 0 1\n").view);
@@ -83,7 +83,7 @@ TEST_CASE("equal surfaces are stored once, in order of first use by object numbe
     CHECK(s.cones[0].surface == 1);
 }
 
-TEST_CASE("planes are normalised with their distance", "[nff]") {
+TEST_CASE("a plane's normal and distance are normalised", "[nff]") {
     const Scene s = scene_of("#raya plane 0 3 4 10\n#raya plane 0 0 1e-300 0\n");
     REQUIRE(s.planes.size() == 2);
     CHECK((s.planes[0].normal - Vec3(0, 0.6, 0.8)).length() < 1e-15);
@@ -91,7 +91,7 @@ TEST_CASE("planes are normalised with their distance", "[nff]") {
     CHECK(s.planes[1].normal == Vec3(0, 0, 1));
 }
 
-TEST_CASE("a checker holds for the next plane or polygon only", "[nff]") {
+TEST_CASE("a checker applies only to the next plane or polygon", "[nff]") {
     const std::string checker = "#raya checker 1 0 0 0 0 1 0.5\n", triangle = "p 3 0 0 0 1 0 0 0 1 0\n";
     const Scene s = scene_of("f 0 1 0 0.5 0.2 9 0 1\n" + checker + "s 0 0 0 1\n" + triangle + triangle + checker +
                              "#raya plane 0 0 1 0\n#raya plane 0 0 1 1\n");
@@ -113,14 +113,14 @@ TEST_CASE("repeated vertices are dropped with their normals", "[nff]") {
     CHECK(s.polygons[1] == Polygon{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {0, 1, 0}, {1, 0, 0}}, 0});
 }
 
-TEST_CASE("polygons may be concave, small, far out and slightly off their plane", "[nff]") {
+TEST_CASE("polygons may be concave, small, distant and slightly non-planar", "[nff]") {
     CHECK_NOTHROW(scene_of("p 6 0 0 0 2 0 0 2 1 0 1 1 0 1 2 0 0 2 0\n"));
     CHECK_NOTHROW(scene_of("p 3 0 0 0 1e-6 0 0 0 1e-6 0\n"));
     CHECK_NOTHROW(scene_of("p 3 1e6 1e6 0 1000000.1 1e6 0 1e6 1000000.1 0\n"));
     CHECK_NOTHROW(scene_of("p 4 0 0 0 1 0 0.001 1 1 0 0 1 0.001\n"));
 }
 
-TEST_CASE("a written scene reads back equal", "[nff]") {
+TEST_CASE("a scene is equal after writing and reading", "[nff]") {
     const Scene s = scene_of(
         "b 0.1 0.2 0.3\nl 1e-9 2.5 -3 1 2 3\nf 0.1 0.7 1e-5 0.333333333333 0 1e5 0.9 1.5\ns 0.1 0.2 "
         "0.30000000000000004 -7\n"
@@ -130,7 +130,7 @@ TEST_CASE("a written scene reads back equal", "[nff]") {
     CHECK(write_nff(s).find("s 0.1 0.2 0.30000000000000004 -7\n") != std::string::npos);
 }
 
-TEST_CASE("the project's scenes and SPD's files read back equal", "[nff]") {
+TEST_CASE("the project's scenes and SPD's files are equal after writing and reading", "[nff]") {
     int read = 0;
     for (const auto& folder : {std::filesystem::path(RAYA_SOURCE_DIR "/scenes"), spd_folder()}) {
         if (!std::filesystem::is_directory(folder)) continue;
@@ -146,7 +146,7 @@ TEST_CASE("the project's scenes and SPD's files read back equal", "[nff]") {
     CHECK(read >= 7);
 }
 
-TEST_CASE("SPD's files hold the objects that SPD says", "[nff]") {
+TEST_CASE("SPD's files have the documented numbers of objects", "[nff]") {
     struct Row {
         const char* file;
         std::size_t spheres, polygons, patches, cones, lights;
@@ -156,7 +156,7 @@ TEST_CASE("SPD's files hold the objects that SPD says", "[nff]") {
           Row{"mount", 4, 8192, 0, 0, 1}, Row{"teapot", 0, 36, 2256, 0, 2}, Row{"tetra", 0, 4096, 0, 0, 1}}) {
         const auto path = spd_folder() / (std::string(row.file) + ".nff");
         if (!std::filesystem::exists(path)) {
-            WARN("not there, left out: " << path);
+            WARN("file missing, skipped: " << path);
             continue;
         }
         INFO(path);

@@ -21,7 +21,7 @@ struct Row {
     const char* message;  // "LINE: reason", or the start of it
 };
 
-/// What parse_nff() says against a text, or "accepted".
+/// The error message of parse_nff() for a text, or "accepted".
 std::string refusal(const std::string& text) {
     try {
         parse_nff(text, "folder/t.nff");
@@ -38,7 +38,7 @@ void check(const std::vector<Row>& rows) {
     }
 }
 
-/// Rows whose text follows a good view and sphere: it starts on line 9.
+/// Checks rows whose text follows a valid view and sphere: it starts on line 9.
 void check_entities(std::vector<Row> rows) {
     for (Row& row : rows) row.text = kShortView + kOneSphere + row.text;
     check(rows);
@@ -52,7 +52,7 @@ std::string view_with(const std::string& old_line, const std::string& new_line) 
 
 }  // namespace
 
-TEST_CASE("refused: files that are something else", "[nff]") {
+TEST_CASE("refused: files of other formats", "[nff]") {
     check({{"nff\nversion 2.0\n", "1: this is Sense8's NFF"},
            {"# made by hand\nNFF\nVERSION 2\n", "2: this is Sense8's NFF"},
            {std::string("\x89PNG\r\n\x1a\n\0\0", 10), "2: a control character: is this a binary file?"},
@@ -63,21 +63,21 @@ TEST_CASE("refused: files that are something else", "[nff]") {
            {"", "1: no 'v'"}});
 }
 
-TEST_CASE("refused: scenes that show nothing", "[nff]") {
-    check({{kOneSphere, "2: no 'v': the file must say from where to look"},
-           {kShortView, "8: no object: nothing could be seen"},
+TEST_CASE("refused: scenes without a view or an object", "[nff]") {
+    check({{kOneSphere, "2: no 'v': the file has no viewpoint"},
+           {kShortView, "8: no object: the image would be empty"},
            {kShortView + "f 1 1 1 1 0 0 0 1\nl 1 1 1\n", "10: no object"}});
 }
 
-TEST_CASE("refused: numbers", "[nff]") {
+TEST_CASE("refused: invalid numbers", "[nff]") {
     check_entities({{"s 0 0 zero 1", "9: the centre of 's': 'zero' is not a number"},
                     {"s 0 0 nan 1", "9: the centre of 's': 'nan' is not a finite number"},
                     {"s 0 0 0\n-inf", "10: the radius of 's': '-inf' is not a finite number"},
                     {"s 0 0 1e999 1", "9: the centre of 's': '1e999' is outside the range of double precision"},
                     {"s 0 0 1e-999 1", "9: the centre of 's': '1e-999' is outside the range"},
-                    {"s 0 0 1.5x 1", "9: the centre of 's': '1.5x' is a number with something after it"},
-                    {"s 0 0 0x10 1", "9: the centre of 's': '0x10' is a number with something after it"},
-                    {"s 0 0 1,5 1", "9: the centre of 's': '1,5' is a number with something after it"},
+                    {"s 0 0 1.5x 1", "9: the centre of 's': '1.5x' has characters after the number"},
+                    {"s 0 0 0x10 1", "9: the centre of 's': '0x10' has characters after the number"},
+                    {"s 0 0 1,5 1", "9: the centre of 's': '1,5' has characters after the number"},
                     {"s 0 0 +-1 1", "9: the centre of 's': '+-1' is not a number"},
                     {"s 0 0 1.1e30 1", "9: the centre of 's': '1.1e30' is out of range: at most 1e+30 in magnitude"},
                     {"s 0 0 0 -2e30", "9: the radius of 's': '-2e30' is out of range"},
@@ -85,39 +85,39 @@ TEST_CASE("refused: numbers", "[nff]") {
                     {"b 0 0 1e10", "9: the background colour of 'b': '1e10' is out of range"}});
 }
 
-TEST_CASE("refused: entities that are cut short or followed by something", "[nff]") {
+TEST_CASE("refused: entities with too few or too many values", "[nff]") {
     check_entities(
-        {{"s 0 0 0\ns 0 0 0 1", "10: 's' of line 9 is cut short: 's' stands where the radius should be"},
+        {{"s 0 0 0\ns 0 0 0 1", "10: 's' of line 9 is incomplete: expected the radius, found 's'"},
          {"s 0 0", "9: the file ends before the centre of 's'"},
          {"p 3\n0 0 0\n1 0 0\n\n", "13: the file ends before a vertex of 'p'"},
-         {"p 3\n0 0 0\n1 0 0\nf 1 1 1 1 0 0 0 1", "12: 'p' of line 9 is cut short: 'f' stands where a vertex"},
+         {"p 3\n0 0 0\n1 0 0\nf 1 1 1 1 0 0 0 1", "12: 'p' of line 9 is incomplete: expected a vertex, found 'f'"},
          {"pp 3\n0 0 0 0 0 1\n1 0 0\n", "12: the file ends before a normal of 'pp'"},
-         {"c 0 0 0 1\n#raya plane 0 0 1 0\n", "10: 'c' of line 9 is cut short: '#raya' stands"},
-         {"l 0 0 0 1 1\ns 0 0 0 1", "10: 'l' of line 9 is cut short: 's' stands where the light's colour"},
+         {"c 0 0 0 1\n#raya plane 0 0 1 0\n", "10: 'c' of line 9 is incomplete: expected the apex, found '#raya'"},
+         {"l 0 0 0 1 1\ns 0 0 0 1", "10: 'l' of line 9 is incomplete: expected the light's colour, found 's'"},
          {"f 1 1 1 1 0 0 0", "9: the file ends before the index of refraction of 'f'"},
          {"b 1 1", "9: the file ends before the background colour of 'b'"},
          {"s 0 0 0 1 s 0 0 0 1", "9: 's' follows the end of 's'; a new entity starts on a new line"},
          {"s 0 0 0 1 2", "9: '2' follows the end of 's'"},
-         {"l 0 0 0 1 1 1\n2", "10: '2' where an entity should start: has the one before too many numbers?"},
-         {"p 3 0 0 0 1 0 0 1 1 0\n0 1 0\n", "10: '0' where an entity should start"},
+         {"l 0 0 0 1 1 1\n2", "10: '2' instead of an entity: does the previous one have too many numbers?"},
+         {"p 3 0 0 0 1 0 0 1 1 0\n0 1 0\n", "10: '0' instead of an entity"},
          {"poly 3", "9: unknown entity 'poly'"},
          {"S 0 0 0 1", "9: unknown entity 'S'"}});
 }
 
-TEST_CASE("refused: viewpoints", "[nff]") {
+TEST_CASE("refused: invalid views", "[nff]") {
     const char* side = "must be a whole number from 1 to 16384";
     check({{kShortView + kShortView + kOneSphere, "8: a second 'v'"},
            {view_with("angle 40\n", ""), "7: 'v' is incomplete: 's' follows, but still missing: angle"},
            {"v\nfrom 0 0 1\nat 0 0 0",
             "3: 'v' is incomplete: the file ends, but still missing: up angle hither resolution"},
-           {view_with("angle 40", "at 0 0 2"), "5: 'at' stands twice in 'v'"},
+           {view_with("angle 40", "at 0 0 2"), "5: 'at' occurs twice in 'v'"},
            {view_with("at 0 0 1", "at 0 -5 1"), "1: 'from' and 'at' are the same point"},
            {view_with("angle 40", "angle 0"), "1: the angle is 0: must lie between 0 and 180 degrees"},
            {view_with("angle 40", "angle 180"), "1: the angle is 180"},
            {view_with("angle 40", "angle -40"), "1: the angle is -40"},
-           {view_with("up 0 0 1", "up 0 2 0"), "1: 'up' is zero or points along the gaze"},
-           {view_with("up 0 0 1", "up 0 -1 1e-9"), "1: 'up' is zero or points along the gaze"},
-           {view_with("up 0 0 1", "up 0 0 0"), "1: 'up' is zero or points along the gaze"}});
+           {view_with("up 0 0 1", "up 0 2 0"), "1: 'up' is zero or parallel to the viewing direction"},
+           {view_with("up 0 0 1", "up 0 -1 1e-9"), "1: 'up' is zero or parallel to the viewing direction"},
+           {view_with("up 0 0 1", "up 0 0 0"), "1: 'up' is zero or parallel to the viewing direction"}});
     for (const char* size : {"0 200", "-1 200", "16385 200", "1.5 200"}) {
         const std::string message = refusal(view_with("320 200", size));
         CHECK_THAT(message, Catch::StartsWith("folder/t.nff:7: the width of 'v' is ") && Catch::EndsWith(side));
@@ -130,7 +130,7 @@ TEST_CASE("refused: viewpoints", "[nff]") {
     CHECK(refusal(view_with("hither 0.5", "hither -1")) == "accepted");
 }
 
-TEST_CASE("refused: colours and surfaces", "[nff]") {
+TEST_CASE("refused: invalid colours and surfaces", "[nff]") {
     check_entities({{"b 0 -0.1 0", "9: the background colour is negative"},
                     {"b 0 0 0\nb 0 0 0", "10: a second 'b'"},
                     {"l 0 0 0 1 1 -1", "9: the light's colour is negative"},
@@ -147,7 +147,7 @@ TEST_CASE("refused: colours and surfaces", "[nff]") {
     CHECK(refusal(kShortView + "f 2 2 2 1 0 0 0 -1\n" + kOneSphere) == "accepted");
 }
 
-TEST_CASE("refused: spheres and cones", "[nff]") {
+TEST_CASE("refused: invalid spheres and cones", "[nff]") {
     check_entities({{"s 0 0 0 0", "9: the radius of the sphere is zero"},
                     {"s 0 0 0 -1e-31", "9: the radius of the sphere is zero"},
                     {"c 0 0 0 0 0 0 1 0", "9: both radii of the cone are zero"},
@@ -158,7 +158,7 @@ TEST_CASE("refused: spheres and cones", "[nff]") {
         CHECK(refusal(kShortView + cone) == "accepted");
 }
 
-TEST_CASE("refused: polygons", "[nff]") {
+TEST_CASE("refused: invalid polygons", "[nff]") {
     check_entities(
         {{"p 2 0 0 0 1 0 0", "9: the number of vertices of 'p' is 2: must be a whole number from 3"},
          {"p -3", "9: the number of vertices of 'p' is -3"},
@@ -176,7 +176,7 @@ TEST_CASE("refused: polygons", "[nff]") {
          {"pp 3 0 0 0 0 0 1 1 0 0 0 0 0 0 1 0 0 0 1", "9: a normal of the patch is zero"}});
 }
 
-TEST_CASE("refused: raya's extension", "[nff]") {
+TEST_CASE("refused: invalid #raya extensions", "[nff]") {
     check_entities(
         {{"#raya", "9: the file ends before the word of '#raya'"},
          {"#raya\nplane 0 0 1 0", "9: the line ends before the word of '#raya'"},
@@ -185,7 +185,7 @@ TEST_CASE("refused: raya's extension", "[nff]") {
          {"#raya plane 0 0 1\ns 0 0 0 1", "9: the line ends before the distance of '#raya plane'"},
          {"#raya plane 0 0 1 0 0", "9: '0' follows the end of '#raya plane'"},
          {"#raya plane 0 0 0 1", "9: the normal of the plane is zero"},
-         {"#raya plane 0 0 1e-30 10", "9: the plane lies too far from the origin"},
+         {"#raya plane 0 0 1e-30 10", "9: the plane is too far from the origin"},
          {"s 0 0 0 1 #raya plane 0 0 1 0", "9: '#raya' must be the first word of its line"},
          {kChecker, "9: no plane or polygon follows this '#raya checker'"},
          {kChecker + kOneSphere, "9: no plane or polygon follows this '#raya checker'"},

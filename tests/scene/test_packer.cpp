@@ -1,4 +1,4 @@
-// Jobs read back: every word is accounted for and says what the scene says, to fp32.
+// Decoded jobs: every word belongs to one record and agrees with the scene, rounded to fp32.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kRounding = 0x1p-24;  // of a number that is rounded to fp32 once
 
-// A shading normal at a corner: the origin's rounding over the shortest side, which is a hundredth of the extent here.
+// The error of a shading normal at a corner: the origin's rounding over the shortest side, here 1/100 of the extent.
 constexpr double kNormalLimit = 8 * 100 * kRounding;
 
 Surface rounded(Surface s) {
@@ -39,7 +39,7 @@ struct Point2 {
 };
 Point2 flattened(const Vec3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-/// Checks one job against its scene, record by record.
+/// Compares a job with its scene, record by record.
 class JobCheck {
   public:
     explicit JobCheck(const Scene& scene, const std::vector<std::uint32_t>& words)
@@ -107,7 +107,7 @@ class JobCheck {
         check_surface(cone.surface, at);
     }
 
-    /// The faces of one polygon from number `face` on: itself, or the triangles of a patch.
+    /// Checks the faces of a polygon from number `face` on: itself, or the triangles of a patch.
     void check_faces(const Polygon& polygon, std::size_t& face) {
         const Vec3 normal = newell_normal(polygon.vertices);
         for (const std::vector<int>& corners : faces_of(polygon)) {
@@ -149,7 +149,7 @@ class JobCheck {
         }
     }
 
-    /// At the corners of a patch's triangle the interpolated normal is the vertices' own.
+    /// At the corners of a patch's triangle the interpolated normal must be the vertex normal.
     void check_normals(const Polygon& patch, const std::vector<int>& corners, std::size_t at) {
         const int axis = dropped_axis(newell_normal(patch.vertices));
         const double u0 = packed_.real(at + RAYA_PATCH_ORIGIN), v0 = packed_.real(at + RAYA_PATCH_ORIGIN + 1);
@@ -195,7 +195,7 @@ Scene patch_scene() {
 
 }  // namespace
 
-TEST_CASE("the jobs of all scenes decode back to them, and every word belongs to one record", "[packer]") {
+TEST_CASE("the jobs of all scenes decode to the scenes, and every word belongs to one record", "[packer]") {
     int scenes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(RAYA_SOURCE_DIR "/scenes")) {
         if (entry.path().extension() != ".nff") continue;
@@ -212,7 +212,7 @@ TEST_CASE("the jobs of all scenes decode back to them, and every word belongs to
     CHECK(scenes >= 6);
 }
 
-TEST_CASE("patches become triangles, polygons stay whole", "[packer]") {
+TEST_CASE("patches are packed as triangles, polygons as outlines", "[packer]") {
     const Scene scene = patch_scene();
     const PackedJob packed = pack_job(scene, settings_for(8, 8));
     JobCheck(scene, packed.words()).run();
@@ -223,7 +223,7 @@ TEST_CASE("patches become triangles, polygons stay whole", "[packer]") {
     CHECK(packed.words().size() == words);
 }
 
-TEST_CASE("the header holds settings, background and sizes", "[packer]") {
+TEST_CASE("a job's header contains settings, background, ambient light and extent", "[packer]") {
     Scene scene = patch_scene();
     scene.background = {0.1, 0.2, 0.3};
     JobSettings settings = settings_for(32, 24);
@@ -237,7 +237,7 @@ TEST_CASE("the header holds settings, background and sizes", "[packer]") {
     CHECK(Vec3(job.eye[0], job.eye[1], job.eye[2]) == Vec3(0, 0, -5));
     CHECK(Vec3(job.background[0], job.background[1], job.background[2]) == fp32(scene.background));
     CHECK(job.ambient == 1);  // without lights
-    CHECK(job.extent == 5);   // the eye is farthest out
+    CHECK(job.extent == 5);   // the eye's distance
     scene.lights = {{{1, 2, 3}, {}}, {{4, 5, 6}, Colour(0.1, 0.2, 0.3)}};
     scene.spheres = {{{-8, 0, 0}, -2, 0}};
     job = PackedScene(pack_job(scene, settings).words()).job();
@@ -245,7 +245,7 @@ TEST_CASE("the header holds settings, background and sizes", "[packer]") {
     CHECK(job.extent == 10);
 }
 
-TEST_CASE("a job's header is that of its words, when it is set and when words are appended", "[packer]") {
+TEST_CASE("header() agrees with the words after set_header() and append()", "[packer]") {
     PackedJob job = pack_job(patch_scene(), settings_for(8, 6));
     const std::vector<std::uint32_t> before = job.words();
     CHECK(words_of(job.header()) == words_of(PackedScene(before).job()));
@@ -262,7 +262,7 @@ TEST_CASE("a job's header is that of its words, when it is set and when words ar
           std::vector<std::uint32_t>{11, 12, 13});
 }
 
-TEST_CASE("records lie among words where they were put, and their neighbours stay", "[packer]") {
+TEST_CASE("put_record() writes a record at its index and no other word", "[packer]") {
     std::vector<std::uint32_t> words = {1, 2, 3, 4, 5, 6, 7, 8, 9};
     const raya_mapping mapping{20, 30, 40, 50, RAYA_TILES};
     put_record(words, 2, mapping);
@@ -271,7 +271,7 @@ TEST_CASE("records lie among words where they were put, and their neighbours sta
     CHECK(record_at<raya_mapping>(words, 4).width == 40);
 }
 
-TEST_CASE("corner and steps give the reference's primary rays", "[packer]") {
+TEST_CASE("a job's corner and steps give the reference's primary rays", "[packer]") {
     Scene scene = patch_scene();
     scene.view = {{3, -4, 5}, {0.5, 1, -2}, {0.1, 0.2, 1}, 50, 0, 1, 1};
     for (const bool corners : {false, true})

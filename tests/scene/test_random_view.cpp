@@ -1,4 +1,4 @@
-// Random views: where the camera may stand, evenly, and that nothing else changes.
+// Random views: uniform camera positions in the allowed zone, and no other change of the scene.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -13,7 +13,7 @@ namespace {
 
 double sine(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
 
-TEST_CASE("a random view keeps distance, target, angle and scene, and looks from above", "[view]") {
+TEST_CASE("a random view changes only the camera's position, at the same distance and within the zone", "[view]") {
     SplitMix random(3);
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
         Scene scene = generate_random(3, seed);
@@ -34,7 +34,7 @@ TEST_CASE("a random view keeps distance, target, angle and scene, and looks from
     }
 }
 
-TEST_CASE("random views are even over the zone of the sphere", "[view]") {
+TEST_CASE("random views are uniform over the zone of the sphere", "[view]") {
     const Scene scene = generate_centre();
     constexpr int kViews = 4000, kParts = 8;
     int heights[kParts] = {}, azimuths[kParts] = {};

@@ -1,4 +1,4 @@
-// The box about finite objects: it holds every point of them, and no smaller one does.
+// The bounding box of the finite objects is tight.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -19,7 +19,7 @@ Scene of_cone(const Cone& cone) {
     return scene;
 }
 
-TEST_CASE("the box of a cone touches its two circles", "[scene_box]") {
+TEST_CASE("the bounding box of a cone touches its two circles", "[scene_box]") {
     SplitMix random(77);
     for (int i = 0; i < 200; ++i) {
         const double sign = i % 2 == 0 ? 1 : -1;
@@ -33,9 +33,9 @@ TEST_CASE("the box of a cone touches its two circles", "[scene_box]") {
         constexpr int kPoints = 720;
         for (int k = 0; k < kPoints; ++k) {
             const double angle = 2 * std::numbers::pi * k / kPoints;
-            const Vec3 way = u * std::cos(angle) + v * std::sin(angle);
-            touched.extendBy(cone.base + way * cone.base_radius);
-            touched.extendBy(cone.apex + way * cone.apex_radius);
+            const Vec3 direction = u * std::cos(angle) + v * std::sin(angle);
+            touched.extendBy(cone.base + direction * cone.base_radius);
+            touched.extendBy(cone.apex + direction * cone.apex_radius);
         }
         CAPTURE(i);
         for (int axis_number = 0; axis_number < 3; ++axis_number) {
@@ -47,7 +47,7 @@ TEST_CASE("the box of a cone touches its two circles", "[scene_box]") {
     }
 }
 
-TEST_CASE("the box holds spheres, seen from outside or inside, and corners of polygons; planes have none",
+TEST_CASE("the bounding box contains spheres of either sign of radius and polygons, and ignores planes",
           "[scene_box]") {
     Scene scene;
     scene.planes.push_back({{0, 0, 1}, 7, 0});

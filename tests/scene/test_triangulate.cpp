@@ -1,4 +1,4 @@
-// Newell's normal, the dropped axis, and ear clipping on outlines of every awkward kind.
+// Newell's normal, the dropped axis, and ear clipping of concave, degenerate and self-touching outlines.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -20,8 +20,8 @@ Vec3 doubled_area(const Outline& outline, const std::array<int, 3>& t) {
     return (corner(outline, t[1]) - corner(outline, t[0])).cross(corner(outline, t[2]) - corner(outline, t[0]));
 }
 
-/// n - 2 triangles that run like the outline and whose areas sum to its own: so they cover it, and nothing twice. Every
-/// vertex is used, and no vertex lies strictly inside a triangle.
+/// Requires n - 2 triangles with the outline's orientation, whose areas sum to its area (so that they cover it once),
+/// and that every vertex is used.
 void check_triangulation(const Outline& outline) {
     const Vec3 normal = newell_normal(outline);
     const auto triangles = triangulate(outline, normal);
@@ -38,7 +38,7 @@ void check_triangulation(const Outline& outline) {
     for (const int uses : used) CHECK(uses > 0);
 }
 
-/// The outline laid into a plane with a normal that has no zero component.
+/// The outline in a plane whose normal has no zero component.
 Outline tilted(const Outline& flat) {
     const Vec3 normal = Vec3(0.3, -0.9, 0.4).normalized();
     const Vec3 u = normal.cross(Vec3(0, 0, 1)).normalized();
@@ -53,7 +53,7 @@ const Outline kSquareWithMidpoints{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {
 const Outline kSquareHole{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},
                           {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}};
 
-TEST_CASE("Newell's normal points to the counter-clockwise side and measures twice the area") {
+TEST_CASE("Newell's normal points to the counter-clockwise side, and its length is twice the area") {
     CHECK(newell_normal({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}) == Vec3(0, 0, 1));
     CHECK(newell_normal({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}) == Vec3(0, 0, -1));
     CHECK(newell_normal(kU) == Vec3(0, 0, 2 * 7));
@@ -62,7 +62,7 @@ TEST_CASE("Newell's normal points to the counter-clockwise side and measures twi
     CHECK(newell_normal({{1e9, 0, 0}, {1e9 + 1, 0, 0}, {1e9, 1, 0}}) == Vec3(0, 0, 1));
 }
 
-TEST_CASE("the dropped axis is that of the largest component, of equals the first") {
+TEST_CASE("the dropped axis is that of the largest component, the first of equal ones") {
     CHECK(dropped_axis({1, 0, 0}) == 0);
     CHECK(dropped_axis({0.1, -0.9, 0.5}) == 1);
     CHECK(dropped_axis({0.1, 0.2, -0.3}) == 2);
@@ -70,7 +70,7 @@ TEST_CASE("the dropped axis is that of the largest component, of equals the firs
     CHECK(dropped_axis({0.5, -1, 1}) == 1);
 }
 
-TEST_CASE("simple outlines fall into triangles that cover them once") {
+TEST_CASE("the triangles of simple outlines cover them once") {
     for (const Outline& flat : {Outline{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, kU, kSquareWithMidpoints, kSquareHole}) {
         CAPTURE(flat.size());
         check_triangulation(flat);
@@ -79,11 +79,11 @@ TEST_CASE("simple outlines fall into triangles that cover them once") {
     }
 }
 
-TEST_CASE("a normal of the other sign or of another length changes nothing") {
+TEST_CASE("the sign and the length of the normal do not change the triangulation") {
     CHECK(triangulate(kU, {0, 0, -5}) == triangulate(kU, {0, 0, 1}));
 }
 
-TEST_CASE("random star-shaped outlines are triangulated") {
+TEST_CASE("the triangles of random star-shaped outlines cover them once") {
     constexpr std::uint64_t kSeed = 4;
     std::mt19937_64 random(kSeed);
     const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -101,7 +101,7 @@ TEST_CASE("random star-shaped outlines are triangulated") {
     }
 }
 
-TEST_CASE("outlines without area or order still end") {
+TEST_CASE("triangulate() ends for outlines without area and self-crossing ones") {
     CHECK(triangulate({}, {0, 0, 1}).empty());
     CHECK(triangulate({{0, 0, 0}, {1, 0, 0}}, {0, 0, 1}).empty());
     const Outline bow_tie{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};

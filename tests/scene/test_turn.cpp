@@ -1,4 +1,4 @@
-// A camera that goes round: distance, height, direction and exactness.
+// Camera turns: distance, height, direction and exactness.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -18,7 +18,7 @@ View random_viewpoint(SplitMix& random) {
     return view;
 }
 
-TEST_CASE("a turn keeps distance, height and all else of a view", "[view]") {
+TEST_CASE("a turn changes only the azimuth of the camera's position, by the angle", "[view]") {
     const std::uint64_t seed = 41;
     CAPTURE(seed);
     SplitMix random(seed);

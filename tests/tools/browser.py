@@ -1,17 +1,17 @@
-"""A headless Chromium (Debian: chromium), spoken to over a pipe in Chrome's DevTools protocol with nothing but Python's own library."""
+"""Controls a headless Chromium (Debian: chromium) by Chrome's DevTools protocol over a pipe. Uses only Python's standard library."""
 import json, os, select, shutil, subprocess, tempfile, time
 
 PROGRAMS = ["chromium", "chromium-browser", "google-chrome"]
-PATIENCE = 60  # seconds
+TIMEOUT_S = 60  # of an answer of the browser
 
 
 def program():
-    """Its path; None where there is none."""
+    """Path of the browser; None if none is installed."""
     return next((path for path in map(shutil.which, PROGRAMS) if path), None)
 
 
 class Browser:
-    """One page in one browser. `events`: what the browser has told so far, as (method, parameters)."""
+    """One page in one browser. `events`: [(method, parameters)] of the events received so far."""
 
     def __init__(self):
         self.profile = tempfile.mkdtemp(prefix="raya-browser-")
@@ -19,7 +19,7 @@ class Browser:
         self.into, up = os.pipe()
 
         def take_pipes():
-            ends = os.dup(down), os.dup(up)  # out of the way of 3 and 4
+            ends = os.dup(down), os.dup(up)  # numbers other than 3 and 4
             os.dup2(ends[0], 3), os.dup2(ends[1], 4)
 
         self.process = subprocess.Popen(
@@ -43,14 +43,14 @@ class Browser:
         shutil.rmtree(self.profile, ignore_errors=True)
 
     def message(self, seconds):
-        """The next message; None after so many seconds without one."""
+        """The next message; None if none arrives within `seconds`."""
         end = time.monotonic() + seconds
         while b"\0" not in self.rest:
             if not select.select([self.into], [], [], max(0, end - time.monotonic()))[0]:
                 return None
             piece = os.read(self.into, 1 << 16)
             if not piece:
-                raise RuntimeError("the browser has ended")
+                raise RuntimeError("the browser has exited")
             self.rest += piece
         text, self.rest = self.rest.split(b"\0", 1)
         return json.loads(text)
@@ -64,7 +64,7 @@ class Browser:
         while data:
             data = data[os.write(self.out, data):]
         while True:
-            answer = self.message(PATIENCE)
+            answer = self.message(TIMEOUT_S)
             if answer is None:
                 raise RuntimeError(f"no answer to {method}")
             if answer.get("id") == self.number:
@@ -76,14 +76,14 @@ class Browser:
 
     def wait_for(self, method):
         while not any(name == method for name, _ in self.events):
-            message = self.message(PATIENCE)
+            message = self.message(TIMEOUT_S)
             if message is None:
-                raise RuntimeError(f"the browser never told of {method}")
+                raise RuntimeError(f"the browser did not send {method} within {TIMEOUT_S} s")
             if "method" in message:
                 self.events.append((message["method"], message.get("params", {})))
 
     def open(self, url, width=1000, dark=False, scripts=True, media=""):
-        """Loads a page anew; events are those from then on."""
+        """Loads a page and clears the events."""
         self.ask("Emulation.setScriptExecutionDisabled", value=not scripts)
         self.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
         self.ask("Emulation.setEmulatedMedia", media=media,
@@ -93,14 +93,14 @@ class Browser:
         self.wait_for("Page.loadEventFired")
 
     def value(self, expression):
-        """Of a JavaScript expression, in the page."""
+        """Value of a JavaScript expression in the page."""
         answer = self.ask("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
             raise RuntimeError(json.dumps(answer["exceptionDetails"])[:600])
         return answer["result"].get("value")
 
     def picture(self, file, tallest=12000):
-        """Of the page from its top; as far as `tallest` pixels, as Chromium refuses larger ones."""
+        """Writes a screenshot of the page, at most `tallest` pixels high: Chromium refuses larger ones."""
         import base64
         width, height = self.value("[innerWidth, document.documentElement.scrollHeight]")
         clip = {"x": 0, "y": 0, "width": width, "height": min(height, tallest), "scale": 1}

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Every kernel under Oclgrind, an OpenCL implementation that watches each memory access: data races, values that were never
-# set, wrong API calls, accesses outside a buffer, more than 32 KB of local memory.
+# Runs every kernel under Oclgrind, an OpenCL implementation that checks each memory access: data races, uninitialised values, wrong API
+# calls, accesses outside a buffer, more than 32 KB of local memory.
 #   tests/tools/oclgrind.sh RAYA PATCH_KERNELS      the built program; tests/kernels/patch_kernels.cpp
-# Renders each scene of scenes/ with one and four lanes, one and four work-items, on different arrays, and smooths one of them. Oclgrind's log must
-# stay empty (its exit code is 0 all the same) and every image must be the one that the default device makes. RAYA_THOROUGH=1: all of them;
-# else one scene in two ways and one fault of each kind.
+# Renders each scene of scenes/ with one and four lanes, one and four work-items, on different arrays, and one scene with anti-aliasing.
+# Oclgrind's log must stay empty (its exit code is always 0), and every image must be that of the default device. By default one scene and
+# one injected fault of each kind; RAYA_THOROUGH=1: all.
 set -euo pipefail
 raya=$(readlink -f "$1")
 patch_kernels=$(readlink -f "$2")
@@ -21,7 +21,7 @@ runs=(
     "--lanes 1 --group 4 --pes 4 --mapping column"
     "--lanes 4 --group 4 --pes 2 --offset 5"
 )
-# How the exchange between PEs is run: on the first scene alone, it knows nothing of objects.
+# Options of the exchange between PEs; only on the first scene, as the exchange does not depend on objects.
 exchanges=(
     "--antialias filter --pes 9 --offset 2 --group 4"
     "--antialias filter --pes 4 --fold block"
@@ -36,9 +36,9 @@ if [[ -z $thorough ]]; then
     exchanges=("${exchanges[2]}")
 fi
 
-# Unoptimised, as Oclgrind 21.10 knows neither the `freeze` nor the `noalias.scope.decl` that the optimiser makes.
-# The check for values that were never set does not know clEnqueueFillBuffer: raya clears what it adds to by a write. Nor does
-# it follow buffer copies, so it is left out where there are rotations.
+# Unoptimised: Oclgrind 21.10 supports neither `freeze` nor `noalias.scope.decl`, which the optimiser emits.
+# The check for uninitialised values does not support clEnqueueFillBuffer, so raya clears buffers by writes. It does not follow buffer
+# copies either, so it is off for renders with rotations.
 watch_values=--uninitialized
 under_oclgrind() {
     # shellcheck disable=SC2086  # may be empty
@@ -66,13 +66,13 @@ check_run() {  # check_run SCENE OPTIONS OPTIONS_OF_THE_DEFAULT_DEVICE     SCENE
     [[ $found == "$wanted" ]] || fail "$scene $options: image $found, the default device's $wanted"
 }
 
-# The check itself must be able to fail: a kernel with a fault must be reported.
+# Oclgrind must report an injected fault.
 check_fault() {  # check_fault FILE FIND REPLACE REPORT OPTION...
     rm -rf "$scratch/kernels" "$scratch/log"
     "$patch_kernels" "$scratch/kernels" "$1" "$2" "$3"
     under_oclgrind render "$root/scenes/planes.nff" -o "$scratch/image.pfm" --quiet --size 4 --lanes 1 --group 4 \
         --kernel-dir "$scratch/kernels" "${@:5}" || true
-    grep -qF -- "$4" "$scratch/log" || fail "with '$3' in place of '$2' Oclgrind does not report '$4'"
+    grep -qF -- "$4" "$scratch/log" || fail "with '$3' instead of '$2' Oclgrind does not report '$4'"
 }
 
 check_fault ring/trace.cl $'barrier(CLK_LOCAL_MEM_FENCE);\n    pixel_store store;' "pixel_store store;" "data race" --pes 2
@@ -85,7 +85,7 @@ check_fault ring/trace.cl "pixels + (size_t)group * capacity * 3" "pixels + (siz
 for scene in "${scenes[@]}"; do
     for options in "${runs[@]}"; do check_run "$scene" "$options" "--lanes 1 --group 1 --pes 54"; done
 done
-# Down a tree of boxes of more than one level: spheres, polygons of 3, 4, 6 and 10 corners, patches and cones, mirrors among them.
+# A BVH of more than one level: spheres, polygons of 3, 4, 6 and 10 corners, patches and cones, some of them mirrors.
 if [[ -n $thorough ]]; then
     "$raya" generate balls --level 3 -o "$scratch/balls.nff"
     { cat "$root/scenes/polygons.nff"; awk 'FNR == 1 { objects = 0 } /^f / { objects = 1 } objects' "$root/scenes/cones.nff" "$scratch/balls.nff"; } >"$scratch/kinds.nff"
@@ -101,11 +101,11 @@ done
 [[ -z $thorough ]] || check_fault torus/inject.cl $'*next = end;\n        node_barrier();' "*next = end;" "data race" --machine torus --nodes 2x1x1
 [[ -z $thorough ]] || check_fault torus/route.cl $'goal = RAYA_STAYS;\n        node_barrier();' "goal = RAYA_STAYS;" "data race" --machine torus --nodes 2x1x1
 check_fault torus/accept.cl $'vote(votes, goal);\n        node_barrier();' "vote(votes, goal);" "data race" --machine torus --nodes 2x1x1
-# Nodes with several work-items, rays that wait for room, both ways of making primary rays.
+# Nodes with several work-items, rays that wait for queue space, both methods of making primary rays.
 size=6
 [[ -z $thorough ]] || check_run cones "--machine torus --nodes 2x2x1 --lanes 4 --group 3 --queue 200" "--machine grande"
 check_run planes "--machine torus --nodes 2x1x2 --lanes 1 --group 4 --inject root --links torus2d" "--machine grande"
-# Rays of several trees in a pool, lanes that take the next one.
+# A pool of rays of several trees, from which idle lanes take the next one.
 size=4
 check_run glass "--machine grande --accel grid --lanes 4 --group 3 --pes 2" "--machine grande"
-echo "Oclgrind: ${#scenes[@]} scenes, ${#runs[@]} runs each, ${#exchanges[@]} of the exchange, the torus, the grid${thorough:+ and the tree}: nothing to report, the same images"
+echo "Oclgrind: ${#scenes[@]} scenes, ${#runs[@]} runs each, ${#exchanges[@]} of the exchange, the torus, the grid${thorough:+ and the BVH}: no reports, the same images"

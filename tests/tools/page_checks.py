@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What must hold of every page that raya writes, looked at in a browser (browser.py).
+"""Checks for every page that raya writes, in a browser (browser.py).
 
-    tests/tools/page_checks.py PAGE.html [--pictures FOLDER]      complaints about any page; screenshots for a person to look at
+    tests/tools/page_checks.py PAGE.html [--pictures FOLDER]      prints the complaints about a page; FOLDER: for screenshots
 """
 import argparse, json, sys
 from pathlib import Path
@@ -10,7 +10,8 @@ import browser
 
 WIDTHS = (400, 820, 1400)
 
-# What a browser finds in the page, as a list of complaints. A link with an = is a state of the page and no place in it. In a drawing, text is set with fill; its ground is the document's.
+# Returns complaints about the page, and counts. A link with an = is a state of the page, not an anchor. SVG text has its colour in `fill`; its
+# background is the document's.
 LOOK = r"""(() => {
   const wrong = [];
   const seen = (e) => e.checkVisibility() && e.getClientRects().length > 0;
@@ -34,12 +35,12 @@ LOOK = r"""(() => {
     const ink = [...svg.querySelectorAll("path, use, text")].filter((e) => e.getBoundingClientRect().width > 0);
     if (ink.length < 20 || svg.querySelectorAll("text").length < 3) say("an empty drawing", figure);
     const words = (name) => (svg.getAttribute(name) || "").split(" ").map((id) => document.getElementById(id)?.textContent || "").join(" ");
-    if (svg.getAttribute("role") !== "img") say("a drawing that is no image to those who do not see", figure);
+    if (svg.getAttribute("role") !== "img") say("a drawing without role=img", figure);
     if (!(svg.getAttribute("aria-label") || words("aria-labelledby")).trim()) say("a drawing without a name", figure);
     if (!/Across: .+ Up: .+ Series: .+/s.test(words("aria-describedby"))) say("a drawing without a description", figure);
   }
   for (const img of document.querySelectorAll("img"))
-    if (!img.alt.trim() || !img.complete || img.naturalWidth === 0) say("a picture without words or pixels", img);
+    if (!img.alt.trim() || !img.complete || img.naturalWidth === 0) say("an image without alternative text or pixels", img);
 
   const canvas = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
   const rgb = (colour) => {
@@ -76,8 +77,8 @@ LOOK = r"""(() => {
 })()"""
 
 
-def told(page):
-    """What reached the network or the console."""
+def complaints(page):
+    """Yields complaints about requests, exceptions and messages in the console."""
     for method, what in page.events:
         if method == "Network.requestWillBeSent":
             url = what["request"]["url"]
@@ -100,13 +101,13 @@ def main():
     with browser.Browser() as page:
         for width, dark, scripts in [(w, d, True) for w in WIDTHS for d in (False, True)] + [(WIDTHS[1], False, False)]:
             page.open(url, width, dark, scripts)
-            if scripts:  # which may take their time
+            if scripts:  # wait for them
                 page.value("new Promise((done) => setTimeout(done, 1500))")
             name = f"{width}-{'dark' if dark else 'light'}{'' if scripts else '-no-scripts'}"
-            wrong += [f"{name}: {text}" for text in [*page.value(LOOK)["wrong"], *told(page)]]
+            wrong += [f"{name}: {text}" for text in [*page.value(LOOK)["wrong"], *complaints(page)]]
             if asked.pictures:
                 page.picture(Path(asked.pictures, f"{Path(asked.page).stem}-{name}.png"))
-    print("\n".join(wrong) or "nothing is wrong")
+    print("\n".join(wrong) or "no complaints")
     return 1 if wrong else 0
 
 

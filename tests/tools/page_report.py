@@ -1,9 +1,9 @@
-"""The report within a page that raya wrote: read, and put in anew with other members. And a report of tools/gpu_day."""
+"""Reads and replaces the report that is embedded in a page of raya; makes a report of tools/gpu_day."""
 import json, re, subprocess
 from pathlib import Path
 
 REPORT = re.compile(r'(<pre id="report"[^>]*>)(.*?)(</pre>)', re.S)
-# What a page might take for its own: ends of elements, scripts, events, entities, the asset's marks, ends of lines.
+# Text that a page must escape: ends of elements, scripts, events, entities, placeholders of the page's template, line separators.
 HOSTILE = ("</pre></script></template></title><script>window.hit = 1</script><img src=x onerror='window.hit = 1'><svg onload='window.hit = 1'>"
            "&lt;&amp;&#60;{{style.css}}{{report}}<!--<![CDATA[ \u2028\u2029\u0000'\"`${window.hit = 1}`\\ javascript:window.hit=1//")
 
@@ -13,7 +13,7 @@ def report_of(html):
 
 
 def with_report(html, report):
-    """As host/report/page/page.cpp escapes it."""
+    """The page with another report, escaped as in host/report/page/page.cpp."""
     text = json.dumps(report, indent=2, ensure_ascii=False)
     for sign in "<>&":
         text = text.replace(sign, f"\\u{ord(sign):04x}")
@@ -21,7 +21,7 @@ def with_report(html, report):
 
 
 def places(value, holds):
-    """(holder, key) of every value within a report of which `holds` is true."""
+    """Yields (container, key) of every value in a report for which `holds` is true."""
     for key in value if isinstance(value, dict) else range(len(value)):
         if holds(value[key]):
             yield value, key
@@ -30,16 +30,16 @@ def places(value, holds):
 
 
 def gpu_day(raya, folder):
-    """Files of tools/gpu_day, report.json among them, of steps that were right, wrong, late and not here."""
+    """(report.json, page.html) of a run of tools/gpu_day whose steps are right, wrong, late and not here."""
     steps = Path(folder, "steps")
     steps.mkdir(parents=True)
     for name, code, text in [("devices", "1 0 right", "$ raya devices\nGPU"), ("verify-quick", "1 12 exit code 4", "$ raya verify --quick\nGPU (maker, driver 1)\nFAIL  grid \"a\\b\""),
-                             ("goal-spheres-group32", "5 3 right", "$ raya bench\ntrace  fp32  1  32  5120.5  5"), ("hash-ring-cones-fp32", "3 1 late", "not begun"),
+                             ("goal-spheres-group32", "5 3 right", "$ raya bench\ntrace  fp32  1  32  5120.5  5"), ("hash-ring-cones-fp32", "3 1 late", "not started"),
                              ("ranks", "5 0 not here: no mpirun", None)]:
         Path(steps, name + ".code").write_text(code + "\n")
         if text is not None:
             Path(steps, name + ".txt").write_text(text + "\n")
     Path(folder, "stage-1").touch()
     tool = Path(__file__).resolve().parents[2] / "tools" / "gpu_day"
-    subprocess.run([tool, "--out", folder, "--raya", raya], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # 4: something was wrong
+    subprocess.run([tool, "--out", folder, "--raya", raya], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # exit code 4: a step is wrong
     return Path(folder, "report.json"), Path(folder, "page.html")

@@ -1,21 +1,21 @@
-"""Faults that no report may have, planted at random; for test_reports.py."""
+"""Injects random faults into reports, which the schemas must refuse; for test_reports.py."""
 import copy, random, re
 
-# In all reports of the test, and yet no member that every report has.
+# Optional members that happen to be in all reports of the test.
 OPTIONAL = {"tune.json: results[].configuration.local_words", "tune.json: results[].configuration.batch",
             "tune.json: results[].configuration.lanes", "tune.json: results[].configuration.group"}
-OPEN = re.compile(r"study\.json: (settings|tables\[\]\.rows\[\])")  # of any members, or of texts and numbers alike
-SIGNED = "length_exponent"  # which is 0 in the test
+OPEN = re.compile(r"study\.json: (settings|tables\[\]\.rows\[\])")  # objects with any members, or with both strings and numbers
+SIGNED = "length_exponent"  # may be negative; it is 0 in the test
 
 
 def variant(value):
-    """What kind of its kind an object is: other members are its own."""
+    """Text of an object's variant, which determines its members."""
     words = [value[key] for key in ("kind", "method", "status") if isinstance(value.get(key), str)]
     return f"<{words[0] if words else ''}{' torus' * ('torus' in value)}>"
 
 
 def spots(value, path):
-    """(path, holder, key) of every value in a report; of lists the first and the last."""
+    """Yields (path, container, key) of every value in a report; of lists only the first and the last item."""
     if isinstance(value, dict):
         own = path + variant(value)
         for key in value:
@@ -29,12 +29,12 @@ def spots(value, path):
 
 
 def plain(path):
-    """render.json: load.per_pe[]"""
+    """A path without variants: 'render.json: load.per_pe[]'"""
     return re.sub(r": \.+", ": ", re.sub(r"<[^>]*>", "", path))
 
 
 class Damage:
-    """What every report has is known from the reports, not from the schemas."""
+    """Makes damaged copies of reports. Which members are required is derived from the reports, not from the schemas."""
 
     def __init__(self, made, seed):
         self.random, self.made, self.always, self.negative = random.Random(seed), made, {}, set()
@@ -48,28 +48,28 @@ class Damage:
                     self.negative.add(path)
 
     def one(self):
-        """(form, what was done, the damaged report); None where the fault drawn cannot be planted there."""
+        """(schema, description of the fault, damaged report); None if the random fault does not apply at the random place."""
         form, name, report = self.random.choice(self.made)
         root = {"": copy.deepcopy(report)}
         path, holder, key = self.random.choice(list(spots(root, form + ": ")))
-        value, said = holder[key], self.random.choice(["drop", "other type", "unknown member", "negative"])
+        value, kind = holder[key], self.random.choice(["drop", "other type", "unknown member", "negative"])
         open_ended = OPEN.match(plain(path))
-        if said == "drop" and isinstance(value, dict):
+        if kind == "drop" and isinstance(value, dict):
             always = [k for k in self.always[path + variant(value)] if not self.optional(path, k)]
             if open_ended or not always:
                 return None
             key = self.random.choice(sorted(always))
             del value[key]
-        elif said == "unknown member" and isinstance(value, dict) and not open_ended:
+        elif kind == "unknown member" and isinstance(value, dict) and not open_ended:
             key = self.random.choice(["x", "Kind", "total ms", "u"])
             value[key] = self.random.choice([1, "text", None])
-        elif said == "other type" and not open_ended and value is not None:
+        elif kind == "other type" and not open_ended and value is not None:
             holder[key] = self.other(value)
-        elif said == "negative" and type(value) is int and path not in self.negative and not open_ended and key != SIGNED:
+        elif kind == "negative" and type(value) is int and path not in self.negative and not open_ended and key != SIGNED:
             holder[key] = -1 - value
         else:
             return None
-        return form, f"{name}: {said} at {plain(path)}, {key!r}", root[""]
+        return form, f"{name}: {kind} at {plain(path)}, {key!r}", root[""]
 
     def optional(self, path, key):
         return plain(f"{path}.{key}") in OPTIONAL

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""A link between two network namespaces whose packets are late and of which some are lost: what `tc netem` does, on kernels without it too.
+"""Links two network namespaces, and delays and drops packets like `tc netem`, also on kernels without netem.
 
-    slow_link.py NAMESPACE NAMESPACE DELAY_MS LOST_OF     one packet of LOST_OF is lost; the device is link0 at both ends
+    slow_link.py NAMESPACE NAMESPACE DELAY_MS LOST_OF     drops one packet of LOST_OF; the device is link0 at both ends
 
-Prints `ready`; on SIGTERM how many packets came and how many of them were lost, and ends. The link ends with it.
+Prints `ready`; on SIGTERM prints the numbers of packets and of lost packets, and exits. The link exists as long as this process.
 """
 import collections
 import fcntl
@@ -19,7 +19,7 @@ TUNSETIFF, IFF_TUN, IFF_NO_PI = 0x400454CA, 0x0001, 0x1000  # linux/if_tun.h
 
 
 def open_end(namespace):
-    """A TUN device in that namespace, as the file that its packets are read from and written to."""
+    """Creates a TUN device in the namespace. Returns the file descriptor of its packets."""
     end = os.open("/dev/net/tun", os.O_RDWR | os.O_NONBLOCK)
     request = fcntl.ioctl(end, TUNSETIFF, struct.pack("16sH22x", b"", IFF_TUN | IFF_NO_PI))
     name = request[:16].rstrip(b"\0").decode()
@@ -43,7 +43,7 @@ def carry(ends, delay_s, lost_of, counts):
             _, end, packet = under_way.popleft()
             try:
                 os.write(end, packet)
-            except OSError:  # nobody is there yet, or any more
+            except OSError:  # the device is not up
                 pass
 
 

@@ -1,24 +1,24 @@
 #!/usr/bin/env bash
-# What tools/bundle packs, in a Debian that has nothing but its smallest set of packages and PoCL: verify and a render there.
-#   test_bare_root.sh BUILD     the build folder, with the target `bundled` built. Packages are kept in BUILD/debs for the next run
-# Exit code 77 where there is no such thing: it takes root, debootstrap and the network.
+# Runs verify and a render of the tarball of tools/bundle in a minimal Debian with PoCL.
+#   test_bare_root.sh BUILD     the build folder, with the target `bundled` built. BUILD/debs caches packages for the next run
+# Needs root, debootstrap and the network; exit code 77 without.
 set -euo pipefail
 build=$(readlink -f "$1")
 root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
 # shellcheck source=tests/tools/bare_root.sh
 source "$root/tests/tools/bare_root.sh"
 make_bare_root "$build"
-there apt-get install -qq -y --no-install-recommends pocl-opencl-icd >"$bare/root/log" 2>&1 || fail "$(<"$bare/root/log")"
+in_root apt-get install -qq -y --no-install-recommends pocl-opencl-icd >"$bare/root/log" 2>&1 || fail "$(<"$bare/root/log")"
 keep_packages "$build"
 [[ -z $(find "$bare/usr/lib" -name 'libfmt.so*' -o -name 'libOpenImageIO*' -o -name 'libxxhash.so*' -o -name 'libOpenCL.so*' -o -name 'libmpi.so*') ]] ||
-    echo "note: some of what the program carries is there too"
+    echo "note: some libraries that the program contains are also installed"
 
 "$root/tools/bundle" --build "$build" -o "$bare/root/raya.tar.gz"
-there tar -xzf /root/raya.tar.gz -C /opt
+in_root tar -xzf /root/raya.tar.gz -C /opt
 top=$(cd "$bare" && echo opt/raya-*)
-there "/$top/raya" --version
-told=$(there "/$top/raya" render "/$top/scenes/centre.nff" -o /root/centre.ppm) || fail "render: $told"
-[[ $told == *"(474a384374e81c5144a0e5405232a750)"* ]] || fail "another picture: $told"
-there "/$top/raya" verify --quick || fail "verify --quick"
-there "/$top/gpu_day" --out /root/day --small --stage 1 || fail "gpu_day"
-echo "a bare root: as expected"
+in_root "/$top/raya" --version
+output=$(in_root "/$top/raya" render "/$top/scenes/centre.nff" -o /root/centre.ppm) || fail "render: $output"
+[[ $output == *"(474a384374e81c5144a0e5405232a750)"* ]] || fail "another picture: $output"
+in_root "/$top/raya" verify --quick || fail "verify --quick"
+in_root "/$top/gpu_day" --out /root/day --small --stage 1 || fail "gpu_day"
+echo "a minimal Debian: as expected"

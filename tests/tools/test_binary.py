@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Refuses committed files that are binary, such as caches and build products, unless they are of a kind that belongs here.
-  test_binary.py     77: not a checkout of git"""
+"""Refuses committed binary files, such as caches and build products, except the kinds in WANTED.
+  test_binary.py     exit code 77: not a git checkout"""
 import fnmatch
 import pathlib
 import subprocess
@@ -8,11 +8,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WANTED = ["docs/*.png", "tests/fuzz/corpus/*"]
-HEAD = 8000  # bytes, in which git looks for a zero as well
+HEAD = 8000  # bytes that are searched for a zero byte, as in git
 
 
 def unwanted(files):
-    """Of (name, first bytes) the names of those that have a zero byte and no place in WANTED."""
+    """Names of the files, given as (name, first bytes), that have a zero byte and are not in WANTED."""
     return [name for name, head in files if b"\0" in head and not any(fnmatch.fnmatch(name, kind) for kind in WANTED)]
 
 
@@ -23,8 +23,8 @@ def main():
     names = [name for name in listed.stdout.decode().split("\0") if name and (ROOT / name).is_file()]
     found = unwanted((name, (ROOT / name).open("rb").read(HEAD)) for name in names)
     if unwanted([("pocl-cache/a.so", b"\x7fELF\0"), ("docs/a.png", b"\0"), ("a.txt", b"a")]) != ["pocl-cache/a.so"]:
-        found.append("a binary file that nobody sees")
-    print(f"{len(names)} files; binary, and of no kind that belongs here: {', '.join(found) or 'none'}")
+        found.append("this test does not find a binary file")
+    print(f"{len(names)} files; unwanted binary files: {', '.join(found) or 'none'}")
     return 1 if found or len(names) < 100 else 0
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/bundle: what it packs runs without what raya is built with, and what it must not pack is refused.
+# tools/bundle: the packed program runs without raya's build dependencies; a program that needs other libraries is refused.
 #   test_bundle.sh BUILD     the build folder, with the target `bundled` built
 set -euo pipefail
 build=$(readlink -f "$1")
@@ -18,11 +18,11 @@ cmp "$scratch"/{one,two}.tar.gz || fail "the same programs make another tarball"
 glibc=$(grep -oE 'glibc [0-9.]+' <<<"$out")
 [[ $(printf '%s\n' "$glibc" "glibc 2.34" | sort -V | head -n 1) == "$glibc" ]] || fail "needs $glibc, newer than RHEL 9's"
 
-# Unpacked elsewhere, with an environment that is empty but for what a driver needs. LD_DEBUG tells what is loaded.
+# Unpacked in another folder, with an empty environment except for the driver's variables. LD_DEBUG lists the loaded libraries.
 mkdir "$scratch/away" "$scratch/home"
 tar -xzf "$scratch/one.tar.gz" -C "$scratch/away"
 top=$(echo "$scratch"/away/raya-*)
-! grep -rqF "$root" "$top" || fail "the folder of the sources stands in: $(grep -rlF "$root" "$top")"
+! grep -rqF "$root" "$top" || fail "the path of the sources is in: $(grep -rlF "$root" "$top")"
 grep -q "$glibc or newer" "$top/README.md" || fail "README.md has another glibc than $glibc"
 away() {  # away COMMAND...: sets code, out and loaded
     rm -f "$scratch"/loaded.*
@@ -35,18 +35,18 @@ away "$top/raya" --version
 expect 0 "raya "
 others=$(grep -vE "^($top/lib/libOpenCL\.so\.1|.*/(libc|libm|ld-linux-x86-64)\.so\.[0-9]+)$" <<<"$loaded" || true)
 [[ -z $others ]] || fail "a start loads $others"
-grep -qF "$top/lib/libOpenCL.so.1" <<<"$loaded" || fail "not its own loader of OpenCL: $loaded"
+grep -qF "$top/lib/libOpenCL.so.1" <<<"$loaded" || fail "not its own OpenCL loader: $loaded"
 away "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.ppm"
 expect 0 "(474a384374e81c5144a0e5405232a750)"
 loaded=$(grep -vF "$POCL_CACHE_DIR/" <<<"$loaded")  # kernels
-! grep -E "$root|raya_|OpenImageIO|libmpi|libfmt|libxxhash" <<<"$loaded" || fail "a render loads that"
+! grep -E "$root|raya_|OpenImageIO|libmpi|libfmt|libxxhash" <<<"$loaded" || fail "a render loads these libraries"
 [[ $(head -c 15 "$scratch/home/centre.ppm") == $'P6\n256 256\n255' ]] || fail "no PPM"
 away "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.png"
 expect 2 "there is no file '$top/raya_pictures.so"
 away "$top/gpu_day" --out "$scratch/day"
 expect 0 "| 5 | large pictures"
 
-# Two ranks, where there is a launcher of the MPI that the module is for; then a failure of one, which passes through the module.
+# Two ranks, if a launcher of the module's MPI is installed; then an error of a rank, which the module forwards.
 if [[ -e $top/raya_mpi.so ]] && ldd "$top/raya_mpi.so" | grep -q 'libmpi.* => /' && mpirun=$(command -v mpirun); then
     launch=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "$mpirun" -n 2 "$top/raya" render)
     away "${launch[@]}" "$top/scenes/centre.nff" -o "$scratch/home/ranks.ppm"
@@ -56,7 +56,7 @@ if [[ -e $top/raya_mpi.so ]] && ldd "$top/raya_mpi.so" | grep -q 'libmpi.* => /'
     expect 3 "no OpenCL device matches"
 fi
 
-# Wrong use, and a build that cannot be packed: nothing is written.
+# Bad options, and a build that cannot be packed: no file is written.
 mkdir -p "$scratch/build/alone"
 bundle --nonsense
 expect 2 "unknown option"
@@ -67,6 +67,6 @@ expect 3 "no $scratch/build/alone/raya"
 ln -s "$build/raya" "$scratch/build/alone"
 bundle --build "$scratch/build" -o "$scratch/x.tar.gz"
 expect 4 "needs libfmt.so"
-[[ ! -e $scratch/x.tar.gz ]] || fail "a tarball was written all the same"
-[[ -z $(find "$scratch" -mindepth 1 -name 'tmp.*') ]] || fail "files in progress were left"
+[[ ! -e $scratch/x.tar.gz ]] || fail "a tarball was written"
+[[ -z $(find "$scratch" -mindepth 1 -name 'tmp.*') ]] || fail "temporary files were left"
 echo "tools/bundle: as expected, for $glibc"

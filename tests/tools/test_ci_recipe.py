@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The workflow of docs/ci and the commands of docs/ci.md: programs and options exist, packages are those of tools/setup or named by
-tools/portability, what is uploaded is written, tests report where tools/test does. In the end the checks are tried on faults.
+"""The workflow of docs/ci and the commands of docs/ci.md: programs and options exist; packages are those of tools/setup or tools/portability;
+uploaded files are written; tests write the same report as tools/test. The checks themselves are tested with injected faults.
 
     tests/tools/test_ci_recipe.py RAYA     RAYA: the built program. Exit code 77 where Python has no yaml (Debian: python3-yaml)
 """
@@ -13,7 +13,7 @@ PAGE = ROOT / "docs/ci.md"
 SHELL = {"mkdir", "apt-get", "[", "echo", "cat"}
 NO_SUCH = "--no-such-option"
 
-# Text of the workflow or the page, and what makes it wrong.
+# (text of the workflow or page, faulty replacement)
 FAULTS = [("verify --quick", "verify --quik"), ("verify --quick", "verify --lanes 3"), ("--tolerance 30", "--tolerance much"),
           ("build/raya verify", "build/raya verifies"), ("cmake --preset release", "cmake --preset relase"),
           ("cmake --build build -j2", "cmake --build bild -j2"), ("--output-on-failure", "--output-on-failures"),
@@ -23,7 +23,7 @@ FAULTS = [("verify --quick", "verify --quik"), ("verify --quick", "verify --lane
 
 
 def commands(script):
-    """The simple commands of a script: words, and the files that its output goes to."""
+    """Yields (words, redirection targets) of the simple commands of a script."""
     for line in script.replace("\\\n", " ").splitlines():
         lexer = shlex.shlex(line, posix=True, punctuation_chars=True)
         lexer.whitespace_split = True
@@ -51,7 +51,7 @@ def packages_of_setup():
 
 
 def optional_packages():
-    """What tools/portability asks for where it is missing."""
+    """Debian packages that tools/portability names in its messages."""
     return set(re.findall(r"\(Debian: ([\w-]+)\)", (ROOT / "tools/portability_implementations.py").read_text()))
 
 
@@ -60,9 +60,9 @@ def junit_of(words):
 
 
 def wrong_with_raya(words, raya, scratch):
-    """The command with one option more, which is the only thing that raya may mind: so all is parsed and nothing runs."""
-    code, said = output_of([raya, *words[1:], NO_SUCH], cwd=scratch)
-    return "" if code == 2 and f": no option {NO_SUCH}; see raya {words[1]} --help\n" in said else said.strip()
+    """Runs the command with an additional unknown option: raya parses everything, must complain only about that option, and renders nothing."""
+    code, output = output_of([raya, *words[1:], NO_SUCH], cwd=scratch)
+    return "" if code == 2 and f": no option {NO_SUCH}; see raya {words[1]} --help\n" in output else output.strip()
 
 
 def wrong_with_tool(words):
@@ -70,8 +70,8 @@ def wrong_with_tool(words):
     if not tool.exists():
         return "no such file"
     if "argparse" in tool.read_text():
-        code, said = output_of([tool, *words[1:], NO_SUCH])
-        return "" if code == 2 and f"unrecognized arguments: {NO_SUCH}\n" in said else said.strip().splitlines()[-1]
+        code, output = output_of([tool, *words[1:], NO_SUCH])
+        return "" if code == 2 and f"unrecognized arguments: {NO_SUCH}\n" in output else output.strip().splitlines()[-1]
     return "" if set(words[1:]) <= ({"--print"} if words[0] == "tools/setup" else set()) else f"unknown options {words[1:]}"
 
 
@@ -98,9 +98,9 @@ def wrong_with_packages(words):
     return f"neither in tools/setup nor named by tools/portability: {strange}" if strange else ""
 
 
-@functools.cache  # most commands are the same with each fault
+@functools.cache  # most commands repeat with each injected fault
 def wrong_with(words, raya, scratch):
-    """What is wrong with one command, or nothing."""
+    """Text of what is wrong with one command, or an empty string."""
     name = words[0]
     if name == "build/raya":
         return wrong_with_raya(words, raya, scratch)
@@ -113,25 +113,25 @@ def wrong_with(words, raya, scratch):
 
 
 def files_of(words, written):
-    """What a command writes, from the root of the repository."""
+    """Files that a command writes, relative to the repository's root."""
     reports = [after for word, after in zip(words, words[1:]) if word == "--report"]
     return {*written, *reports, *([f"build/{junit_of(words)}"] if junit_of(words) else [])}
 
 
 def faults_of(workflow, page, raya, scratch):
-    """What is wrong with the two texts, a line each; and how many commands they have."""
+    """(lines on what is wrong with the workflow and the page, number of their commands)"""
     import yaml
     steps = [step for job in yaml.safe_load(workflow)["jobs"].values() for step in job["steps"]]
     own = [pair for step in steps for pair in commands(step.get("run", ""))]
-    # The page's own commands: indented lines that start with one.
+    # The page's commands: indented lines that start with a program.
     lines = [line.strip() for line in page.splitlines() if line.startswith("    ")]
-    told = [pair for line in lines if line.startswith(("build/raya", "tools/", "ctest", "cmake", "apt-get")) for pair in commands(line)]
-    faults = [f"{' '.join(words)}: {wrong}" for words, _ in own + told if (wrong := wrong_with(tuple(words), raya, scratch))]
+    shown = [pair for line in lines if line.startswith(("build/raya", "tools/", "ctest", "cmake", "apt-get")) for pair in commands(line)]
+    faults = [f"{' '.join(words)}: {wrong}" for words, _ in own + shown if (wrong := wrong_with(tuple(words), raya, scratch))]
     written = set().union(*(files_of(*pair) for pair in own))
     uploaded = [name for step in steps for name in step.get("with", {}).get("path", "").split() if "upload" in step.get("uses", "")]
     faults += [f"{name} is uploaded, and no step writes it" for name in uploaded if name not in written]
-    faults += [] if ["tools/setup"] in [words for words, _ in own] else ["no step installs what tools/setup does"]
-    return faults, len(own + told)
+    faults += [] if ["tools/setup"] in [words for words, _ in own] else ["no step runs tools/setup"]
+    return faults, len(own + shown)
 
 
 def main():
@@ -146,10 +146,10 @@ def main():
         faults, count = faults_of(workflow, page, raya, scratch)
         for old, new in FAULTS:
             if old not in workflow:
-                faults.append(f"the workflow has no '{old}' any more; give this test another fault")
+                faults.append(f"the workflow has no '{old}' any more: update FAULTS of this test")
             elif not faults_of(workflow.replace(old, new), "", raya, scratch)[0]:
-                faults.append(f"'{new}' in place of '{old}' is not seen")
-    print("\n".join(faults) or f"{count} commands: all as they should be; {len(FAULTS)} faults: all seen")
+                faults.append(f"'{new}' instead of '{old}' is not detected")
+    print("\n".join(faults) or f"{count} commands: all right; {len(FAULTS)} injected faults: all detected")
     return 1 if faults or count < 15 else 0
 
 

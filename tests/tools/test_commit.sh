@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The commit that `raya --version` tells: of a checkout, of one with changes, of what `git archive` packed, and none of other sources.
+# The commit in `raya --version`: of a checkout, of a checkout with changes, of an archive by `git archive`; none for other sources.
 set -euo pipefail
 root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
 command -v git >/dev/null || { echo "skipped: no git"; exit 77; }
@@ -8,7 +8,7 @@ trap 'rm -rf "$scratch"' EXIT
 export HOME=$scratch GIT_CONFIG_NOSYSTEM=1 GIT_AUTHOR_NAME=a GIT_AUTHOR_EMAIL=a GIT_COMMITTER_NAME=a GIT_COMMITTER_EMAIL=a
 unset GIT_DIR GIT_WORK_TREE
 fail() { echo "FAILED line ${BASH_LINENO[0]}: $1"; exit 1; }
-expect() {  # expect FOLDER TEXT: what --version would say of a build from FOLDER
+expect() {  # expect FOLDER TEXT: a build from FOLDER has TEXT in --version
     cmake -DROOT="$1" -DOUTPUT="$scratch/commit.cpp" "-DBUILD=Release, a compiler" -P "$root/tools/commit.cmake"
     grep -qF "return \"$2\";" "$scratch/commit.cpp" || fail "no '$2' in: $(<"$scratch/commit.cpp")"
 }
@@ -17,10 +17,10 @@ checkout=$scratch/checkout
 mkdir -p "$checkout/tools"
 cp "$root/.gitattributes" "$checkout"
 cp "$root/tools/commit.txt" "$checkout/tools"
-grep -qF 'Format:%H' "$checkout/tools/commit.txt" || { echo "skipped: these sources are packed by git archive themselves"; exit 77; }
+grep -qF 'Format:%H' "$checkout/tools/commit.txt" || { echo "skipped: these sources come from git archive"; exit 77; }
 expect "$checkout" "Release, a compiler"
 
-git init -q "$scratch"  # a repository above, which is another project's
+git init -q "$scratch"  # another project's repository, in a folder above
 git -C "$scratch" commit -q --allow-empty -m "of others"
 expect "$checkout" "Release, a compiler"
 
@@ -32,7 +32,7 @@ first=$(git -C "$checkout" rev-parse HEAD)
 expect "$checkout" "commit ${first:0:12}, Release, a compiler"
 touch -d '1 hour ago' "$scratch/commit.cpp"
 expect "$checkout" "commit ${first:0:12}, Release, a compiler"
-[[ -n $(find "$scratch/commit.cpp" -mmin +50) ]] || fail "written though nothing has changed: the program would be linked in every build"
+[[ -n $(find "$scratch/commit.cpp" -mmin +50) ]] || fail "the file was written without a change: every build would link the program again"
 
 echo "more" >>"$checkout/.gitattributes"
 expect "$checkout" "commit ${first:0:12} with changes, Release, a compiler"

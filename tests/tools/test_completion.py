@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `raya completion` makes, in the shells themselves: each of bash, zsh and fish that is here offers what it should.
+"""Completions of `raya completion` in bash, zsh and fish, as far as they are installed.
   test_completion.py RAYA"""
 import os
 import pathlib
@@ -15,7 +15,7 @@ import time
 raya = pathlib.Path(sys.argv[1]).resolve()
 faults = []
 
-# A line that is begun, what is offered at its end, and what is not. FOLDER is one of the files below.
+# (start of a command line, names that are offered, names that are not). FOLDER: the folder of FILES.
 FILES = ["ball.nff", "notes.txt", "below/cube.nff"]
 EXPECTED = [
     ("raya ", ["render", "study", "verify", "completion"], ["fig7", "--size"]),
@@ -58,25 +58,25 @@ def in_bash(script, line):
 
 
 def in_fish(script, line):
-    told = subprocess.run(["fish", "-N", "-c", f"source {script}; complete -C '{line}'"], capture_output=True, text=True, check=True).stdout
-    return [one.split("\t")[0] for one in told.split("\n")]
+    output = subprocess.run(["fish", "-N", "-c", f"source {script}; complete -C '{line}'"], capture_output=True, text=True, check=True).stdout
+    return [one.split("\t")[0] for one in output.split("\n")]
 
 
 class Zsh:
-    """A shell on a terminal of its own: keys go in, what it shows comes back."""
+    """zsh on a pseudo-terminal."""
 
     def __init__(self, script):
         folder = pathlib.Path(script).parent / "functions"
         folder.mkdir()
-        shutil.copy(script, folder / "_raya")  # as distributions install it
-        self.more = ""  # shown, and not yet looked at
+        shutil.copy(script, folder / "_raya")  # the name under which distributions install it
+        self.more = ""  # output that until() has not returned yet
         pid, self.terminal = pty.fork()
         if pid == 0:
             os.execvpe("zsh", ["zsh", "-f", "-i"], {**os.environ, "TERM": "dumb", "COLUMNS": "200", "LINES": "200"})
         self.keys(f"PS1='>''>>'; unset zle_bracketed_paste; unsetopt prompt_sp; stty cols 200 rows 200; fpath=({folder} $fpath); autoload -Uz compinit && compinit -D -u; "
                   "zstyle ':completion:*' list-prompt ''; LISTMAX=1000; setopt no_auto_menu no_beep; echo EN''D\n")
         self.until("END")
-        self.until(">>>")  # keys before it would be the terminal's, not the editor's
+        self.until(">>>")  # earlier keys would go to the terminal, not to zsh's line editor
 
     def keys(self, text):
         os.write(self.terminal, text.encode())
@@ -91,20 +91,20 @@ class Zsh:
         return shown
 
     def offered(self, line):
-        """^D lists what would be completed; the line that is taken back and the answer of `echo` mark the end."""
+        """Completions of a line: ^D lists them, ^U clears the line, and the output of `echo` marks the end."""
         self.keys(line + "\x04" + "\x15echo EN''D\n")
         shown = self.until("END")
         self.until(">>>")
         return re.split(r"[\s]+", shown.replace(line, "", 1))
 
 
-def hold(shell, offered, line, wanted, unwanted):
+def check(shell, offered, line, wanted, unwanted):
     names = {one.rstrip("/").rsplit("/", 1)[-1].rsplit(",", 1)[-1].rsplit("=", 1)[-1] for one in offered} | set(offered)
     for name in wanted:
         if name not in names:
             faults.append(f"{shell}: '{line}' does not offer {name}: {sorted(names)[:40]}")
     for name in unwanted:
-        if name in names and not (shell == "fish" and name.endswith(".txt") and ".nff" in str(offered)):  # it puts other files last
+        if name in names and not (shell == "fish" and name.endswith(".txt") and ".nff" in str(offered)):  # fish lists other files last
             faults.append(f"{shell}: '{line}' offers {name}")
 
 
@@ -118,7 +118,7 @@ def run():
         os.chdir(folder)
         for shell in ("bash", "zsh", "fish"):
             if not shutil.which(shell):
-                print(f"no {shell} here (tools/setup --package)")
+                print(f"skipped: {shell} is not installed (tools/setup --package)")
                 continue
             script = str(pathlib.Path(scratch) / f"raya.{shell}")
             subprocess.run([raya, "completion", shell, "-o", script], check=True)
@@ -126,7 +126,7 @@ def run():
             offered = Zsh(script).offered if shell == "zsh" else lambda line, its={"bash": in_bash, "fish": in_fish}.get(shell), at=script: its(at, line)
             for line, wanted, unwanted in EXPECTED:
                 line = line.replace("FOLDER", str(folder))
-                hold(shell, offered(line), line, wanted, unwanted)
+                check(shell, offered(line), line, wanted, unwanted)
                 count += 1
         os.chdir("/")
     refused = subprocess.run([raya, "completion", "tcsh"], capture_output=True, text=True)

@@ -1,20 +1,19 @@
 #!/usr/bin/env python3
-"""The laboratory's document in a browser: static HTML that asks for nothing from anywhere and runs no script, no error reaches the console,
-every figure is seen and told in words, text has contrast; at three widths, light and dark, on paper. In the end the checks are tried on
-faults.
+"""The laboratory's document in a browser: static HTML without requests, scripts and errors in the console; every figure is visible and has a
+description; text has enough contrast; at three widths, light and dark, on paper. The checks themselves are tested with injected faults.
 
     tests/tools/test_document.py PACKAGES       a small document, made with the package raya in this folder (build/python)
-    tests/tools/test_document.py INDEX.html     a document of one's own, no faults; page_checks.py leaves screenshots
-Exit code 77 where there is no Chromium.
+    tests/tools/test_document.py INDEX.html     another document, without injected faults; page_checks.py makes screenshots
+Exit code 77: no Chromium.
 """
 import math, os, subprocess, sys, tempfile
 from pathlib import Path
 
 import browser
-from page_checks import LOOK, told
+from page_checks import LOOK, complaints
 
 WIDTHS = (400, 1000, 1600)
-PLANTED = "<script>document.title = 'planted'</script><img src=x onerror='planted()'> \"&amp;\" `a` | {x} $x$ +- \\.nff"
+HOSTILE = "<script>document.title = 'injected'</script><img src=x onerror='injected()'> \"&amp;\" `a` | {x} $x$ +- \\.nff"
 
 SMALL = """A small study
 
@@ -41,17 +40,17 @@ def small_page(lab):
 
 
 def large_page(lab):
-    """Every colour, style and kind of axis, a band and bars; names that would be scripts if they were not text."""
+    """A page with every colour, style and kind of axis, a band, bars, and names that are scripts unless escaped."""
     def series(number):
         x = range(1, 60 if number == 1 else 5)
         style = "steps" if number == 7 else "points" if number == 8 else "line" if number < 7 else "paper"
-        return lab.Series(f"series {number}" if number else PLANTED, x, [math.exp(0.1 * one) + number for one in x], style,
+        return lab.Series(f"series {number}" if number else HOSTILE, x, [math.exp(0.1 * one) + number for one in x], style,
                           [0.4 * one for one in x] if number < 3 else [])
 
-    return lab.Page({"scene": PLANTED, "seeds": [1, 2, 3]}, [PLANTED], [lab.Comparison(PLANTED, "", None, math.inf)],
-                    [lab.Claim("C 1999", PLANTED, "Never.", lab.NOT_REPRODUCED, PLANTED)],
-                    [lab.Table("large", "All rows", [{"n": i * 37 % 500, PLANTED: PLANTED} for i in range(500)])],
-                    [lab.Plot(f"large-{i}", f"Plot {i} {PLANTED}", "x", "y (ms)", list(map(series, range(11))), log)
+    return lab.Page({"scene": HOSTILE, "seeds": [1, 2, 3]}, [HOSTILE], [lab.Comparison(HOSTILE, "", None, math.inf)],
+                    [lab.Claim("C 1999", HOSTILE, "Never.", lab.NOT_REPRODUCED, HOSTILE)],
+                    [lab.Table("large", "All rows", [{"n": i * 37 % 500, HOSTILE: HOSTILE} for i in range(500)])],
+                    [lab.Plot(f"large-{i}", f"Plot {i} {HOSTILE}", "x", "y (ms)", list(map(series, range(11))), log)
                      for i, log in enumerate(("", "x", "y", "xy"))]).describe("large", LARGE)
 
 
@@ -63,39 +62,39 @@ def write_small_document(packages, folder):
     folder = Path(folder)
     pages = [small_page(lab), large_page(lab)]
     for page in pages:
-        page.run = {"command": f"raya study {page.name} '{PLANTED}' -o DIR", "version": "raya 1.2.3", "device": PLANTED}
-    write_document(folder, pages, {page.name: write_page(folder, page) for page in pages}, [f"study x: {PLANTED}"])
+        page.run = {"command": f"raya study {page.name} '{HOSTILE}' -o DIR", "version": "raya 1.2.3", "device": HOSTILE}
+    write_document(folder, pages, {page.name: write_page(folder, page) for page in pages}, [f"study x: {HOSTILE}"])
 
 
 def looks(page, url, count):
-    """All that is wrong with a document of so many figures."""
+    """Yields complaints about a document with `count` figures."""
     titles = set()
     views = [(width, dark, True, "") for width in WIDTHS for dark in (False, True)]
     for width, dark, scripts, media in views + [(1000, False, False, ""), (700, False, True, "print")]:
         page.open(url, width, dark, scripts, media)
-        page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")  # what is folded counts too
+        page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")  # unfolds everything
         view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
         look = page.value(LOOK)
         titles.add(look["title"])
-        yield from (view + wrong for wrong in [*look["wrong"], *told(page)])
+        yield from (view + wrong for wrong in [*look["wrong"], *complaints(page)])
         if look["figures"] != count or look["texts"] < 50:
             yield f"{view}{look['figures']} figures of {count}, {look['texts']} texts"
         active = page.value("document.querySelectorAll('script, iframe, object, embed, form, button').length")
         if active:
-            yield f"{view}{active} elements that act"
-    if len(titles) != 1 or titles == {"planted"}:
+            yield f"{view}{active} active elements"
+    if len(titles) != 1 or titles == {"injected"}:
         yield f"titles {titles}"
 
 
-# Text of the document, what takes its place, and a part of what must be found wrong then.
+# (text of the document, faulty replacement, part of the expected complaint)
 FAULTS = [
     ("<meta http-equiv=\"Content", "<img src=\"http://127.0.0.1:9/x.png\" alt=\"x\"><meta name=\"Content", "a request"),
     ("<main>", "<main><img src=\"http://127.0.0.1:9/x.png\" alt=\"x\">", "attribute src"),
-    ("<main>", "<main><script>document.title = 'planted'</script>", "elements that act"),
+    ("<main>", "<main><script>document.title = 'injected'</script>", "active elements"),
     ("</style>", "@font-face { font-family: x; src: url(http://127.0.0.1:9/x) } h1 { font-family: x }</style>", "in the log"),
     ("--soft: #555555", "--soft: #999999", "a contrast"),
     ("--plot-000000: #e8e8e6", "--plot-000000: #555555", "dark: a contrast"),
-    ("role=\"img\"", "", "no image"),
+    ("role=\"img\"", "", "without role=img"),
     ("<desc id=", "<desc class=", "without a description"),
     ("<title id=\"plot-large-0-title\">", "<title class=\"\">", "without a name"),
     ("plot-large-1-", "plot-large-2-", "an id twice"),
@@ -107,16 +106,16 @@ FAULTS = [
 
 
 def faults_missed(page, text, count, folder):
-    for old, new, complaint in FAULTS:
+    for old, new, expected in FAULTS:
         if old not in text:
-            yield f"no '{old}' to put a fault into"
+            yield f"the document has no '{old}': update FAULTS of this test"
             continue
         broken = Path(folder, "broken.html")
         broken.write_text(text.replace(old, new))
         found = []
-        for wrong in looks(page, broken.as_uri(), count):  # as far as need be
+        for wrong in looks(page, broken.as_uri(), count):  # stops at the expected complaint
             found.append(wrong)
-            if complaint in wrong:
+            if expected in wrong:
                 break
         else:
             yield f"with {new!r} for {old!r}: {found[:3]}"
@@ -138,7 +137,7 @@ def main(given):
         if made:
             wrong += [f"{count} figures"] * (count != 5)
             shown = page.value("document.body.textContent").replace("±", "+-")
-            wrong += [f"{shown.count(part)} times {part}" for part in PLANTED.split("`") if shown.count(part) < 400]
+            wrong += [f"{shown.count(part)} times {part}" for part in HOSTILE.split("`") if shown.count(part) < 400]
             wrong += faults_missed(page, text, count, folder) if not wrong else []
     for line in wrong:
         print("test_document.py:", line, file=sys.stderr)

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""The explorer's page in a browser: its figures are those of `raya render`, to the last printed digit, for every static mapping; it asks
-for nothing from anywhere; controls, pointer, keys and links do what they say; at three widths, light and dark, on paper and without scripts.
-In the end the checks are tried on faults.
+"""The explorer's page in a browser: its figures equal those of `raya render`, to the last printed digit, for every static mapping; it sends no
+requests; controls, pointer, keys and links work; at three widths, light and dark, on paper and without scripts. The checks themselves are tested
+with injected faults.
 
     tests/tools/test_explore.py RAYA
-RAYA_THOROUGH=1: more settings, every fault. RAYA_EXPLORE_SEED: another seed. Exit code 77 where there is no Chromium.
+RAYA_THOROUGH=1: more settings, all faults. RAYA_EXPLORE_SEED: another seed. Exit code 77: no Chromium.
 """
 import base64, gzip, json, os, random, re, subprocess, sys, tempfile
 from pathlib import Path
 
 import browser
-from page_checks import LOOK, told
+from page_checks import LOOK, complaints
 from page_report import report_of, with_report
 
 THOROUGH = os.environ.get("RAYA_THOROUGH") == "1"
@@ -18,7 +18,7 @@ SEED = int(os.environ.get("RAYA_EXPLORE_SEED", "1993"))
 WIDTHS = (400, 820, 1400)
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 
-# Follows one link after another, and what the page says then; loads and curves where they are asked for.
+# Follows links and returns the page's texts and figures for each; with `whole`, also loads and curves.
 FOLLOW = r"""(async (cases) => {
   const answers = [];
   for (const {link, whole} of cases) {
@@ -36,21 +36,21 @@ FOLLOW = r"""(async (cases) => {
   return answers;
 })"""
 
-# Every control that can be reached has a name; what they are.
+# [(id, accessible name)] of all visible controls.
 NAMES = r"""(() => [...document.querySelectorAll("input, select, button")].filter((e) => e.checkVisibility())
   .map((e) => [e.id || e.name, (e.getAttribute("aria-label") || [...(e.labels || [])].map((l) => l.textContent).join(" ") || e.textContent).trim()]))()"""
 
 
 def start(page, url, **view):
-    page.open("about:blank")  # a link within a page would not load it anew
+    page.open("about:blank")  # otherwise a link within the same page would not reload it
     page.open(url, **view)
     if view.get("scripts", True):
         page.value("ready")
 
 
 WIDE, HIGH = 48, 36
-SQUARE = ["--size", "64x64", "--lanes", "4", "--format", "fp32"]  # on the SPA, whose rates are known
-# Both folds with fewer, as many and more PEs than columns, dividing and not; every other mapping, sides that differ.
+SQUARE = ["--size", "64x64", "--lanes", "4", "--format", "fp32"]  # on the SPA, which has a time model
+# Both folds with fewer, as many and more PEs than columns, divisors and others; every other mapping, with unequal sides.
 SETTINGS = [("cyclic:7", 48, "cyclic"), ("cyclic:13", 12, "cyclic"), ("cyclic:5", 20, "cyclic"), ("cyclic:5", 20, "block"), ("cyclic:40", 12, "block"),
             ("cyclic:11", 100, "cyclic"), ("cyclic:11", 100, "block"), ("column", 7, "block"), ("rows", 7, ""), ("blocks", 10, ""), ("grid:3x8", 24, ""),
             ("grid:7x2", 14, ""), ("tiles:8x3", 9, ""), ("random:1", 17, ""), ("random:4000000000", 48, "")]
@@ -68,8 +68,8 @@ def grouped(number):
 
 
 def rendered(raya, folder, scene, settings):
-    """What the page must say in each setting, of renders: by loads; and where the 3 x 3 filter is not refused, of what it moves."""
-    # A machine without a limit of memory: a PE's pixels move at once.
+    """Yields the figures that the page must show for each setting, from renders: loads, and moves of the 3 x 3 filter where it is possible."""
+    # A machine without a memory limit: a PE's pixels move at once.
     report, size = Path(folder, "report.json"), ["--size", f"{WIDE}x{HIGH}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32"]
 
     def render(mapping, pes, fold, *more):
@@ -87,14 +87,14 @@ def rendered(raya, folder, scene, settings):
                  "mean": grouped(round(load["mean"], 1)) + " cycles"}
         case = {"link": link, "texts": texts, "imbalance": load["imbalance"], "pes": pes, "loads": loads, "mapping": mapping, "fold": fold}
         if not mapping.startswith("random"):
-            ring, bus, broadcast = (render(mapping, pes, fold, "--antialias", "filter", "--exchange", way)[0]["communication"] for way in ("ring", "bus", "bus-broadcast"))
+            ring, bus, broadcast = (render(mapping, pes, fold, "--antialias", "filter", "--exchange", method)[0]["communication"] for method in ("ring", "bus", "bus-broadcast"))
             case["moves"] = [ring["rotations"], ring["rotation_words"], bus["transfers"], broadcast["pe_broadcasts"]]
             texts["bus"] = f"{grouped(bus['transfers'])} transfers or {grouped(broadcast['pe_broadcasts'])} broadcasts"
         yield case
 
 
 def compared(page, cases):
-    """What differs between the page and the renders."""
+    """Yields the differences between the page and the renders."""
     asked = [{"link": case["link"], "whole": True} for case in cases]
     for case, answer in zip(cases, page.value(f"{FOLLOW}({json.dumps(asked)})")):
         if answer["message"]:
@@ -104,11 +104,11 @@ def compared(page, cases):
         answer["texts"] = {name: answer["texts"][name] for name in case["texts"]}
         for part in ("texts", "imbalance", "pes", "loads", "u_here", "moves"):
             if part in case and case[part] != answer[part]:
-                yield f"{case['link']}: {part}: the program says {str(case[part])[:200]}, the page {str(answer[part])[:200]}"
+                yield f"{case['link']}: {part}: the program has {str(case[part])[:200]}, the page {str(answer[part])[:200]}"
 
 
 def arithmetic(page):
-    """What no render prints: shortest vectors by all pairs, Kohata & Ito's rotations on their array, digits as fmt has them, times."""
+    """Complaints about figures that no render prints: shortest vectors (by all pairs), rotations on Kohata & Ito's array, digits as by fmt, times."""
     wrong = page.value("""(() => {
       const wrong = [], side = 48;
       const check = (setting, width) => {
@@ -141,7 +141,7 @@ def arithmetic(page):
 
 
 def costs(page, html, folder):
-    """Costs of any size come back, up to 2^53 - 1 in all; a page whose costs are not whole says so."""
+    """The page decodes costs of any size, up to a sum of 2^53 - 1, and reports incomplete costs."""
     report, rng, changed = report_of(html.read_text()), random.Random(SEED), Path(folder, "costs.html")
     for bits in (0, 9, 33, 41):
         cycles = [rng.getrandbits(bits) if bits else 0 for _ in range(WIDE * HIGH)]
@@ -153,30 +153,30 @@ def costs(page, html, folder):
         changed.write_text(with_report(html.read_text(), report))
         start(page, changed.as_uri())
         if page.value("[...explorer.costs]") != cycles or page.value("explorer.figures.sum") != sum(cycles) or grouped(sum(cycles)) not in page.value("document.body.innerText"):
-            yield f"costs of {bits} bits do not come back"
+            yield f"costs of {bits} bits are not decoded"
         if not bits and page.value("[explorer.figures.busiest, explorer.figures.idlest]") != [0, 0]:
-            yield "of equal loads the first PE is not named"
-        yield from told(page)
+            yield "equal loads: the page does not name the first PE"
+        yield from complaints(page)
     report["cost"]["bytes"] += 1
     changed.write_text(with_report(html.read_text(), report))
     start(page, changed.as_uri())
-    if "cannot be shown: the costs within the page are not whole" not in page.value("document.body.innerText"):
-        yield "costs that are not whole are not named"
+    if "cannot be shown: the embedded costs are incomplete" not in page.value("document.body.innerText"):
+        yield "incomplete costs are not reported"
 
 
 def looks(page, html):
-    """At all widths, light and dark, on paper, without scripts."""
+    """Complaints about the page at all widths, light and dark, on paper, without scripts."""
     for width, dark, scripts, media in [(w, d, True, "") for w in WIDTHS for d in (False, True)] + [(820, False, False, ""), (700, False, True, "print")]:
         start(page, html.as_uri(), width=width, dark=dark, scripts=scripts, media=media)
         view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
         if not scripts:
-            yield from (view + wrong for wrong in [*page.value(LOOK)["wrong"], *told(page)])
+            yield from (view + wrong for wrong in [*page.value(LOOK)["wrong"], *complaints(page)])
             if page.value("JSON.parse(document.getElementById('report').innerText).kind") != "raya explore":
                 yield f"{view}the report is not shown as JSON"
             continue
         page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
         look = page.value(LOOK)
-        yield from (view + wrong for wrong in [*look["wrong"], *told(page)])
+        yield from (view + wrong for wrong in [*look["wrong"], *complaints(page)])
         if look["texts"] < 50 or look["title"] != "raya explore: spheres.nff":
             yield f"{view}{look['texts']} texts, title {look['title']}"
         controls = page.value(NAMES)
@@ -204,7 +204,7 @@ def settle(page):
 
 
 def mouse(page, kind, canvas, across, down=0.5, **more):
-    """At so much of a canvas's width and height."""
+    """Dispatches a mouse event at a fraction of a canvas's width and height."""
     page.value(f"document.getElementById('{canvas}').scrollIntoView({{block: 'center', behavior: 'instant'}})")
     x, y, w, h = page.value(f"(({{x, y, width, height}}) => [x, y, width, height])(document.getElementById('{canvas}').getBoundingClientRect())")
     page.ask("Input.dispatchMouseEvent", type=kind, x=x + across * w, y=y + down * h, **more)
@@ -212,7 +212,7 @@ def mouse(page, kind, canvas, across, down=0.5, **more):
 
 
 def handled(page, html):
-    """What pointer, keys, fields, buttons and links do; of the square page, 64 x 64."""
+    """Complaints about pointer, keys, fields, buttons and links of the square page, 64 x 64."""
     state = "[mappingText(explorer.state), settingOf(explorer.state).pes, explorer.state.fold, explorer.state.pe, explorer.state.view]"
 
     def expect(what, *wanted):
@@ -245,7 +245,7 @@ def handled(page, html):
     settle(page)
     yield from expect("a PE's number", f"cyclic:{least}", 63, "cyclic", 12)
     if "PE 12 owns" not in page.value("document.getElementById('pointed').textContent"):
-        yield "nothing is told of the PE that is shown"
+        yield "there is no text on the selected PE"
     white = page.value("(() => { const c = document.getElementById('picture'); return new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height)"
                        ".data.buffer).reduce((n, w, at) => n + (w === 0xffffffff) * (explorer.figures.owners[at] === 12 ? 1 : 1e6), 0); })()")
     owned = page.value("explorer.figures.sizes[12]")
@@ -271,7 +271,7 @@ def handled(page, html):
     for name, mapping in (("rows", "rows"), ("tiles", "tiles:8x8"), ("random", "random:1"), ("column", "column")):
         page.value(f"(() => {{ const e = document.getElementById('mapping'); e.value = '{name}'; e.dispatchEvent(new Event('input', {{bubbles: true}})); }})()")
         settle(page)
-        if name != "tiles":  # their sides are the first page's own
+        if name != "tiles":  # the sides of tiles depend on the page
             yield from expect(f"choosing {name}", mapping, 63)
     yield from expect("view and fold", "column", 63, "block", owner, "loads")
     page.value("new Promise((done) => setTimeout(done, 400))")
@@ -293,14 +293,14 @@ def handled(page, html):
     message = page.value("document.getElementById('message').hidden ? '' : document.getElementById('message').textContent")
     for part in ("offset p must be 0 to 63", "number of PEs must be 1 to 4096", "fold must be", "view must be", "PE to show must be"):
         if part not in message:
-            yield f"a link to what cannot be: '{message}' without '{part}'"
+            yield f"a link with invalid values: '{message}' without '{part}'"
     for broken in ("mapping=grid:0x4", "mapping=grid:4096x4096", "mapping=tiles:5x5", "mapping=cyclic:-1", "mapping=", "mapping", "&&==", "mapping=grid:8x8&pes=5&pe=64"):
         start(page, html.as_uri() + "#" + broken)
-        yield from (f"#{broken}: {wrong}" for wrong in told(page))
-    yield from told(page)
+        yield from (f"#{broken}: {wrong}" for wrong in complaints(page))
+    yield from complaints(page)
 
 
-# Text of the page, what takes its place; what it says of some setting must be found wrong then.
+# (text of the page, faulty replacement); the checks must then find a complaint.
 FAULTS = [
     ("slot % pes :", "(slot + 1) % pes :"),
     ("row % stepsBelow", "row % 1 + 0 * stepsBelow"),
@@ -335,12 +335,12 @@ def faults_missed(page, html, cases, folder):
     text, broken = html.read_text(), Path(folder, "broken.html")
     for old, new in FAULTS if THOROUGH else FAULTS[::6]:
         if text.count(old) != 1:
-            yield f"'{old}' stands {text.count(old)} times in the page, where a fault is to go"
+            yield f"the page has '{old}' {text.count(old)} times instead of once: update FAULTS of this test"
             continue
         broken.write_text(text.replace(old, new))
         start(page, broken.as_uri())
         if not [*compared(page, cases), *arithmetic(page)] and not [*costs(page, broken, folder)]:
-            yield f"nobody sees {new!r} for {old!r}"
+            yield f"{new!r} instead of {old!r} is not detected"
 
 
 def main():
@@ -353,8 +353,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder, browser.Browser() as page:
         def explore(name, *size):
             html = Path(folder, name)
-            said = subprocess.run([raya, "explore", scene, "-o", html, *size], check=True, capture_output=True, text=True).stdout
-            assert f"page    {html} ({html.stat().st_size / 1e3:.0f} KB)" in said, said
+            output = subprocess.run([raya, "explore", scene, "-o", html, *size], check=True, capture_output=True, text=True).stdout
+            assert f"page    {html} ({html.stat().st_size / 1e3:.0f} KB)" in output, output
             assert not re.search(r"https?://(?!www.w3.org/2000/svg)", html.read_text())
             return html
 
@@ -362,14 +362,14 @@ def main():
         square = explore("square.html", *SQUARE)
         cases = list(rendered(raya, folder, scene, settings))
         start(page, html.as_uri())
-        wrong += [*compared(page, cases), *arithmetic(page), *told(page), *costs(page, html, folder)]
+        wrong += [*compared(page, cases), *arithmetic(page), *complaints(page), *costs(page, html, folder)]
         print(f"seed {SEED}: {len(cases)} settings, {len(wrong)} complaints")
         report = Path(folder, "square.json")
         subprocess.run([raya, "render", scene, *SQUARE, "-o", Path(folder, "x.ppm"), "--report", report, "--quiet"], check=True)
         start(page, square.as_uri())
         time = page.value("explorer.texts.time")
         if not time.startswith(f"{json.loads(report.read_text())['modelled_ms']['compute']:.1f} ms to trace, "):
-            wrong.append(f"the page says {time}")
+            wrong.append(f"the page shows the time '{time}'")
         wrong += looks(page, square)
         wrong += handled(page, square)
         if not wrong:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""tools/gpu_check with faults planted: in kernels, in the budget, in what compilers say; and without compilers. Few kernels, some seconds.
+"""tools/gpu_check with injected faults in kernels, in the budget and in the output of compilers; and without compilers. Few kernels, some seconds.
   test_gpu_check.py BUILD     the build folder: kernel_builds and patch_kernels
-77 where no compiler for GPUs is here, once what needs none is done."""
+Exit code 77: no compiler for GPUs; the checks that need none have passed."""
 import csv, json, os, pathlib, subprocess, sys, tempfile, time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -13,33 +13,33 @@ from gpu.budget import HEAD, Budget  # noqa: E402
 from gpu.figures import Figures  # noqa: E402
 
 
-def expect(truth, *told):
+def expect(truth, *report):
     if not truth:
-        sys.exit(f"FAILED line {sys._getframe(1).f_lineno}: {' '.join(map(str, told))}")
+        sys.exit(f"FAILED line {sys._getframe(1).f_lineno}: {' '.join(map(str, report))}")
 
 
 def check(*options, code=0, path=None, texts=()):
-    """Runs the tool, expects its exit code and texts; returns what it wrote as JSON."""
-    told = SCRATCH / "told.json"
-    told.unlink(missing_ok=True)
-    done = subprocess.run([ROOT / "tools" / "gpu_check", "--build", BUILD, "--json", told, *map(str, options)], text=True, capture_output=True,
+    """Runs the tool and checks its exit code and texts. Returns its JSON report."""
+    report = SCRATCH / "report.json"
+    report.unlink(missing_ok=True)
+    done = subprocess.run([ROOT / "tools" / "gpu_check", "--build", BUILD, "--json", report, *map(str, options)], text=True, capture_output=True,
                           env={**os.environ, **({"PATH": str(path)} if path else {})})
-    said = done.stdout + done.stderr
-    if done.returncode != code or not all(text in said for text in texts):
-        sys.exit(f"FAILED line {sys._getframe(1).f_lineno}: exit code {done.returncode}, not {code}, or not all of {texts} in:\n{said}")
-    return json.loads(told.read_text()) if told.exists() else None
+    output = done.stdout + done.stderr
+    if done.returncode != code or not all(text in output for text in texts):
+        sys.exit(f"FAILED line {sys._getframe(1).f_lineno}: exit code {done.returncode}, not {code}, or not all of {texts} in:\n{output}")
+    return json.loads(report.read_text()) if report.exists() else None
 
 
 def patched(file, *changes):
-    """A copy of the kernels with (find, replace) in one of them."""
+    """Folder with a copy of the kernels, with (find, replace) applied to one of them."""
     folder = SCRATCH / f"kernels{len(list(SCRATCH.iterdir()))}"
     subprocess.run([BUILD / "tests" / "patch_kernels", folder, *[word for change in changes for word in (file, *change)]], check=True)
     return folder
 
 
-# Warps that fit, as the vendors' own calculators have them: CUDA's occupancy, and "Occupancy" in what clang says of AMD's code.
+# Occupancy as in the vendors' calculators: CUDA's occupancy calculator, and "Occupancy" in clang's comments in AMD assembly.
 def warps(core, width, group, by_registers, local=0):
-    return core.fit(Figures("k", "v", "t", width, group, 0, 0, 0, local), by_registers).warps
+    return core.set_occupancy(Figures("k", "v", "t", width, group, 0, 0, 0, local), by_registers).warps
 
 
 sm_90, gfx90a, dg2 = nvidia.CORES["sm_90"], amd.CORES["gfx90a"], intel.CORES["dg2"]
@@ -47,11 +47,11 @@ expect([nvidia.warps_of(r) for r in (32, 64, 96, 128, 168, 255)] == [64, 32, 20,
 expect([amd.waves_of(v, s) for v, s in ((172, 104), (64, 96), (128, 16), (129, 16), (24, 104))] == [8, 32, 16, 12, 28])
 expect(warps(sm_90, 32, 32, 64) == 32 and warps(sm_90, 32, 64, 64) == 64)  # at most 32 groups
 expect(warps(sm_90, 32, 1024, 32) == 32 and warps(sm_90, 32, 1024, 31) == 0)
-expect(warps(sm_90, 32, 256, 64, 57 * 1024 - 1024) == 32)  # 228 KB are four of 57
+expect(warps(sm_90, 32, 256, 64, 57 * 1024 - 1024) == 32)  # 228 KB = 4 x 57 KB
 expect(warps(gfx90a, 64, 32, 32) == 32 and warps(gfx90a, 64, 128, 32) == 32 and warps(gfx90a, 64, 128, 12) == 12)
 expect(warps(dg2, 8, 32, 128) == 128 and warps(dg2, 16, 32, 64) == 64)
 
-# What compilers say.
+# Faults in the output of compilers.
 expect(not nvidia.faults_of("\tadd.rn.f32 \t%f1, %f2, %f3;\n\tcvt.rzi.s32.f32 \t%r1, %f1;\n\tsetp.gt.f32 \t%p1, %f1, %f2;\n"))
 for line, fault in (("add.f32 %f1;", "nearest"), ("@%p1 mul.rz.f32 %f1;", "nearest"), ("fma.rn.ftz.f32 %f1;", "flushed"),
                     ("sqrt.approx.f32 %f1;", "nearest"), ("@%p1 call (retval0), f, (param0);", "call"), ("call.uni f;", "call"), ("mul.rn.f64 %f1;", "double"), ("max.ftz.f32 %f1;", "flushed")):
@@ -61,7 +61,7 @@ for line, fault in (("\tv_fma_f64 v[0:1], v[2:3]", "double"), ("\t.amdhsa_float_
     expect(fault in " ".join(amd.faults_of(f"bar:\n\tv_add_f32 v0, v1, v2\n{line}\n\ts_add_u32 s4, s4, bar@rel32@lo\n")), line)
 expect(not amd.faults_of("bar:\n\tv_add_f32 v0, v1, v2\n\ts_add_u32 s4, s4, bar@rel32@lo\n"))
 
-# The budget: every figure at its bound and above.
+# The budget: every figure at its limit and above.
 file = SCRATCH / "budget.csv"
 had = Figures("k", "v", "t", 32, 32, 100, 0, 40, 0)
 Budget(file).write([had], {"t": "a 1"})
@@ -69,7 +69,7 @@ budget = Budget(file)
 expect(budget.judges("t", "a 1") and not budget.judges("t", "a 2") and not budget.judges("u", "a 1"))
 for change, fault in (({}, ""), ({"registers": 105}, ""), ({"registers": 106}, "registers: 106, 100 in the budget"), ({"spills": 1}, "spills: 1, 0"),
                       ({"scalar_spills": 1}, "scalar spills"), ({"stack": 43}, "stack"), ({"local": 4}, "local"),
-                      ({"width": 16}, "16 work-items in step, 32"), ({"width": 64, "registers": 50}, ""), ({"variant": "w"}, "no budget")):
+                      ({"width": 16}, "threads of 16 work-items, 32"), ({"width": 64, "registers": 50}, ""), ({"variant": "w"}, "no budget")):
     found = list(budget.faults(Figures(**{**had.__dict__, **change})))
     expect(len(found) == (fault != "") and fault in "".join(found), change, found)
 Budget(file).write([Figures("l", "v", "t", 32, 32, 7, 0, 0, 0)], {"t": "a 1"}, whole=False)
@@ -78,7 +78,7 @@ Budget(file).write([Figures("k", "v", "u", 32, 32, 9, 0, 0, 0)], {"u": "b 1"})
 expect(len(Budget(file).rows) == 3 and Budget(file).versions == {"t": "a 1", "u": "b 1"})
 expect(budget.stale({("k", "other", "t")}, ["t"]) == [("k", "v", "t")] and not budget.stale(set(), ["u"]))
 
-# Wrong use; no tools.
+# Bad options; no compilers.
 for options, text in ((["--targets", "sm_1"], "sm_1"), (["--write", "--only", "x"], "--write"), (["--jobs", "0"], "--jobs"),
                       (["--write-budget", "--group", "64"], "--write-budget"), (["--frobnicate"], "frobnicate")):
     check(*options, code=2, texts=[text])
@@ -93,12 +93,12 @@ check("--libclc", "/nowhere", code=3, path=bare, texts=["Debian: libclc-15"])
 small = ["--only", "torus/compose fp32"]
 done = subprocess.run([ROOT / "tools" / "gpu_check", "--build", BUILD, *small], capture_output=True, text=True)
 if done.returncode == 3:
-    print("no compiler for GPUs is here (tools/setup --gpu); what needs none is as expected")
+    print("skipped: no compiler for GPUs (tools/setup --gpu); the checks that need none have passed")
     sys.exit(77)
 check("--only", "no such kernel", code=2, texts=["there are", "ring/trace"])
 check("--kernel-dir", "/nowhere", code=2, texts=["/nowhere"])
-told = told_first = check(*small)
-versions, kernels = told["versions"], told["kernels"]
+report = first_report = check(*small)
+versions, kernels = report["versions"], report["kernels"]
 expect([k["target"] for k in kernels] == list(versions) and all(k["kernel"] == "torus/compose" and k["registers"] > 0 for k in kernels), kernels)
 
 
@@ -121,20 +121,20 @@ check(*small, *lower, "--write-budget")
 check(*small, "--budget", lower[1])
 other = budget_of(lambda row: row.update(registers=1), lambda version: version + "x")
 check(*small, *other, "--write-budget", code=2, texts=["would mix them"])
-check(*small, *other, texts=[f"{target}: the budget is of another version, not judged" for target in versions])
+check(*small, *other, texts=[f"{target}: not compared: the budget is of other compilers" for target in versions])
 only_amd = next((["--targets", target] for target in ("gfx90a", "pvc") if target in versions), [])
 check(*small, *only_amd, *budget_of(lambda row: row.update(variant="x")), code=4, texts=["has no budget"])
 
-# A kernel with a fault in it, seen for every target.
+# A kernel with an injected fault is detected for every target.
 sum_line = "sum = vec_mad(vec_of(c.x, c.y, c.z), c.w, sum);"
 head = "__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))\nvoid compose("
 for text, changes in (("double precision", [(sum_line, "sum = vec_mad(vec_of((float)((double)c.x * c.y / 3.0), c.y, c.z), c.w, sum);")]),
                       ("nowhere", [(sum_line, "sum.x = nowhere(c.x);"), (head, "float nowhere(float x);\n" + head)]),
                       ("does not build", [(sum_line, "sum = vec_nad(sum);")])):
-    told = check(*small, "--kernel-dir", patched("torus/compose.cl", *changes), code=4, texts=[text])
-    expect({fault["target"] for fault in told["faults"]} == set(versions), text, told["faults"])
+    report = check(*small, "--kernel-dir", patched("torus/compose.cl", *changes), code=4, texts=[text])
+    expect({fault["target"] for fault in report["faults"]} == set(versions), text, report["faults"])
 
-# A spill where there was none: 600 numbers are read before one is used.
+# A new spill: 600 numbers are read before the first is used.
 reads = """    float many[600];
     volatile __global const float* from = contributions;
 #pragma unroll
@@ -149,15 +149,15 @@ if able:
           texts=[f"torus/compose fp32, {able}: spills: "])
     kept = "__attribute__((noinline)) float kept(float x) { return x * x; }\n"
     check(*small, "--targets", able, "--kernel-dir", patched("torus/compose.cl", (head, kept + head), (sum_line, "sum.x = kept(c.x);")), code=4,
-          texts=[f"torus/compose fp32, {able}: a call is left: "])
+          texts=[f"torus/compose fp32, {able}: a call is not inlined: "])
 
-# What has not changed is not compiled again, and its figures are the same; a comment is no change, the smallest piece of code is.
-looks = len(versions) - ("sm_90" in versions and "sm_80" in versions)  # NVIDIA's are one
-expect(check(*small, "--anew", texts=["0 of 0 builds known"]) == told_first == check(*small, texts=[f"{looks} of {looks} builds known"]))
-check(*small, "--kernel-dir", patched("torus/compose.cl", (sum_line, "// a sum\n" + sum_line)), texts=[f"{looks} of {looks} builds known"])
-changed = "--kernel-dir", patched("torus/compose.cl", (sum_line, f"sum.x = c.x * {time.time_ns() % 10**9}.0f;"))  # not in any run before
-check(*small, *changed, texts=[f"0 of {looks} builds known"])
-check(*small, *changed, texts=[f"{looks} of {looks} builds known"])
-for _ in range(2):  # what has a fault is told each time
+# Unchanged kernels are not compiled again and have the same figures; a changed comment is not a change, any changed code is.
+looks = len(versions) - ("sm_90" in versions and "sm_80" in versions)  # NVIDIA's targets are compiled together
+expect(check(*small, "--anew", texts=["0 of 0 builds cached"]) == first_report == check(*small, texts=[f"{looks} of {looks} builds cached"]))
+check(*small, "--kernel-dir", patched("torus/compose.cl", (sum_line, "// a sum\n" + sum_line)), texts=[f"{looks} of {looks} builds cached"])
+changed = "--kernel-dir", patched("torus/compose.cl", (sum_line, f"sum.x = c.x * {time.time_ns() % 10**9}.0f;"))  # differs from all earlier runs
+check(*small, *changed, texts=[f"0 of {looks} builds cached"])
+check(*small, *changed, texts=[f"{looks} of {looks} builds cached"])
+for _ in range(2):  # a build with a fault is not cached
     check(*small, "--kernel-dir", patched("torus/compose.cl", (sum_line, "sum.x = (float)((double)c.x * c.y / 3.0);")), code=4, texts=["; 0 of "])
 print(f"tools/gpu_check: as expected, for {', '.join(versions)}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# tools/gpu_day: stopped in the middle, gone on with, and what its page and exit code say of answers that are right, wrong, late or missing.
-#   test_gpu_day.sh          with a stand-in for raya, which renders nothing, in the folder that tools/bundle packs
-#   test_gpu_day.sh RAYA     with the built program on the device at hand: small pictures, minutes of kernel compilation
+# tools/gpu_day: interruption and resuming; page and exit code for steps that are right, wrong, late or missing.
+#   test_gpu_day.sh          with a stand-in for raya, which renders nothing, in a folder like that of tools/bundle
+#   test_gpu_day.sh RAYA     with the built program on the default device: small pictures, minutes of kernel compilation
 set -euo pipefail
 root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
 scratch=$(mktemp -d)
@@ -19,26 +19,26 @@ expect() {  # expect CODE TEXT...
 }
 ended() { find "$out" -name '*.code' | wc -l; }
 
-# What both lists of hashes and counts have is the same in them; a picture has the same hash however it is made.
+# Rows that are in both lists of hashes and counts are equal; a picture has the same hash for every accelerator, machine and number of nodes.
 common=0
 while IFS=, read -r scene options row; do
     found=$(awk -F, -v scene="$scene" -v options="$options" '$1 == scene && $2 == options { sub(/^[^,]*,[^,]*,/, ""); print }' "$day/gpu_day.csv")
     [[ -z $found || $found == "$row" ]] || { echo "FAILED: $scene $options: $row in renders.csv, $found in gpu_day.csv"; exit 1; }
     [[ -z $found ]] || common=$((common + 1))
 done < <(grep -v '^#' "$root/tests/portability/renders.csv")
-((common == 16)) || { echo "FAILED: $common rows in both lists, not the columns' names and 15"; exit 1; }
+((common == 16)) || { echo "FAILED: $common rows in both lists, not the header and 15"; exit 1; }
 several=$(grep -v '^#' "$day/gpu_day.csv" | sed -E 's/ --(accel|machine|nodes) [^ ,]*//g' | cut -d, -f1-3 | sort -u | cut -d, -f1,2 | uniq -d)
 [[ -z $several ]] || { echo "FAILED: several hashes of $several"; exit 1; }
 
 if (($# > 0)); then
     ln -s "$(readlink -f "$1")" "$day/raya"
-    # Other programs may have most of this machine; what limits do, the stand-in shows.
+    # Long limits, as other programs may load this machine. The stand-in tests the limits.
     sed -i 's/^limits=.*/limits=(0 3000 3000 3000 3000 3000)/; s/timeout -k 5 "$limit"/timeout -k 5 3000/' "$day/gpu_day"
     grep -q 'timeout -k 5 3000' "$day/gpu_day"
 else
     cat >"$day/raya" <<'RAYA'
 #!/usr/bin/env bash
-# Renders with the hash that FILE.csv has for them; what a file here is called makes it fail.
+# Renders with the hash of FILE.csv. A file in this folder injects a fault, by its name.
 here=$(dirname "$0")
 fault() { [[ -e $here/$1 ]]; }
 case $1 in
@@ -51,7 +51,7 @@ case $1 in
         ! fault wrong_verify || { echo "FAIL  geometry  grid"; exit 4; } ;;
     generate) : >"${@: -1}" ;;
     bench)
-        if [[ $2 == --help ]]; then printf 'stands for a PE, 1..1,024; default\n'; exit; fi
+        if [[ $2 == --help-all ]]; then printf 'simulates a PE, 1..1,024; default\n'; exit; fi
         group=10 words="$*"
         [[ $words != *--group* ]] || group=$(sed 's/.*--group \([0-9]*\).*/\1/' <<<"$words")
         printf 'trace  fp32  1  %d  %d  5  1 1 1 1 1 abc\ntrace  e6m15  1  1  2000.5  5  1 1 1 1 1 abc\n' "$group" $((group * 80)) ;;
@@ -83,32 +83,32 @@ RAYA
     cp "$day/gpu_day.csv" "$day/right.csv"
 fi
 
-# Killed while it works; what has ended by then is not done again.
+# Killed while it runs: finished steps do not run again.
 "$day/gpu_day" --out "$out" --small --all >"$scratch/page" 2>"$scratch/err" &
 for ((i = 0; i < 20000; ++i)); do
     (($(ended) < 6)) || break
     sleep 0.05
 done
-kill -TERM $! || { page=$(<"$scratch/page") && fail "it had ended before it could be stopped"; }
-wait $! && { page='' && fail "exit code 0 of a run that was stopped"; }
+kill -TERM $! || { page=$(<"$scratch/page") && fail "it finished before it could be killed"; }
+wait $! && { page='' && fail "exit code 0 of a killed run"; }
 before=$(ended)
 first=$(cd "$out/steps" && md5sum verify-quick.txt devices.txt)
 gpu_day
 expect 0 "| 1 | devices, verify --quick | 2 | 0 | 0" "hashes (not done)"
 gpu_day --next
 expect 0 "| 3 | hashes | 16 | 0 | 0" "verify --full | 1 | 0" "torus: 4 of 4 right" "large pictures, goals, ranks (not done)"
-(($(ended) > before)) || fail "nothing was done after it was stopped"
-[[ $(cd "$out/steps" && md5sum verify-quick.txt devices.txt) == "$first" ]] || fail "steps that had ended were run again"
+(($(ended) > before)) || fail "nothing ran after it was killed"
+[[ $(cd "$out/steps" && md5sum verify-quick.txt devices.txt) == "$first" ]] || fail "finished steps ran again"
 gpu_day --all
-expect 0 "Nothing of what has run" "64 x 64, 30 spheres" "balls 2, bvh" "roofline, tuning | 1" "goals, ranks |" "torus-spa22: "
+expect 0 "None of the steps that ran" "64 x 64, 30 spheres" "balls 2, bvh" "roofline, tuning | 1" "goals, ranks |" "torus-spa22: "
 [[ $page != *"not done"* && $page != *"not measured"* ]] || fail "the page is not complete"
 [[ $page == "$(<"$out/page.md")" ]] || fail "page.md is another page"
-[[ -s $out/page.html ]] || fail "no page for a browser"
+[[ -s $out/page.html ]] || fail "there is no page.html"
 [[ $(grep -c '^{"name": .*"verdict": "right"' "$out/report.json") == $(cat "$out"/steps/*.code | grep -c ' right$') ]] || fail "report.json has other steps"
-! command -v python3 >/dev/null || python3 -m json.tool "$out/report.json" >/dev/null || fail "report.json is no JSON"
+! command -v python3 >/dev/null || python3 -m json.tool "$out/report.json" >/dev/null || fail "report.json is not JSON"
 (($(wc -l <"$out/page.md") < 130)) || fail "more than a page"
 
-# A count that is not the expected one; then a hash.
+# A wrong count; then a wrong hash.
 cp "$day/gpu_day.csv" "$scratch/right.csv"
 sed -i 's/^\(cones,--format spa22 --accel bvh,[^,]*,400,400\),[0-9]*,/\1,11,/' "$day/gpu_day.csv"
 rm "$out"/steps/hash-bvh-cones-spa22.*
@@ -124,16 +124,16 @@ if (($# > 0)); then
 fi
 expect 4 "fp32, trace kernel | 5000 | 5120 | reached" "a third of that | 1706.67 | 2000.5 | reached" "1000 | 800 | missed"
 
-# Each in a folder of its own: what fails is named, and the rest is done.
+# Each in a folder of its own: the failed step is named, and the others run.
 another() { out=$scratch/$1; touch "$day/$1"; gpu_day "${@:2}"; rm "$day/$1"; }
 cp "$day/right.csv" "$day/gpu_day.csv"
 another no_device --all
 expect 3 "no device: raya: no OpenCL device" "devices: exit code 3"
-[[ $(ended) == 1 ]] || fail "something was run without a device"
+[[ $(ended) == 1 ]] || fail "steps ran without a device"
 another wrong_verify --all
 expect 4 "- verify-full: exit code 4" "FAIL  geometry  grid" "| 3 | hashes | 16 | 0 | 0" "| 1 | devices, verify --quick | 1 | 1 | 0"
 
-# A step that hangs; and a stage whose time is over, which goes on when it is asked for again.
+# A step that hangs; a stage that is out of time resumes when it is requested again.
 sed -i 's/^limits=.*/limits=(0 3 1 0 60 60)/' "$day/gpu_day"
 another slow_verify --all
 expect 4 "- verify-quick: not done after" "| 3 | hashes | 0 | 16 | 0" "- hash-torus-cones-spa22: late" "| 4 | bench, roofline, tuning | 14 | 0 | 0"
@@ -141,7 +141,7 @@ sed -i 's/^limits=.*/limits=(0 60 60 60 60 60)/' "$day/gpu_day"
 gpu_day --stage 3
 expect 4 "- verify-quick: not done after" "| 3 | hashes | 16 | 0 | 0"
 
-# A driver that no entry of /etc/OpenCL/vendors names.
+# A driver without an entry in /etc/OpenCL/vendors.
 out=$scratch/driver
 mkdir "$scratch/bin"
 printf '#!/bin/sh\necho "	libamdocl64.so (libc6,x86-64) => /somewhere/libamdocl64.so"\n' >"$scratch/bin/ldconfig"
@@ -151,12 +151,12 @@ PATH=$scratch/bin:$PATH gpu_day --stage 1
 expect 0 "OCL_ICD_VENDORS=$out/vendors"
 [[ $(<"$out/vendors/libamdocl64.icd") == libamdocl64.so ]] || fail "no entry for the driver"
 
-# Wrong use.
+# Bad options.
 for words in --nonsense "--stage 6" --stage "--raya $scratch/none" "--expected $scratch/none"; do
     # shellcheck disable=SC2086  # several words
     gpu_day $words
     expect 2 "gpu_day: "
 done
 code=0 page=$("$day/gpu_day" --all 2>"$scratch/err") || code=$?
-expect 2 "--out DIR is needed"
+expect 2 "--out DIR is required"
 echo "tools/gpu_day: as expected"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/instruction_counts --histogram: what Oclgrind counted agrees with raya's own counters where both count the same thing.
+# tools/instruction_counts --histogram: Oclgrind's counts agree with raya's own counters of the same events.
 set -euo pipefail
 raya=$(readlink -f "$1")
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
@@ -17,5 +17,5 @@ histogram add_neighbours "$root/scenes/planes.nff"
 histogram trace_voxel "$root/scenes/planes.nff"
 [[ $out == *"kernel trace_voxel, "* && $(number "rays primary") == 64 ]] || fail "no rays on the torus"
 ! out=$("$root/tools/instruction_counts" --raya "$raya" --histogram nosuch 2>&1) || fail "an unknown kernel is accepted"
-[[ $out == *"no kernel 'nosuch'"* ]] || fail "no word on the unknown kernel"
+[[ $out == *"no kernel 'nosuch'"* ]] || fail "no message on the unknown kernel"
 echo "instruction histograms: as counted"

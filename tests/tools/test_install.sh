@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What `cmake --install` makes: it runs without the sources, from wherever it lies, finds its modules, and other projects find the number layer.
+# An installation by `cmake --install`: it runs without the sources, from any folder, finds its modules, and other projects find the number layer.
 #   test_install.sh BUILD
 set -euo pipefail
 build=$(readlink -f "$1")
@@ -12,16 +12,16 @@ cmake --install "$build" --prefix "$scratch/first place" >"$scratch/log" || fail
 mv "$scratch/first place" "$scratch/prefix"
 prefix=$scratch/prefix
 mkdir "$scratch/home"
-away() {  # away COMMAND...: sets code and out; where nothing is set that the build has set
+away() {  # away COMMAND...: runs it without the build's environment; sets code and out
     code=0
     out=$(cd "$scratch/home" && env -i HOME="$scratch/home" PATH="$prefix/bin:/usr/bin:/bin" POCL_CACHE_DIR="$POCL_CACHE_DIR" "$@" 2>&1) || code=$?
 }
 expect() { [[ $code == "$1" && $out == *"$2"* ]] || fail "exit code $code: $out"; }  # expect CODE TEXT
 
-# Texts: nothing leads back to the sources or the build. (Compilers write paths into programs with debugging information alone.)
+# No text file contains a path of the sources or the build. (Programs contain them only with debugging information.)
 found=$(grep -rIlF -e "$root/" -e "$build" "$prefix" || true)
-[[ -z $found ]] || fail "the folder of the sources stands in: $found"
-! objdump -p "$prefix/bin/raya" "$prefix"/lib/raya/*.so | grep -E "R(UN)?PATH.*($root|$build)" || fail "libraries are looked for where they were built"
+[[ -z $found ]] || fail "the path of the sources is in: $found"
+! objdump -p "$prefix/bin/raya" "$prefix"/lib/raya/*.so | grep -E "R(UN)?PATH.*($root|$build)" || fail "the search path of libraries leads to the build"
 
 # The program, its modules, scenes and documents.
 away raya --version
@@ -29,13 +29,13 @@ expect 0 "raya "
 away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
 expect 0 "(474a384374e81c5144a0e5405232a750)"
 [[ $(head -c 4 "$scratch/home/centre.png" | tail -c 3) == PNG ]] || fail "no PNG"
-if [[ -d $prefix/lib/python3 ]]; then  # the Python module, by itself and as `raya study` starts it
+if [[ -d $prefix/lib/python3 ]]; then  # the Python module, alone and in `raya study`
     away env PYTHONPATH="$prefix/lib/python3/dist-packages" /usr/bin/python3 -c \
         "import raya; r = raya.render('$prefix/share/raya/scenes/centre.nff'); print(r.hash, raya.program()); open('r.png', 'wb').write(r.png)"
     expect 0 "474a384374e81c5144a0e5405232a750 $prefix/bin/raya"
     away raya study fig8 --size 17 -q -o study
     expect 0 ""
-    [[ -s $scratch/home/study/index.html ]] || fail "no document: $out"
+    [[ -s $scratch/home/study/index.html ]] || fail "there is no document: $out"
     chmod o+w "$prefix/lib/python3/dist-packages/raya"
     away raya study fig8 --size 17 -q -o study
     expect 2 "refused to run '$prefix/lib/python3/dist-packages': other users may write"
@@ -51,10 +51,10 @@ done
 doc=$prefix/share/doc/raya
 [[ $(<"$doc/LICENSE") == *"the raya authors"* ]] || fail "no licence"
 while IFS=: read -r page link; do  # [..](LINK) in a page, without #.. and addresses
-    [[ -e $(dirname "$page")/${link%%#*} ]] || fail "$page leads to $link, which is not there"
+    [[ -e $(dirname "$page")/${link%%#*} ]] || fail "$page has a link to $link, which does not exist"
 done < <(grep -roP --include='*.md' '\]\(\K(?!https?:|#)[^)]+' "$doc")
 
-# The number layer, as another project finds it: a copy of the example, and a kernel with the options that pkg-config prints.
+# The number layer in another project: a copy of the example, and a kernel with the options of pkg-config.
 export PKG_CONFIG_PATH=$prefix/share/pkgconfig
 pkg-config --validate raya-number || fail "pkg-config does not know raya-number"
 [[ $(pkg-config --modversion raya-number) == "$("$build/raya" --version | cut -d' ' -f2)" ]] || fail "another version"
@@ -71,7 +71,7 @@ expect 0 "8191 terms, sum 9.848633"
 code=0 out=$(cd "$scratch/other" && ./harmonic 2>&1) || code=$?
 expect 1 "OpenCL error"  # without them there is no number/number.clh
 
-# Without the module of pictures, and with one whose libraries are missing, a picture is refused with what helps, and PPM is written.
+# Without the module of pictures, or without its libraries, raya refuses a PNG with a remedy, and writes PPM.
 rm "$prefix/lib/raya/raya_pictures.so"
 away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
 expect 2 "there is no file '$prefix/lib/raya/raya_pictures.so"

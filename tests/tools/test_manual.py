@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `raya manual` makes, as man shows it: all of --help, word for word, without a warning of man's. 77: no man here.
+"""What `raya manual` makes, as man shows it: all of --help-all, word for word, without a warning of man's. 77: no man here.
   test_manual.py RAYA FOLDER     FOLDER holds the pages that the build has made: raya.1 and man1/"""
 import os
 import pathlib
@@ -23,7 +23,7 @@ def squeezed(text):
 
 
 def shown(page):
-    """What man shows of a file, without bold and underlined, and what it complains of."""
+    """Text of a manual page as man prints it, without formatting; adds man's warnings to the faults."""
     run = subprocess.run(["man", "--warnings", "-l", page], capture_output=True, text=True, env=PLAIN)
     if run.returncode or run.stderr:
         faults.append(f"{page}: man ends with {run.returncode}: {run.stderr}")
@@ -31,20 +31,23 @@ def shown(page):
 
 
 def help_of(command):
-    text = subprocess.run([raya, *command, "--help"], capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "120"}).stdout
-    return re.sub(r" \\\n +", " ", text)  # an example's line that goes on
+    wide = {**os.environ, "COLUMNS": "120"}
+    text = subprocess.run([raya, *command, "--help"], capture_output=True, text=True, check=True, env=wide).stdout
+    if "--help-all" in text:  # commands whose --help is a selection
+        text = subprocess.run([raya, *command, "--help-all"], capture_output=True, text=True, check=True, env=wide).stdout
+    return re.sub(r" \\\n +", " ", text)  # joins continued lines of examples
 
 
 def entries(text):
-    """(names, help) of every example, option and command in a help text."""
+    """Yields (names, help) of every example, option and command in a help text."""
     begun = None
     for line in [*text.split("\n"), ""]:
         if line.startswith("   ") and begun:
             begun.append(line)
             continue
         if begun:
-            names, _, said = " ".join(begun)[2:].partition("  ")
-            yield names, squeezed(said)
+            names, _, help_text = " ".join(begun)[2:].partition("  ")
+            yield names, squeezed(help_text)
         begun = [line] if re.match(r"  \S", line) else None
 
 
@@ -53,16 +56,16 @@ def commands_in(text):
     return re.findall(r"^  (\S+)", part[1], re.M) if part else []
 
 
-def hold(page, command, below=False):
+def check(page, command, below=False):
     text = help_of(command)
-    for names, said in entries(text):
+    for names, help_text in entries(text):
         if below and "--help" in names:
             continue
         for name in re.findall(r"(?<!\S)--?[a-z][a-z-]*", names.replace(",", " ")):
             if not re.search(rf"(?<![\w-]){name}(?![\w-])", page):
                 faults.append(f"{' '.join(command)}: no {name}")
-        if said not in page:
-            faults.append(f"{' '.join(command)} {names}: '{said}' is not in the page")
+        if help_text not in page:
+            faults.append(f"{' '.join(command)} {names}: '{help_text}' is not in the page")
     return commands_in(text)
 
 
@@ -71,21 +74,21 @@ def run():
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([raya, "manual", "-o", folder], check=True)
         names = {page.name for page in pathlib.Path(folder).iterdir()}
-        commands = hold(shown(f"{folder}/raya.1"), [])
+        commands = check(shown(f"{folder}/raya.1"), [])
         if names != {"raya.1"} | {f"raya-{one}.1" for one in commands}:
-            faults.append(f"pages of other commands: {sorted(names)}")
+            faults.append(f"unexpected pages: {sorted(names)}")
         for one in commands:
             page = shown(f"{folder}/raya-{one}.1")
-            for below in hold(page, [one]):
-                hold(page, [one, below], below=True)
+            for below in check(page, [one]):
+                check(page, [one, below], below=True)
                 count += 1
             alone = subprocess.run([raya, "manual", one], capture_output=True, text=True, check=True).stdout
             if alone != pathlib.Path(f"{folder}/raya-{one}.1").read_text():
                 faults.append(f"raya manual {one}: another page than the file")
             if alone != (built / "man1" / f"raya-{one}.1").read_text():
-                faults.append(f"raya-{one}.1 of the build is not what the program says")
+                faults.append(f"raya-{one}.1 of the build differs from the program's output")
         if (built / "raya.1").read_text() != pathlib.Path(f"{folder}/raya.1").read_text():
-            faults.append("raya.1 of the build is not what the program says")
+            faults.append("raya.1 of the build differs from the program's output")
         if "EXIT CODES 0 done, 2 bad option" not in shown(str(built / "raya.1")):
             faults.append("raya.1: no exit codes")
         count += len(names)

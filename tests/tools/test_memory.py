@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Lets one allocation of raya fail after another, and looks at how raya ends (tests/cli/memory_faults.cpp).
+"""Makes the allocations of raya fail, one in each run, and checks how raya ends (tests/cli/memory_faults.cpp).
 
     tests/tools/test_memory.py RAYA FAULTS CL_FAULTS [--sample N] [--seed S] [--log FILE] [--results FILE]
 
 RAYA is the program, FAULTS and CL_FAULTS are the libraries made of tests/cli/memory_faults.cpp and cl_faults.cpp.
 Without --sample every allocation site in raya fails once, in the first of the commands below that reaches it, and 200
-allocations elsewhere; that takes about an hour on one core. --log FILE keeps what has run, so that a run that was
-stopped continues there. --results FILE gets the summary that is committed as
-tests/limits/memory.csv. Exit code 1: a run ended in another way than it may, or left a file.
+allocations elsewhere; that takes about an hour on one core. --log FILE records finished runs, so that an interrupted test resumes. --results FILE
+receives the summary that is committed as tests/limits/memory.csv. Exit code 1: a run ended in a way that is not allowed, or left a damaged file.
 """
 import argparse
 import collections
@@ -29,7 +28,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 SCENE = str(ROOT / "scenes" / "centre.nff")
 SMALL = ["render", SCENE, "--size", "16", "--lanes", "4", "--format", "fp32"]
 BANDS = ["render", SCENE, "--size", "16", "--lanes", "1", "--format", "fp32", "--pes", "4", "--group", "1",
-         "-o", "x.ppm", "--keep", "s.rst", "--keep-every", "0"]
+         "-o", "x.ppm", "--checkpoint", "s.rst", "--checkpoint-every", "0"]
 COMMANDS = {
     "render": SMALL + ["-o", "x.ppm", "--report", "x.json", "--cost", "x.pfm", "--trace", "x.trace.json"],
     "png": SMALL + ["-o", "x.png"],
@@ -38,8 +37,8 @@ COMMANDS = {
     "resume": BANDS + ["--resume"],
 }
 INPUTS = {"page": ["saved.json"], "resume": ["s.rst"]}
-ELSEWHERE = 200
-LIMIT_S = 120  # of a run that takes half a second on an idle machine
+ELSEWHERE = 200  # number of tested allocations outside raya
+LIMIT_S = 120  # seconds; a run takes half a second on an idle machine
 
 
 def environment(**more):
@@ -57,13 +56,13 @@ class Trial:
         self.inputs = folder / "inputs"
         self.inputs.mkdir()
         self.cache = os.environ.get("POCL_CACHE_DIR")
-        self.states = {}  # hash of a state that a run left -> whether it can be resumed
+        self.resumable = {}  # {hash of a checkpoint that a run left: True if it can be resumed}
         self.plain(SMALL + ["-o", "x.ppm", "--report", str(self.inputs / "saved.json")])
-        self.make_state(options.cl_faults)
+        self.make_checkpoint(options.cl_faults)
         self.expected = {name: self.expect(name) for name in COMMANDS}
 
     def plain(self, arguments, inputs=(), **variables):
-        """The outcome and the files of a run in which nothing fails."""
+        """(process, files) of a run without failing allocations."""
         with tempfile.TemporaryDirectory(dir=self.folder) as here:
             for name in inputs:
                 shutil.copy(self.inputs / name, here)
@@ -71,14 +70,14 @@ class Trial:
                                   timeout=LIMIT_S)
             return done, files_of(here)
 
-    def make_state(self, cl_faults):
-        """A checkpoint: of a render whose device failed after it had been written."""
+    def make_checkpoint(self, cl_faults):
+        """Makes a checkpoint, by a render whose device fails after writing it."""
         for launch in range(1, 50):
             done, files = self.plain(BANDS, LD_PRELOAD=cl_faults, RAYA_FAULT=f"clEnqueueNDRangeKernel {launch} -5")
             if done.returncode == 3 and "s.rst" in files:
                 (self.inputs / "s.rst").write_bytes(files["s.rst"])
                 return
-        raise AssertionError("no render that failed left a checkpoint")
+        raise AssertionError("no failed render left a checkpoint")
 
     def expect(self, name):
         done, files = self.plain(COMMANDS[name], INPUTS.get(name, ()))
@@ -86,7 +85,7 @@ class Trial:
         return {file: comparable(file, content) for file, content in files.items()}
 
     def sites(self, name):
-        """The numbers of the sites that the command reaches, in order, and its allocations elsewhere."""
+        """(sorted numbers of the allocation sites that the command reaches, number of its allocations elsewhere)"""
         listed = self.folder / "sites"
         done, _ = self.plain(COMMANDS[name], INPUTS.get(name, ()), LD_PRELOAD=self.faults,
                              RAYA_MEMORY_SITES=str(listed))
@@ -95,7 +94,7 @@ class Trial:
         return sorted(row[0] for row in rows if row[0] != "elsewhere"), int(rows[-1][1])
 
     def fail(self, name, fault):
-        """Lets one allocation fail. Returns how the run ended, and its exit code and message."""
+        """Runs a command in which one allocation fails. Returns (ending, exit code, message)."""
         elsewhere = fault.startswith("+")
         with tempfile.TemporaryDirectory(dir=self.folder) as work:
             here, mark, cache = Path(work, "run"), Path(work, "failed"), Path(work, "cache")
@@ -104,27 +103,27 @@ class Trial:
                 shutil.copy(self.inputs / file, here)
             before = files_of(here)
             variables = {"LD_PRELOAD": self.faults, "RAYA_MEMORY_FAULT": fault, "RAYA_MEMORY_FAILED": str(mark)}
-            if elsewhere and self.cache:  # a driver that crashes may damage its cache
+            if elsewhere and self.cache:  # a crashing driver may damage its cache
                 shutil.copytree(self.cache, cache)
                 variables["POCL_CACHE_DIR"] = str(cache)
-            code, told = self.run(COMMANDS[name], here, variables)
-            message = " | ".join(line for line in told.splitlines() if line.startswith("raya: "))
+            code, output = self.run(COMMANDS[name], here, variables)
+            message = " | ".join(line for line in output.splitlines() if line.startswith("raya: "))
             return self.judge(name, elsewhere, code, message, mark.exists(), before, files_of(here)), code, message
 
     def run(self, arguments, here, variables):
-        """Exit code and stderr; the code of SIGTERM where a driver that waits for its memory had to be interrupted."""
+        """(exit code, stderr). A driver that waits for memory forever is terminated: the exit code is that of SIGTERM."""
         with subprocess.Popen([self.raya, *arguments], cwd=here, env=environment(**variables),
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
             try:
-                _, told = process.communicate(timeout=LIMIT_S)
+                _, output = process.communicate(timeout=LIMIT_S)
             except subprocess.TimeoutExpired:
                 process.terminate()
                 try:
-                    _, told = process.communicate(timeout=LIMIT_S)
+                    _, output = process.communicate(timeout=LIMIT_S)
                 except subprocess.TimeoutExpired:
                     process.kill()
-                    _, told = process.communicate()
-            return process.returncode, told.decode(errors="replace")
+                    _, output = process.communicate()
+            return process.returncode, output.decode(errors="replace")
 
     def judge(self, name, elsewhere, code, message, failed, before, after):
         if code == 0:
@@ -132,10 +131,10 @@ class Trial:
                 return "BAD: exit 0, other files"
             return "survived" if failed else "not reached"
         left = sorted(file for file in after if after[file] != before.get(file))
-        spoilt = [file for file in left if not self.is_whole(name, file, after[file])]
-        lost = sorted(set(before) - set(after) - {"s.rst"})  # a checkpoint goes when the picture is written
-        if spoilt or lost:
-            return f"BAD: spoilt {spoilt}, lost {lost}"
+        damaged = [file for file in left if not self.is_whole(name, file, after[file])]
+        lost = sorted(set(before) - set(after) - {"s.rst"})  # raya removes the checkpoint after writing the picture
+        if damaged or lost:
+            return f"BAD: damaged {damaged}, lost {lost}"
         if code in (2, 3) and "raya: " in message:
             return f"exit {code}" + (", files written before stay" if left else "")
         if elsewhere and code != -signal.SIGKILL:
@@ -143,21 +142,21 @@ class Trial:
         return f"BAD: exit {code}"
 
     def is_whole(self, name, file, content):
-        """A file that was written before the failure stays: the picture of an hour's render outlives its report."""
+        """Returns true if a file is complete. Files written before the failure are kept: an expensive picture survives a failing report."""
         if file == "s.rst":
             return self.resumes(content)
         return comparable(file, content) == self.expected[name].get(file)
 
-    def resumes(self, state):
-        key = hashlib.sha256(state).hexdigest()
-        if key not in self.states:
+    def resumes(self, checkpoint):
+        key = hashlib.sha256(checkpoint).hexdigest()
+        if key not in self.resumable:
             with tempfile.TemporaryDirectory(dir=self.folder) as here:
-                Path(here, "s.rst").write_bytes(state)
+                Path(here, "s.rst").write_bytes(checkpoint)
                 done = subprocess.run([self.raya, *COMMANDS["resume"]], cwd=here, env=environment(),
                                       capture_output=True, timeout=LIMIT_S)
                 found = {file: comparable(file, content) for file, content in files_of(here).items()}
-            self.states[key] = done.returncode == 0 and found == self.expected["resume"]
-        return self.states[key]
+            self.resumable[key] = done.returncode == 0 and found == self.expected["resume"]
+        return self.resumable[key]
 
 
 def files_of(folder):
@@ -165,7 +164,7 @@ def files_of(folder):
 
 
 def comparable(name, content):
-    """What is the same in every run: pictures, and which members a report has."""
+    """The part of a file that is the same in every run: pixels; names of a report's members; the end of a complete file."""
     if name.endswith((".ppm", ".pfm", ".png")):
         return hashlib.sha256(content).hexdigest()
     if name == "x.json":
@@ -176,7 +175,7 @@ def comparable(name, content):
 
 
 def faults_of(trial, seed, sample):
-    """(command, fault): every site once, in the first command that reaches it; and allocations elsewhere."""
+    """[(command, fault)]: every site once, in the first command that reaches it, and allocations elsewhere."""
     seen, sites, elsewhere = set(), [], []
     for name in COMMANDS:
         numbers, count = trial.sites(name)
@@ -192,7 +191,7 @@ def faults_of(trial, seed, sample):
 
 
 def read_log(path, program):
-    """What has run of this program; a log of another one begins anew."""
+    """{(command, fault): outcome} of finished runs of this program; starts a new log for another program."""
     lines = Path(path).read_text().splitlines() if path and Path(path).exists() else []
     if lines[:1] == [program]:
         return {(row[0], row[1]): row[2:] for row in csv.reader(lines[1:]) if len(row) == 5}

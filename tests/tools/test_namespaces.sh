@@ -1,33 +1,33 @@
 #!/usr/bin/env bash
-# Ranks on two hosts that TCP alone joins, the image being the one of a single process; once more where packets are late and some are lost.
-#   tests/tools/test_namespaces.sh RAYA [MPIRUN]      the built program, with raya_mpi.so beside it; Open MPI's launcher, else `mpirun`
-# A host is a network namespace with a host name, a /etc/hosts and a disk of its own: files of rank 0 are not there on the other. Exit code 77
-# where there is no such thing: it takes root, iproute2, /dev/net/tun and Open MPI.
+# Ranks on two hosts that are connected by TCP only give the image of a single process; also with delayed and lost packets.
+#   tests/tools/test_namespaces.sh RAYA [MPIRUN]      the built program, with raya_mpi.so next to it; Open MPI's launcher, default `mpirun`
+# A host is a network namespace with its own host name, /etc/hosts and disk: the files of rank 0 do not exist on the other host. Needs root,
+# iproute2, /dev/net/tun and Open MPI; exit code 77 without.
 set -euo pipefail
 raya=$(readlink -f "$1")
 tools=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 scenes=$tools/../../scenes
 
 skip() { echo "skipped: $1"; exit 77; }
-((EUID == 0)) || skip "not root, who alone makes network namespaces"
+((EUID == 0)) || skip "network namespaces need root"
 command -v ip >/dev/null || skip "no ip (Debian: iproute2)"
 (: <>/dev/net/tun) 2>/dev/null || skip "no /dev/net/tun"
 [[ -e $(dirname "$raya")/raya_mpi.so ]] || skip "raya was built without MPI"
 mpirun=$(command -v "${2:-mpirun}") || skip "no ${2:-mpirun}"
-# Its mpirun calls itself Open MPI, its mpiexec OpenRTE. MPICH 4.0 hangs over TCP now and then: in MPI_Finalize one rank waits in a barrier while
+# Open MPI's mpirun prints Open MPI, its mpiexec OpenRTE. MPICH 4.0 sometimes hangs over TCP: in MPI_Finalize one rank waits in a barrier while
 # another needs its answer (pmodels/mpich pull request 6596).
 [[ $("$mpirun" --version) == *Open* ]] || skip "$mpirun is not Open MPI's"
 
-hosts=("raya-$$-a" "raya-$$-b")  # two runs of this script do not meet
+hosts=("raya-$$-a" "raya-$$-b")  # unique for concurrent runs of this script
 scratch=$(mktemp -d)
-disk=$scratch/disk  # where each host has its own, which is $scratch/HOST
+disk=$scratch/disk  # mount point; on each host it is $scratch/HOST
 export POCL_CACHE_DIR=${POCL_CACHE_DIR:-$scratch/kernels}
 mkdir -p "$disk" "$POCL_CACHE_DIR"
 slow_link=
 clean() {
     [[ -z $slow_link ]] || kill -KILL "$slow_link" 2>/dev/null || true
     for host in "${hosts[@]}"; do
-        ip netns pids "$host" 2>/dev/null | xargs -r kill -KILL 2>/dev/null || true  # of a run that hung
+        ip netns pids "$host" 2>/dev/null | xargs -r kill -KILL 2>/dev/null || true  # processes of a hanging run
         ip netns del "$host" 2>/dev/null || true
     done
     rm -rf "$scratch"
@@ -36,7 +36,7 @@ trap clean EXIT
 fail() { echo "FAILED: $*"; exit 1; }
 
 for host in "${hosts[@]}"; do
-    ip netns add "$host" 2>"$scratch/said" || skip "no network namespaces: $(head -n 1 "$scratch/said")"
+    ip netns add "$host" 2>"$scratch/error" || skip "no network namespaces: $(head -n 1 "$scratch/error")"
     ip -n "$host" link set lo up
 done
 number_link() {
@@ -44,12 +44,12 @@ number_link() {
         ip -n "${hosts[i]}" address add "10.83.18.$((i + 1))/24" dev link0
         ip -n "${hosts[i]}" link set link0 up
     done
-    for host in "${hosts[@]}"; do  # the kernel takes its time
+    for host in "${hosts[@]}"; do  # not immediate
         timeout 10 sh -c "until ip -n $host link show link0 | grep -qE 'state (UP|UNKNOWN)'; do sleep 0.1; done" || fail "the link of $host stays down"
     done
 }
 
-# In place of ssh: on_host HOST COMMAND..., whose words become one line for the shell there, as ssh has it.
+# Replaces ssh: on_host HOST COMMAND...; like ssh, it joins the words to one command line for the host's shell.
 cat >"$scratch/on_host" <<END
 #!/bin/sh
 export host=\$1
@@ -103,7 +103,7 @@ check() {  # check NAME SCENE OPTION...: without MPI, then on one rank for each 
     compare "$name" "$scratch/alone.json" "$scratch/${hosts[0]}/report.json" $(($(bytes_on_link) - before))
 }
 
-ip -n "${hosts[0]}" link add link0 type veth peer name link0 netns "${hosts[1]}" 2>"$scratch/said" || skip "no veth: $(head -n 1 "$scratch/said")"
+ip -n "${hosts[0]}" link add link0 type veth peer name link0 netns "${hosts[1]}" 2>"$scratch/error" || skip "no veth: $(head -n 1 "$scratch/error")"
 number_link
 check ring centre --antialias filter --size 24
 check torus planes --machine torus --nodes 2x2x1 --size 16

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Pages of reports in a browser: they ask for nothing from anywhere, fit their window, and can be read at three widths, light and dark, on
-paper, without scripts, without sight and by keys alone; their columns sort. No text of a report becomes a part of its page, and a damaged report is
-named as one. In the end the checks are tried on faults.
+"""Pages of reports in a browser: they send no requests, fit their window, and are readable at three widths, light and dark, on paper, without
+scripts, with a screen reader and by keyboard; their columns sort. No text of a report becomes markup, and a damaged report is reported. The
+checks themselves are tested with injected faults.
 
-    tests/tools/test_pages.py RAYA [FOLDER]      FOLDER: pictures of all views are left there
-RAYA_PAGE_SEED: of the damage; RAYA_THOROUGH=1: all views, and more damage. Exit code 77 where there is no Chromium.
+    tests/tools/test_pages.py RAYA [FOLDER]      FOLDER: for screenshots of all views
+RAYA_PAGE_SEED: seed of the damage; RAYA_THOROUGH=1: all views, and more damage. Exit code 77: no Chromium.
 """
 import json, os, random, subprocess, sys, tempfile
 from pathlib import Path
 
 import browser
-from page_checks import LOOK, told
+from page_checks import LOOK, complaints
 from page_report import HOSTILE, gpu_day, places, report_of, with_report
 
 WIDTHS = (400, 820, 1400)
@@ -21,7 +21,7 @@ DAMAGE = 8 if THOROUGH else 2
 VIEWS = [(w, d, True, "") for w in WIDTHS for d in (False, True)] + [(820, False, False, ""), (700, False, True, "print")]
 VIEWS = VIEWS if THOROUGH else [VIEWS[0], VIEWS[-3]]
 
-# Landmarks, headings and tables as those find them who do not see; boxes that scroll can be reached by keys.
+# Complaints about landmarks, headings, tables and drawings for screen readers, and about scrolling boxes that the keyboard cannot reach.
 BUILD = r"""(() => {
   const wrong = [];
   for (const mark of ["header", "nav", "main", "footer"])
@@ -55,7 +55,7 @@ BUILD = r"""(() => {
 
 
 def make(raya, folder):
-    """Name: (page, words that stand in it)."""
+    """{name: HTML file} of the pages under test; the reports are next to them."""
     small, pages = ["--size", "48x32", "--lanes", "4"], {}
 
     def one(name, *command, code=0):
@@ -64,7 +64,7 @@ def make(raya, folder):
         assert run.returncode == code, run.stderr
         again = Path(folder, f"{name}-again.html")
         subprocess.run([raya, "page", files[0], "-o", again, "--quiet"], check=True)
-        assert again.read_bytes() == files[1].read_bytes(), f"{name}: raya page makes another page"
+        assert again.read_bytes() == files[1].read_bytes(), f"{name}: raya page gives a different page"
         again.unlink()
         pages[name] = files[1]
 
@@ -77,7 +77,7 @@ def make(raya, folder):
     one("torus", "render", SCENES / "planes.nff", *small, "--machine", "torus", *image)
     one("verify", "verify", "--only", "machine")
     report = json.loads(Path(folder, "verify.json").read_text())
-    report["devices"][0]["checks"][2] |= {"status": "FAIL", "told": "1 of `20` words +- 0", "where": "PE 3 <b>", "expected": "0x1 & so on", "got": "line\n" * 200,
+    report["devices"][0]["checks"][2] |= {"status": "FAIL", "result": "1 of `20` words +- 0", "where": "PE 3 <b>", "expected": "0x1 & so on", "got": "line\n" * 200,
                                           "build_options": "-DX", "remedies": ["another driver", "`RAYA_BUILD_OPTIONS`"]}
     report["devices"][0]["failed"] = 1
     Path(folder, "failed.json").write_text(json.dumps(report))
@@ -107,11 +107,11 @@ def looks(page, name, html, folder):
         if not scripts:
             if json.loads(page.value("document.getElementById('report').innerText"))["kind"] != report["kind"] or not page.value("document.getElementById('report').checkVisibility()"):
                 yield f"{view}the report is not shown as JSON"
-            yield from (view + wrong for wrong in [*page.value(LOOK)["wrong"], *told(page)])
+            yield from (view + wrong for wrong in [*page.value(LOOK)["wrong"], *complaints(page)])
             continue
         page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
         look = page.value(LOOK)
-        yield from (view + wrong for wrong in [*look["wrong"], *page.value(BUILD), *told(page)])
+        yield from (view + wrong for wrong in [*look["wrong"], *page.value(BUILD), *complaints(page)])
         if look["texts"] < 40 or not look["title"].startswith("raya ") or not look["buttons"]:
             yield f"{view}{look['texts']} texts, {look['buttons']} headers that sort, title {look['title']}"
     text = page.value("document.body.innerText")
@@ -124,11 +124,11 @@ def looks(page, name, html, folder):
                 yield f"{name}: {words} is not shown"
     for check in [check for device in report.get("devices", []) for check in device["checks"]]:
         if check["name"] not in text or check["status"] == "FAIL" and check["expected"] not in text:
-            yield f"{name}: nothing of the check {check['name']}"
+            yield f"{name}: the check {check['name']} is not shown"
 
 
 def maps(page, name, html):
-    """Each pixel of the map of loads has the colour of its owner's load: as many colours as there are loads; of a torus one cell a node."""
+    """Each pixel in the map of loads has the colour of its owner's load, so there are as many colours as loads; a torus has one cell for each node."""
     loads = set(json.loads(html.with_suffix(".json").read_text())["load"]["per_pe"])
     start(page, html.as_uri())
     colours = page.value("(() => { const c = document.querySelector('canvas'); return new Set(new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height).data.buffer)).size; })()")
@@ -138,11 +138,11 @@ def maps(page, name, html):
 
 STRUCTURE = """[...document.querySelectorAll("*")].filter((e) => /^(SCRIPT|STYLE|TEMPLATE|IFRAME|OBJECT|LINK|META|BASE)$/.test(e.tagName)
   || [...e.attributes].some(({name}) => name.startsWith("on"))).length"""
-NAMED = {"kind", "png", "mapping", "fold", "links", "format", "status"}  # without which a part is not shown
+NAMED = {"kind", "png", "mapping", "fold", "links", "format", "status"}  # members that select which parts are shown
 
 
 def hostile(page, name, html, folder):
-    """Every text of the report, and names of members that are shown, as a page must not take them."""
+    """Replaces every text of the report, and names of members, by HOSTILE; the page must show it as text."""
     text, changed = html.read_text(), Path(folder, "hostile.html")
     start(page, html.as_uri())
     whole = page.value(STRUCTURE)
@@ -162,25 +162,25 @@ def hostile(page, name, html, folder):
             subprocess.run([RAYA, "page", saved, "-o", changed, "--quiet"], check=True)
         start(page, changed.as_uri())
         page.value("new Promise((done) => setTimeout(done, 200))")
-        yield from (f"{name}, hostile: {wrong}" for wrong in [*told(page), *(w for w in page.value(LOOK)["wrong"] if "attribute" in w)])
+        yield from (f"{name}, hostile: {wrong}" for wrong in [*complaints(page), *(w for w in page.value(LOOK)["wrong"] if "attribute" in w)])
         if page.value("window.hit"):
-            yield f"{name}: a text of the report was run"
+            yield f"{name}: the page ran a text of the report"
         if page.value(STRUCTURE) != whole:
-            yield f"{name}: a text of the report has become a part of the page"
+            yield f"{name}: a text of the report became markup"
         if "window.hit = 1</script>" not in page.value("document.body.innerText"):
             yield f"{name}: hostile text is not shown as text"
         start(page, changed.as_uri(), scripts=False)
         if "\\u003c/pre" not in page.value("document.getElementById('report').textContent"):
-            yield f"{name}: the report is not whole without scripts"
+            yield f"{name}: the report is incomplete without scripts"
 
 
 def damaged(page, name, html, folder, count):
-    """Members left out or of another type: the page names them, and no script breaks."""
+    """Removes members or changes their type: the page reports it, and no script fails."""
     text, rng, named, changed = html.read_text(), random.Random(SEED), 0, Path(folder, "damaged.html")
     for i in range(count):
         report = report_of(text)
         holder, key = rng.choice([place for place in places(report, lambda value: True) if rng.random() < 0.2 or place[1] != 0] or [(report, "kind")])
-        if i == 0:  # the others may all hit a number in a long list, which shows as another number
+        if i == 0:  # other damage may only change a number in a long list, which is not an error
             key = "every part"
             report |= {part: 7 for part, value in report.items() if isinstance(value, (dict, list))}
         elif rng.random() < 0.4 and isinstance(holder, dict):
@@ -189,17 +189,17 @@ def damaged(page, name, html, folder, count):
             holder[key] = rng.choice([None, True, -1, 1.5, 1e300, "<b>'\"&", [], {}, [[]], 2 ** 40])
         changed.write_text(with_report(text, report))
         start(page, changed.as_uri())
-        yield from (f"{name}, damage {i} at {key}: {wrong}" for wrong in told(page))
+        yield from (f"{name}, damage {i} at {key}: {wrong}" for wrong in complaints(page))
         shown = page.value("document.body.innerText")
         named += "cannot be shown" in shown
         if len(shown) < 60:
             yield f"{name}, damage {i} at {key}: an empty page"
     if not named:
-        yield f"{name}: none of {count} damaged reports is named as such"
+        yield f"{name}: none of {count} damaged reports is reported"
 
 
 def sorts(page, html):
-    """The loads' table by size, narrow spaces or not."""
+    """The column of counts sorts by value, in spite of narrow spaces in the numbers."""
     start(page, html.as_uri(), width=1400)
     order = page.value(r"""(() => { const t = document.querySelector("#counts table"); const b = t.tHead.querySelectorAll("button")[1]; b.click();
       return [...t.tBodies[0].rows].map((r) => +r.cells[1].textContent.replace(/\D/g, "")); })()""")
@@ -207,7 +207,7 @@ def sorts(page, html):
         yield f"sorted by count: {order}"
 
 
-# A text of the page, what takes its place: some complaint must follow.
+# (text of the page, faulty replacement); the checks must then find a complaint.
 FAULTS = [
     ('<main id="main">', '<main id="main"><img src="https://example.invalid/x.png" alt="x">'),
     ("`The rendered picture of ${str(r, \"scene\")}, ${pixels}`", '""'),
@@ -219,7 +219,7 @@ FAULTS = [
     ('document.title = `${kicker}', 'console.log(1); document.title = `${kicker}'),
     (".pictures {", ".pictures { width: 2000px;"),
     ('tabindex: 0, role: "region"', 'title: "x"'),
-    ('role: "img", "aria-label": words', 'title: words'),
+    ('role: "img", "aria-label": description', 'title: description'),
 ]
 
 
@@ -227,13 +227,13 @@ def faults_missed(page, html, folder):
     text = html.read_text()
     for old, new in FAULTS:
         if old not in text:
-            yield f"'{old}' stands nowhere, where a fault is to go"
+            yield f"the page has no '{old}': update FAULTS of this test"
             continue
         broken = Path(folder, "ring-broken.html")
         broken.write_text(text.replace(old, new))
         page.open(broken.as_uri(), width=400)
-        if not [*page.value(LOOK)["wrong"], *page.value(BUILD), *told(page)]:
-            yield f"nobody sees {new!r} for {old!r}"
+        if not [*page.value(LOOK)["wrong"], *page.value(BUILD), *complaints(page)]:
+            yield f"{new!r} instead of {old!r} is not detected"
 
 
 def main():
@@ -257,7 +257,7 @@ def main():
         wrong += damaged(page, "explore", explore, folder, DAMAGE)
         wrong += faults_missed(page, pages["ring"], folder)
     print("\n".join(wrong))
-    print(f"{len(pages)} pages in {len(VIEWS)} views: {len(wrong)} faults; {len(FAULTS)} planted ones seen")
+    print(f"{len(pages)} pages in {len(VIEWS)} views: {len(wrong)} complaints; {len(FAULTS)} injected faults checked")
     return 1 if wrong else 0
 
 

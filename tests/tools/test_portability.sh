@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# tools/portability with stand-ins for raya and its test programs: what it makes of answers that are right, wrong, or missing.
-#   test_portability.sh RAYA PATCH_KERNELS     the built program, which alone runs kernels here, under Oclgrind; tests/kernels/patch_kernels.cpp
+# tools/portability with stand-ins for raya and its test programs: matrix and exit code for results that are right, wrong or missing.
+#   test_portability.sh RAYA PATCH_KERNELS     the built program, for the kernels under Oclgrind; tests/kernels/patch_kernels.cpp
 set -euo pipefail
 raya=$(readlink -f "$1")
 patch_kernels=$(readlink -f "$2")
@@ -9,7 +9,7 @@ build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT
 mkdir "$build/tests"
 
-# A device under each implementation; another image under PoCL's basic device; an unexpected defect without optimiser.
+# Every implementation has a device; PoCL's basic device renders a wrong image; there is an unexpected defect without optimiser.
 cat >"$build/raya" <<'RAYA'
 #!/usr/bin/env bash
 case $1 in
@@ -21,8 +21,8 @@ case $1 in
         [[ -e $0.slow ]] && sleep 20
         while [[ $1 != --only ]]; do shift; done
         layer=${2% }
-        [[ $layer == image ]] && check='"name": "groups", "status": "SKIP", "told": "one work-item only"'
-        [[ $layer == number ]] && check='"name": "add", "status": "'$status'", "told": "bits differ"'
+        [[ $layer == image ]] && check='"name": "groups", "status": "SKIP", "result": "one work-item only"'
+        [[ $layer == number ]] && check='"name": "add", "status": "'$status'", "result": "bits differ"'
         echo '{"devices": [{"checks": ['"${check:+{\"layer\": \"$layer\", $check\}}"']}]}' >"$4"
         [[ ! -e $0.crash ]] || kill -SEGV $$ ;;
     devices) printf '#  device  platform\n0  toy  Toy\n\n0: OpenCL 3.0, driver 1\n' ;;
@@ -44,7 +44,7 @@ esac
 RAYA
 cat >"$build/tests/portability_defects" <<'DEFECTS'
 #!/usr/bin/env bash
-echo "long_loop, n = 9: expected failure, 8 in place of 9: a reason"
+echo "long_loop, n = 9: expected failure, 8 instead of 9: a reason"
 [[ ${RAYA_BUILD_OPTIONS-} == "" ]]
 DEFECTS
 cat >"$build/tests/test_number" <<'VECTORS'
@@ -76,32 +76,32 @@ while IFS=, read -r scene options hash counts; do
 done < <(grep -v '^#' "$real")
 ((proved == 7)) || fail "$proved images of $real are in host/verify/pictures.txt, not 7"
 matrix --only "PoCL loopvec" --checks build
-((code == 0)) || fail "exit code $code of a compiler that is quick enough"
+((code == 0)) || fail "exit code $code for a compiler within the budget"
 expect "| 1.5 s |"
 : >"$build/raya.budget"
 matrix --only "PoCL loopvec" --checks build
-((code == 1)) || fail "exit code $code of a compiler that is too slow"
+((code == 1)) || fail "exit code $code for a compiler above the budget"
 expect "| FAIL 1.5 s |"
 expect "above --limit 1 s"
 rm "$build/raya.budget"
 echo 11111111111111111111111111111111 >"$build/raya.hash"
 matrix --only "PoCL loopvec" --checks renders
-((code == 1)) || fail "exit code $code where the only implementation makes another image"
+((code == 1)) || fail "exit code $code for a wrong image"
 expect "11111111111111111111111111111111; right: 5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a"
 rm "$build/raya.hash"
 echo 6 >"$build/raya.reflected"
 matrix --only "PoCL loopvec" --checks renders
-((code == 1)) || fail "exit code $code where the only implementation counts otherwise"
+((code == 1)) || fail "exit code $code for wrong counts"
 expect "spheres --format fp32 --accel grid: wrong counts: reflected is 6, right: 5"
 rm "$build/raya.reflected"
 sed -i '/cones,--format spa22/d' "$build/renders.csv"
 matrix --only "PoCL loopvec" --checks renders
-((code == 1)) || fail "exit code $code where a hash is missing"
+((code == 1)) || fail "exit code $code for a missing hash"
 expect "right: not in renders.csv, see --write-hashes"
 matrix --write-hashes
 expect "20 renders of 17 images, 1 of them new or changed"
 
-# What a CI job sets for itself must not choose here.
+# The environment of the caller, such as a CI job, has no effect.
 export RAYA_BUILD_OPTIONS=-cl-opt-disable POCL_DEVICES=basic OCL_ICD_VENDORS=/nowhere RAYA_NUMBER_CASES=1
 matrix --only "PoCL loopvec"
 unset RAYA_BUILD_OPTIONS POCL_DEVICES OCL_ICD_VENDORS RAYA_NUMBER_CASES
@@ -109,7 +109,7 @@ unset RAYA_BUILD_OPTIONS POCL_DEVICES OCL_ICD_VENDORS RAYA_NUMBER_CASES
 expect "| PoCL loopvec | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | 1 known |"
 expect "PoCL loopvec, image: SKIP groups: one work-item only"
 [[ $out == *$'\n'"8 cells: 5 right, 0 FAIL, 3 not decided." ]] || fail "the last line does not count the cells"
-expect "PoCL loopvec, defects: long_loop, n = 9: expected failure, 8 in place of 9: a reason"
+expect "PoCL loopvec, defects: long_loop, n = 9: expected failure, 8 instead of 9: a reason"
 
 matrix --only PoCL
 ((code == 1)) || fail "exit code $code where something is wrong"
@@ -119,7 +119,7 @@ expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | 
 expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | FAIL 24/24 |"
 expect "basic; right: 5a5a5a5a"
 
-# Nothing is right: every case skipped; too slow. A check that ends right and then crashes.
+# No right cell: every case is skipped; too slow. A check that passes and then crashes.
 matrix --only "PoCL loopvec" --checks image,machine
 ((code == 1)) || fail "exit code $code where nothing was decided"
 expect "2 cells: 0 right, 0 FAIL, 2 not decided. Nothing is right of: PoCL loopvec."
@@ -138,7 +138,7 @@ matrix --only "PoCL loopvec" --checks number,renders
 expect "number: exit code -11, though no check failed"
 rm "$build/raya.crash"
 
-# Oclgrind: the program renders, right to the bit, with a kernel that also writes beyond a buffer. Then the same without that.
+# Oclgrind: a render without a fault; then the same image from a kernel that also writes beyond a buffer.
 "$patch_kernels" "$build/kernels"
 mv "$build/raya" "$build/stand_in"
 cat >"$build/raya" <<RAYA
@@ -161,16 +161,16 @@ matrix --only "no such implementation"
 matrix --checks defects --list
 ((code == 0)) || fail "exit code $code of --list"
 expect "Oclgrind: "
-# Where a GPU's driver is installed, it stands there in place of this row, be there a GPU or not.
+# An installed GPU driver replaces this row, even without a GPU.
 ls /etc/OpenCL/vendors | grep -vqE '^(pocl|rusticl|mesa)[.]icd$' || expect "GPU: "
 
-# The page is never written from a part of the matrix.
+# --write refuses a part of the matrix.
 page=$(<"$root/docs/portability.md")
 for part in "--only PoCL" "--checks renders" "--only PoCL --checks defects"; do
     # shellcheck disable=SC2086  # several words
     matrix --write $part
     ((code == 2)) || fail "exit code $code of --write $part"
-    grep -q "would lose" "$build/stderr" || fail "no word on why --write $part is refused"
+    grep -q "would lose" "$build/stderr" || fail "no reason for refusing --write $part"
 done
 [[ $page == "$(<"$root/docs/portability.md")" ]] || fail "docs/portability.md was written"
 matrix --checks renders,nonsense

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/portability --setup without a network: stand-ins for the wheels, in a folder that pip looks into. Drivers whose device is not here."""
+"""tools/portability --setup without a network: stand-ins for the wheels, in a folder that pip searches. Drivers without a device."""
 import hashlib, os, struct, subprocess, sys, tempfile, zipfile
 from pathlib import Path
 
@@ -9,7 +9,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 import portability_implementations
 import portability_setup
 
-# What pocl_get_llvm_cpu_name() begins with: call LLVM; test rdx, rdx; je; mov rbp, rax.
+# Start of pocl_get_llvm_cpu_name(): call LLVM; test rdx, rdx; je; mov rbp, rax.
 ASKS_LLVM = bytes.fromhex("5553 4883ec08 e8058ab003 4885d2 7430 4889c5")
 DRIVER = b"\x90" * 64 + ASKS_LLVM + b"\x90" * 64 + b"\0generic\0haswell\0skylake-avx512\0"
 ZEN5 = "vendor_id\t: AuthenticAMD\ncpu family\t: 26\nflags\t\t: fpu avx2 avx512f avx512vl\n"
@@ -21,7 +21,7 @@ def expect(condition, what):
 
 
 def make_wheel(folder, name, version, files):
-    """A wheel that pip takes, of pure Python by its name; returns a line of requirements."""
+    """Writes a wheel that pip accepts as pure Python. Returns its line for a requirements file."""
     path = folder / f"{name.replace('-', '_')}-{version}-py3-none-any.whl"
     info = f"{name.replace('-', '_')}-{version}.dist-info"
     with zipfile.ZipFile(path, "w") as wheel:
@@ -34,7 +34,7 @@ def make_wheel(folder, name, version, files):
 
 
 def set_up(build, packages, wheels):
-    """Exit code and all that was said."""
+    """(exit code, output) of tools/portability --setup"""
     variables = {k: v for k, v in os.environ.items() if not k.startswith("PIP_")}
     variables |= {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(wheels)}
     done = subprocess.run([ROOT / "tools" / "portability", "--setup", "--build", build, "--packages", packages], env=variables,
@@ -47,42 +47,42 @@ def check_setting_up(scratch):
     for folder in (packages, wheels, empty):
         folder.mkdir()
     library = {"{data}/lib/libintelocl.so": b"driver 1", "{data}/lib/libintelocl.so.1": b"driver 1", "{data}/share/LICENCE": b"text"}
-    (packages / "intel-cpu.txt").write_text("# said\n" + make_wheel(wheels, "intel-stand-in", "1.0", library))
+    (packages / "intel-cpu.txt").write_text("# a comment\n" + make_wheel(wheels, "intel-stand-in", "1.0", library))
     pocl = {"pyopencl/.libs/libpocl-21.so": DRIVER, "pyopencl/.libs/pocl.icd": b"libpocl-21.so"}
     (packages / "pocl-3.0.txt").write_text(make_wheel(wheels, "pocl-stand-in", "3.0", pocl))
 
-    code, told = set_up(build, packages, empty)
-    expect(code == 3 and "intel-cpu.txt: pip got no packages" in told and "remedy: a network" in told, f"no packages: {code} {told}")
+    code, output = set_up(build, packages, empty)
+    expect(code == 3 and "intel-cpu.txt: pip got no packages" in output and "remedy: a network" in output, f"no packages: {code} {output}")
     expect([p.name for p in (build / "implementations").iterdir()] == [], "something was left behind")
 
-    code, told = set_up(build, packages, wheels)
-    expect(code == 0 and "intel-cpu: fetching intel-stand-in==1.0" in told and "MB fetched" in told, f"set up: {code} {told}")
+    code, output = set_up(build, packages, wheels)
+    expect(code == 0 and "intel-cpu: fetching intel-stand-in==1.0" in output and "MB fetched" in output, f"set up: {code} {output}")
     here = build / "implementations"
     for name, driver in (("intel-cpu", "lib/libintelocl.so"), ("pocl-3.0", "pyopencl/.libs/libpocl-21.so")):
         expect((here / f"{name}.icd").read_text() == f"{here / name / driver}\n", f"{name}.icd")
         expect((here / name / driver).exists(), f"no {driver}")
     twice = [(here / "intel-cpu" / "lib" / name).stat().st_ino for name in ("libintelocl.so", "libintelocl.so.1")]
-    expect(twice[0] == twice[1], "equal members take twice the room")
+    expect(twice[0] == twice[1], "equal members are not hard links")
     listed = subprocess.run([ROOT / "tools" / "portability", "--list", "--build", build, "--raya", "/bin/true"], capture_output=True, text=True).stdout
     expect("Intel CPU: here\n" in listed and "PoCL 3.0 (PyPI): here\n" in listed, listed)
 
-    code, told = set_up(build, packages, empty)
-    expect(code == 0 and "intel-cpu: is here" in told and "pocl-3.0: is here" in told, f"again, without packages: {told}")
+    code, output = set_up(build, packages, empty)
+    expect(code == 0 and "intel-cpu: is here" in output and "pocl-3.0: is here" in output, f"again, without packages: {output}")
 
     wrong = (packages / "intel-cpu.txt").read_text().replace("sha256:", "sha256:0")[:-2] + "\n"
     (packages / "intel-cpu.txt").write_text(wrong)
-    code, told = set_up(build, packages, wheels)
-    expect(code == 3 and "intel-cpu" in told, f"a wrong hash: {code} {told}")
+    code, output = set_up(build, packages, wheels)
+    expect(code == 3 and "intel-cpu" in output, f"a wrong hash: {code} {output}")
     expect((here / "intel-cpu.icd").exists() and (here / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 1", "the old one is gone")
 
     library["{data}/lib/libintelocl.so"] = b"driver 2"
     (packages / "intel-cpu.txt").write_text(make_wheel(wheels, "intel-stand-in", "2.0", library))
-    code, told = set_up(build, packages, wheels)
-    expect(code == 0 and (here / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 2", f"a newer version: {told}")
+    code, output = set_up(build, packages, wheels)
+    expect(code == 0 and (here / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 2", f"a newer version: {output}")
 
     (packages / "intel-cpu.txt").write_text(make_wheel(wheels, "intel-stand-in", "3.0", {"{data}/lib/other.so": b""}))
-    code, told = set_up(build, packages, wheels)
-    expect(code == 3 and "no driver lib/libintelocl.so" in told, f"no driver: {told}")
+    code, output = set_up(build, packages, wheels)
+    expect(code == 3 and "no driver lib/libintelocl.so" in output, f"no driver: {output}")
 
 
 def check_naming_the_cpu(scratch):
@@ -99,7 +99,7 @@ def check_naming_the_cpu(scratch):
     at = 64 + 6  # lea rax, [rip + d]; push length; pop rdx
     expect(code[at:at + 3] == b"\x48\x8d\x05" and code[at + 7:at + 10] == b"\x6a\x0e\x5a", "the instructions")
     text = at + 7 + struct.unpack_from("<i", code, at + 3)[0]
-    expect(code[text:text + 15] == b"skylake-avx512\0", "where the name lies")
+    expect(code[text:text + 15] == b"skylake-avx512\0", "the address of the name")
     expect(code[:at] == DRIVER[:at] and code[at + 10:] == DRIVER[at + 10:], "something else was changed")
     try:
         portability_setup.name_cpu(library, "haswell")
@@ -127,7 +127,7 @@ def main():
         check_naming_the_cpu(Path(scratch))
         check_missing_devices(Path(scratch))
         if subprocess.run([sys.executable, "-m", "pip", "--version"], capture_output=True).returncode != 0:
-            print("no pip: what fetches packages was not looked at")
+            print("skipped: no pip; fetching packages was not tested")
             return 77
         check_setting_up(Path(scratch))
     print("tools/portability --setup: as expected")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""tools/povray_scene.py: what it reads of NFF, how it cuts polygons, and that POV-Ray makes raya's picture of it.
+"""tools/povray_scene.py: reading NFF, triangulating polygons, and POV-Ray's picture, which equals raya's.
 
-    tests/tools/test_povray_scene.py RAYA     RAYA: the built program. Exit code 77 where POV-Ray is missing (Debian: povray), if all else is right
+    tests/tools/test_povray_scene.py RAYA     RAYA: the built program. Exit code 77: POV-Ray is missing (Debian: povray), the other tests pass
 """
 import re
 import shutil
@@ -17,7 +17,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "tools"))
 import povray_scene as translation  # noqa: E402
 
-# Every kind of object and of surface; checkers on all axes, a concave polygon, an inside, glass, colours of lights given and not.
+# Every kind of object and surface: checkers on all axes, a concave polygon, an object visible from inside, glass, lights with and without a colour.
 SCENE = """# comment
 b 0.4 0.5 0.7
 v
@@ -57,14 +57,14 @@ f 1 1 1 0.02 0.1 100 0.85 1.5
 s -1.5 -2 0.8 0.8
 """
 
-# A text of the scene for POV-Ray that stands for what the translation does, and what would be wrong in its place.
+# (text of the POV-Ray scene, faulty replacement)
 FAULTS = [("no_shadow", ""), ("max_trace_level 3", "max_trace_level 2"), ("texture { Clear } interior_texture", "texture"),
           (" open ", " "), ("ior 1.5", "ior 1.0"), ("translate <-500000000.0, 0.0, 0.0>", "translate <-500000000.0, 0.5, 0.0>")]
 SIZE, BOUNCES = 96, 2
 
 
 def numbers_of_ppm(file):
-    """16 bits a colour, linear."""
+    """Values of a PPM file with 16 bits a channel, linear, 0..1."""
     data = file.read_bytes()
     head = re.match(rb"P6\s(?:#.*\n)*\d+\s\d+\s(\d+)\s", data)
     assert head[1] == b"65535", head
@@ -72,7 +72,7 @@ def numbers_of_ppm(file):
 
 
 def numbers_of_pfm(file):
-    """Clamped to what a PPM file holds, top row first."""
+    """Values of a PFM file, clamped to 0..1 as in a PPM file, top row first."""
     _, size, scale, data = file.read_bytes().split(b"\n", 3)
     width, height = map(int, size.split())
     row = 3 * width
@@ -110,10 +110,10 @@ class Reading(unittest.TestCase):
         self.assertAlmostEqual(sum(x * x for x in normals[1]), 1)
         self.assertIsNone(self.scene.polygons[0][1])
 
-    def test_what_is_no_nff_is_refused_with_its_line(self):
-        for text, line, reason in [("b 0 0 0\ntt 1", 2, "unknown entity 'tt'"), ("b 0 0\n\nl 1 1 1", 3, "'l' where a number should be"),
+    def test_invalid_nff_is_refused_with_its_line(self):
+        for text, line, reason in [("b 0 0 0\ntt 1", 2, "unknown entity 'tt'"), ("b 0 0\n\nl 1 1 1", 3, "expected a number, found 'l'"),
                                    ("s 1 1 1", 1, "the file ends"), ("plane 0 0 1 0", 1, "unknown entity 'plane'"), ("b 0 0 0", 1, "no 'v'"),
-                                   ("v from 0 0 0 from", 1, "'from' in 'v'")]:
+                                   ("v from 0 0 0 from", 1, "'v': unknown or repeated part 'from'")]:
             with self.assertRaisesRegex(translation.SceneError, f"x.nff:{line}: {reason}"):
                 translation.parse_nff(text, "x.nff")
 
@@ -122,7 +122,7 @@ class Reading(unittest.TestCase):
 
 
 class Triangles(unittest.TestCase):
-    # A comb: every second corner is one at which the outline turns the other way.
+    # A comb, with many concave corners.
     comb = [(0, 0), (6, 0), (6, 3), (5, 3), (5, 1), (4, 1), (4, 3), (3, 3), (3, 1), (2, 1), (2, 3), (0, 3)]
 
     def cut(self, vertices, wanted):
@@ -156,7 +156,7 @@ class Picture(unittest.TestCase):
         self.wanted = numbers_of_pfm(self.folder / "raya.pfm")
 
     def pixels_that_differ(self, text):
-        """The share of colours that are not raya's."""
+        """Share of the values that differ from raya's."""
         (self.folder / "scene.pov").write_text(text)
         command = ["povray", "+Iscene.pov", "+Opovray.ppm", "+FP16", "File_Gamma=1.0", f"+W{SIZE}", f"+H{SIZE}", "-A", "-D", "-V", "-GA"]
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
@@ -165,7 +165,7 @@ class Picture(unittest.TestCase):
         self.assertEqual(len(found), len(self.wanted))
         return sum(abs(a - b) > 0.002 for a, b in zip(found, self.wanted)) / len(found)
 
-    def test_it_is_rayas_and_faults_in_the_translation_show(self):
+    def test_picture_equals_rayas_and_faults_are_detected(self):
         text = translation.povray_scene(translation.parse_nff(SCENE), BOUNCES, SIZE, SIZE)
         self.assertLess(self.pixels_that_differ(text), 0.001)
         for old, new in FAULTS:

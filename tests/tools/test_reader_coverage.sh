@@ -1,30 +1,30 @@
 #!/usr/bin/env bash
-# The files of tests/fuzz/corpus reach at least 95 % of the branches of raya's readers of files:
+# The files of tests/fuzz/corpus reach at least 95 % of the branches of raya's file readers:
 #   tests/tools/test_reader_coverage.sh BUILD      BUILD: a build of raya. The readers are compiled again in BUILD/reader_coverage.
-# Prints the figures of each file. Branches are those of the source, as clang counts them: gcov, gcovr's option --exclude-throw-branches too,
-# counts several for each object that is destroyed, which no input decides. Exit code 77: no clang or no llvm-cov of its version.
+# Prints the figures of each file. Branches are clang's branches of the source: gcov, even with gcovr's --exclude-throw-branches, counts several for
+# each destructor call, which do not depend on the input. Exit code 77: clang-15 or llvm-cov-15 is missing.
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
 build=$(readlink -f "$1")
 folder=$build/reader_coverage
-least=95  # percent
+minimum=95  # percent
 
 say() { echo "test_reader_coverage.sh: $*" >&2; }
 
 for tool in clang++-15 llvm-profdata-15 llvm-cov-15; do
-    command -v $tool >/dev/null || { say "no $tool (tools/setup --gpu); branches were not counted"; exit 77; }
+    command -v $tool >/dev/null || { say "skipped: no $tool (tools/setup --gpu)"; exit 77; }
 done
 mkdir -p "$folder"
 log=$folder/log
 {
     cmake -G Ninja -S "$root/tests/fuzz" -B "$folder" -DCMAKE_CXX_COMPILER=clang++-15 -DRAYA_FUZZ=coverage -DRAYA_BUILD="$build" &&
         cmake --build "$folder" -j2
-} >"$log" 2>&1 || { cat "$log"; say "the readers could not be built"; exit 1; }
+} >"$log" 2>&1 || { cat "$log"; say "cannot build the readers"; exit 1; }
 rm -f "$folder"/*.profraw
 objects=()
 for corpus in "$root"/tests/fuzz/corpus/*; do
     reader=$(basename "$corpus")
-    LLVM_PROFILE_FILE=$folder/$reader.profraw "$folder/fuzz_$reader" "$corpus" >"$log" 2>&1 || { cat "$log"; say "a find"; exit 1; }
+    LLVM_PROFILE_FILE=$folder/$reader.profraw "$folder/fuzz_$reader" "$corpus" >"$log" 2>&1 || { cat "$log"; say "$reader: crash"; exit 1; }
     objects+=(-object "$folder/fuzz_$reader")
 done
 llvm-profdata-15 merge -o "$folder/all.profdata" "$folder"/*.profraw
@@ -32,4 +32,5 @@ mapfile -t files <"$folder/reader_files.txt"
 llvm-cov-15 report --show-branch-summary --show-region-summary=0 --show-functions=0 -instr-profile="$folder/all.profdata" "${objects[@]:1}" \
     "${files[@]}" 2>"$log" | sed 's/   */  /g' | tee "$folder/report"
 reached=$(awk '$1 == "TOTAL" { print $NF }' "$folder/report")
-awk -v least=$least -v reached="${reached%\%}" 'BEGIN { exit !(reached >= least) }' || { say "$reached of the branches; $least % are wanted"; exit 1; }
+awk -v minimum=$minimum -v reached="${reached%\%}" 'BEGIN { exit !(reached >= minimum) }' ||
+    { say "the corpus reaches $reached of the branches; expected at least $minimum %"; exit 1; }

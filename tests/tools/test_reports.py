@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Holds reports of every kind to the schemas of docs/schema, and the schemas to the reports: no member that is not described, none described
-that is never seen, and a report that is damaged by chance is refused.
+"""Compares reports of every kind with the schemas of docs/schema: every member is described, every described member occurs in a report, and randomly
+damaged reports are refused.
 
-    tests/tools/test_reports.py RAYA PATCH_KERNELS [MPIRUN]      MPIRUN: none, and reports of ranks are left out
-RAYA_REPORT_MUTATIONS: how many damaged reports, 600; RAYA_REPORT_SEED: of which. Exit code 77 where there is no jsonschema.
+    tests/tools/test_reports.py RAYA PATCH_KERNELS [MPIRUN]      without MPIRUN, reports of ranks are skipped
+RAYA_REPORT_MUTATIONS: number of damaged reports (600); RAYA_REPORT_SEED: their seed (random). Exit code 77: no jsonschema.
 """
 import copy, json, os, random, re, subprocess, sys, tempfile, time, warnings
 from concurrent.futures import ThreadPoolExecutor
@@ -20,26 +20,26 @@ try:
 except ImportError:
     print("skipped: this Python has no jsonschema (Debian: python3-jsonschema)")
     sys.exit(77)
-warnings.simplefilter("ignore", DeprecationWarning)  # RefResolver, which Debian's version needs, is old in later ones
+warnings.simplefilter("ignore", DeprecationWarning)  # RefResolver, required by Debian's version, is deprecated in later ones
 
 SCENES = ROOT / "scenes"
-# Described and not seen here, with the reason.
-SELDOM = {
-    "render.json: measured.earlier_s": "of a render that was stopped: tests/cli/test_keep.cpp",
-    "bench.json: rows[].no_roofline": "of devices that do not time their commands",
+# Described members that do not occur in the reports of this test, with the reason.
+RARE = {
+    "render.json: measured.earlier_s": "resumed renders: tests/cli/test_checkpoint.cpp",
+    "bench.json: rows[].no_roofline": "devices that do not time their commands",
     "tune.json: results[].configuration.trees": "a knob of the grid, whose search takes long",
-    "tune.json: results[].configuration.beams": "likewise",
-    "tune.json: results[].configuration.registers": "NVIDIA alone",
+    "tune.json: results[].configuration.beams": "the same",
+    "tune.json: results[].configuration.registers": "NVIDIA only",
     "tune.json: results[].configuration.link_exchange": "a knob of the torus, whose search takes long",
 }
-OF_RANKS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.")  # not seen without MPI
+OF_RANKS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.")  # need MPI
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
-# A file of the kernels, a text of it, and what takes its place: a check of verify must fail.
+# (kernel file, text, faulty replacement): a check of verify must fail.
 FAULT = ("shared/mapping.h", "if (m.kind == RAYA_ROWS) return row % m.pes;", "if (m.kind == RAYA_ROWS) return (row + 1) % m.pes;")
 
 
 class Rules:
-    """The schemas, as jsonschema and this test see them."""
+    """The schemas, with jsonschema's validators."""
 
     def __init__(self, change=lambda schema: schema):
         self.schemas = read_schemas()
@@ -53,11 +53,11 @@ class Rules:
         return jsonschema.Draft202012Validator(node.value, resolver=resolver)
 
     def wrong(self, name, report):
-        """What is wrong with a report, a line each."""
+        """Lines on what is wrong with a report."""
         return [f"{'.'.join(map(str, e.absolute_path)) or 'the report'}: {e.message[:200]}" for e in self.whole[name].iter_errors(report)]
 
     def meet(self, node, value, met):
-        """Adds what of the schema describes `value`."""
+        """Adds to `met` the places of the schema's members that describe `value`."""
         if node.has("$ref"):
             self.meet(node.target(), value, met)
         for key in ("anyOf", "oneOf"):
@@ -79,7 +79,7 @@ class Rules:
 
 
 def place(node):
-    """'render.json: load.simulated' of a member's node; a definition's name stands before its members."""
+    """Place of a member's node, as 'render.json: load.simulated'; members of a definition start with its name."""
     keys, path = iter(node.pointer.strip("/").split("/")), ""
     for key in keys:
         if key in ("properties", "$defs"):
@@ -90,16 +90,16 @@ def place(node):
 
 
 class Reports:
-    """Made by the program, in a folder."""
+    """Reports of the program, made in a folder."""
 
     def __init__(self, raya, patch_kernels, mpirun, folder):
         self.raya, self.patch_kernels, self.mpirun, self.folder = raya, patch_kernels, mpirun, Path(folder)
         self.folder.mkdir(exist_ok=True)
-        cache = os.environ.get("POCL_CACHE_DIR")  # two programs must not write one (own_cache.sh)
+        cache = os.environ.get("POCL_CACHE_DIR")  # concurrent programs must not share a cache (own_cache.sh)
         self.own = {**MPI, **({"POCL_CACHE_DIR": str(Path(cache, self.folder.name))} if cache else {})}
         if cache:
             Path(cache, self.folder.name).mkdir(exist_ok=True)
-        self.made = []  # (schema's file, what made it, report)
+        self.made = []  # (file of the schema, command, report)
 
     def run(self, *command, code=0, say=subprocess.DEVNULL, **variables):
         command = [str(word) for word in command]
@@ -118,14 +118,14 @@ class Reports:
         self.made.append((form + ".json", name, json.loads(text)))
 
     def odd_scene(self):
-        """With a facet that has no area and an entity that is not NFF's."""
+        """A scene with a polygon without area and an unknown entity."""
         path = self.folder / "odd.nff"
         path.write_text((SCENES / "planes.nff").read_text() + "p 3\n0 0 0\n0 0 0\n1 1 1\ntt 1\n")
         return path
 
     def renders(self):
         odd = self.odd_scene()
-        few = ["--size", "16", "--lanes", "1", "--format", "fp32", "--quiet", "--report", "r.json"]  # few kernels, which cost most
+        few = ["--size", "16", "--lanes", "1", "--format", "fp32", "--quiet", "--report", "r.json"]  # few kernels, as building them takes most of the time
         spheres, ring = SCENES / "spheres.nff", ["--pes", "8"]
 
         def render(scene, *options, output="x.ppm", launcher=()):
@@ -170,13 +170,13 @@ class Reports:
             self.one("study", "study", study, "--size", "32", "-o", "study", of=f"study/{study}.json")
 
     def tune(self, scene):
-        """Until a candidate has ended, however slow this machine is."""
+        """Repeats tune with more time until at least one candidate has finished, also on slow machines."""
         seconds = 3
         while self.made[-1][0] != "tune.json" or not self.made[-1][2]["results"]:
             self.one("tune", "tune", scene, "--seconds", seconds, "--variants", "none", "--format", "fp32", "--size", "16", "--report", "r.json",
                      XDG_CACHE_HOME=str(self.folder / "cache"))
             seconds *= 2
-        self.take("tuned", "what it keeps", next(self.folder.glob("cache/raya/tuned-*.json")).read_text())
+        self.take("tuned", "the stored settings", next(self.folder.glob("cache/raya/tuned-*.json")).read_text())
 
 
 def members_met(rules, made):
@@ -187,34 +187,34 @@ def members_met(rules, made):
 
 
 def unseen(rules, met, ranks):
-    """What is described and never seen, or seen and said to be seldom."""
+    """Yields members that are described and in no report, and members of RARE that are in a report."""
     for root in rules.schemas.values():
         for node in root.walk():
             for _, member in node.members():
                 name = place(member)
-                if name not in met and name not in SELDOM and (ranks or not name.startswith(OF_RANKS)):
-                    yield f"{name}: described, and in no report of this test"
-    yield from (f"{name}: not so seldom" for name in SELDOM if name in met)
+                if name not in met and name not in RARE and (ranks or not name.startswith(OF_RANKS)):
+                    yield f"{name}: described, but in no report of this test"
+    yield from (f"{name}: in RARE, but in a report of this test" for name in RARE if name in met)
 
 
 def missed(rules, made, met, seed, wanted=40):
-    """Members that nobody misses in the schemas: with one taken out at random, a report that has it must be refused."""
+    """Removes random members from the schemas, one at a time; yields those for which no report with the member is refused."""
     members = {place(member): (node, name) for root in rules.schemas.values() for node in root.walk() for name, member in node.members()
                if "/if/" not in member.pointer}
     for name in random.Random(seed).sample(sorted(met & set(members)), wanted):
         properties, key = members[name][0].value["properties"], members[name][1]
         described = properties.pop(key)
         if all(rules.whole[form].is_valid(report) for form, _, report in made):
-            yield f"{name}: not described, and no report is refused"
+            yield f"{name}: removed from its schema, but no report is refused"
         properties[key] = described
 
 
-def told(node):
-    return node.get("description") or node.has("$ref") and told(node.target())
+def description(node):
+    return node.get("description") or node.has("$ref") and description(node.target())
 
 
 def loose(rules):
-    """Members that nothing is said of, and objects that take any member."""
+    """Yields members without a description, and objects that accept any member."""
     for root in rules.schemas.values():
         jsonschema.Draft202012Validator.check_schema(root.value)
         closed = {id(n.target().value) for n in root.walk() if n.has("$ref") and n.get("unevaluatedProperties") is False}
@@ -223,15 +223,15 @@ def loose(rules):
             if "/if/" in node.pointer + "/":
                 continue
             for name, member in node.members():
-                if not told(member):
+                if not description(member):
                     yield f"{place(member)}: no description"
             shut = False in (node.get("additionalProperties"), node.get("unevaluatedProperties"))
             if node.has("properties") and not shut and id(node.value) not in closed:
-                yield f"{node.file}{node.pointer}: takes any member"
+                yield f"{node.file}{node.pointer}: accepts any member"
 
 
 def relaxed(schema):
-    """For an example, from which members are left out."""
+    """The schema without required members, for shortened examples."""
     if isinstance(schema, list):
         return [relaxed(one) for one in schema]
     if not isinstance(schema, dict):
@@ -246,16 +246,16 @@ def wrong_examples():
 
 
 def accepted(rules, damage, wanted):
-    """Damaged reports that nobody noticed."""
-    planted = 0
-    while planted < wanted:
+    """Yields damaged reports that the schemas accept."""
+    injected = 0
+    while injected < wanted:
         fault = damage.one()
         if fault is None:
             continue
-        planted += 1
-        form, said, report = fault
+        injected += 1
+        form, damage_text, report = fault
         if rules.whole[form].is_valid(report):
-            yield f"not refused: {form}: {said}"
+            yield f"not refused: {form}: {damage_text}"
 
 
 def main(raya, patch_kernels, mpirun=""):
@@ -271,7 +271,7 @@ def main(raya, patch_kernels, mpirun=""):
     wrong = [f"{form}, {name}: {line}" for form, name, report in made for line in rules.wrong(form, report)]
     met = members_met(rules, made)
     wrong += [*loose(rules), *wrong_examples(), *unseen(rules, met, bool(mpirun)), *missed(rules, made, met, seed)]
-    print(f"{time.monotonic() - start:6.2f} s  {len(made)} reports held to {len(rules.schemas)} schemas", flush=True)
+    print(f"{time.monotonic() - start:6.2f} s  {len(made)} reports compared with {len(rules.schemas)} schemas", flush=True)
     mutations = int(os.environ.get("RAYA_REPORT_MUTATIONS") or 600)
     wrong += accepted(rules, Damage(made, seed), mutations)
     print(f"{time.monotonic() - start:6.2f} s  and {mutations} damaged ones")

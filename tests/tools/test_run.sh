@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/run shows how a build goes, on a terminal and elsewhere, and nothing where there is little to build. Stand-ins for cmake and setup.
+# tools/run shows the progress of a build, on a terminal and elsewhere, and nothing if there is little to build. With stand-ins for cmake and setup.
 set -euo pipefail
 tools=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../tools")
 scratch=$(mktemp -d)
@@ -37,7 +37,7 @@ run
 [[ $code == 0 && $out == "raya devices" ]] || fail "not silent: $out"
 touch "$scratch/broken"
 run
-[[ $code == 1 && $out == *"one.cpp:1: error"*"tools/run: raya could not be built" ]] || fail "$out"
+[[ $code == 1 && $out == *"one.cpp:1: error"*"tools/run: cannot build raya: "* ]] || fail "$out"
 rm "$scratch/broken"
 echo 30 >"$scratch/steps"
 out=$(PATH=$scratch/bin:$PATH python3 -c 'import pty, sys; sys.exit(pty.spawn(sys.argv[1:]))' "$scratch/tools/run" devices </dev/null | tr -d '\r')

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/setup on machines that lack packages, made of stand-ins for dpkg-query and sudo: nothing is installed.
+# tools/setup on machines with missing packages, simulated by stand-ins for dpkg-query and sudo. Nothing is installed.
 set -euo pipefail
 setup=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../tools/setup
 machine=$(mktemp -d)  # all programs that the script can find
@@ -12,8 +12,7 @@ stand_in() {  # stand_in NAME BODY
     chmod 755 "$machine/$1"
 }
 
-# Runs tools/setup with ARGS there as a user without rights; sets out and code. Read from stdin, as that user may not
-# be able to reach this folder.
+# Runs tools/setup with ARGS as an unprivileged user; sets out and code. The script is read from stdin, as that user may have no access to its folder.
 run_setup() {
     local as_nobody=()
     ((EUID != 0)) || as_nobody=("$(command -v setpriv)" --reuid=65534 --regid=65534 --clear-groups)
@@ -21,7 +20,7 @@ run_setup() {
     out=$(PATH=$machine "${as_nobody[@]}" "$machine/bash" -s -- "$@" <"$setup" 2>&1) || code=$?
 }
 
-expect() {  # expect CODE TEXT...: the exit code, and texts that the output holds
+expect() {  # expect CODE TEXT...: the exit code, and texts in the output
     local wanted=$1 text
     shift
     if [[ $code != "$wanted" ]]; then echo "FAILED line ${BASH_LINENO[0]}: exit code $code, not $wanted: $out"; exit 1; fi
@@ -34,7 +33,7 @@ expect_silence() { [[ -z $out ]] || { echo "FAILED line ${BASH_LINENO[0]}: not s
 
 line='sudo apt-get update && sudo apt-get install -y --no-install-recommends'
 
-# --print needs no machine at all.
+# --print needs no program.
 run_setup --print
 expect 0 "$line g++ cmake" pocl-opencl-icd catch2
 read -ra all <<<"${out#"$line"}"
@@ -44,7 +43,7 @@ run_setup --studies --nonsense --gpu
 expect 2 "unknown option '--nonsense'"
 run_setup --gpu --print --package
 expect 0 "$line g++ cmake" "oclgrind clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools dpkg-dev lintian man-db zsh fish"
-[[ $out != *debootstrap* ]] || { echo "FAILED: a group that nobody named"; exit 1; }
+[[ $out != *debootstrap* ]] || { echo "FAILED: a group that was not named"; exit 1; }
 
 # Nothing is missing.
 stand_in dpkg-query "printf '%s installed\n' ${all[*]}"
@@ -52,7 +51,7 @@ run_setup
 expect 0
 expect_silence
 
-# What single studies and tools ask for is installed when it is asked for.
+# Optional groups are installed on request.
 run_setup --studies
 expect 1 "neither root nor sudo" "$line libsimgrid-dev"
 run_setup --bare-root
@@ -66,7 +65,7 @@ expect 1 "neither root nor sudo" "$line dpkg-dev lintian man-db zsh fish"
 run_setup --bare-root --gpu --studies --bare-root
 expect 1 "neither root nor sudo" "$line debootstrap clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools libsimgrid-dev"
 
-# Two are missing, one of them removed but not purged; neither root nor sudo.
+# Two packages are missing, one of them removed but not purged; neither root nor sudo.
 stand_in dpkg-query "printf '%s installed\n' ${all[*]} | { while read -r p s; do [[ \$p == cmake || \$p == catch2 ]] || echo \$p \$s; done; }
 echo catch2 config-files; exit 1"
 run_setup
@@ -77,7 +76,7 @@ stand_in sudo 'exit 1'
 run_setup
 expect 1 "neither root nor sudo" "$line cmake catch2"
 
-# With sudo: lists are brought up to date, then exactly the missing ones installed.
+# With sudo: updates the lists, then installs exactly the missing packages.
 stand_in sudo '[[ $* == "-n true" ]] || echo "sudo $*"'
 run_setup
 apt='sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq'
@@ -88,7 +87,7 @@ stand_in sudo '[[ $* != *apt-get* ]]'
 run_setup
 expect 1 "apt-get failed" "$line cmake catch2"
 
-# Another program holds apt's locks: of `update` until the third attempt, of `install` until the second; then for longer than one waits.
+# Another program holds apt's locks: of `update` until the third attempt, of `install` until the second; then for longer than tools/setup waits.
 chmod 777 "$machine"
 stand_in sleep "echo \$1 >>$machine/slept"
 stand_in sudo '[[ $* == *apt-get* ]] || exit 0
@@ -110,12 +109,12 @@ expect 1 "update failed" "apt-get failed" "$line cmake catch2"
 mapfile -t slept <"$machine/slept"
 ((${#slept[@]} == 240)) || { echo "FAILED: ${#slept[@]} times 5 s"; exit 1; }
 
-# Not Debian: go on where there are tools to build with.
+# Not Debian: continues if the build tools are installed.
 rm "$machine/dpkg-query"
 run_setup
-expect 1 "no Debian" libopenimageio-dev "'c++' is missing"
+expect 1 "not a Debian system" libopenimageio-dev "'c++' is missing"
 for tool in c++ cmake ninja; do stand_in "$tool" ''; done
 run_setup
-expect 0 "no Debian" libopenimageio-dev
+expect 0 "not a Debian system" libopenimageio-dev
 
 echo "tools/setup: all as expected"

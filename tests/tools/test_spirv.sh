@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# Every kernel as SPIR-V, the form that drivers take kernels in: made by clang and llvm-spirv, and right by spirv-val's rules for OpenCL 1.2.
-#   tests/tools/test_spirv.sh       77: clang-15, llvm-spirv-15 or spirv-val is missing (tools/setup --gpu)
-# Unoptimised, and SPIR-V 1.0: docs/porting.md tells what llvm-spirv-15 makes of the rest.
+# Compiles every kernel to SPIR-V with clang and llvm-spirv, and validates it with spirv-val for OpenCL 1.2.
+#   tests/tools/test_spirv.sh       exit code 77: clang-15, llvm-spirv-15 or spirv-val is missing (tools/setup --gpu)
+# Unoptimised and SPIR-V 1.0, because of defects of llvm-spirv-15: see docs/porting.md.
 set -euo pipefail
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
 for tool in clang-15 llvm-spirv-15 spirv-val; do
-    command -v $tool >/dev/null || { echo "no $tool"; exit 77; }
+    command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
 done
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 scene=(-DRAYA_GROUP=32 -DRAYA_BOUNCES=8 -DRAYA_POLYGONS=1 -DRAYA_PATCHES=1 -DRAYA_CONES=1 -DRAYA_BVH_STACK=15)
 
-# module FILE OPTION...: $scratch/module.spv
+# module FILE OPTION...: makes $scratch/module.spv
 module() {
     clang-15 -x cl -cl-std=CL1.2 -target spir64-unknown-unknown -O0 -Xclang -finclude-default-header -D__OPENCL_VERSION__=120 \
         -I "$root" "${scene[@]}" "${@:2}" -emit-llvm -c "$1" -o "$scratch/module.bc"
@@ -40,5 +40,5 @@ for kernel in "$root"/kernels/*/*.cl; do
 done
 ((made >= 40)) || { echo "FAILED: only $made modules"; exit 1; }
 truncate -s -8 "$scratch/module.spv"
-! spirv-val --target-env opencl1.2 "$scratch/module.spv" 2>"$scratch/told" || { echo "FAILED: a module without its end is right"; exit 1; }
-echo "SPIR-V: $made modules are right"
+! spirv-val --target-env opencl1.2 "$scratch/module.spv" 2>"$scratch/errors" || { echo "FAILED: a truncated module is valid"; exit 1; }
+echo "SPIR-V: $made modules are valid"

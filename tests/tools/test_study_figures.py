@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What studies print of Figs 7, 8 and 9 and Tables 2 and 3, recomputed from `raya render --cost --report` alone.
+"""Recomputes the figures of the studies of Figs 7, 8 and 9 and Tables 2 and 3 from `raya render --cost --report`.
 
     tests/tools/test_study_figures.py RAYA     RAYA: the built program
 
-Nothing of raya is used here but its files: the cyclic mapping, u, speed-ups and times are written down anew.
+Independent of raya's code: implements the cyclic mapping, u, speed-ups and times again, and uses only raya's output files.
 """
 import json
 import math
@@ -27,7 +27,7 @@ def run(*arguments):
 
 
 def read_pfm(path):
-    """Rows of one number a pixel, the top one first."""
+    """Rows of a grey PFM file, top row first."""
     kind, size, scale, values = path.read_bytes().split(b"\n", 3)
     assert kind == b"Pf" and float(scale) < 0
     width, height = map(int, size.split())
@@ -36,7 +36,7 @@ def read_pfm(path):
 
 
 def loads(cost, p, pes=SIZE):
-    """PE i has the pixels (j, (j p + i) mod N); with fewer PEs than columns, those of every i that leaves the same rest."""
+    """Load of each PE. PE i has the pixels (row j, column (j p + i) mod N); with fewer PEs than columns, those of all i with the same i mod PEs."""
     sums = [0] * pes
     for j, row in enumerate(cost):
         for i in range(SIZE):
@@ -50,7 +50,7 @@ def imbalance(sums):
 
 
 def table(page, name):
-    """A table's rows as dictionaries, its columns by their labels without units."""
+    """Rows of a table as dictionaries {name of the column without unit: value}."""
     found = next(one for one in page["tables"] if one["name"] == name)
     labels = [column.rsplit(" (", 1)[0] for column in found["columns"]]
     return [dict(zip(labels, row)) for row in found["rows"]]
@@ -81,10 +81,10 @@ class Figures(unittest.TestCase):
     def tearDownClass(cls):
         cls.scratch.cleanup()
 
-    def test_a_pixel_costs_the_same_whoever_has_it(self):
+    def test_pixel_cost_does_not_depend_on_its_pe(self):
         self.assertEqual(self.cost, self.other)
 
-    def test_loads_are_those_that_the_report_counted(self):
+    def test_loads_equal_those_of_the_report(self):
         for p, report in self.reports.items():
             sums = loads(self.cost, p)
             self.assertEqual(sums, report["load"]["per_pe"])
@@ -96,7 +96,7 @@ class Figures(unittest.TestCase):
         self.assertEqual(len(rows), SIZE)
         for row in rows:
             self.assertAlmostEqual(row["u"], imbalance(loads(self.cost, row["p"])), delta=1e-12)
-        self.assertNotAlmostEqual(rows[5]["u"], imbalance(loads(self.cost, 6)), delta=1e-6)  # the check can fail
+        self.assertNotAlmostEqual(rows[5]["u"], imbalance(loads(self.cost, 6)), delta=1e-6)  # the comparison detects another offset
 
     def test_speed_ups_of_every_number_of_pes(self):
         for row in table(self.pages["fig9"], "fig9"):
@@ -123,7 +123,7 @@ class Figures(unittest.TestCase):
         for row in table(self.pages["fig8"], "fig8")[:20]:
             self.assertLessEqual(row["least u"], row["mean u"])
             self.assertLessEqual(row["mean u"], row["largest u"])
-            # 64 views: a half width is at most 2.0 standard errors, and these at most half the range over root(63)
+            # 64 views: a half width is at most 2.0 standard errors, and a standard error at most half the range / sqrt(63).
             self.assertLess(row["+-"], 2.0 * (row["largest u"] - row["least u"]) / 2 / math.sqrt(63) + 1e-12)
 
 

@@ -1,4 +1,4 @@
-// Closest hits of given rays (kernels/checks/rays.clh) in one voxel of a torus node, and what lies there.
+// Closest hits of given rays (kernels/checks/rays.clh) in one voxel of a torus node: object, distance, normals, colour.
 #include "kernels/checks/rays.clh"
 #include "kernels/shading/shade.clh"
 #include "kernels/shared/node.h"
@@ -7,10 +7,10 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void voxel_hits(__global const uint* restrict memories,  // of all nodes
                 __global const float* restrict rays,
                 const uint start,                        // of the node's words
-                const uint voxel,                        // number in the node; as many as the node has: planes alone
+                const uint voxel,                        // local number; the node's voxel count selects planes only
                 __global uint* restrict objects,         // [ray]: number among the voxel's objects, RAYA_NO_OBJECT
                 __global float* restrict distances,      // [ray]
-                __global float* restrict places)         // [ray][3][3]: G, N, colour; of a miss undefined
+                __global float* restrict places)         // [ray][3][3]: G, N, colour; undefined for a miss
 {
     const words scene = memories + start;
     __global const raya_node* const node = (__global const raya_node*)scene;

@@ -1,4 +1,4 @@
-// Histories for tests: random ones, and what their messages amount to on the way.
+// Random histories for tests, and the link traffic of their messages.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -10,10 +10,10 @@
 
 namespace raya {
 
-/// Builds a history task by task, as one would tell it.
+/// Builds a history task by task.
 class HistoryBuilder {
   public:
-    /// A task of the node, caused by a message or by itself; returns its number.
+    /// Adds a task of the node, caused by a message or by injection; returns its number.
     std::uint32_t task(std::uint32_t node, std::uint64_t cycles, std::uint32_t cause = HistoryTask::kInjection) {
         history.tasks.push_back({.node = node,
                                  .cause = cause,
@@ -21,7 +21,7 @@ class HistoryBuilder {
                                  .first = static_cast<std::uint32_t>(history.messages.size())});
         return static_cast<std::uint32_t>(history.tasks.size()) - 1;
     }
-    /// The last task sends; returns the message's number.
+    /// Both add a message that the last task sends, and return the message's number.
     std::uint32_t ray(std::uint32_t to) { return send(to, RAYA_PACKET_WORDS, RAYA_KIND_PRIMARY); }
     std::uint32_t back() { return send(RAYA_ROOT, RAYA_RETURN_WORDS, RAYA_KIND_RETURN); }
 
@@ -34,13 +34,13 @@ class HistoryBuilder {
     }
 };
 
-/// Up to `most` tasks or a few more, begun at some nodes or at the root alone, of very different lengths; rays of three
-/// lengths go anywhere, to their own node as well.
-inline History random_history(SplitMix& random, const raya_torus& torus, std::uint32_t most) {
+/// About `max_tasks` tasks of very different lengths, injected at some nodes or only at the root. Rays have one of
+/// three lengths and go to any node, their own included.
+inline History random_history(SplitMix& random, const raya_torus& torus, std::uint32_t max_tasks) {
     struct Due {
         std::uint32_t node, cause;
     };
-    const std::uint32_t nodes = raya_nodes(torus), begin = 1 + random_below(random, most / 4);
+    const std::uint32_t nodes = raya_nodes(torus), begin = 1 + random_below(random, max_tasks / 4);
     const bool root = random.next() % 3 == 0;
     const std::uint32_t longest = 1 + random_below(random, 4000);
     std::deque<Due> due;
@@ -51,7 +51,8 @@ inline History random_history(SplitMix& random, const raya_torus& torus, std::ui
         const Due next = due.front();
         due.pop_front();
         built.task(next.node, random_below(random, longest), next.cause);
-        const std::uint32_t rays = built.history.tasks.size() + due.size() < most ? random_below(random, 4) : 0;
+        const bool more = built.history.tasks.size() + due.size() < max_tasks;
+        const std::uint32_t rays = more ? random_below(random, 4) : 0;
         for (std::uint32_t i = 0; i < rays; ++i) {
             const std::uint32_t to = random.next() % 4 == 0 ? next.node : random_below(random, nodes);
             due.push_back({to, built.ray(to)});
@@ -62,7 +63,7 @@ inline History random_history(SplitMix& random, const raya_torus& torus, std::ui
     return built.history;
 }
 
-/// What torus_time() asks of a render: loads of nodes, and words and messages of links by the rules of the ways.
+/// The input of torus_time(): the load of each node, and the words and messages on each link by the routing rules.
 inline TorusResult traffic_of(const raya_torus& torus, const History& history) {
     TorusResult result;
     std::vector<std::uint64_t> loads(raya_nodes(torus));
@@ -72,7 +73,7 @@ inline TorusResult traffic_of(const raya_torus& torus, const History& history) {
     for (const HistoryMessage& message : history.messages)
         for (std::uint32_t node = history.tasks[message.task].node; node != message.to;) {
             const bool home = message.kind == RAYA_KIND_RETURN;
-            const std::uint32_t link = home ? raya_home_link(torus, node) : raya_next_link(torus, node, message.to);
+            const std::uint32_t link = home ? raya_return_link(torus, node) : raya_next_link(torus, node, message.to);
             result.link_words[node * RAYA_LINKS + link] += message.words;
             ++result.link_packets[node * RAYA_LINKS + link];
             node = raya_link_end(torus, node, link);

@@ -1,5 +1,5 @@
-// Scenes, partitions and nodes at random. Node memory does not ask why an object is in a voxel's list, so that the
-// lists here are drawn by lot, and the tests need no geometry.
+// Random scenes, partitions and nodes. Node memory does not depend on why an object is in a voxel's list, so the lists
+// here are random and the tests need no geometry.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -21,8 +21,8 @@ inline PackedJob pack(const Scene& scene) {
     return pack_job(scene, settings);
 }
 
-/// Up to `most` objects of each kind, none now and then, of one to twelve surfaces; no lights to five.
-inline Scene scene_by_lot(SplitMix& random, std::uint64_t most) {
+/// 0 to `most` objects of each kind, with 1 to 12 surfaces and 0 to 5 lights.
+inline Scene random_objects(SplitMix& random, std::uint64_t most) {
     Scene scene = empty_scene();
     for (const ObjectKind& kind : object_kinds()) {
         const std::uint32_t count = random.next() % 3 == 0 ? 0 : random_below(random, most + 1);
@@ -42,7 +42,7 @@ inline Scene scene_by_lot(SplitMix& random, std::uint64_t most) {
     return scene;
 }
 
-/// Voxels with lists of no meaning, and a box of no size.
+/// A partition with empty lists; box and cells are arbitrary.
 inline Partition empty_partition(const Divisions& divisions) {
     Partition p;
     p.grid = {{-1, -2, -3}, {0.25F, 0.5F, 0.75F}, {divisions[0], divisions[1], divisions[2]}, 100};
@@ -50,7 +50,7 @@ inline Partition empty_partition(const Divisions& divisions) {
     return p;
 }
 
-/// Lists [voxel] as a partition; objects not yet in ascending order, planes not allowed.
+/// A partition with the given lists, [voxel]; planes are not allowed.
 inline Partition partition_of(const Divisions& divisions, const std::vector<std::set<std::uint32_t>>& lists) {
     Partition p = empty_partition(divisions);
     std::set<std::uint32_t> distinct;
@@ -63,7 +63,7 @@ inline Partition partition_of(const Divisions& divisions, const std::vector<std:
     return p;
 }
 
-/// The numbers of all objects of a job but its planes.
+/// The numbers of all objects of a job except its planes.
 inline std::vector<std::uint32_t> finite_objects(const PackedJob& job) {
     const raya_objects o = job.header().objects;
     std::vector<std::uint32_t> finite;
@@ -72,8 +72,8 @@ inline std::vector<std::uint32_t> finite_objects(const PackedJob& job) {
     return finite;
 }
 
-/// Every finite object in one to `most` voxels, as often as not in one.
-inline Partition partition_by_lot(SplitMix& random, const PackedJob& job, const Divisions& divisions,
+/// Lists every finite object in 1 to `most` random voxels; half of the objects in one.
+inline Partition random_partition(SplitMix& random, const PackedJob& job, const Divisions& divisions,
                                   std::uint32_t most) {
     std::vector<std::set<std::uint32_t>> lists(divisions[0] * divisions[1] * divisions[2]);
     for (const std::uint32_t object : finite_objects(job)) {
@@ -83,7 +83,7 @@ inline Partition partition_by_lot(SplitMix& random, const PackedJob& job, const 
     return partition_of(divisions, lists);
 }
 
-/// A node's words, which notes which of them were read.
+/// A node's words; counts how often each is read.
 class NodeReader {
   public:
     NodeReader(const NodeMemories& memories, std::uint32_t node)
@@ -106,7 +106,7 @@ class NodeReader {
         return words;
     }
 
-    /// How many words were read that many times.
+    /// The number of words that were read `times` times.
     std::size_t words_read(int times) const {
         return static_cast<std::size_t>(std::count(reads_.begin(), reads_.end(), times));
     }

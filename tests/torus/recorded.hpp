@@ -1,4 +1,4 @@
-// A render and every message that its nodes sent.
+// A render with a record of every packet that its nodes sent.
 #pragma once
 #include <vector>
 

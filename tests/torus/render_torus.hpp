@@ -1,5 +1,4 @@
-// Renders on the torus machine in a line, for tests. A device is required: without one these tests fail, they are not
-// skipped.
+// One-call renders on the torus machine, for tests. Without an OpenCL device these tests fail; they are not skipped.
 #pragma once
 #include <fmt/core.h>
 
@@ -21,16 +20,16 @@ namespace raya {
 struct TorusCase {
     std::uint32_t width = 20, height = 16;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
-    Divisions voxels{};  // 0: one for each node
+    Divisions voxels{};  // 0: one voxel per node
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     PacketCharge packets{};
-    std::uint32_t queue = 0;                         // 0: as many packets as there are by default
-    std::uint32_t lanes = usual_lanes(), group = 0;  // 0: the device's own
+    std::uint32_t queue = 0;                         // packets; 0: the default
+    std::uint32_t lanes = default_test_lanes(), group = 0;  // 0: the device's default
     std::uint32_t bounces = 4;
     std::string format = "fp32";
     PixelSubset pixels{};
-    LinkMove link_move = LinkMove::kOfDevice;
+    LinkMove link_move = LinkMove::kAutomatic;
     KernelSources sources{};
 };
 
@@ -59,7 +58,7 @@ inline TorusSettings settings_of(const TorusCase& c) {
     return s;
 }
 
-/// One line that says all of a case, to see where a test fails.
+/// All settings of a case in one line, for failure messages.
 inline std::string case_text(const TorusCase& c) {
     return fmt::format(
         "{}x{} nodes {} voxels {} {} {} {} words a ray, a return a {}, queue {} lanes {} group {} bounces {} {} pixels "
@@ -70,7 +69,7 @@ inline std::string case_text(const TorusCase& c) {
 }
 
 inline TorusResult render_torus(Session& session, const Scene& scene, const TorusCase& c, const PacketSink& sink = {}) {
-    return TorusRenderer(session, scene, settings_of(c)).render({}, sink);
+    return TorusRenderer(session, scene, settings_of(c)).render({}, {.packets = sink});
 }
 
 inline TorusResult render_torus(const Scene& scene, const TorusCase& c, const PacketSink& sink = {}) {
@@ -78,8 +77,8 @@ inline TorusResult render_torus(const Scene& scene, const TorusCase& c, const Pa
     return render_torus(session, scene, c, sink);
 }
 
-/// What does not depend on the machine: the image, and what happened to rays. Tests and steps do, and highlights, which
-/// a node shades before it knows whether the light is hidden.
+/// The results that are equal on all machines: image hash and ray counts. Intersection tests, grid steps and highlights
+/// are left out: a node computes a highlight before it is known whether the light is occluded.
 inline std::string one_image(const Image& image, const EventCounts& e) {
     return fmt::format("{} primary {} hits {} reflected {} refracted {} shadow {} shadow hits {} lit {} shaded {}",
                        pixel_hash(image), e[RAYA_PRIMARY], e[RAYA_PRIMARY_HITS], e[RAYA_REFLECTED], e[RAYA_REFRACTED],
@@ -102,11 +101,11 @@ inline std::string ring_image(const Scene& scene, const TorusCase& c) {
     return one_image(r.image, r.all.events);
 }
 
-/// Adds a packet's words to those of each link on its way by the rule of the ways; `words`: [node][link].
-inline void add_way(std::vector<std::uint64_t>& words, const raya_torus& torus, const PacketRecord& p) {
+/// Adds a packet's words to each link of its route by the routing rules; `words`: [node][link].
+inline void add_route(std::vector<std::uint64_t>& words, const raya_torus& torus, const PacketRecord& p) {
     for (std::uint32_t node = p.source; node != p.destination;) {
         const bool home = raya_state_kind(p.head.state) == RAYA_KIND_RETURN;
-        const std::uint32_t link = home ? raya_home_link(torus, node) : raya_next_link(torus, node, p.destination);
+        const std::uint32_t link = home ? raya_return_link(torus, node) : raya_next_link(torus, node, p.destination);
         words.at(std::size_t{node} * RAYA_LINKS + link) += p.words;
         node = raya_link_end(torus, node, link);
     }
@@ -114,7 +113,7 @@ inline void add_way(std::vector<std::uint64_t>& words, const raya_torus& torus, 
 
 inline std::uint32_t lights_of(const Scene& scene) { return static_cast<std::uint32_t>(scene.lights.size()); }
 
-/// Objects of every kind, one to four lights, an eye in the middle of them, about them or far away.
+/// Objects of every kind, 1 to 4 lights, and an eye among, near or far from the objects.
 inline Scene random_view_scene(std::uint64_t seed) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0x5eed);
@@ -124,16 +123,16 @@ inline Scene random_view_scene(std::uint64_t seed) {
     scene.view.at = random_point(random, 1);
     scene.view.up = random_direction(random);
     scene.view.angle_degrees = away > 20 ? 25 : random.uniform(30, 110);
-    // Planes hide all that is behind them: none, some or all of them stay.
+    // Planes hide all that is behind them, so keep none, some or all of them.
     scene.planes.resize(random_below(random, scene.planes.size() + 1));
     scene.lights.resize(1 + random_below(random, 4), {random_point(random, 8), {}});
     return scene;
 }
 
-/// Seeds of random_view_scene() in which rays of all kinds are many, and some are lit.
+/// Seeds of random_view_scene() with many rays of every kind, and some lit points.
 inline constexpr std::array<std::uint64_t, 11> kRichScenes = {27, 41, 53, 63, 14, 19, 35, 8, 21, 29, 69};
 
-/// Objects of every kind before a mirror that is very far away, seen in it: rays that come back from there are wide.
+/// Objects of every kind seen in a mirror that is very far away: rays that come back from it are wide.
 inline Scene far_mirror_scene(std::uint64_t seed, const std::string& format) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0xfa5);
@@ -143,7 +142,7 @@ inline Scene far_mirror_scene(std::uint64_t seed, const std::string& format) {
     scene.planes = {{{-1, 0, 0}, -away, static_cast<int>(scene.surfaces.size()) - 1}};
     scene.view.from = {kSceneReach + 1, random.uniform(-1, 1), random.uniform(-1, 1)};
     scene.view.at = scene.view.from + Vec3{1, 0, 0};
-    scene.view.angle_degrees = 200 / away;  // what the mirror shows is twice as far away
+    scene.view.angle_degrees = 200 / away;  // mirror images are twice as far away
     return scene;
 }
 

@@ -1,4 +1,4 @@
-// The asynchronous torus against times worked out by hand, against bounds, and against what would stand still.
+// The asynchronous torus: times computed by hand, bounds, and freedom from deadlock.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -12,7 +12,8 @@
 namespace raya {
 namespace {
 
-// Milliseconds: a cycle, both ends of a ray or a return, and a ray or a return on a link, alone and both ways at once.
+// Milliseconds: a cycle; one end's processing of a ray or a return; a ray or a return on a link in one direction, and
+// with traffic in both directions.
 constexpr double kCycle = 40e-6, kRayEnd = 51 * kCycle, kReturnEnd = 35 * kCycle;
 constexpr double kRay = 64 / 1.7e3, kReturn = 32 / 1.7e3, kRayBoth = 64 / 1.2e3;
 
@@ -25,28 +26,28 @@ double total(const std::vector<AsyncNode>& nodes, double AsyncNode::*figure) {
                            [&](double sum, const AsyncNode& node) { return sum + node.*figure; });
 }
 
-TEST_CASE("a ray goes over links one after another, and what it makes returns", "[torus]") {
+TEST_CASE("a ray crosses one link after another, and its return crosses them back", "[torus]") {
     const std::uint32_t hops = GENERATE(0u, 1u, 2u, 3u);
     HistoryBuilder h;
     h.task(0, 1000);
     h.task(hops, 2000, h.ray(hops));
     h.back();
     const AsyncResult r = simulate(ring_of(7), h.history);
-    const double way = hops * (2 * kRayEnd + kRay) + hops * (2 * kReturnEnd + kReturn);
-    CHECK(r.finish_ms == about(3000 * kCycle + way));
+    const double transfer_ms = hops * (2 * kRayEnd + kRay) + hops * (2 * kReturnEnd + kReturn);
+    CHECK(r.finish_ms == about(3000 * kCycle + transfer_ms));
     CHECK(r.delivered == 2);
     CHECK(r.links[0].messages == (hops > 0));
     CHECK(total(r.nodes, &AsyncNode::compute_ms) == about(3000 * kCycle));
     CHECK(total(r.nodes, &AsyncNode::messages_ms) == Approx(hops * 2 * (kRayEnd + kReturnEnd)));
 }
 
-TEST_CASE("a link carries one message after another, and two ways share it", "[torus]") {
+TEST_CASE("a link carries one message at a time in each direction, and both directions share its rate", "[torus]") {
     HistoryBuilder one_way;
     one_way.task(1, 500);
     const std::uint32_t first = one_way.ray(2), second = one_way.ray(2);
     one_way.task(2, 10, first);
     one_way.task(2, 20, second);
-    // The input thread has room for one: the second starts when the first has been taken in.
+    // The input thread holds one message: the second starts when the first has been received.
     CHECK(simulate(ring_of(4), one_way.history).finish_ms == about(520 * kCycle + 4 * kRayEnd + 2 * kRay));
 
     HistoryBuilder both;
@@ -57,7 +58,7 @@ TEST_CASE("a link carries one message after another, and two ways share it", "[t
     both.task(2, 10, up);
     both.task(1, 10, down);
     CHECK(simulate(ring_of(4), both.history).finish_ms == about(510 * kCycle + 2 * kRayEnd + kRayBoth));
-    // Half of the first has gone when the second starts; then both go on at the lower rate, then the second alone.
+    // The second starts when half of the first has been sent; both continue at the lower rate, then the second alone.
     const auto later = static_cast<std::uint64_t>(kRay / 2 / kCycle);
     both.history.tasks[1].cycles = 500 + later;
     const double alone = static_cast<double>(later) * kCycle, shared = (1 - alone / kRay) * kRayBoth;
@@ -65,19 +66,19 @@ TEST_CASE("a link carries one message after another, and two ways share it", "[t
     CHECK(simulate(ring_of(4), both.history).finish_ms == about(510 * kCycle + 2 * kRayEnd + alone + shared + rest));
 }
 
-TEST_CASE("messages go before the main task, which ends so much later", "[torus]") {
+TEST_CASE("messages interrupt the main task, which ends later by their time", "[torus]") {
     HistoryBuilder h;
-    h.task(1, 100'000);  // all that happens, happens meanwhile
+    h.task(1, 100'000);  // runs during all other tasks
     h.task(0, 10);
-    h.task(2, 10, h.ray(2));  // passes node 1: in and out
+    h.task(2, 10, h.ray(2));  // passes through node 1
     h.task(3, 10);
-    h.back();  // round the other way
+    h.back();  // takes the other direction
     const AsyncResult r = simulate(ring_of(5), h.history);
     CHECK(r.finish_ms == about(100'000 * kCycle + 2 * kRayEnd));
     CHECK(r.nodes[1].messages_ms == about(2 * kRayEnd));
 }
 
-TEST_CASE("a port that is full makes the main task wait", "[torus]") {
+TEST_CASE("a full port makes the main task wait", "[torus]") {
     constexpr std::uint32_t kRays = 12;
     HistoryBuilder h;
     std::vector<std::uint32_t> sent;
@@ -87,7 +88,7 @@ TEST_CASE("a port that is full makes the main task wait", "[torus]") {
     h.task(1, 1000);
     const AsyncMachine machine{.buffer = 5};
     const AsyncResult r = simulate(ring_of(4), h.history, machine);
-    // Rays enter while two places are free: four at once, each other one when one has gone.
+    // Rays enter while two slots are free: four at once, each further one when another has left.
     CHECK(r.nodes[1].port_ms == about((kRays - 4) * (2 * kRayEnd + kRay) - kRayEnd));
     CHECK(r.finish_ms == about(kRays * (2 * kRayEnd + kRay)));
     CHECK(r.nodes[2].queue_max == 1);
@@ -97,8 +98,8 @@ TEST_CASE("a port that is full makes the main task wait", "[torus]") {
     CHECK_THROWS_AS(simulate(ring_of(4), h.history, {.buffer = 1}), UserError);
 }
 
-// Every node of a ring sends many rays to the node opposite: each waits for the next one's room.
-TEST_CASE("a ring that may be filled stands still; with one place left free it turns", "[torus]") {
+// Every node of a ring sends many rays to the opposite node: each waits for a free slot in the next.
+TEST_CASE("a ring whose buffers may fill up deadlocks; with one slot kept free it does not", "[torus]") {
     const raya_torus torus = ring_of(6);
     HistoryBuilder h;
     std::vector<std::uint32_t> sent;
@@ -110,22 +111,22 @@ TEST_CASE("a ring that may be filled stands still; with one place left free it t
     for (const std::uint32_t buffer : {2u, 3u, 8u}) {
         CAPTURE(buffer);
         CHECK_THROWS_WITH(simulate(torus, h.history, {.buffer = buffer, .entering = 1}),
-                          Catch::Contains("stands still") && Catch::Contains("of 180 messages"));
+                          Catch::Contains("deadlock") && Catch::Contains("of 180 messages"));
         CHECK(simulate(torus, h.history, {.buffer = buffer}).delivered == 180);
     }
 }
 
-// A node takes rays as they come: an early one that nobody waits for may be before one that others wait for. So no
-// theorem says that a machine without supersteps is the faster one, though renders are (test_history.cpp).
-TEST_CASE("supersteps can be faster, where they order what is done", "[torus]") {
+// A node processes rays in order of arrival: a ray that no other task depends on may delay one that others depend on.
+// So an asynchronous machine is not always the faster one, although it is for renders (test_history.cpp).
+TEST_CASE("supersteps can be faster than asynchronous execution, because they order the tasks", "[torus]") {
     constexpr std::uint64_t kLong = 10'000'000;
     HistoryBuilder h;
     h.task(0, 10);
     const std::uint32_t one = h.ray(0), other = h.ray(1);
-    h.task(0, kLong, one);       // superstep 2 of node 0, begun before
+    h.task(0, kLong, one);       // superstep 2 of node 0, starts before
     h.task(1, 100'000, other);   // superstep 2 of node 1
-    h.task(0, 10, h.ray(0));     // superstep 3 of node 0, for which
-    h.task(2, kLong, h.ray(2));  // superstep 4 of node 2 waits
+    h.task(0, 10, h.ray(0));     // superstep 3 of node 0, which
+    h.task(2, kLong, h.ray(2));  // superstep 4 of node 2 waits for
     const double none_orders = simulate(ring_of(4), h.history).finish_ms;
     h.history.tasks[1].cycles = 0;
     const double ordered = simulate(ring_of(4), h.history).finish_ms;
@@ -133,7 +134,7 @@ TEST_CASE("supersteps can be faster, where they order what is done", "[torus]") 
     CHECK(ordered + 0.1 < kLong * kCycle + 10);
 }
 
-TEST_CASE("random histories: all is delivered once, within bounds, whatever the buffers", "[torus]") {
+TEST_CASE("random histories: every message is delivered once, within the time bounds, for any buffer size", "[torus]") {
     constexpr std::uint64_t kSeed = 1995;
     const unsigned cases = quick_cases(400, 4000);
     for (std::uint64_t i = 0; i < cases; ++i) {
@@ -148,7 +149,7 @@ TEST_CASE("random histories: all is delivered once, within bounds, whatever the 
         const TorusResult traffic = traffic_of(torus, history);
         const TorusTime bound = torus_time(torus, traffic);
         CHECK(r.finish_ms >= bound.overlapped_ms * (1 - 1e-9));
-        double all = 0;  // one thing after another: something is always being done
+        double all = 0;  // upper bound: everything in sequence, as some node or link is always busy
         for (std::size_t link = 0; link < r.links.size(); ++link) {
             CHECK(r.links[link].words == traffic.link_words[link]);
             CHECK(r.links[link].messages == traffic.link_packets[link]);
@@ -165,7 +166,8 @@ TEST_CASE("random histories: all is delivered once, within bounds, whatever the 
     }
 }
 
-TEST_CASE("what takes no time changes no order: a machine of processors alone", "[torus]") {
+TEST_CASE("with messages that take no time, the compute bound and the time with messages enclose the result",
+          "[torus]") {
     constexpr std::uint64_t kSeed = 805;
     for (std::uint64_t i = 0; i < 50; ++i) {
         SplitMix random(kSeed + i);
@@ -174,7 +176,7 @@ TEST_CASE("what takes no time changes no order: a machine of processors alone", 
         CAPTURE(kSeed, i, torus_text(torus));
         const AsyncMachine machine{.message_cycles = 0, .word_cycles = 0, .one_way = 0, .both_ways = 0};
         const AsyncResult r = simulate(torus, history, machine);
-        // Each task begins when its message is there and the one before it at its node is done: by its own ready time.
+        // A task starts when its message has arrived and the node's previous task has ended.
         CHECK(r.delivered == history.messages.size());
         CHECK(total(r.nodes, &AsyncNode::messages_ms) == 0);
         const TorusTime bound = torus_time(torus, traffic_of(torus, history));
@@ -183,7 +185,7 @@ TEST_CASE("what takes no time changes no order: a machine of processors alone", 
     }
 }
 
-TEST_CASE("histories that are none are refused", "[torus]") {
+TEST_CASE("invalid histories are refused", "[torus]") {
     SplitMix random(7);
     const raya_torus torus = make_torus({3, 2, 1}, Links::kTorus3d);
     const History right = random_history(random, torus, 100);

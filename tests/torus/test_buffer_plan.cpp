@@ -1,4 +1,4 @@
-// Queue and boxes of a node beside its words: tight fits to the byte, and refusals with figures and remedies.
+// Queue and mailboxes of a node next to its words: exact to the byte, refused with figures and remedies.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kDefaultQueue = 8192;
 
-// Spheres of one surface in voxels of the given numbers of objects, one voxel a node, in a row; no lights, no planes.
+// A row of nodes with one voxel each, which hold the given numbers of spheres of one surface; no lights, no planes.
 NodeMemories row_of_nodes(const std::vector<std::uint32_t>& counts, const raya_torus& torus) {
     Scene scene = empty_scene();
     scene.lights.clear();
@@ -31,41 +31,41 @@ NodeMemories row_of_nodes(const std::vector<std::uint32_t>& counts, const raya_t
     return pack_nodes(pack(scene), partition_of(divisions, lists), torus);
 }
 
-constexpr std::uint64_t whole_rows(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
+constexpr std::uint64_t padded_to_rows(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
 
-// Bytes of such a node: header, one voxel, a surface, and six words a sphere, which start and end with a row.
+// Bytes of such a node: header, one voxel, a surface, and six words per sphere; the spheres are aligned to whole rows.
 constexpr std::uint64_t bytes_with(std::uint32_t spheres) {
-    return whole_rows(whole_rows(sizeof(raya_node) + sizeof(raya_voxel_memory) + 4 * RAYA_SURFACE_WORDS) +
-                      24ull * spheres);
+    return padded_to_rows(padded_to_rows(sizeof(raya_node) + sizeof(raya_voxel_memory) + 4 * RAYA_SURFACE_WORDS) +
+                          24ull * spheres);
 }
 
-// Rays of 64 bytes: the queue, and a quarter of it, 1 at least, in an outbox and an inbox for each link. Returns of 32
-// bytes: as many in an inbox for each link and in the outbox home.
+// Rays, 64 bytes each: the queue, and a quarter of it (at least 1) in an outbox and an inbox of each link. Returns, 32
+// bytes each: as many in an inbox of each link and in the one outbox to the root.
 std::uint64_t packet_bytes(std::uint64_t queue, std::uint64_t links) {
     const std::uint64_t box = queue < 8 ? 1 : queue / 4;
     return 64 * (queue + 2 * links * box) + 32 * (links > 0 ? links + 1 : 0) * box;
 }
 
-// A trial of machines whose fullest nodes have that many words over their number of nodes; counts its calls.
+// A NodeTrial whose machines share `words` evenly among their nodes; counts its calls.
 struct EvenTrial {
     std::uint64_t words = 0;
     int calls = 0;
-    std::optional<TrialNodes> operator()(const std::array<std::uint32_t, 3>& nodes) {
+    std::optional<NodeTrialResult> operator()(const std::array<std::uint32_t, 3>& nodes) {
         ++calls;
-        return TrialNodes{words / (nodes[0] * nodes[1] * nodes[2]), nodes};
+        return NodeTrialResult{words / (nodes[0] * nodes[1] * nodes[2]), nodes};
     }
 };
 
 }  // namespace
 
-TEST_CASE("a node is charged its words, its queue and two boxes a link", "[torus]") {
+TEST_CASE("a node's bytes are its words, its queue and two mailboxes per link", "[torus]") {
     CHECK(node_bytes(100, {8, 2}, 6) == 400 + 64 * (8 + 24) + 32 * 14);
     CHECK(node_bytes(0, {1, 1}, 0) == 64);
     CHECK(node_bytes(std::uint64_t{1} << 40, {UINT32_MAX, UINT32_MAX}, 6) ==
           (std::uint64_t{1} << 42) + (64ull * 13 + 32 * 7) * UINT32_MAX);
 }
 
-TEST_CASE("links that lead to another node: two for each side of more than one node", "[torus]") {
+TEST_CASE("a node has two links to other nodes for each side of more than one node", "[torus]") {
     CHECK(links_of_node(make_torus({4, 4, 4}, Links::kTorus3d)) == 6);
     CHECK(links_of_node(make_torus({4, 4, 4}, Links::kTorus2d)) == 4);
     CHECK(links_of_node(make_torus({2, 1, 2}, Links::kTorus3d)) == 4);
@@ -73,7 +73,7 @@ TEST_CASE("links that lead to another node: two for each side of more than one n
     CHECK(links_of_node(make_torus({1, 1, 1}, Links::kTorus3d)) == 0);
 }
 
-TEST_CASE("without a limit the queue is the one asked for, or the default", "[torus]") {
+TEST_CASE("without a memory limit the queue has the requested or the default length", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     const NodeMemories memories = row_of_nodes({3, 4}, torus);
     const auto plan = [&](std::uint32_t queue, std::uint32_t fewest) {
@@ -81,42 +81,41 @@ TEST_CASE("without a limit the queue is the one asked for, or the default", "[to
         return std::vector<std::uint32_t>{buffers.queue, buffers.box};
     };
     CHECK(plan(0, 5) == std::vector<std::uint32_t>{kDefaultQueue, kDefaultQueue / 4});
-    CHECK(plan(0, 10000) ==
-          std::vector<std::uint32_t>{10000, 2500});  // what a ray's tree can ask for, where that is more
+    CHECK(plan(0, 10000) == std::vector<std::uint32_t>{10000, 2500});  // at least what a ray's tree can need
     CHECK(plan(5, 5) == std::vector<std::uint32_t>{5, 1});
     CHECK(plan(11, 5) == std::vector<std::uint32_t>{11, 2});
     CHECK(plan(100'000, 5) == std::vector<std::uint32_t>{100'000, 25'000});
     CHECK(plan(1, 0) == std::vector<std::uint32_t>{1, 1});
 }
 
-TEST_CASE("the default is shorter on machines of very many nodes", "[torus]") {
+TEST_CASE("the default queue is shorter on machines of more than 2048 nodes", "[torus]") {
     CHECK(default_queue(1) == kDefaultQueue);
     CHECK(default_queue(2048) == kDefaultQueue);
     CHECK(default_queue(4096) == kDefaultQueue / 2);
     CHECK(default_queue(65536) == 256);
 }
 
-TEST_CASE("queues and boxes that the device cannot hold are refused with those that it can", "[torus]") {
+TEST_CASE("queues and mailboxes that exceed the device's memory are refused, with a length that fits", "[torus]") {
     DeviceMemory device;
-    // 64 nodes: boxes of 64 x 6 x (1 + 1000) packets of 64 bytes are the largest buffer.
+    // 64 nodes: the mailboxes, 64 x 6 x (1 + 1000) packets of 64 bytes, are the largest buffer.
     device.one_buffer = 64ull * 6 * 1001 * 64;
     device.all = std::uint64_t{1} << 40;
-    const auto told = [&](std::uint32_t queue) {
+    const auto refusal = [&](std::uint32_t queue) {
         return refusal_of([&] { check_device_memory("s.nff", buffers_for(queue), 64, "a small device", device); });
     };
-    CHECK(told(4000) == "not refused");
-    CHECK(told(4003) == "not refused");
-    CHECK(told(4004) ==
-          "s.nff: queues of 4004 packets and their boxes in 64 nodes do not fit into a small device; use --queue 2002 "
-          "or fewer nodes");
-    // All together: queues, boxes on both ends of rays and of returns.
+    CHECK(refusal(4000) == "not refused");
+    CHECK(refusal(4003) == "not refused");
+    CHECK(refusal(4004) ==
+          "s.nff: queues of 4004 packets and their mailboxes in 64 nodes do not fit the memory of a small device; use "
+          "--queue 2002 or fewer nodes");
+    // Total: queues, and mailboxes of rays and returns at both ends.
     device.all = 64ull * 64 * 4000 + 3 * device.one_buffer;
-    CHECK(told(4000) == "not refused");
+    CHECK(refusal(4000) == "not refused");
     --device.all;
-    CHECK_THAT(told(4000), Catch::Contains("use --queue 2000 or fewer nodes"));
+    CHECK_THAT(refusal(4000), Catch::Contains("use --queue 2000 or fewer nodes"));
 }
 
-TEST_CASE("the queue is the longest that fits, to the byte", "[torus]") {
+TEST_CASE("the planned queue is the longest that fits, to the byte", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
         SplitMix random(seed);
         const std::array<std::uint32_t, 3> nodes = {1 + random_below(random, 3), 1 + random_below(random, 3), 1};
@@ -145,21 +144,21 @@ TEST_CASE("the queue is the longest that fits, to the byte", "[torus]") {
     }
 }
 
-TEST_CASE("a queue shorter than a ray's tree can ask for is refused with that number", "[torus]") {
+TEST_CASE("a queue shorter than a ray's tree can need is refused, with the needed length", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     const NodeMemories memories = row_of_nodes({3, 4}, torus);
     CHECK(refusal_of([&] { plan_buffers("balls.nff", memories, torus, {}, 6, 7); }) ==
-          "balls.nff: --queue 6: the tree of a single ray can ask for 7 packets; use --queue 7 or more");
+          "balls.nff: --queue 6: the tree of a single ray may need 7 packets; use --queue 7 or more");
     CHECK(plan_buffers("balls.nff", memories, torus, {}, 7, 7).queue == 7);
 }
 
-TEST_CASE("what does not fit is refused with figures, the fullest node and the remedy", "[torus]") {
+TEST_CASE("a scene that does not fit is refused with figures, the fullest node and the remedy", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus3d);
     const NodeMemories memories = row_of_nodes({100, 300, 20, 200}, torus);
     const std::uint64_t limit = bytes_with(200) + packet_bytes(9, 4);
     const std::string figures = fmt::format(
-        "s.nff: does not fit: 3 of 4 nodes can hold what they have to, 1 cannot; node 1 (voxel 1, 0, 0 with 300 "
-        "objects) needs {:.1f} KB beside 1.9 KB of buffers, a node has {:.1f} KB; ",
+        "s.nff: does not fit: 3 of 4 nodes can hold their voxels, 1 cannot; node 1 (voxel 1, 0, 0 with 300 objects) "
+        "needs {:.1f} KB and 1.9 KB of buffers, a node has {:.1f} KB; ",
         std::ceil(bytes_with(300) / 102.4) / 10, std::floor(double(limit) / 102.4) / 10);
     REQUIRE(packet_bytes(9, 4) == 1920);  // 1.875 KB
     const std::uint64_t enough = (bytes_with(300) + 1920 + 1023) / 1024 * 1024;
@@ -180,7 +179,8 @@ TEST_CASE("what does not fit is refused with figures, the fullest node and the r
         CHECK(error.memory_bytes == limit);
     }
 
-    // Six links instead of four: four more boxes of two rays and two more of two returns, 640 bytes less for the words.
+    // Six links instead of four: four more mailboxes of two rays and two more of two returns leave 640 bytes less for
+    // the words.
     EvenTrial trial{8 * (bytes_with(200) - 640) / 4, 0};
     const auto remedy = [&](const char* nodes) {
         return figures + fmt::format("use --nodes {} or --pe-memory {}", nodes, enough);
@@ -192,26 +192,26 @@ TEST_CASE("what does not fit is refused with figures, the fullest node and the r
     CHECK(trial.calls == 2);
     trial = {~0ull, 0};
     CHECK_THAT(refusal(0, std::ref(trial)),
-               Contains("more nodes, up to 65536, would not do; use --pe-memory " + std::to_string(enough)));
+               Contains("no machine of up to 65536 nodes is large enough; use --pe-memory " + std::to_string(enough)));
     CHECK(trial.calls == 14);  // 2^3 to 2^16 nodes
     const NodeTrial none = [](const auto&) { return std::nullopt; };
     CHECK(refusal(0, none) ==
-          figures + fmt::format("more nodes, up to 65536, would not do; use --pe-memory {}", enough));
-    const NodeTrial cut = [](const auto&) { return TrialNodes{1, {8, 8, 8}}; };
+          figures + fmt::format("no machine of up to 65536 nodes is large enough; use --pe-memory {}", enough));
+    const NodeTrial cut = [](const auto&) { return NodeTrialResult{1, {8, 8, 8}}; };
     CHECK(refusal(0, cut) == remedy("2x2x2 --voxels 8x8x8"));
 }
 
-TEST_CASE("machines whose nodes could not even share the words evenly are not tried", "[torus]") {
+TEST_CASE("machines too small even for evenly shared words are not tried", "[torus]") {
     const raya_torus torus = make_torus({2, 2, 2}, Links::kTorus3d);
     const NodeMemories memories = row_of_nodes(std::vector<std::uint32_t>(8, 1000), torus);
     EvenTrial trial{memories.words.size(), 0};
-    const std::uint64_t limit = bytes_with(1000) / 32 + packet_bytes(1, 6);  // what 2^8 nodes can share
+    const std::uint64_t limit = bytes_with(1000) / 32 + packet_bytes(1, 6);  // an even share on 2^8 nodes
     CHECK_THAT(refusal_of([&] { plan_buffers("s", memories, torus, limit, 0, 1, std::ref(trial)); }),
                Contains("use --nodes 8x8x4 or"));
     CHECK(trial.calls == 1);
 }
 
-TEST_CASE("where a shorter queue would do, the refusal names it", "[torus]") {
+TEST_CASE("if a shorter queue fits, the refusal names it", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus3d);
     const NodeMemories memories = row_of_nodes({100, 300, 20, 200}, torus);
     const std::uint64_t limit = bytes_with(300) + packet_bytes(100, 4);
@@ -219,14 +219,14 @@ TEST_CASE("where a shorter queue would do, the refusal names it", "[torus]") {
     const std::string message =
         refusal_of([&] { plan_buffers("s", memories, torus, limit, 1000, 9, std::ref(trial)); });
     const std::uint64_t enough = (bytes_with(300) + packet_bytes(1000, 4) + 1023) / 1024 * 1024;
-    CHECK_THAT(message, Contains("0 of 4 nodes can hold") && Contains("beside 226.6 KB of buffers") &&
+    CHECK_THAT(message, Contains("0 of 4 nodes can hold") && Contains("and 226.6 KB of buffers") &&
                             Contains(fmt::format("; use --queue 100 or --pe-memory {}", enough)));
     CHECK(trial.calls == 0);
     CHECK(plan_buffers("s", memories, torus, limit, 100, 9).queue == 100);
     CHECK(plan_buffers("s", memories, torus, enough, 1000, 9).queue == 1000);
 }
 
-TEST_CASE("a refusal tells the voxels of the fullest node by number, or one by its place", "[torus]") {
+TEST_CASE("a refusal gives the fullest node's number of voxels, or the position of its only voxel", "[torus]") {
     SplitMix random(3);
     Scene scene = empty_scene();
     for (int i = 0; i < 40; ++i) add_sphere(scene, random, 1);
@@ -249,7 +249,7 @@ TEST_CASE("a refusal tells the voxels of the fullest node by number, or one by i
     CHECK_THAT(refusal({1, 1, 1}), Contains("0 of 1 nodes") && Contains("node 0 (24 voxels with 10 objects)"));
 }
 
-TEST_CASE("larger machines that are tried double the shortest side each time, up to 65,536 nodes", "[torus]") {
+TEST_CASE("each larger machine that is tried doubles the shortest side, up to 65,536 nodes", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 200; ++seed) {
         SplitMix random(seed);
         const raya_torus torus = random_torus(random, 8);
@@ -259,10 +259,10 @@ TEST_CASE("larger machines that are tried double the shortest side each time, up
         std::vector<std::array<std::uint32_t, 3>> tried = {{torus.nodes[0], torus.nodes[1], torus.nodes[2]}};
         const NodeTrial trial = [&](const std::array<std::uint32_t, 3>& nodes) {
             tried.push_back(nodes);
-            return TrialNodes{~0ull / 8, nodes};
+            return NodeTrialResult{~0ull / 8, nodes};
         };
         CAPTURE(seed, torus_text(torus));
-        // A byte too few for the fullest node, and more than enough for an even share of the words on more nodes.
+        // One byte too few for the fullest node, but enough for an even share of the words on more nodes.
         const std::uint64_t limit = bytes_with(2000) + packet_bytes(1, links_of_node(torus)) - 1;
         CHECK_THROWS_AS(plan_buffers("s", memories, torus, limit, 0, 1, trial), UserError);
         for (std::size_t i = 1; i < tried.size(); ++i) {
@@ -277,6 +277,6 @@ TEST_CASE("larger machines that are tried double the shortest side each time, up
             CHECK(doubled == 1);
         }
         const std::uint32_t last = raya_nodes(make_torus(tried.back(), Links::kTorus3d));
-        CHECK((last <= kMostNodes && 2 * last > kMostNodes));
+        CHECK((last <= kMaxNodes && 2 * last > kMaxNodes));
     }
 }

@@ -1,4 +1,4 @@
-// What the model charges beside what the device moves: rays made and thrown away, and one return for a whole ray.
+// Model charges that differ from what the device moves: discarded rays, and one return per ray instead of per term.
 #include <catch2/catch.hpp>
 #include <map>
 #include <tuple>
@@ -10,8 +10,8 @@
 namespace raya {
 namespace {
 
-// Each node makes every ray of its window, and those of its rows, all rows once, for what misses the box. What it does
-// not keep was made for nothing: as many as the windows hold.
+// Each node makes every ray of its window, and the rays of its own rows to find those that miss the box. The number of
+// discarded rays is the number of pixels in all windows.
 std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
     const PackedJob job = pack_job(scene, job_settings(s, length_scale(scene, s.format)));
     std::uint64_t pixels = 0;
@@ -25,7 +25,7 @@ std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
 using RayKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;  // pixel, path, level
 RayKey key_of(const PacketRecord& p) { return {p.head.pixel, p.head.path, raya_state_level(state_of(p))}; }
 
-// The return of a whole ray leaves with the shadow ray to the last light that the surface faces, from where that ends.
+// The one return of a ray leaves from the node where the shadow ray to the last light that the surface faces ends.
 void check_last_lights(const Recorded& r) {
     std::map<RayKey, PacketRecord> last;  // of each ray: the last record of its last shadow ray
     for (const PacketRecord& p : r.records) {
@@ -51,7 +51,7 @@ void check_last_lights(const Recorded& r) {
 
 }  // namespace
 
-TEST_CASE("rays that nodes throw away are those of their windows, and the root throws none away", "[torus][slow]") {
+TEST_CASE("nodes discard as many rays as their windows hold, and the root discards none", "[torus][slow]") {
     const std::uint64_t seed = 662;
     SplitMix random(seed);
     Session session(choose_device(""));
@@ -68,7 +68,7 @@ TEST_CASE("rays that nodes throw away are those of their windows, and the root t
         c.pixels.stride = 1 + random_below(random, 3);
         c.pixels.first = random_below(random, c.pixels.stride);
         c.inject = i % 4 == 3 ? Injection::kRoot : Injection::kAll;
-        if (i % 3 == 0) c.queue = 20 * raya_shortest_queue(lights_of(scene), c.bounces);
+        if (i % 3 == 0) c.queue = 20 * raya_min_queue(lights_of(scene), c.bounces);
         CAPTURE(seed, i, case_text(c));
         const TorusSettings s = settings_of(c);
         const EventCounts e = render_torus(session, scene, c).events;
@@ -79,7 +79,7 @@ TEST_CASE("rays that nodes throw away are those of their windows, and the root t
     CHECK(discarded > 1000);
 }
 
-TEST_CASE("one return for each ray leaves where its last shadow ray ends", "[torus]") {
+TEST_CASE("one return per ray: it leaves where the ray's last shadow ray ends", "[torus]") {
     const std::uint64_t seed = 81;
     SplitMix random(seed);
     Session session(choose_device(""));
@@ -88,7 +88,7 @@ TEST_CASE("one return for each ray leaves where its last shadow ray ends", "[tor
         const Scene scene = random_view_scene(kRichScenes[i % kRichScenes.size()]);
         TorusCase c{.width = 16, .height = 12, .nodes = {3, 2, 2}, .group = 1 + i % 2};
         c.packets = {22, true};
-        if (i % 2) c.queue = 6 * raya_shortest_queue(lights_of(scene), c.bounces);
+        if (i % 2) c.queue = 6 * raya_min_queue(lights_of(scene), c.bounces);
         CAPTURE(seed, i, case_text(c));
         const Recorded r = record(session, scene, c);
         check_last_lights(r);
@@ -100,7 +100,7 @@ TEST_CASE("one return for each ray leaves where its last shadow ray ends", "[tor
         CHECK(r.result.contributions >= each.contributions);
         late += r.result.contributions - each.contributions;
     }
-    CHECK(late > 100);  // rays whose last shadow ray was stopped
+    CHECK(late > 100);  // rays whose last shadow ray was blocked
 }
 
 }  // namespace raya

@@ -1,5 +1,4 @@
-// Contributions in the order of their pixels' ray trees, whatever the order in which they come, and sums rounded once a
-// step.
+// Contributions are sorted by their pixels' ray trees, whatever their order of arrival, and each addition rounds once.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -13,8 +12,8 @@
 namespace raya {
 namespace {
 
-// The contributions of a random ray tree in the order in which a depth-first walk meets them, reflection before
-// refraction: what the sorting must find again.
+// The contributions of a random ray tree in depth-first order, reflection before refraction: the expected result of
+// sorting.
 class TreeWalk {
   public:
     TreeWalk(SplitMix& random, std::vector<raya_head>& to, std::uint32_t pixel)
@@ -62,8 +61,8 @@ std::vector<float> colours_of(const std::vector<raya_head>& packets) {
     return colours;
 }
 
-// Lists of random numbers of the format for `pixels` pixels, some of them empty. Products and sums stay within 53 bits,
-// so that double holds them exactly: whole multiples of 2^-38, below 2^12.
+// Lists of random numbers of the format for `pixels` pixels, some of them empty. Products and sums are exact in double:
+// multiples of 2^-38 below 2^12.
 Contributions random_lists(SplitMix& random, const NumberFormat& format, std::uint32_t pixels) {
     Contributions lists;
     lists.starts = {0};
@@ -99,7 +98,7 @@ std::vector<float> sums_of(const Contributions& lists, const NumberFormat& forma
 
 }  // namespace
 
-TEST_CASE("contributions come in the order of a depth-first walk through their pixels' trees", "[torus]") {
+TEST_CASE("contributions are sorted in depth-first order of their pixels' trees", "[torus]") {
     const std::uint64_t seed = 311;
     for (std::uint64_t i = 0; i < 300; ++i) {
         CAPTURE(seed, i);
@@ -120,7 +119,7 @@ TEST_CASE("contributions come in the order of a depth-first walk through their p
     }
 }
 
-TEST_CASE("a contribution that comes twice, or to no pixel, is noticed", "[torus]") {
+TEST_CASE("a duplicate contribution, or one outside the image, is an error", "[torus]") {
     SplitMix random(5);
     for (int i = 0; i < 100; ++i) {
         CAPTURE(i);
@@ -129,7 +128,7 @@ TEST_CASE("a contribution that comes twice, or to no pixel, is noticed", "[torus
         CHECK_NOTHROW(sort_contributions(returns, 4));
         CHECK_THROWS_AS(sort_contributions(returns, 3), std::logic_error);
         raya_head twice = returns[random_below(random, returns.size())];
-        twice.state ^= RAYA_STATE_FRESH;  // says how it travels, not which it is
+        twice.state ^= RAYA_STATE_FRESH;  // not part of its identity
         twice.weight += 1;
         returns.push_back(twice);
         shuffle(returns, random);
@@ -137,7 +136,7 @@ TEST_CASE("a contribution that comes twice, or to no pixel, is noticed", "[torus
     }
 }
 
-TEST_CASE("no contributions at all make a black image", "[torus]") {
+TEST_CASE("an image without contributions is black", "[torus]") {
     const Contributions none = sort_contributions({}, 7);
     CHECK(none.colours.empty());
     CHECK(none.starts == std::vector<std::uint32_t>(8, 0));
@@ -147,7 +146,7 @@ TEST_CASE("no contributions at all make a black image", "[torus]") {
     CHECK(composer.compose(none) == std::vector<float>(21, 0));
 }
 
-TEST_CASE("pixels are sums whose every step is rounded once", "[torus]") {
+TEST_CASE("pixels are sums in which each multiply-add rounds once", "[torus]") {
     const std::uint64_t seed = 40'961;
     SplitMix random(seed);
     const std::string name = GENERATE("fp32", "spa22", "e8m12t", "e5m6");

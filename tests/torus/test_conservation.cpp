@@ -1,4 +1,4 @@
-// Nothing is lost on the way: packets made and ended, hops and words, and the ways that rays take from voxel to voxel.
+// Conservation of packets: packets made and ended, hops, words, and the voxels that rays visit.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
@@ -20,20 +20,20 @@ std::uint64_t sum(const std::vector<std::uint64_t>& values) {
     return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
 }
 
-// Which ray of which pixel: the records of one ray are the stages of its way.
+// Identifies a ray of a pixel; the records with one key are the stages of that ray's walk.
 using LightKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
 LightKey light_key(const PacketRecord& p) {
     return {p.head.pixel, p.head.path, raya_state_level(state_of(p)), raya_state_light(state_of(p))};
 }
 
-std::map<LightKey, std::vector<PacketRecord>> ways_of(const std::vector<PacketRecord>& records) {
-    std::map<LightKey, std::vector<PacketRecord>> ways;
+std::map<LightKey, std::vector<PacketRecord>> stages_of(const std::vector<PacketRecord>& records) {
+    std::map<LightKey, std::vector<PacketRecord>> stages;
     for (const PacketRecord& p : records)
-        if (kind_of(p) != RAYA_KIND_RETURN) ways[light_key(p)].push_back(p);
-    return ways;
+        if (kind_of(p) != RAYA_KIND_RETURN) stages[light_key(p)].push_back(p);
+    return stages;
 }
 
-// What a packet of each kind is made for, as the events say.
+// The number of packets of each kind follows from the events.
 void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t lights, bool return_a_ray) {
     const EventCounts& e = r.events;
     CHECK(r.made == r.ended);
@@ -44,8 +44,8 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t light
     CHECK(r.made[RAYA_KIND_REFRACTED] == e[RAYA_REFRACTED]);
     CHECK(r.made[RAYA_KIND_SHADOW] == e[RAYA_SHADOW]);
     CHECK(e[RAYA_SHADOW] == e[RAYA_SHADOW_HITS] + e[RAYA_LIT]);
-    // An ambient term or the background from every ray, and what lights add. Where a return is a ray's, shadow rays
-    // that were stopped last make one, too: of one light all.
+    // Every ray returns an ambient term or the background, and each lit light adds a term. With one return per ray, a
+    // blocked last shadow ray makes a return, too: with one light, all blocked ones do.
     const std::uint64_t rays = pixels + e[RAYA_REFLECTED] + e[RAYA_REFRACTED], terms = rays + e[RAYA_LIT];
     const std::uint64_t stopped = return_a_ray ? e[RAYA_SHADOW_HITS] : 0;
     CHECK(r.returns == (return_a_ray ? rays : terms));
@@ -53,19 +53,19 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t light
     CHECK(r.made[RAYA_KIND_RETURN] <= terms + stopped);
 }
 
-// The way of each record is the torus's distance, whatever waits on it.
+// Each record crosses as many links as the torus distance, however long it waits.
 void check_traffic(const Recorded& r, const TorusSettings& s) {
     std::uint64_t hops = 0;
     std::vector<std::uint64_t> words(r.result.link_words.size());
-    std::size_t at_home = 0, wrong_words = 0;
+    std::size_t to_itself = 0, wrong_words = 0;
     for (const PacketRecord& p : r.records) {
         const std::uint64_t distance = raya_node_distance(s.torus, p.source, p.destination);
-        at_home += distance == 0;
+        to_itself += distance == 0;
         hops += distance;
-        add_way(words, s.torus, p);
+        add_route(words, s.torus, p);
         wrong_words += p.words != (kind_of(p) == RAYA_KIND_RETURN ? s.packets.return_words() : s.packets.ray_words);
     }
-    CHECK(at_home == 0);
+    CHECK(to_itself == 0);
     CHECK(wrong_words == 0);
     CHECK(r.result.hops == hops);
     CHECK(sum(r.result.link_packets) == hops);
@@ -76,7 +76,7 @@ void check_traffic(const Recorded& r, const TorusSettings& s) {
         return std::tie(a.superstep, a.source) < std::tie(b.superstep, b.source);
     }));
     CHECK((r.records.empty() || r.records.back().superstep < r.result.supersteps.size()));
-    CHECK(r.result.supersteps.back().live <= r.result.made[RAYA_KIND_RETURN]);  // what the host has yet to take
+    CHECK(r.result.supersteps.back().live <= r.result.made[RAYA_KIND_RETURN]);  // returns that the host has yet to read
 }
 
 std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
@@ -84,67 +84,67 @@ std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
     return raya_voxel(grid, at.at[0], at.at[1], at.at[2]);
 }
 
-// Voxels of a ray that walks: next to each other, on one side of each axis, none twice.
-bool walks(const std::vector<PacketRecord>& way) {
+// True if a ray walks from voxel to neighbouring voxel, in one direction along each axis, to none twice.
+bool walks(const std::vector<PacketRecord>& stages) {
     bool right = true;
-    for (std::size_t i = 1; i < way.size(); ++i) {
-        const raya_place a = raya_unpack_place(way[i - 1].head.voxel);
-        const raya_place b = raya_unpack_place(way[i].head.voxel);
+    for (std::size_t i = 1; i < stages.size(); ++i) {
+        const raya_place a = raya_unpack_place(stages[i - 1].head.voxel);
+        const raya_place b = raya_unpack_place(stages[i].head.voxel);
         std::uint32_t steps = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const int step = static_cast<int>(b.at[axis]) - static_cast<int>(a.at[axis]);
             steps += static_cast<std::uint32_t>(std::abs(step));
-            const raya_place first = raya_unpack_place(way[0].head.voxel);
-            const int way_so_far = static_cast<int>(a.at[axis]) - static_cast<int>(first.at[axis]);
-            right = right && step * way_so_far >= 0;  // never back
+            const raya_place first = raya_unpack_place(stages[0].head.voxel);
+            const int so_far = static_cast<int>(a.at[axis]) - static_cast<int>(first.at[axis]);
+            right = right && step * so_far >= 0;  // never back
         }
         right = right && steps == 1;
     }
     return right;
 }
 
-// Voxels of a wide ray, from that of the node where it was made on: all in turn, of a shadow ray until it is stopped;
-// then at most one more stage, to where it is shaded.
-bool tours(const std::vector<PacketRecord>& way, const raya_torus& torus, const raya_grid& grid) {
+// True if a wide ray visits all voxels in turn, from the one of the node that made it on; a shadow ray until it is
+// blocked. At most one more stage follows, to the voxel where the ray is shaded.
+bool tours(const std::vector<PacketRecord>& stages, const raya_torus& torus, const raya_grid& grid) {
     const std::uint32_t voxels = raya_voxels(grid);
-    const std::size_t visits = way.size() - (state_of(way.back()) & RAYA_STATE_FOUND ? 1 : 0);
-    std::uint32_t number = raya_voxel_of_node(torus, grid, way[0].source, 0);
-    bool right = visits < voxels && (visits == voxels - 1 || kind_of(way[0]) == RAYA_KIND_SHADOW);
-    for (std::size_t i = 0; i < way.size(); ++i) {
+    const std::size_t visits = stages.size() - (state_of(stages.back()) & RAYA_STATE_FOUND ? 1 : 0);
+    std::uint32_t number = raya_voxel_of_node(torus, grid, stages[0].source, 0);
+    bool right = visits < voxels && (visits == voxels - 1 || kind_of(stages[0]) == RAYA_KIND_SHADOW);
+    for (std::size_t i = 0; i < stages.size(); ++i) {
         number = (number + 1) % voxels;
-        right = right && (i >= visits || number_of(grid, way[i]) == number);
-        right = right && (i < visits) == !(state_of(way[i]) & RAYA_STATE_FOUND);
+        right = right && (i >= visits || number_of(grid, stages[i]) == number);
+        right = right && (i < visits) == !(state_of(stages[i]) & RAYA_STATE_FOUND);
     }
     return right;
 }
 
-struct Ways {
-    std::size_t walked = 0, wide = 0;
+struct RayWalks {
+    std::size_t narrow = 0, wide = 0;
 };
 
-// One voxel in each node, so that every step is a record.
-Ways check_ways(const Recorded& r, const TorusSettings& s) {
-    Ways ways;
+// Requires one voxel per node, so that every step is a record.
+RayWalks check_walks(const Recorded& r, const TorusSettings& s) {
+    RayWalks walked;
     std::size_t broken = 0, early = 0, wrong_walks = 0, wrong_tours = 0;
     raya_grid grid{};
     std::copy_n(s.voxels.begin(), 3, grid.divisions);
-    for (const auto& [key, way] : ways_of(r.records)) {
-        for (std::size_t i = 1; i < way.size(); ++i) {
-            broken += way[i].source != way[i - 1].destination;
-            early += way[i].superstep <= way[i - 1].superstep;
+    for (const auto& [key, stages] : stages_of(r.records)) {
+        for (std::size_t i = 1; i < stages.size(); ++i) {
+            broken += stages[i].source != stages[i - 1].destination;
+            early += stages[i].superstep <= stages[i - 1].superstep;
         }
-        (is_wide(way[0]) ? ways.wide : ways.walked) += 1;
-        wrong_walks += !is_wide(way[0]) && !walks(way);
-        wrong_tours += is_wide(way[0]) && !tours(way, s.torus, grid);
+        (is_wide(stages[0]) ? walked.wide : walked.narrow) += 1;
+        wrong_walks += !is_wide(stages[0]) && !walks(stages);
+        wrong_tours += is_wide(stages[0]) && !tours(stages, s.torus, grid);
     }
     CHECK(broken == 0);
     CHECK(early == 0);
     CHECK(wrong_walks == 0);
     CHECK(wrong_tours == 0);
-    return ways;
+    return walked;
 }
 
-// A return goes to the root, and each place in a pixel's tree is answered once.
+// A return goes to the root, and each node of a pixel's ray tree returns at most once.
 void check_returns(const Recorded& r) {
     std::map<LightKey, int> answers;
     std::size_t astray = 0;
@@ -179,11 +179,11 @@ std::vector<Row> rows_of(const std::string& csv) {
 
 }  // namespace
 
-TEST_CASE("the traffic of random machines adds up", "[torus]") {
+TEST_CASE("random machines: packets, hops and words agree with the events and the routing rules", "[torus]") {
     const std::uint64_t seed = 5150;
     SplitMix random(seed);
     Session session(choose_device(""));
-    Ways ways;
+    RayWalks all;
     const unsigned cases = quick_cases(20, 60);
     for (unsigned i = 0; i < cases; ++i) {
         const std::string format = i % 6 == 0 ? "spa22" : "fp32";
@@ -207,15 +207,15 @@ TEST_CASE("the traffic of random machines adds up", "[torus]") {
         check_traffic(r, s);
         check_returns(r);
         if (!one_each) continue;
-        const Ways here = check_ways(r, s);
-        ways.walked += here.walked;
-        ways.wide += here.wide;
+        const RayWalks here = check_walks(r, s);
+        all.narrow += here.narrow;
+        all.wide += here.wide;
     }
-    CHECK(ways.walked > (thorough() ? 5'000 : 1'000));
-    CHECK(ways.wide > (thorough() ? 100 : 20));
+    CHECK(all.narrow > (thorough() ? 5'000 : 1'000));
+    CHECK(all.wide > (thorough() ? 100 : 20));
 }
 
-TEST_CASE("a record of the traffic changes nothing", "[torus]") {
+TEST_CASE("recording the packets changes no result", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kRichScenes[1]);
     const TorusCase c{.nodes = {3, 2, 2}, .lanes = 4, .group = 1};
@@ -225,23 +225,23 @@ TEST_CASE("a record of the traffic changes nothing", "[torus]") {
     CHECK(with.supersteps.size() == without.supersteps.size());
 }
 
-TEST_CASE("supersteps say what links and nodes did", "[torus]") {
+TEST_CASE("the supersteps' maxima sum to between the busiest node or link and the total", "[torus]") {
     const TorusResult r =
         render_torus(random_view_scene(kRichScenes[2]), TorusCase{.nodes = {3, 2, 3}, .lanes = 4, .group = 1});
     std::uint64_t cycles = 0, words = 0;
     for (const Superstep& step : r.supersteps) {
-        cycles += step.most_cycles;
-        words += step.most_link_words;
+        cycles += step.max_node_cycles;
+        words += step.max_link_words;
     }
     const auto& loads = r.load.per_pe;
     CHECK(cycles >= *std::max_element(loads.begin(), loads.end()));
     CHECK(cycles <= sum(loads));
     CHECK(words >= *std::max_element(r.link_words.begin(), r.link_words.end()));
     CHECK(words <= sum(r.link_words));
-    CHECK(r.supersteps.back().most_link_words == 0);
+    CHECK(r.supersteps.back().max_link_words == 0);
 }
 
-TEST_CASE("the trace of a render's packets names rays and parents that belong together", "[torus]") {
+TEST_CASE("the packet trace of a render gives each ray the right parent", "[torus]") {
     const TorusCase c{
         .nodes = {2, 3, 2}, .inject = GENERATE(Injection::kAll, Injection::kRoot), .lanes = 4, .group = 1};
     PacketTrace trace;

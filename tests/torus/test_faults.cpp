@@ -1,5 +1,5 @@
-// Faults on purpose: kernels with one line changed, each of which the torus's own checks, its image or its traffic must
-// show. A ctest entry of its own: test_torus "[faults]".
+// Fault injection: each kernel with one line changed must fail the torus's own checks or change its image or traffic.
+// A ctest entry of its own: test_torus "[faults]".
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
@@ -25,7 +25,7 @@ const KernelFault kFaults[] = {
     {"route sends the wrong way",
      {"shared/torus.h", "raya_next_link(raya_torus t, raya_u32 from, raya_u32 to)",
       "raya_next_link(raya_torus t, raya_u32 to, raya_u32 from)"}},
-    {"of equal ways the one down",
+    {"of equal routes the one down",
      {"shared/torus.h", "*up = higher <= side - higher;", "*up = higher < side - higher;"}},
     {"the nearest hit of a wide ray is its last",
      {"torus/outcome.clh", "!= RAYA_NO_VOXEL && !nearer) return;",
@@ -34,15 +34,15 @@ const KernelFault kFaults[] = {
      {"torus/outcome.clh", "if (next == p->start)", "if (next_of_tour(n->grid, next) == p->start)"}},
     {"a wide ray starts one voxel behind",
      {"torus/node.clh", "const raya_place p = n->place;", "raya_place p = n->place; p.at[0] = 0;"}},
-    {"hits behind the way out count", {"torus/outcome.clh", "(hits & (h.distance <= leaves))", "hits"}},
-    {"hits never count before the last voxel",
+    {"hits behind the voxel's exit count", {"torus/outcome.clh", "(hits & (h.distance <= leaves))", "hits"}},
+    {"hits count only in the first half of a voxel",
      {"torus/outcome.clh", "(hits & (h.distance <= leaves))", "(hits & (h.distance <= leaves * 0.5f))"}},
     {"the walk is a voxel off",
      {"grid/walk.clh", "const index k = at + choose_index(a->up, (index)(1), (index)(0));",
       "const index k = at + choose_index(a->up, (index)(2), (index)(0));"}},
     {"a return is counted twice", {"torus/route.cl", "+= home_used - home_before;", "+= home_used;"}},
-    {"a return is lost between boxes", {"torus/accept.cl", "return moves;", "return moves - (moves > 1);"}},
-    {"a shadow ray goes through what it hits",
+    {"a return is lost between mailboxes", {"torus/accept.cl", "return moves;", "return moves - (moves > 1);"}},
+    {"a shadow ray passes through near objects",
      {"torus/outcome.clh", "o.stopped = m & shadow & hits;", "o.stopped = m & shadow & hits & (h.distance > 1.0f);"}},
     {"a pixel is made twice", {"torus/pixel_rows.clh", "p.misses = root || !in_window;", "p.misses = 1;"}},
     {"windows are a row short",
@@ -52,16 +52,16 @@ const KernelFault kFaults[] = {
      {"torus/shade_packets.clh", "f->path.all | (index)(0x80000000u) >> levels_of(f);", "f->path.all;"}},
     {"a light's number is one off",
      {"torus/shade_packets.clh", "shadow.light = (index)(l + 1);", "shadow.light = (index)(l);"}},
-    {"rays that are thrown away are not counted", {"torus/inject.cl", "number += !own.lane[lane];", "number += 0;"}},
+    {"discarded rays are not counted", {"torus/inject.cl", "number += !own.lane[lane];", "number += 0;"}},
     {"a ray's return leaves before its shadow rays",
      {"torus/shade_packets.clh", "put_shadow_rays(n, f, struck, &lit);\n    if (!f->charged) charge_newest(f, struck);",
       "if (!f->charged) charge_newest(f, struck);\n    put_shadow_rays(n, f, struck, &lit);"}},
-    {"a shadow ray that is stopped makes no return",
+    {"a blocked shadow ray makes no return",
      {"torus/shade_packets.clh", "arrived | (stopped & has_flag(f, RAYA_STATE_CHARGED))", "arrived"}},
-    {"every return on its way is a message",
+    {"every return in transit is a message",
      {"torus/accept.cl", "if (packet.state & RAYA_STATE_CHARGED) shared_add", "shared_add"}},
     {"every return from a queue is a message", {"torus/route.cl", "packet.head.state & RAYA_STATE_CHARGED", "1"}},
-    {"no room is reserved",
+    {"no queue slots are reserved",
      {"torus/trace_voxel.cl", "if (*all + need > f->capacity) continue;", "chosen.lane[lane] = RAYA_TRUE; continue;"}},
 };
 
@@ -73,9 +73,9 @@ struct Traffic {
     bool operator==(const Traffic&) const = default;
 };
 
-// Ends a machine that would go on for ever.
-void stop_long(int& calls) {
-    if (++calls > 5'000) throw std::runtime_error("goes on for ever");
+// Stops a machine that does not end.
+void stop_endless(int& calls) {
+    if (++calls > 5'000) throw std::runtime_error("does not end");
 }
 
 Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
@@ -83,9 +83,9 @@ Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
     Traffic t;
     int calls = 0;
     t.expected.assign(std::size_t{raya_nodes(s.torus)} * RAYA_LINKS, 0);
-    const TorusResult r =
-        TorusRenderer(session, scene, s)
-            .render([&](double) { stop_long(calls); }, [&](const PacketRecord& p) { add_way(t.expected, s.torus, p); });
+    const TorusResult r = TorusRenderer(session, scene, s)
+                              .render([&](double) { stop_endless(calls); },
+                                      {.packets = [&](const PacketRecord& p) { add_route(t.expected, s.torus, p); }});
     t.image = one_image(r);
     t.made = r.made;
     t.discarded = r.events[RAYA_DISCARDED];
@@ -93,8 +93,8 @@ Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
     return t;
 }
 
-// How a fault shows itself; empty where it does not.
-std::string noticed(Session& session, const Scene& scene, TorusCase c, const Traffic& right, const SourcePatch& patch) {
+// The first difference or error that reveals a fault; empty if there is none.
+std::string symptom(Session& session, const Scene& scene, TorusCase c, const Traffic& right, const SourcePatch& patch) {
     c.sources.patches = {patch};
     try {
         const Traffic t = traffic_of(session, scene, c);
@@ -108,18 +108,18 @@ std::string noticed(Session& session, const Scene& scene, TorusCase c, const Tra
 
 }  // namespace
 
-TEST_CASE("kernels with a fault are found out", "[torus][.][faults]") {
+TEST_CASE("every injected kernel fault is detected", "[torus][.][faults]") {
     Session session(choose_device(""));
     struct Trial {
         Scene scene;
         TorusCase c;
     };
     TorusCase walks{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
-    walks.queue = raya_shortest_queue(lights_of(random_view_scene(kRichScenes[1])), walks.bounces) + 30;
+    walks.queue = raya_min_queue(lights_of(random_view_scene(kRichScenes[1])), walks.bounces) + 30;
     TorusCase tours{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
     tours.format = "spa22";
     tours.packets = {22, true};
-    // The eye before the box: several nodes look at a pixel.
+    // The eye is outside the box: several nodes examine a pixel.
     const TorusCase outside{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
     const Trial trials[] = {{random_view_scene(kRichScenes[1]), walks},
                             {far_mirror_scene(kRichScenes[3], "spa22"), tours},
@@ -132,7 +132,7 @@ TEST_CASE("kernels with a fault are found out", "[torus][.][faults]") {
         check_patches({.patches = {fault.patch}});
         std::string how;
         for (std::size_t i = 0; i < right.size() && how.empty(); ++i)
-            how = noticed(session, trials[i].scene, trials[i].c, right[i], fault.patch);
+            how = symptom(session, trials[i].scene, trials[i].c, right[i], fault.patch);
         WARN(fault.what << ": " << how);
         CHECK(how != "");
     }

@@ -1,4 +1,4 @@
-// Histories of renders against what the same renders counted: each node's cycles, every message over every link.
+// Histories of renders agree with the renders' counts: each node's cycles, and every message over every link.
 #include <catch2/catch.hpp>
 #include <map>
 #include <stdexcept>
@@ -26,12 +26,12 @@ Recorded recorded(const Scene& scene, const TorusCase& c) {
     HistoryRecorder recorder(settings.torus, settings.packets);
     Recorded r;
     r.torus = settings.torus;
-    r.result = renderer.render({}, {}, {}, 1, [&](const NodeWork& work) { recorder.add(work); });
+    r.result = renderer.render({}, {.work = [&](const NodeWork& work) { recorder.add(work); }});
     r.history = recorder.finish();
     return r;
 }
 
-// Messages of a kind that a task of another kind, or an injection, has sent.
+// Messages of each kind that a task of another kind, or an injection, has sent.
 std::map<std::uint32_t, std::uint64_t> made_by_others(const History& history) {
     std::map<std::uint32_t, std::uint64_t> made;
     for (const HistoryMessage& message : history.messages) {
@@ -68,7 +68,7 @@ const Scene& rich_scene() {
     return scene;
 }
 
-TEST_CASE("a history has all that the render counted: several voxels a node, root or all, 2-D and 3-D", "[torus]") {
+TEST_CASE("a history contains all that the render counted, on every kind of machine", "[torus]") {
     for (const TorusCase& c :
          quick(2, {TorusCase{.nodes = {2, 2, 2}, .voxels = {3, 3, 3}},
                    TorusCase{
@@ -81,24 +81,24 @@ TEST_CASE("a history has all that the render counted: several voxels a node, roo
     }
 }
 
-TEST_CASE("telling costs changes nothing", "[torus]") {
+TEST_CASE("recording a history does not change the image or the counts", "[torus]") {
     const TorusCase c{.nodes = {2, 2, 2}, .voxels = {3, 3, 3}};
     CHECK(one_image(recorded(rich_scene(), c).result) == one_image(render_torus(rich_scene(), c)));
 }
 
-TEST_CASE("wide rays, which visit all voxels and go back to their hit, are in the history", "[torus]") {
+TEST_CASE("the history contains wide rays, which visit all voxels and return to their hit", "[torus]") {
     const Recorded r = recorded(far_mirror_scene(1, "fp32"), {.nodes = {2, 2, 1}, .voxels = {3, 2, 2}});
     check_against_counts(r);
 }
 
-TEST_CASE("rays that nodes make in vain are charged to those that they keep", "[torus]") {
+TEST_CASE("the cost of discarded rays is charged to the rays that a node keeps", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     HistoryRecorder recorder(torus);
-    const auto primary = [](std::uint32_t pixel) { return raya_treated{pixel, RAYA_KIND_PRIMARY, 0, 100}; };
-    const std::vector<raya_treated> two = {primary(4), primary(5)};
+    const auto primary = [](std::uint32_t pixel) { return raya_processed{pixel, RAYA_KIND_PRIMARY, 0, 100}; };
+    const std::vector<raya_processed> two = {primary(4), primary(5)};
     recorder.add({.node = 0, .injection_cycles = 70});
     recorder.add({.node = 1, .injection_cycles = 20});
-    recorder.add({.node = 0, .injection_cycles = 31, .treated = two, .queue = std::vector<raya_packet>(2)});
+    recorder.add({.node = 0, .injection_cycles = 31, .processed = two, .queue = std::vector<raya_packet>(2)});
     recorder.add({.node = 0, .injection_cycles = 5});
     const History h = recorder.finish();
     std::vector<std::uint64_t> cycles;
@@ -107,22 +107,23 @@ TEST_CASE("rays that nodes make in vain are charged to those that they keep", "[
     CHECK(h.tasks[5].node == 1);
 
     HistoryRecorder lost(torus);
-    const std::vector<raya_treated> shadow = {{4, raya_state(RAYA_KIND_SHADOW, 0, 1), 0, 100}};
-    CHECK_THROWS_AS(lost.add({.node = 0, .treated = shadow, .queue = std::vector<raya_packet>(1)}), std::logic_error);
+    const std::vector<raya_processed> shadow = {{4, raya_state(RAYA_KIND_SHADOW, 0, 1), 0, 100}};
+    CHECK_THROWS_AS(lost.add({.node = 0, .processed = shadow, .queue = std::vector<raya_packet>(1)}), std::logic_error);
 }
 
-TEST_CASE("a history that was not asked for is refused", "[torus]") {
+TEST_CASE("reading a history without settings.history is an error", "[torus]") {
     Session session(choose_device(""));
     TorusRenderer renderer(session, rich_scene(), settings_of({.nodes = {2, 2, 2}, .voxels = {3, 3, 3}}));
-    CHECK_THROWS_AS(renderer.render({}, {}, {}, 1, [](const NodeWork&) {}), std::logic_error);
+    CHECK_THROWS_AS(renderer.render({}, {.work = [](const NodeWork&) {}}), std::logic_error);
 }
 
-TEST_CASE("costs that a kernel forgets or charges twice are seen", "[.][faults]") {
+TEST_CASE("every injected fault in the cost counters is detected", "[.][faults]") {
     const SourcePatch faults[] = {
         {"torus/trace_voxel.cl", "add_cost(f, event, m, objects);", ""},
         {"torus/flight.clh", "    add_cost(f, event, m, 1);", "    add_cost(f, event, m, 2);"},
-        {"torus/trace_voxel.cl", "f->treated.lane[lane] ? f->state.lane[lane] : RAYA_KIND_NONE", "f->state.lane[lane]"},
-        {"torus/flight.clh", "f->cycles.all = f->treated.all = (index)(0);", "f->treated.all = (index)(0);"}};
+        {"torus/trace_voxel.cl", "f->processed.lane[lane] ? f->state.lane[lane] : RAYA_KIND_NONE",
+         "f->state.lane[lane]"},
+        {"torus/flight.clh", "f->cycles.all = f->processed.all = (index)(0);", "f->processed.all = (index)(0);"}};
     for (const SourcePatch& fault : faults) {
         CAPTURE(fault.find);
         TorusCase c{.nodes = {2, 2, 2}, .voxels = {3, 3, 3}, .queue = 60};

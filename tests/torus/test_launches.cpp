@@ -1,5 +1,4 @@
-// Launches that end after a little work and go on, and links by a kernel in place of copies: the same image and the
-// same counts.
+// Launches bounded to little work, and links moved by a kernel instead of copies: the same image and the same counts.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -16,7 +15,7 @@
 namespace raya {
 namespace {
 
-// All that is counted, superstep by superstep.
+// Compares the images and all counts, superstep by superstep.
 void check_same(const TorusResult& a, const TorusResult& b) {
     CHECK(pixel_hash(a.image) == pixel_hash(b.image));
     CHECK(a.events == b.events);
@@ -30,7 +29,7 @@ void check_same(const TorusResult& a, const TorusResult& b) {
     std::size_t different = 0;
     for (std::size_t i = 0; i < std::min(a.supersteps.size(), b.supersteps.size()); ++i) {
         const Superstep &x = a.supersteps[i], &y = b.supersteps[i];
-        different += x.most_cycles != y.most_cycles || x.most_link_words != y.most_link_words || x.live != y.live;
+        different += x.max_node_cycles != y.max_node_cycles || x.max_link_words != y.max_link_words || x.live != y.live;
     }
     CHECK(different == 0);
 }
@@ -55,11 +54,11 @@ TorusCase random_case(SplitMix& random, const Scene& scene) {
     c.lanes = widths[random_below(random, 3)];
     c.group = c.lanes == 1 ? 3 : 1;
     if (random_below(random, 4))
-        c.queue = raya_shortest_queue(lights_of(scene), c.bounces) + 20 + random_below(random, 60);
+        c.queue = raya_min_queue(lights_of(scene), c.bounces) + 20 + random_below(random, 60);
     return c;
 }
 
-// A node of two, which has one voxel of so many spheres.
+// Two nodes, each with one voxel of `spheres` spheres.
 NodeMemories two_nodes(const raya_torus& torus, std::uint32_t spheres) {
     NodeMemories memories;
     memories.starts = {0};
@@ -84,7 +83,7 @@ NodeMemories two_nodes(const raya_torus& torus, std::uint32_t spheres) {
 
 }  // namespace
 
-TEST_CASE("launches of little work, and links by a kernel, make the image and the counts of one launch a step",
+TEST_CASE("bounded launches and links moved by a kernel give the image and counts of one launch per step",
           "[torus][slow]") {
     const std::uint64_t seed = 20261;
     SplitMix random(seed);
@@ -105,15 +104,15 @@ TEST_CASE("launches of little work, and links by a kernel, make the image and th
             check_same(parts, whole);
             once += launches_of(whole);
             bounded += launches_of(parts);
-        } catch (const Standstill&) {  // of the one as of the other
-            CHECK_THROWS_AS(TorusRenderer(session, scene, settings).render(), Standstill);
+        } catch (const TorusDeadlock&) {  // then both must deadlock
+            CHECK_THROWS_AS(TorusRenderer(session, scene, settings).render(), TorusDeadlock);
         }
     }
     CHECK(bounded > 4 * once);
 }
 
-// Up to what a GPU's nodes have by default, and the most there is.
-TEST_CASE("work-groups of many work-items make the same image", "[torus][slow]") {
+// Up to a GPU's default group size and the maximum.
+TEST_CASE("work-groups of many work-items give the same image", "[torus][slow]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kRichScenes[0]);
     TorusCase c{.width = 12, .height = 10, .nodes = {2, 2, 1}, .lanes = 1, .group = 1, .bounces = 3};
@@ -128,7 +127,7 @@ TEST_CASE("work-groups of many work-items make the same image", "[torus][slow]")
     }
 }
 
-TEST_CASE("links go as the device was tuned to, unless they are named", "[torus]") {
+TEST_CASE("the link method is the device's tuned one unless an option names it", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kRichScenes[0]);
     const auto rendered = [&](LinkMove named) {
@@ -136,15 +135,15 @@ TEST_CASE("links go as the device was tuned to, unless they are named", "[torus]
         return render_torus(session, scene, c);
     };
     const bool cpu = session.device().type == "cpu";
-    const TorusResult untuned = rendered(LinkMove::kOfDevice);
+    const TorusResult untuned = rendered(LinkMove::kAutomatic);
     CHECK(untuned.links_origin == (cpu ? "defaults" : "measured"));
     if (cpu) CHECK(untuned.links_by_kernel);
-    const TunedUse use([](const DeviceInfo& device, const TunedFor& what) {
+    const ScopedTunedSource use([](const DeviceInfo& device, const TunedFor& what) {
         TunedValues values = default_values(device, what);
         values.link_exchange = static_cast<std::uint32_t>(LinkMove::kCopies);
         return std::optional(TunedChoice{values, "FILE, DATE"});
     });
-    const TorusResult tuned = rendered(LinkMove::kOfDevice), named = rendered(LinkMove::kKernel);
+    const TorusResult tuned = rendered(LinkMove::kAutomatic), named = rendered(LinkMove::kKernel);
     CHECK_FALSE(tuned.links_by_kernel);
     CHECK(tuned.links_origin == "FILE, DATE");
     CHECK(named.links_by_kernel);
@@ -153,7 +152,8 @@ TEST_CASE("links go as the device was tuned to, unless they are named", "[torus]
     CHECK(one_image(named) == one_image(untuned));
 }
 
-TEST_CASE("a node's launch is bounded by tests, and by the turns of loops where a device counts them", "[torus]") {
+TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterations where the device limits them",
+          "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     const NodeShare share(torus);
     TorusSettings settings;
@@ -168,7 +168,7 @@ TEST_CASE("a node's launch is bounded by tests, and by the turns of loops where 
     status.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 500;  // may come to node 0
 
     LaunchPlan few = plan_of(100), many = plan_of(1'000'000);
-    CHECK(many.trace_voxel().once);  // nothing is there
+    CHECK(many.trace_voxel().once);  // the queue is empty
     few.look(status);
     many.look(status);
     CHECK(few.trace_voxel().once);
@@ -177,7 +177,7 @@ TEST_CASE("a node's launch is bounded by tests, and by the turns of loops where 
     many.clear();
     CHECK(many.trace_voxel().once);
 
-    device.loop_turns = 65'535;
+    device.max_loop_iterations = 65'535;
     LaunchPlan short_loops = plan_of(100), one_voxel_too_long = plan_of(10'000);
     CHECK(short_loops.route() == LaunchBudget{7679, false});  // queues may hold 8192 packets
     CHECK_FALSE(short_loops.accept().once);
@@ -190,12 +190,12 @@ TEST_CASE("a node's launch is bounded by tests, and by the turns of loops where 
         CHECK(short_loops.trace_voxel() == (once ? LaunchBudget{2559, true} : LaunchBudget{2559 - 113, false}));
     }
     one_voxel_too_long.look(status);
-    CHECK(one_voxel_too_long.trace_voxel() == LaunchBudget{1, false});  // a packet a launch; the canary tells
+    CHECK(one_voxel_too_long.trace_voxel() == LaunchBudget{1, false});  // one packet per launch
 }
 
-TEST_CASE("a node's launch whose loops are cut is repeated with half the work, whichever kernel it is", "[torus]") {
+TEST_CASE("a launch of any kernel whose loops are cut is repeated with half the work", "[torus]") {
     struct Row {
-        const char *kernel, *ruined;  // what a cut launch spoils
+        const char *kernel, *ruined;  // statements that corrupt what a cut launch may have written
     };
     const char* const counted =
         "events[(size_t)slot * RAYA_EVENTS] += 1000; made[(size_t)slot * RAYA_KINDS + 1] += 9; "
@@ -223,7 +223,7 @@ TEST_CASE("a node's launch whose loops are cut is repeated with half the work, w
     }
 }
 
-TEST_CASE("colours are added by more work-groups where loops were cut", "[torus]") {
+TEST_CASE("compose uses more work-groups if its loops were cut", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kRichScenes[0]);
     TorusCase c{.width = 16, .height = 15, .nodes = {2, 1, 1}, .lanes = 1, .group = 1, .bounces = 1};
@@ -233,7 +233,7 @@ TEST_CASE("colours are added by more work-groups where loops were cut", "[torus]
     CHECK(one_image(render_torus(session, scene, c)) == right);
 }
 
-TEST_CASE("a device that ends loops early is found out, whichever kernel it was", "[torus]") {
+TEST_CASE("a loop that the device ends early is detected in every kernel", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kRichScenes[0]);
     TorusCase c{.width = 6, .height = 5, .nodes = {2, 1, 1}, .lanes = 1, .group = 1, .bounces = 1};
@@ -242,10 +242,10 @@ TEST_CASE("a device that ends loops early is found out, whichever kernel it was"
         CAPTURE(file);
         c.sources.patches = {{file, "if (loops_were_cut(", "if (!loops_were_cut("}};
         CHECK_THROWS_WITH(render_torus(session, scene, c),
-                          Catch::Contains("has ended loops early and said nothing") && Catch::Contains("remedy"));
+                          Catch::Contains("has ended loops early without an error") && Catch::Contains("remedy"));
         CHECK_THROWS_AS(render_torus(session, scene, c), DeviceError);
     }
-    // What a canary must see: its loop ends after the first turn.
+    // The canary must detect that its loop ends after the first iteration.
     c.sources.patches = {
         {"shared/loop_canary.clh", "i < two; ++i) turns = turns + 1;", "i < two; ++i) { turns = turns + 1; break; }"}};
     CHECK_THROWS_AS(render_torus(session, scene, c), DeviceError);

@@ -1,4 +1,4 @@
-// Links: every packet that a node puts into an outbox comes to the node at the other end of that link, once.
+// Links carry every packet from a node's outbox to the node at the other end, once.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::uint32_t kUnsent = 0xdead0000;
 
-// The boxes of a machine as a test fills and empties them: a model of what nodes do between exchanges.
-class Boxes {
+// Mailboxes of a machine that a test fills and empties: a model of the nodes' work between exchanges.
+class Mailboxes {
   public:
-    Boxes(Session& session, const raya_torus& torus, std::uint32_t capacity, std::uint32_t words)
+    Mailboxes(Session& session, const raya_torus& torus, std::uint32_t capacity, std::uint32_t words)
         : session_(session),
           torus_(torus),
           nodes_(raya_nodes(torus)),
@@ -34,12 +34,12 @@ class Boxes {
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) out_[at(box)] = 0;
     }
 
-    /// The kernel moves packets from now on.
+    /// Moves packets with the kernel from now on.
     void use_kernel(Kernels& kernels) {
         links_.use_kernel(kernels.get<ExchangeKernel>(), kernels.options().group_size, device_status_);
     }
 
-    /// With a chance of 1 / `rareness` for each box that has room: up to `most` packets more.
+    /// Adds up to `most` packets, as far as they fit, to each outbox with a probability of 1 / `rareness`.
     void put(SplitMix& random, std::uint32_t rareness, std::uint32_t most) {
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             for (std::uint32_t node = 0; node < nodes_ && torus_.sides[link / 2] > 1; ++node) {
@@ -51,11 +51,11 @@ class Boxes {
             }
     }
 
-    /// One exchange, and all that there is to be said of it.
+    /// Exchanges once, and checks flags, words, inboxes and counters.
     void exchange(bool record) {
         session_.write("test", links_.outboxes(), out_);
         if (record)
-            links_.visit_new(status_, [&](std::uint32_t node, const raya_head& packet) {
+            links_.visit_new_packets(status_, [&](std::uint32_t node, const raya_head& packet) {
                 ++seen_[packet.pixel];
                 CHECK(sources_[packet.pixel] == node);
             });
@@ -64,7 +64,7 @@ class Boxes {
         session_.write("test", device_status_, status_.words);
         session_.clear_profile();
         links_.exchange(status_, words);
-        count_ways();
+        count_copies();
         session_.read("test", links_.inboxes(), in_);
         std::vector<std::uint32_t> sent(links_.sent().size());
         session_.read("test", links_.sent(), sent);
@@ -77,7 +77,7 @@ class Boxes {
                 const std::size_t to = at(link * nodes_ + node);
                 if (busy) touched += !std::equal(&in_[to], &in_[to] + (1 + capacity_) * words_, &before[to]);
                 if (!busy && !goes)
-                    touched += in_[to] != 0;  // an empty box stays empty, whatever lies behind its header
+                    touched += in_[to] != 0;  // an empty box stays empty, whatever follows its header
                 if (!goes) continue;
                 expected[node * RAYA_LINKS + link] += std::uint64_t{packets} * words_;
                 arrive(link, node, end);
@@ -87,7 +87,7 @@ class Boxes {
         CHECK(words == expected);
     }
 
-    /// Nodes take some of their inboxes' packets, or none, or all.
+    /// Nodes take none, some or all of their inboxes' packets.
     void take(SplitMix& random, std::uint32_t rareness) {
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) {
             std::uint32_t& left = inbox(box / nodes_, raya_link_end(torus_, box % nodes_, box / nodes_));
@@ -98,7 +98,7 @@ class Boxes {
         session_.write("test", links_.inboxes(), in_);
     }
 
-    /// All that was put was seen once and has arrived once, but for what waits in outboxes.
+    /// Every packet has been visited once and has arrived once, except those that wait in outboxes.
     void check_totals(bool record) const {
         std::uint64_t waiting = 0, counted = 0;
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box)
@@ -113,7 +113,7 @@ class Boxes {
     }
 
     std::uint64_t arrived() const { return arrived_.size(); }
-    static inline std::uint64_t spans = 0, single_boxes = 0;  // commands that copied several boxes, one
+    static inline std::uint64_t spans = 0, single_boxes = 0;  // copy commands of several boxes, of one
 
   private:
     std::uint32_t& outbox(std::uint32_t link, std::uint32_t node) {
@@ -124,7 +124,7 @@ class Boxes {
     }
     std::size_t at(std::uint32_t box) const { return std::size_t{box} * (1 + capacity_) * words_; }
 
-    // Packets are told apart by their first word; all others follow from it.
+    // The first word of a packet is its number, from which all others follow.
     void put_packet(std::uint32_t link, std::uint32_t node, std::uint32_t slot) {
         const auto number = static_cast<std::uint32_t>(sources_.size());
         sources_.push_back(node);
@@ -144,7 +144,7 @@ class Boxes {
         std::fill_n(&out_[box] + words_, capacity_ * words_, kUnsent);
     }
 
-    void count_ways() {
+    void count_copies() {
         const std::uint64_t box = (1 + capacity_) * words_ * sizeof(std::uint32_t);
         for (const CommandRecord& c : session_.profile().commands())
             if (c.kind == "copy") (c.bytes > box ? spans : single_boxes) += 1;
@@ -164,7 +164,7 @@ class Boxes {
 
 }  // namespace
 
-TEST_CASE("links of random toruses carry every packet to its neighbour once", "[torus]") {
+TEST_CASE("random toruses: links carry every packet to the neighbour once", "[torus]") {
     const std::uint64_t seed = 8472;
     SplitMix random(seed);
     Session session(choose_device(""));
@@ -175,7 +175,7 @@ TEST_CASE("links of random toruses carry every packet to its neighbour once", "[
         const std::uint32_t capacity = 1 + random_below(random, 12);
         const bool record = i % 2;
         CAPTURE(seed, i, torus_text(torus), capacity, record);
-        Boxes boxes(session, torus, capacity, i % 3 ? RAYA_PACKET_WORDS : RAYA_RETURN_WORDS);
+        Mailboxes boxes(session, torus, capacity, i % 3 ? RAYA_PACKET_WORDS : RAYA_RETURN_WORDS);
         if (i % 4 >= 2) boxes.use_kernel(i % 4 == 2 ? alone : groups);
         const std::uint32_t rareness = i % 5 == 0 ? 20 : 1 + random_below(random, 3);
         for (int round = 0; round < 6; ++round) {
@@ -188,11 +188,11 @@ TEST_CASE("links of random toruses carry every packet to its neighbour once", "[
         arrived += boxes.arrived();
     }
     CHECK(arrived > 10'000);
-    CHECK(Boxes::spans > 100);
-    CHECK(Boxes::single_boxes > 100);
+    CHECK(Mailboxes::spans > 100);
+    CHECK(Mailboxes::single_boxes > 100);
 }
 
-TEST_CASE("a long box and short ones are copied apart where that moves fewer bytes", "[torus]") {
+TEST_CASE("a long mailbox is copied separately from short ones if that moves fewer bytes", "[torus]") {
     Session session(choose_device(""));
     constexpr std::uint32_t kCapacity = 4096, kWords = RAYA_PACKET_WORDS, kBox = (1 + kCapacity) * kWords;
     const raya_torus torus = make_torus({4, 1, 1}, Links::kTorus3d);
@@ -223,7 +223,7 @@ TEST_CASE("a long box and short ones are copied apart where that moves fewer byt
     }
 }
 
-TEST_CASE("links charge for messages, whatever packets they move", "[torus]") {
+TEST_CASE("links charge the counted messages, not the packets that they move", "[torus]") {
     Session session(choose_device(""));
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     const NodeShare share(torus);
@@ -244,7 +244,7 @@ TEST_CASE("links charge for messages, whatever packets they move", "[torus]") {
     CHECK(links.moved() == 0);
 }
 
-TEST_CASE("links have the names of their sides", "[torus]") {
+TEST_CASE("links are named by direction and axis", "[torus]") {
     const char* const names[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) CHECK(link_name(link) == names[link]);
 }

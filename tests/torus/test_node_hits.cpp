@@ -1,4 +1,4 @@
-// Kernels that read a node's memory find what they find in the job's words: the same object, distance, normals, colour.
+// Kernels find the same hits in a node's memory as in the job's words: object, distance, normals and colour.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <numeric>
@@ -33,8 +33,8 @@ VoxelHits voxel_hits(KernelRunner& runner, const NodeMemories& memories, std::ui
     return {runner.read(objects), runner.read(distances), runner.read(places)};
 }
 
-// A job's objects one to one: patches of three corners alone, which are not cut into triangles.
-Scene uncut(Scene scene) {
+// Cuts patches to three corners, so that none is split and job objects match scene objects one to one.
+Scene with_triangles(Scene scene) {
     for (Polygon& polygon : scene.polygons)
         if (!polygon.normals.empty()) {
             polygon.vertices.resize(3);
@@ -43,7 +43,7 @@ Scene uncut(Scene scene) {
     return scene;
 }
 
-// The scene with only the objects of a list, and all planes.
+// The scene reduced to the listed objects and all planes.
 Scene only(const Scene& scene, const std::set<std::uint32_t>& list) {
     Scene some = scene;
     std::uint32_t number = 0;
@@ -61,7 +61,7 @@ Scene only(const Scene& scene, const std::set<std::uint32_t>& list) {
     return some;
 }
 
-// The numbers in the whole scene of a voxel's objects, by their numbers in the voxel.
+// Scene numbers of a voxel's objects, indexed by their numbers in the voxel.
 std::vector<std::uint32_t> whole_numbers(NodeReader& node, const raya_voxel_memory& voxel) {
     const raya_objects& o = voxel.objects;
     std::vector<std::uint32_t> numbers = node.section(voxel.numbers_at, o.spheres + o.polygons + o.cones);
@@ -71,7 +71,7 @@ std::vector<std::uint32_t> whole_numbers(NodeReader& node, const raya_voxel_memo
     return numbers;
 }
 
-// Rays in which the two find something else than the other one does.
+// The number of rays with different hits.
 std::size_t differences(const VoxelHits& own, const VoxelHits& theirs) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < own.objects.size(); ++i) {
@@ -85,7 +85,7 @@ std::size_t differences(const VoxelHits& own, const VoxelHits& theirs) {
     return count;
 }
 
-// What the kernels find with the job's own words, as one voxel of one node with everything.
+// Hits in the job's own words, in the form of voxel_hits().
 VoxelHits job_hits(KernelRunner& runner, const PackedJob& job, const std::vector<float>& rays) {
     const ProbedHits hits = closest_hits(runner, job.words(), rays);
     const ProbedPlaces probed = find_places(runner, job.words(), rays);
@@ -98,16 +98,16 @@ VoxelHits job_hits(KernelRunner& runner, const PackedJob& job, const std::vector
 
 }  // namespace
 
-TEST_CASE("rays hit in a node's voxels what they hit in a job of the same objects", "[torus]") {
+TEST_CASE("rays hit the same in a node's voxel as in a job of the voxel's objects", "[torus]") {
     std::size_t struck = 0, copies = 0;
     for (const std::uint32_t lanes : {1u, 16u}) {
         KernelRunner of_job("tests/kernels/probe.cl", {lanes, true}), of_node("tests/torus/probe.cl", {lanes, true});
         for (std::uint64_t seed = 1; seed <= 12; ++seed) {
             SplitMix random(100 * lanes + seed);
-            const Scene scene = uncut(scene_by_lot(random, 4));
+            const Scene scene = with_triangles(random_objects(random, 4));
             const PackedJob job = pack(scene);
             const raya_torus torus = random_torus(random, 3);
-            const Partition partition = partition_by_lot(random, job, random_sides(random, 3), 6);
+            const Partition partition = random_partition(random, job, random_sides(random, 3), 6);
             const NodeMemories memories = pack_nodes(job, partition, torus);
             const std::vector<float> rays = ray_words(random_rays(seed, kRays));
             const std::uint32_t voxel = random_below(random, raya_voxels(partition.grid));
@@ -130,11 +130,11 @@ TEST_CASE("rays hit in a node's voxels what they hit in a job of the same object
     CHECK(copies > 50);
 }
 
-TEST_CASE("where every voxel has every object, every voxel's hits are the job's", "[torus]") {
+TEST_CASE("rays hit the same in a voxel that has all objects as in the job", "[torus]") {
     KernelRunner of_job("tests/kernels/probe.cl", {16, true}), of_node("tests/torus/probe.cl", {16, true});
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         SplitMix random(seed);
-        const PackedJob job = pack(scene_by_lot(random, 4));  // patches that are cut among them
+        const PackedJob job = pack(random_objects(random, 4));  // some patches are split into triangles
         const std::vector<std::uint32_t> finite = finite_objects(job);
         const std::vector<std::set<std::uint32_t>> lists(12, {finite.begin(), finite.end()});
         const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus2d);

@@ -1,4 +1,4 @@
-// What the nodes of a torus hold, word by word beside the job, for scenes and lists drawn by lot.
+// Memories of torus nodes, compared with the job word by word, for random scenes and lists.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
@@ -14,7 +14,7 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-// One node beside the job: every word of an object, and all that it leads to.
+// Compares a node with the job: every word of an object, and all that it refers to.
 class NodeCheck {
   public:
     NodeCheck(const PackedJob& job, NodeReader& node) : job_(job), header_(job.header()), node_(node) {}
@@ -24,7 +24,7 @@ class NodeCheck {
         return {first, first + static_cast<std::ptrdiff_t>(count)};
     }
 
-    // `count` objects of `words` words each from `at` on; `numbers` are those of the job's objects, counted from
+    // Compares objects of `words` words each from `at` on with the job's objects `numbers`, which are counted from
     // `first` at `job_at`.
     void objects(std::uint32_t at, std::uint32_t words, const Words& numbers, std::uint32_t first,
                  std::uint32_t job_at) {
@@ -38,7 +38,7 @@ class NodeCheck {
         }
     }
 
-    // Rows, and the surfaces behind them; they start at a multiple of four words.
+    // Compares sphere rows, which start at a multiple of four words, and the surfaces behind them.
     void spheres(const raya_objects& own, const Words& numbers) {
         const raya_objects& all = header_.objects;
         const std::uint32_t own_surfaces = raya_sphere_surfaces_at(own.spheres_at, own.spheres);
@@ -59,7 +59,7 @@ class NodeCheck {
             FAIL("words of the surface at " << job_at);
     }
 
-    // One after another behind the header, in the job's order.
+    // Surfaces follow the header without gaps, in the job's order.
     void surfaces() const {
         std::uint32_t at = sizeof(raya_node) / 4;
         for (const auto& [job_at, own_at] : surfaces_) {
@@ -71,7 +71,7 @@ class NodeCheck {
     const raya_job& header() const { return header_; }
 
   private:
-    // Compares corners and normals, then makes the two "at" words alike.
+    // Compares corners and normals, then makes the two "at" words equal.
     void outline(Words& own, const Words& theirs) {
         const std::size_t corners = theirs[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS;
         if (node_.section(own[RAYA_POLYGON_CORNERS_AT], corners) !=
@@ -91,7 +91,7 @@ class NodeCheck {
     std::map<std::uint32_t, std::uint32_t> surfaces_;  // in the job -> in the node
 };
 
-// All but the "at" words.
+// Compares all but the "at" words.
 void check_header(const raya_node& node, const raya_job& job, const Partition& partition, const raya_torus& torus) {
     raya_job expected = job;
     expected.lights_at = node.job.lights_at;
@@ -140,13 +140,13 @@ void check_node(const PackedJob& job, const Partition& partition, const raya_tor
         check_voxel(check, node, node.voxel(local), {first, partition.objects.begin() + partition.starts[voxel + 1]});
     }
     check.surfaces();
-    // Nothing else is there but words before rows, and no two things are one.
+    // Only padding before rows was not read, and no word was read twice.
     CHECK(node.words_read(1) + node.words_read(0) == node.size());
     CHECK(node.words_read(0) <= 3 * (node.header().voxels + 1));
 }
 
-// As many as there are in the fullest node, counted from the lists.
-std::uint64_t most_objects(const PackedJob& job, const Partition& p, const raya_torus& torus) {
+// The number of objects in the fullest node, counted from the lists.
+std::uint64_t max_objects(const PackedJob& job, const Partition& p, const raya_torus& torus) {
     std::vector<std::uint64_t> held(raya_nodes(torus), job.header().objects.planes);
     for (std::uint32_t voxel = 0; voxel < raya_voxels(p.grid); ++voxel)
         held[raya_node_of_voxel(torus, p.grid, voxel)] += p.starts[voxel + 1] - p.starts[voxel];
@@ -155,14 +155,14 @@ std::uint64_t most_objects(const PackedJob& job, const Partition& p, const raya_
 
 }  // namespace
 
-TEST_CASE("nodes hold the objects of their voxels as the job has them, and nothing else", "[torus]") {
+TEST_CASE("nodes hold copies of the job's objects in their voxels, and nothing else", "[torus]") {
     std::size_t objects = 0, idle = 0, shared = 0;
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
         SplitMix random(seed);
-        const PackedJob job = pack(scene_by_lot(random, 4));
+        const PackedJob job = pack(random_objects(random, 4));
         const raya_torus torus = random_torus(random, 4);
         const Divisions divisions = random_sides(random, 6);
-        const Partition partition = partition_by_lot(random, job, divisions, 8);
+        const Partition partition = random_partition(random, job, divisions, 8);
         const NodeMemories memories = pack_nodes(job, partition, torus);
         CAPTURE(seed, torus_text(torus), sides_text(divisions));
         REQUIRE(memories.starts.size() == raya_nodes(torus) + 1);
@@ -179,15 +179,15 @@ TEST_CASE("nodes hold the objects of their voxels as the job has them, and nothi
         }
         CHECK(fullest_node_words(job, partition, torus) == most_words);
         CHECK(memories.copies == partition.objects.size() - finite_objects(job).size());
-        CHECK(memories.most_objects == most_objects(job, partition, torus));
+        CHECK(memories.max_objects == max_objects(job, partition, torus));
         objects += partition.objects.size();
     }
     CHECK(objects > 5000);
-    CHECK(idle > 100);    // nodes without a voxel, and
-    CHECK(shared > 100);  // with several
+    CHECK(idle > 100);    // nodes without a voxel
+    CHECK(shared > 100);  // nodes with several
 }
 
-TEST_CASE("a node has the surfaces of its own objects and of the planes alone", "[torus]") {
+TEST_CASE("a node holds only the surfaces of its own objects and of the planes", "[torus]") {
     Scene scene = empty_scene();
     scene.lights.clear();
     scene.surfaces.assign(5, {});
@@ -211,12 +211,12 @@ TEST_CASE("a node has the surfaces of its own objects and of the planes alone", 
     CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 4, 2), node_of(1, 2, 2)});
 }
 
-TEST_CASE("nodes hold the same on a 2-D torus as on a 3-D one", "[torus]") {
+TEST_CASE("nodes hold the same words on a 2-D torus as on a 3-D one", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
         SplitMix random(seed);
-        const PackedJob job = pack(scene_by_lot(random, 3));
+        const PackedJob job = pack(random_objects(random, 3));
         const auto nodes = random_sides(random, 4);
-        const Partition partition = partition_by_lot(random, job, random_sides(random, 6), 4);
+        const Partition partition = random_partition(random, job, random_sides(random, 6), 4);
         const raya_torus flat = make_torus(nodes, Links::kTorus2d), deep = make_torus(nodes, Links::kTorus3d);
         const NodeMemories on_flat = pack_nodes(job, partition, flat), on_deep = pack_nodes(job, partition, deep);
         CAPTURE(seed, torus_text(flat));
@@ -230,7 +230,7 @@ TEST_CASE("nodes hold the same on a 2-D torus as on a 3-D one", "[torus]") {
     }
 }
 
-TEST_CASE("more words than 32-bit numbers reach are refused before they are made", "[torus]") {
+TEST_CASE("nodes with more words than 32 bits can address are refused before they are packed", "[torus]") {
     Scene scene = empty_scene();
     Polygon disc;  // 100,000 corners, 400,000 words, in each of 4,096 voxels
     for (int i = 0; i < 100'000; ++i) disc.vertices.emplace_back(std::cos(i * 6.28e-5), std::sin(i * 6.28e-5), 0);
@@ -240,10 +240,10 @@ TEST_CASE("more words than 32-bit numbers reach are refused before they are made
     const raya_torus torus = make_torus({4, 4, 4}, Links::kTorus3d);
     CHECK(fullest_node_words(job, everywhere, torus) > 64 * 400'000);
     CHECK_THAT(refusal_of([&] { pack_nodes(job, everywhere, torus); }),
-               Contains("64 nodes of 4096 voxels") && Contains("fewer"));
+               Contains("64 nodes, 4096 voxels") && Contains("fewer"));
 }
 
-TEST_CASE("a partition of other voxels than its grid's is a mistake", "[torus]") {
+TEST_CASE("a partition whose number of voxels differs from its grid's is an error", "[torus]") {
     const PackedJob job = pack(empty_scene());
     Partition partition = empty_partition({2, 2, 2});
     partition.starts.pop_back();

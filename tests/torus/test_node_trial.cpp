@@ -1,4 +1,4 @@
-// Refusals of scenes that are really cut up: the machine that a refusal names does hold the scene.
+// Refusals of partitioned scenes: the machine that a refusal names does hold the scene.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <regex>
@@ -11,18 +11,18 @@ using Catch::Contains;
 
 namespace {
 
-struct Cut {
+struct PartitionedJob {
     PackedJob job;
     NumberFormat format;
 
     NodeBuffers plan(const std::array<std::uint32_t, 3>& nodes, const Divisions& voxels, std::uint64_t memory) const {
         const raya_torus torus = make_torus(nodes, Links::kTorus3d);
         const NodeMemories memories = pack_nodes(job, partition(job, format, voxels), torus);
-        return plan_buffers("s", memories, torus, memory, 0, 4, trial_of(job, format, voxels));
+        return plan_buffers("s", memories, torus, memory, 0, 4, make_node_trial(job, format, voxels));
     }
 };
 
-// "16x16x8" behind an option in a message; `otherwise` where it is not there.
+// The value of an option in a message, such as "16x16x8"; `otherwise` if the option is missing.
 Divisions sides_in(const std::string& message, const std::string& option, const Divisions& otherwise) {
     std::smatch m;
     if (!std::regex_search(message, m, std::regex(option + " (\\d+)x(\\d+)x(\\d+)"))) return otherwise;
@@ -38,11 +38,11 @@ Scene small_spheres(SplitMix& random, int count) {
 
 }  // namespace
 
-TEST_CASE("the machine that a refusal names holds the scene, and so does the memory", "[torus]") {
+TEST_CASE("the scene fits on the machine and in the memory that a refusal names", "[torus]") {
     int machines = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         SplitMix random(seed);
-        const Cut cut{pack(small_spheres(random, 1000 + static_cast<int>(random_below(random, 3000)))), {}};
+        const PartitionedJob cut{pack(small_spheres(random, 1000 + static_cast<int>(random_below(random, 3000)))), {}};
         const auto nodes = random_sides(random, 3);
         const Divisions voxels = seed % 2 ? nodes : random_sides(random, 6);
         const std::uint64_t memory = 3000 + random_below(random, 4000);
@@ -60,10 +60,10 @@ TEST_CASE("the machine that a refusal names holds the scene, and so does the mem
     CHECK(machines > 30);
 }
 
-TEST_CASE("where every object is in every voxel no machine is named, and the lists do not grow for it", "[torus]") {
+TEST_CASE("if every object is in every voxel, the refusal names no larger machine", "[torus]") {
     SplitMix random(1);
-    const Cut cut{pack(small_spheres(random, 5000)), parse_format("e8m7")};
+    const PartitionedJob cut{pack(small_spheres(random, 5000)), parse_format("e8m7")};
     for (const auto& nodes : {std::array<std::uint32_t, 3>{1, 1, 1}, {4, 4, 4}})
         CHECK_THAT(refusal_of([&] { cut.plan(nodes, nodes, 32768); }),
-                   Contains("more nodes, up to 65536, would not do; use --pe-memory"));
+                   Contains("no machine of up to 65536 nodes is large enough; use --pe-memory"));
 }

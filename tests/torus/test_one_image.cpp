@@ -1,5 +1,4 @@
-// One image, however the scene is cut up: the torus's is the ring machine's, bit for bit, and so are its counts of
-// rays.
+// The torus's image and ray counts are those of the ring machine, bit for bit, for any partition of the scene.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -14,18 +13,18 @@
 namespace raya {
 namespace {
 
-// Random machines for each of the scenes; RAYA_TORUS_CASES sets another number.
+// Number of random machines; RAYA_TORUS_CASES sets another one.
 std::uint32_t random_cases() {
     const char* text = std::getenv("RAYA_TORUS_CASES");
     return text ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10)) : quick_cases(6, 16);
 }
 
-constexpr std::uint32_t kMostNodesHere = 100;
+constexpr std::uint32_t kMaxTestNodes = 100;
 
-// Nodes, voxels, links, injection and queue by lot: what needs no other kernels.
+// Random nodes, voxels, links, injection and queue, which need no other kernels.
 TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
     do c.nodes = random_sides(random, 5);
-    while (c.nodes[0] * c.nodes[1] * c.nodes[2] > kMostNodesHere);
+    while (c.nodes[0] * c.nodes[1] * c.nodes[2] > kMaxTestNodes);
     const std::uint32_t how = random_below(random, 4);
     for (std::size_t axis = 0; axis < 3; ++axis)
         c.voxels[axis] = how == 0   ? c.nodes[axis]
@@ -35,32 +34,32 @@ TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
     c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
     c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
     c.packets = random_charge(random);
-    const std::uint32_t shortest = raya_shortest_queue(lights_of(scene), c.bounces);
+    const std::uint32_t shortest = raya_min_queue(lights_of(scene), c.bounces);
     const std::uint32_t queues[] = {shortest, shortest + random_below(random, 20), 3 * shortest, 20 * shortest, 0};
     c.queue = queues[random_below(random, 5)];
     return c;
 }
 
-// Where the machine stands still, a queue that is long enough is looked for.
-TorusResult render_with_enough(Session& session, const Scene& scene, const TorusCase& c) {
+// Renders; if the machine deadlocks, searches for a queue that is long enough and renders again.
+TorusResult render_without_deadlock(Session& session, const Scene& scene, const TorusCase& c) {
     TorusRenderer renderer(session, scene, settings_of(c));
     try {
         return renderer.render();
-    } catch (const Standstill& still) {
-        if (!longer_queue(still.figures.queue, renderer.queue_trial()).ends) throw;
+    } catch (const TorusDeadlock& still) {
+        if (!find_longer_queue(still.figures.queue, renderer.queue_trial()).ends) throw;
         return renderer.render();
     }
 }
 
 }  // namespace
 
-TEST_CASE("ten scenes on some machines, with queues from short to long, are the ring's images", "[torus][slow]") {
+TEST_CASE("ten scenes on several machines and queue lengths: the image is the ring's", "[torus][slow]") {
     struct Row {
         std::array<std::uint32_t, 3> nodes;
         Divisions voxels;
         Links links;
         Injection inject;
-        std::uint32_t queue;  // in trees of a ray, which is the shortest; 0: the default
+        std::uint32_t queue;  // in multiples of the shortest, one ray tree; 0: the default
     };
     const Row rows[] = {{{1, 1, 1}, {1, 1, 1}, Links::kTorus3d, Injection::kAll, 1},
                         {{2, 1, 1}, {2, 1, 1}, Links::kTorus3d, Injection::kRoot, 2},
@@ -89,15 +88,15 @@ TEST_CASE("ten scenes on some machines, with queues from short to long, are the 
             c.voxels = row.voxels;
             c.links = row.links;
             c.inject = row.inject;
-            c.queue = row.queue * raya_shortest_queue(lights_of(scene), c.bounces);
+            c.queue = row.queue * raya_min_queue(lights_of(scene), c.bounces);
             if (row.queue == 1 && scenes_done % 4) c.queue = 0;  // the shortest take very many supersteps
             CAPTURE(scene.name, case_text(c));
-            CHECK(one_image(render_with_enough(session, scene, c)) == expected);
+            CHECK(one_image(render_without_deadlock(session, scene, c)) == expected);
         }
     }
 }
 
-TEST_CASE("random scenes on random machines are the ring's images", "[torus][slow]") {
+TEST_CASE("random scenes on random machines: the image is the ring's", "[torus][slow]") {
     const std::uint64_t seed = 6021;
     const std::string format = GENERATE("fp32", "spa22", "e8m12t", "e5m10", "e5m6");
     Session session(choose_device(""));
@@ -112,12 +111,12 @@ TEST_CASE("random scenes on random machines are the ring's images", "[torus][slo
         for (std::uint32_t k = 0; k < random_cases() / scenes; ++k) {
             const TorusCase drawn = random_machine(random, scene, c);
             CAPTURE(seed, i, k, case_text(drawn));
-            CHECK(one_image(render_with_enough(session, scene, drawn)) == expected);
+            CHECK(one_image(render_without_deadlock(session, scene, drawn)) == expected);
         }
     }
 }
 
-TEST_CASE("lanes and group size change no bit of the torus's image and no packet's way", "[torus][slow]") {
+TEST_CASE("lanes and group size change no bit of the torus's image and no packet's route", "[torus][slow]") {
     const Scene scene = random_view_scene(kRichScenes[3]);
     struct Row {
         std::uint32_t lanes, group;
@@ -132,12 +131,12 @@ TEST_CASE("lanes and group size change no bit of the torus's image and no packet
         TorusCase c{.lanes = row.lanes, .group = row.group, .format = row.format};
         if (!expected.contains(row.format)) expected[row.format] = ring_image(scene, c);
         for (const Injection inject : {Injection::kAll, Injection::kRoot})
-            for (const std::uint32_t queue : {raya_shortest_queue(lights_of(scene), c.bounces), 0u}) {
+            for (const std::uint32_t queue : {raya_min_queue(lights_of(scene), c.bounces), 0u}) {
                 c.inject = inject;
                 c.queue = queue;
                 c.nodes = {3, 2, 2};
                 CAPTURE(case_text(c));
-                const TorusResult r = render_with_enough(session, scene, c);
+                const TorusResult r = render_without_deadlock(session, scene, c);
                 CHECK(one_image(r) == expected[row.format]);
                 const TorusResult& before = first.try_emplace({row.format, inject}, r).first->second;
                 CHECK(r.made == before.made);
@@ -149,7 +148,7 @@ TEST_CASE("lanes and group size change no bit of the torus's image and no packet
     }
 }
 
-TEST_CASE("subsets of the pixels put together are the whole image", "[torus]") {
+TEST_CASE("subsets of the pixels combine to the whole image", "[torus]") {
     const std::uint64_t seed = 77'001;
     SplitMix random(seed);
     Session session(choose_device(""));
@@ -181,7 +180,7 @@ TEST_CASE("subsets of the pixels put together are the whole image", "[torus]") {
     }
 }
 
-TEST_CASE("a subset without pixels is a black image", "[torus]") {
+TEST_CASE("a subset without pixels gives a black image", "[torus]") {
     const Scene scene = random_view_scene(kRichScenes[7]);
     TorusCase c{.width = 5, .height = 3, .lanes = 4, .group = 1};
     c.pixels = {20, 15};
@@ -192,7 +191,7 @@ TEST_CASE("a subset without pixels is a black image", "[torus]") {
     CHECK(none.hops == 0);
 }
 
-TEST_CASE("many nodes have few pixels, and the same image", "[torus]") {
+TEST_CASE("512 nodes with few pixels each give the ring's image", "[torus]") {
     const Scene scene = random_view_scene(kRichScenes[5]);
     Session session(choose_device(""));
     TorusCase c{.width = 9, .height = 7, .lanes = 4, .group = 1};
@@ -207,7 +206,7 @@ TEST_CASE("many nodes have few pixels, and the same image", "[torus]") {
         }
 }
 
-TEST_CASE("a scene beyond the format's range is the same image on the torus as in its own units", "[torus]") {
+TEST_CASE("a scene scaled beyond the format's range gives the image of the unscaled scene", "[torus]") {
     Session session(choose_device(""));
     for (const std::string format : {"spa22", "e6m10"}) {
         Scene scene = random_view_scene(kRichScenes[0]);
@@ -220,7 +219,7 @@ TEST_CASE("a scene beyond the format's range is the same image on the torus as i
     }
 }
 
-TEST_CASE("a second render of the same machine is the same in all", "[torus]") {
+TEST_CASE("a second render on the same machine gives the same image and counts", "[torus]") {
     Session session(choose_device(""));
     TorusRenderer renderer(session, random_view_scene(kRichScenes[6]), settings_of(TorusCase{.lanes = 4, .group = 1}));
     const TorusResult first = renderer.render(), second = renderer.render();

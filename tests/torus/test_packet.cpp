@@ -19,8 +19,8 @@ struct Contribution {
     bool operator==(const Contribution&) const = default;
 };
 
-// A ray tree as a tracer walks it by recursion: what a ray adds itself, then all of its reflected ray, then all of its
-// refracted ray. Chains that only reflect or only refract reach the last level often.
+// A ray tree in the order of a recursive tracer: a ray's own contributions, then its reflected subtree, then its
+// refracted subtree. Chains that only reflect or only refract often reach the last level.
 struct RandomTree {
     SplitMix random;
     std::uint32_t last_level = kLastLevel, most = 400;  // contributions
@@ -49,7 +49,7 @@ std::vector<Contribution> shuffled(std::vector<Contribution> all, SplitMix& rand
 
 }  // namespace
 
-TEST_CASE("contributions sort into the order of the ray tree, reflected before refracted", "[torus]") {
+TEST_CASE("contributions sort into the depth-first order of the ray tree, reflected before refracted", "[torus]") {
     std::uint32_t deepest = 0;
     std::size_t largest = 0;
     for (std::uint64_t seed = 1; seed <= 500; ++seed) {
@@ -69,7 +69,7 @@ TEST_CASE("contributions sort into the order of the ray tree, reflected before r
     CHECK(largest > 100);
 }
 
-TEST_CASE("a whole tree of ten levels sorts as well", "[torus]") {
+TEST_CASE("the contributions of a complete tree of ten levels sort into its order", "[torus]") {
     struct Whole {
         std::vector<Contribution> contributions{};
         void walk(std::uint32_t path, std::uint32_t level) {
@@ -90,7 +90,7 @@ TEST_CASE("a whole tree of ten levels sorts as well", "[torus]") {
     CHECK(sorted == tree.contributions);
 }
 
-TEST_CASE("the path has a bit for each level, the first level's highest", "[torus]") {
+TEST_CASE("a path has one bit per level, from the highest bit down", "[torus]") {
     std::uint32_t path = 0;
     for (std::uint32_t level = 0; level < kLastLevel; ++level) {
         CHECK(raya_path_refracted(0, level) == 1u << (31 - level));
@@ -100,7 +100,7 @@ TEST_CASE("the path has a bit for each level, the first level's highest", "[toru
     CHECK(path == 0xfffffffeu);
 }
 
-TEST_CASE("the state of a packet keeps kind, level and light apart, and leaves room for the flags", "[torus]") {
+TEST_CASE("kind, level, light and flags of a packet's state do not overlap", "[torus]") {
     const std::uint32_t flags = RAYA_STATE_WIDE | RAYA_STATE_FOUND | RAYA_STATE_FRESH | RAYA_STATE_CHARGED;
     for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
         SplitMix random(seed);

@@ -1,4 +1,4 @@
-// The trace of packets: rows, and the numbers of rays and parents, against names that are made while a ray tree grows.
+// The packet trace: rows, and the numbers of rays and parents, compared with names from generated ray trees.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ namespace {
 
 const std::string kHeading = "superstep,source,destination,kind,bytes,ray,parent\n";
 
-/// A packet as it is sent, and who it is in words: "17" is the primary ray of pixel 17, "17RT" the refracted ray of its
-/// reflected ray, "17RT+3" that one's shadow ray to light 3, "17RT+3!" the return packet of it.
+/// A sent packet and its name: "17" is the primary ray of pixel 17, "17RT" the refracted ray of its reflected ray,
+/// "17RT+3" that one's shadow ray to light 3, "17RT+3!" the return packet of that shadow ray.
 struct Sent {
     PacketRecord record;
     std::string kind, name, parent;
@@ -28,7 +28,7 @@ class Tree {
   public:
     explicit Tree(std::uint64_t seed) : random_(seed) {}
 
-    /// Packets of the ray and of all that follows it, each sent up to three times.
+    /// Adds packets of the ray and of its subtree, each sent up to three times.
     void grow(std::uint32_t pixel, std::uint32_t path, std::uint32_t level, const std::string& name,
               std::uint32_t depth) {
         const std::string parent = level == 0 ? "" : name.substr(0, name.size() - 1);
@@ -57,7 +57,7 @@ class Tree {
     std::uint32_t below(std::uint32_t limit) { return static_cast<std::uint32_t>(random_.next() % limit); }
 
   private:
-    // RAYA_STATE_WIDE, _FOUND, _FRESH and _CHARGED say how a ray travels, not which it is.
+    // RAYA_STATE_WIDE, _FOUND, _FRESH and _CHARGED are not part of a ray's identity.
     std::uint32_t flags() { return below(16) * RAYA_STATE_WIDE; }
 
     void send(std::uint32_t pixel, std::uint32_t path, std::uint32_t state, const std::string& name,
@@ -88,7 +88,7 @@ raya_head head_of(std::uint32_t pixel, std::uint32_t state, std::uint32_t path) 
     return head;
 }
 
-// Numbers in the order in which a reader of the table meets the names.
+// Rows with numbers in the order in which names first appear in the table.
 std::string expected_rows(const std::vector<Sent>& sent) {
     std::map<std::string, std::size_t> numbers;
     const auto number = [&](const std::string& name) { return numbers.emplace(name, numbers.size()).first->second; };
@@ -102,7 +102,7 @@ std::string expected_rows(const std::vector<Sent>& sent) {
     return rows;
 }
 
-TEST_CASE("rays and parents of random ray trees have the numbers of their names", "[torus]") {
+TEST_CASE("random ray trees: rays and parents are numbered in order of appearance", "[torus]") {
     constexpr std::uint64_t kSeed = 2025;
     for (std::uint64_t i = 0; i < 300; ++i) {
         CAPTURE(kSeed, i);
@@ -121,14 +121,14 @@ TEST_CASE("rays and parents of random ray trees have the numbers of their names"
     }
 }
 
-TEST_CASE("a shadow ray's return before anything else, by hand", "[torus]") {
+TEST_CASE("a return that comes first gets its shadow ray's number; expected rows by hand", "[torus]") {
     PacketTrace trace;
     const auto row = [&](std::uint32_t kind, std::uint32_t level, std::uint32_t light, std::uint32_t path) {
         trace.add({3, 1, 2, head_of(9, raya_state(kind, level, light), path), kind == RAYA_KIND_RETURN ? 6u : 22u});
     };
     row(RAYA_KIND_RETURN, 1, 4, 1u << 31);     // of the refracted ray's shadow ray
-    row(RAYA_KIND_SHADOW, 1, 4, 1u << 31);     // which is 1, and shades 2
-    row(RAYA_KIND_REFRACTED, 1, 0, 1u << 31);  // whose parent is the primary ray, 3
+    row(RAYA_KIND_SHADOW, 1, 4, 1u << 31);     // 1, the parent of the return; child of 2
+    row(RAYA_KIND_REFRACTED, 1, 0, 1u << 31);  // 2, child of the primary ray, 3
     row(RAYA_KIND_PRIMARY, 0, 0, 0);
     row(RAYA_KIND_REFLECTED, 1, 0, 0);
     CHECK(gunzip(trace.finish()) == kHeading +
@@ -136,13 +136,13 @@ TEST_CASE("a shadow ray's return before anything else, by hand", "[torus]") {
                                         "3,1,2,primary,88,3,\n3,1,2,reflected,88,4,3\n");
 }
 
-TEST_CASE("a trace without packets is its heading", "[torus]") {
+TEST_CASE("a trace without packets has only its heading", "[torus]") {
     PacketTrace trace;
     CHECK(trace.rows() == 0);
     CHECK(gunzip(trace.finish()) == kHeading);
 }
 
-TEST_CASE("a head that no packet has is refused", "[torus]") {
+TEST_CASE("invalid packet heads are refused", "[torus]") {
     const std::uint32_t wrong[] = {raya_state(RAYA_KIND_NONE, 0, 0),      raya_state(RAYA_KINDS, 0, 0),
                                    raya_state(RAYA_KIND_PRIMARY, 1, 0),   raya_state(RAYA_KIND_PRIMARY, 0, 1),
                                    raya_state(RAYA_KIND_REFLECTED, 0, 0), raya_state(RAYA_KIND_REFRACTED, 0, 0),
@@ -155,11 +155,11 @@ TEST_CASE("a head that no packet has is refused", "[torus]") {
     CHECK_THROWS_AS(packet_kind_name(RAYA_KINDS), std::logic_error);
 }
 
-// As many rays as a table grows past many times over, asked for again in another order.
-TEST_CASE("a number stays a ray's own while the table grows", "[torus]") {
+// Enough rays to make the table grow many times; then all are looked up again in reverse order.
+TEST_CASE("a ray keeps its number while the table grows", "[torus]") {
     constexpr std::uint32_t kRays = 200'000;
     RayNumbers numbers;
-    const auto ray = [](std::uint32_t i) { return RayName{i / 8, 1 + i % 4, i % 8 < 4 ? 0 : 1 + i % 65'535}; };
+    const auto ray = [](std::uint32_t i) { return RayId{i / 8, 1 + i % 4, i % 8 < 4 ? 0 : 1 + i % 65'535}; };
     for (std::uint32_t i = 0; i < kRays; ++i) REQUIRE(numbers.number_of(ray(i)) == i);
     for (std::uint32_t i = kRays; i-- > 0;) REQUIRE(numbers.number_of(ray(i)) == i);
     CHECK(numbers.next() == kRays);

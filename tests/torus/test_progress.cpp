@@ -1,4 +1,4 @@
-// What a render of the torus says of how far it has come.
+// Progress reports of torus renders.
 #include <catch2/catch.hpp>
 #include <vector>
 
@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("the torus is not done before its last packets are, and says so", "[torus]") {
+TEST_CASE("the torus reports progress per superstep, and 1 only after the last", "[torus]") {
     Session session(choose_device(""));
     const TorusCase c{.width = 24, .height = 24, .nodes = {2, 2, 2}, .lanes = 4, .group = 1, .bounces = 8};
     for (const Injection inject : {Injection::kAll, Injection::kRoot}) {

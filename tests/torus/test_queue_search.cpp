@@ -1,4 +1,4 @@
-// The queue that is named to a machine that stands still: long enough, and one that can be asked for.
+// The search for a queue that ends a deadlock: long enough, and within the limits of node, device and option.
 #include <catch2/catch.hpp>
 #include <vector>
 
@@ -8,22 +8,22 @@
 namespace raya {
 namespace {
 
-// A machine that ends with queues of `enough` packets or more; a packet has 10 bytes. Notes what was tried.
+// A machine that ends with queues of `enough` packets or more, 10 bytes each. Records the tried lengths.
 struct TriedMachine {
     std::uint32_t enough;
     std::uint64_t limit = UINT64_MAX;
-    std::uint32_t device = UINT32_MAX;  // longer ones do not fit into the device,
-    std::uint32_t driver = UINT32_MAX;  // ... which is only found out when they are taken
+    std::uint32_t device = UINT32_MAX;  // the longest queue that fits into the device
+    std::uint32_t driver = UINT32_MAX;  // the longest that the driver allocates
     std::uint32_t most = kLongestQueue;
     std::vector<std::uint32_t> tried{};
 
     std::string remedy(std::uint32_t queue) { return queue_remedy(search(queue)); }
 
     QueueFound search(std::uint32_t queue) {
-        return longer_queue(queue, {.bytes = [](const NodeBuffers& b) { return std::uint64_t{10} * b.queue; },
+        return find_longer_queue(queue, {.bytes = [](const NodeBuffers& b) { return std::uint64_t{10} * b.queue; },
                                     .limit = limit,
                                     .most = most,
-                                    .device_holds = [this](const NodeBuffers& b) { return b.queue <= device; },
+                                    .fits_device = [this](const NodeBuffers& b) { return b.queue <= device; },
                                     .ends =
                                         [this](const NodeBuffers& b) {
                                             tried.push_back(b.queue);
@@ -37,33 +37,33 @@ using Queues = std::vector<std::uint32_t>;
 
 }  // namespace
 
-TEST_CASE("queues are doubled until the machine ends", "[torus]") {
+TEST_CASE("the queue length is doubled until the machine ends", "[torus]") {
     TriedMachine machine{.enough = 100};
     CHECK(machine.remedy(20) == "--queue 160 is long enough (tried)");
     CHECK(machine.tried == Queues{40, 80, 160});
 }
 
-TEST_CASE("of queues that fit a node's memory the longest is tried before longer ones", "[torus]") {
+TEST_CASE("the longest queue that fits a node's memory is tried before longer ones", "[torus]") {
     TriedMachine machine{.enough = 65, .limit = 10 * 67 + 9};
     CHECK(machine.remedy(37) == "--queue 67 is long enough (tried)");
     CHECK(machine.tried == Queues{67});
 }
 
-TEST_CASE("where no queue that fits will do, the memory is named too", "[torus]") {
+TEST_CASE("if no queue that fits is long enough, the remedy also names the memory", "[torus]") {
     TriedMachine machine{.enough = 500, .limit = 10 * 100};
     CHECK(machine.remedy(30) ==
           "no queue that fits a node's memory is long enough, --queue 800 --pe-memory 8192 is (tried)");
     CHECK(machine.tried == Queues{60, 100, 200, 400, 800});
 }
 
-TEST_CASE("a queue that is the longest that fits already is not tried again", "[torus]") {
+TEST_CASE("if the queue already is the longest that fits, it is not tried again", "[torus]") {
     TriedMachine machine{.enough = 101, .limit = 10 * 100};
     CHECK(machine.remedy(100) ==
           "no queue that fits a node's memory is long enough, --queue 200 --pe-memory 2048 is (tried)");
     CHECK(machine.tried == Queues{200});
 }
 
-TEST_CASE("the search ends where the device cannot hold more", "[torus]") {
+TEST_CASE("the search ends at the longest queue that the device holds", "[torus]") {
     TriedMachine machine{.enough = 5000, .device = 300};
     CHECK(machine.remedy(50) ==
           "no queue up to 200 packets is long enough, and the device cannot hold longer ones; use fewer nodes");
@@ -75,7 +75,7 @@ TEST_CASE("the search ends where the device cannot hold more", "[torus]") {
     CHECK(endless.remedy(1).find("no queue up to 1073741824 packets") == 0);
 }
 
-TEST_CASE("a search that is told the longest queue tries that one last", "[torus]") {
+TEST_CASE("a search with a maximum length tries that one last", "[torus]") {
     TriedMachine machine{.enough = 90, .most = 100};
     const QueueFound found = machine.search(30);
     CHECK(machine.tried == Queues{60, 100});
@@ -86,7 +86,7 @@ TEST_CASE("a search that is told the longest queue tries that one last", "[torus
     CHECK_FALSE(machine.search(30).ends);
 }
 
-TEST_CASE("bisection finds the last number that holds, in as many steps as the range has bits", "[torus]") {
+TEST_CASE("bisection finds the last number that satisfies the predicate, in at most 32 calls", "[torus]") {
     for (const std::uint64_t above : {6ull, 7ull, 1000ull, 1ull << 32})
         for (const std::uint64_t last : {5ull, 6ull, 999ull, (1ull << 32) - 1}) {
             if (last >= above) continue;
@@ -96,7 +96,7 @@ TEST_CASE("bisection finds the last number that holds, in as many steps as the r
                 return number <= last;
             };
             CAPTURE(above, last);
-            CHECK(last_that_holds(5, above, holds) == last);
+            CHECK(last_where(5, above, holds) == last);
             CHECK(asked <= 32);
         }
 }

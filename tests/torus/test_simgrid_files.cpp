@@ -1,4 +1,4 @@
-// What is written for SimGrid, against hand-made text.
+// Files for SimGrid, compared with text written by hand.
 #include <catch2/catch.hpp>
 
 #include "host/torus/async_machine.hpp"
@@ -13,7 +13,7 @@ std::size_t number_of(const std::string& text, const std::string& part) {
     return number;
 }
 
-TEST_CASE("a platform has a host for each node, two ways and a wire for each link, routes to neighbours", "[torus]") {
+TEST_CASE("a platform has a host per node, two directions and a wire per link, and routes to neighbours", "[torus]") {
     for (const Links links : {Links::kTorus3d, Links::kTorus2d}) {
         const raya_torus torus = make_torus({4, 4, 4}, links);
         const std::size_t joints = 64 * links_of_node(torus);
@@ -27,14 +27,14 @@ TEST_CASE("a platform has a host for each node, two ways and a wire for each lin
         for (const char* part : {"<host id=\"63\" speed=\"25000000f\"/>", "<link_ctn id=\"0-x\"/><link_ctn id=\"wire "})
             CHECK_THAT(xml, Catch::Contains(part));
     }
-    // A side of 2: one link from each to the other, each a wire of its own, as the ways are.
+    // A side of 2: two links, one in each direction round the side, each with its own wire.
     const std::string two = simgrid_platform(make_torus({2, 1, 1}, Links::kTorus3d), {.one_way = 0});
     CHECK(number_of(two, "<route src=") == 2);
     CHECK_THAT(two, Catch::Contains("\"0+x\"/><link_ctn id=\"wire 0+x\"") &&
                         Catch::Contains("\"1+x\"/><link_ctn id=\"wire 1+x\"") && !Catch::Contains("2400000"));
 }
 
-TEST_CASE("a replay has tasks, causes, and the ways of messages", "[torus]") {
+TEST_CASE("a replay has tasks, their causes, and the routes of messages", "[torus]") {
     HistoryBuilder h;
     h.task(2, 500);
     const std::uint32_t ray = h.ray(0), own = h.ray(2);

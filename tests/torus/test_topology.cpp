@@ -1,4 +1,4 @@
-// The torus machine's numbers of nodes and voxels, its links and its ways, on hundreds of machines of any shape.
+// Node and voxel numbers, links and routes of the torus machine, on hundreds of machines of random shape.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -17,7 +17,7 @@ constexpr std::uint32_t kLinks[] = {0, 1, 2, 3, 4, 5};
 
 bool same(const raya_place& a, const raya_place& b) { return std::equal(a.at, a.at + 3, b.at); }
 
-// Steps from one node to all others, by a search over the links that knows neither sides nor ways.
+// Distances from one node to all others by breadth-first search over the links, independent of sides and routing.
 std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint32_t from) {
     std::vector<std::uint32_t> distances(raya_nodes(torus), UINT32_MAX), front = {from};
     distances[from] = 0;
@@ -36,7 +36,7 @@ std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint
 }
 
 // The links that a packet takes; stops after as many steps as there are nodes.
-std::vector<std::uint32_t> way(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
+std::vector<std::uint32_t> route_of(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
     std::vector<std::uint32_t> links;
     for (std::uint32_t node = from; links.size() <= raya_nodes(torus);) {
         const std::uint32_t link = raya_next_link(torus, node, to);
@@ -47,8 +47,8 @@ std::vector<std::uint32_t> way(const raya_torus& torus, std::uint32_t from, std:
     return links;
 }
 
-// The way that kernels/shared/torus.h describes, found by trying both ways round each side.
-std::vector<std::uint32_t> described_way(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
+// The route that kernels/shared/torus.h defines, found by trying both directions round each side.
+std::vector<std::uint32_t> defined_route(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
     const raya_place a = raya_torus_place(torus, from), b = raya_torus_place(torus, to);
     std::vector<std::uint32_t> links;
     for (std::uint32_t d = 0; d < 3; ++d) {
@@ -107,7 +107,7 @@ TEST_CASE("4 x 4 x 4 nodes are a torus of 8 x 8 with four slabs of equal k", "[t
     CHECK(torus_text(make_torus({8, 2, 3}, Links::kTorus2d)) == "8x2x3 on 8x6x1");
 }
 
-TEST_CASE("a 2-D torus has the sides that are most alike", "[torus]") {
+TEST_CASE("a 2-D torus has sides as close to square as its nodes allow", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         SplitMix random(seed);
         const auto nodes = random_sides(random, 24);
@@ -129,7 +129,7 @@ TEST_CASE("a 2-D torus has the sides that are most alike", "[torus]") {
     }
 }
 
-TEST_CASE("every node has one number and one place among the voxels", "[torus]") {
+TEST_CASE("every node has one number and one place", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         SplitMix random(seed);
         const raya_torus t = random_torus(random, 9);
@@ -150,7 +150,7 @@ TEST_CASE("every node has one number and one place among the voxels", "[torus]")
     }
 }
 
-TEST_CASE("every voxel has one node and one number there", "[torus]") {
+TEST_CASE("every voxel has one node and one local number", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         SplitMix random(seed);
         const raya_torus t = random_torus(random, 5);
@@ -175,7 +175,7 @@ TEST_CASE("every voxel has one node and one number there", "[torus]") {
     }
 }
 
-TEST_CASE("a link joins places next to one another, and its opposite leads back", "[torus]") {
+TEST_CASE("a link joins neighbouring places, and its opposite leads back", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         SplitMix random(seed);
         const raya_torus t = random_torus(random, 9);
@@ -192,7 +192,7 @@ TEST_CASE("a link joins places next to one another, and its opposite leads back"
     }
 }
 
-TEST_CASE("packets arrive over as few links as there are, by the way that is documented", "[torus]") {
+TEST_CASE("packets take a shortest route, the documented one", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
         SplitMix random(seed);
         const raya_torus t = random_torus(random, 6);
@@ -202,10 +202,10 @@ TEST_CASE("packets arrive over as few links as there are, by the way that is doc
             const std::vector<std::uint32_t> distances = searched_distances(t, from);
             std::uint64_t sum = 0;
             for (std::uint32_t to = 0; to < raya_nodes(t); ++to) {
-                const std::vector<std::uint32_t> links = way(t, from, to);
+                const std::vector<std::uint32_t> links = route_of(t, from, to);
                 if (links.size() != distances[to]) FAIL(links.size() << " links from " << from << " to " << to);
                 if (raya_node_distance(t, from, to) != distances[to]) FAIL("distance from " << from << " to " << to);
-                if (links != described_way(t, from, to)) FAIL("way from " << from << " to " << to);
+                if (links != defined_route(t, from, to)) FAIL("route from " << from << " to " << to);
                 sum += raya_node_distance(t, from, to);
             }
             sums.insert(sum);

@@ -1,4 +1,4 @@
-// Modelled times of a torus against times worked out by hand, and the two bounds in their order.
+// Modelled times of a torus, compared with times computed by hand; the lower bound never exceeds the upper one.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -11,7 +11,8 @@
 namespace raya {
 namespace {
 
-constexpr double kCycleMs = 40e-6, kWordMs = 1 / 425., kBothWaysWordMs = 1 / 300.;  // 1.7 MB/s, 2.4 MB/s for two
+// 1.7 MB/s in one direction, 2.4 MB/s in both together.
+constexpr double kCycleMs = 40e-6, kWordMs = 1 / 425., kBothWaysWordMs = 1 / 300.;
 
 TorusResult result_of(const raya_torus& torus) {
     TorusResult result;
@@ -29,12 +30,12 @@ void send(TorusResult& result, std::uint32_t node, std::uint32_t link, std::uint
 
 Approx about_ms(double value) { return Approx(value).epsilon(1e-12); }
 
-TEST_CASE("a node computes, sends and receives; a message takes both its ends' time", "[torus]") {
+TEST_CASE("a node's time is computing, sending and receiving; a message takes time at both ends", "[torus]") {
     const raya_torus torus = make_torus({4, 1, 1}, Links::kTorus3d);
     TorusResult result = result_of(torus);
     result.load = load_of({1'000'000, 2'000'000, 0, 0});
     send(result, 0, 0, 1000, 16);  // to node 1
-    send(result, 3, 0, 500, 8);    // to node 0, round the end
+    send(result, 3, 0, 500, 8);    // to node 0, over the wrap-around link
     const TorusTime time = torus_time(torus, result);
     CHECK(time.compute_ms == about_ms(2'000'000 * kCycleMs));
     CHECK(time.messages_ms == about_ms((1000 * 51 + 500 * 35) * kCycleMs));    // node 0
@@ -44,7 +45,7 @@ TEST_CASE("a node computes, sends and receives; a message takes both its ends' t
     CHECK(time.stepwise_ms == 0);  // no supersteps here
 }
 
-TEST_CASE("both ways of a link share it, round the end as well", "[torus]") {
+TEST_CASE("both directions share a link, wrap-around links included", "[torus]") {
     const raya_torus torus = make_torus({2, 3, 1}, Links::kTorus3d);
     TorusResult result = result_of(torus);
     const std::uint32_t from = raya_node_of(torus, 0, 2, 0), to = raya_node_of(torus, 0, 0, 0);
@@ -55,7 +56,7 @@ TEST_CASE("both ways of a link share it, round the end as well", "[torus]") {
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
     send(result, from, 2, 100, 16);
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs + 1600 * kWordMs));
-    // Two nodes along x are joined by two links, one each way round: they do not share.
+    // Two nodes along x are joined by two links, one each way round, which do not share their rate.
     TorusResult two = result_of(torus);
     send(two, 0, 0, 100, 16);
     send(two, 1, 0, 100, 16);
@@ -64,14 +65,14 @@ TEST_CASE("both ways of a link share it, round the end as well", "[torus]") {
     CHECK(torus_time(torus, two).links_ms == about_ms(1600 * kBothWaysWordMs));
 }
 
-TEST_CASE("every superstep waits for its busiest node and its busiest link", "[torus]") {
+TEST_CASE("stepwise time sums each superstep's busiest node and busiest link", "[torus]") {
     const raya_torus torus = make_torus({2, 2, 2}, Links::kTorus2d);
     TorusResult result = result_of(torus);
     result.supersteps = {{1000, 16, 0}, {5000, 0, 0}, {0, 320, 0}};
     CHECK(torus_time(torus, result).stepwise_ms == about_ms(6000 * kCycleMs + 336 * kBothWaysWordMs));
 }
 
-/// Supersteps of random work and traffic; what the nodes did in all is their sum.
+/// Supersteps of random work and traffic, with the nodes' and links' totals.
 TorusResult random_render(SplitMix& random, const raya_torus& torus) {
     TorusResult result = result_of(torus);
     std::vector<std::uint64_t> cycles(raya_nodes(torus));
@@ -82,14 +83,14 @@ TorusResult random_render(SplitMix& random, const raya_torus& torus) {
         for (std::uint32_t node = 0; node < cycles.size(); ++node) {
             const std::uint64_t cost = below(idle) == 0 ? below(work) : 0;
             cycles[node] += cost;
-            counted.most_cycles = std::max(counted.most_cycles, cost);
+            counted.max_node_cycles = std::max(counted.max_node_cycles, cost);
             for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
                 if (raya_link_end(torus, node, link) == node) continue;
                 const std::uint64_t rays = below(traffic), returns = below(traffic);
                 send(result, node, link, rays, RAYA_PACKET_WORDS);
                 send(result, node, link, returns, RAYA_RETURN_WORDS);
-                counted.most_link_words =
-                    std::max(counted.most_link_words, rays * RAYA_PACKET_WORDS + returns * RAYA_RETURN_WORDS);
+                counted.max_link_words =
+                    std::max(counted.max_link_words, rays * RAYA_PACKET_WORDS + returns * RAYA_RETURN_WORDS);
             }
         }
         result.supersteps.push_back(counted);
@@ -98,7 +99,7 @@ TorusResult random_render(SplitMix& random, const raya_torus& torus) {
     return result;
 }
 
-TEST_CASE("no render is faster than its bound from below, and none slower than step by step", "[torus]") {
+TEST_CASE("the overlapped time is at least each of its parts and at most the stepwise time", "[torus]") {
     constexpr std::uint64_t kSeed = 77;
     SplitMix random(kSeed);
     for (int i = 0; i < 500; ++i) {
@@ -115,7 +116,7 @@ TEST_CASE("no render is faster than its bound from below, and none slower than s
     }
 }
 
-TEST_CASE("a result of another torus is a mistake", "[torus]") {
+TEST_CASE("torus_time() rejects a result of another torus", "[torus]") {
     const TorusResult result = result_of(make_torus({2, 2, 2}, Links::kTorus3d));
     CHECK_THROWS_AS(torus_time(make_torus({2, 2, 3}, Links::kTorus3d), result), std::invalid_argument);
 }

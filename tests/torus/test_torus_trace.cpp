@@ -1,4 +1,4 @@
-// The modelled torus machine in a trace: stepwise time, and flows that follow packets.
+// The modelled torus machine in a trace: stepwise time, and flows of packets.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -26,13 +26,12 @@ Traced render(const Scene& scene, const TorusCase& c, std::size_t nodes) {
     Traced t{settings_of(c), {}, {}};
     TorusTrace seen(t.settings.torus);
     t.result = TorusRenderer(session, scene, t.settings)
-                   .render(
-                       {},
-                       [&](const PacketRecord& p) {
-                           seen.add_packet(p);
-                           ++t.packets;
-                       },
-                       [&](const SuperstepDetail& step) { seen.add_superstep(step); });
+                   .render({}, {.packets =
+                                    [&](const PacketRecord& p) {
+                                        seen.add_packet(p);
+                                        ++t.packets;
+                                    },
+                                .supersteps = [&](const SuperstepDetail& step) { seen.add_superstep(step); }});
     TraceFile trace(10'000'000);
     seen.add_to(trace, t.result, nodes);
     t.trace = Document::parse(trace.finish(false));
@@ -47,7 +46,7 @@ std::int64_t end_of(const Slices& slices) {
 
 }  // namespace
 
-TEST_CASE("the traced torus ends at the stepwise time, its nodes compute what was counted", "[torus]") {
+TEST_CASE("the traced torus ends at the stepwise time, and its nodes compute for the counted cycles", "[torus]") {
     for (const std::uint64_t seed : {27u, 53u, 19u, 21u}) {
         const TorusCase c{.nodes = {2, 2, 2}, .links = seed % 2 ? Links::kTorus2d : Links::kTorus3d, .lanes = 4};
         CAPTURE(seed, case_text(c));
@@ -68,13 +67,13 @@ TEST_CASE("the traced torus ends at the stepwise time, its nodes compute what wa
                   static_cast<std::int64_t>(2 * steps.size()));
         }
         // With all nodes shown and fewer packets than the sample holds, every packet is a flow.
-        REQUIRE(t.packets < TorusTrace::kMostPackets);
+        REQUIRE(t.packets < TorusTrace::kMaxPackets);
         CHECK(schema.flows() == t.packets);
         CHECK(t.trace["otherData"]["machine"]["flows"] == t.packets);
     }
 }
 
-TEST_CASE("counters say what each superstep had", "[torus]") {
+TEST_CASE("the trace has each superstep's counters", "[torus]") {
     const Traced t = render(random_view_scene(27), {.lanes = 4}, 3);
     std::vector<double> live, busiest;
     for (const Document& e : t.trace["traceEvents"]) {
@@ -85,7 +84,7 @@ TEST_CASE("counters say what each superstep had", "[torus]") {
     REQUIRE(busiest.size() == live.size());
     for (std::size_t i = 0; i < live.size(); ++i) {
         CHECK(live[i] == static_cast<double>(t.result.supersteps[i].live));
-        CHECK(busiest[i] == static_cast<double>(t.result.supersteps[i].most_link_words));
+        CHECK(busiest[i] == static_cast<double>(t.result.supersteps[i].max_link_words));
     }
     const TraceSchema schema(t.trace);
     CHECK(schema.tracks().size() == 4);
@@ -93,34 +92,34 @@ TEST_CASE("counters say what each superstep had", "[torus]") {
     CHECK(TraceSchema(render(random_view_scene(27), {.lanes = 4}, 0).trace).faults().empty());
 }
 
-TEST_CASE("of every fourth superstep the same packets are told as of all", "[torus]") {
+TEST_CASE("recording every fourth superstep gives the same packets of these as recording all", "[torus]") {
     const Scene scene = random_view_scene(27);
     const TorusCase c{.links = Links::kTorus2d, .queue = 200, .lanes = 4};  // packets wait in their outboxes
-    const auto told = [&](std::uint32_t every) {
+    const auto record_packets = [&](std::uint32_t every) {
         Session session(choose_device(""));
         std::vector<std::string> packets;
         TorusRenderer(session, scene, settings_of(c))
-            .render(
-                {},
-                [&](const PacketRecord& p) {
-                    if (p.superstep % 4 == 0)
-                        packets.push_back(fmt::format("{} {} {} {} {} {} {}", p.superstep, p.source, p.destination,
-                                                      p.head.pixel, p.head.state, p.head.path, p.head.weight));
-                    else
-                        CHECK(every == 1);
-                },
-                {}, every);
+            .render({}, {.packets =
+                             [&](const PacketRecord& p) {
+                                 if (p.superstep % 4 == 0)
+                                     packets.push_back(fmt::format("{} {} {} {} {} {} {}", p.superstep, p.source,
+                                                                   p.destination, p.head.pixel, p.head.state,
+                                                                   p.head.path, p.head.weight));
+                                 else
+                                     CHECK(every == 1);
+                             },
+                         .packets_every = every});
         return packets;
     };
-    const std::vector<std::string> all = told(1);
+    const std::vector<std::string> all = record_packets(1);
     CHECK(all.size() > 100);
-    CHECK(told(4) == all);
+    CHECK(record_packets(4) == all);
 }
 
-TEST_CASE("the sample of packets has its size, and any packet may be in it", "[torus]") {
+TEST_CASE("the packet sample has its maximum size and is uniform over time", "[torus]") {
     const raya_torus torus = make_torus({1, 2, 1}, Links::kTorus3d);
     TorusTrace seen(torus);
-    const std::uint32_t all = 5 * TorusTrace::kMostPackets;
+    const std::uint32_t all = 5 * TorusTrace::kMaxPackets;
     for (std::uint32_t i = 0; i < all; ++i) {
         PacketRecord p{.superstep = i / 1000, .source = 0, .destination = 1};
         p.head.state = RAYA_KIND_SHADOW;
@@ -130,7 +129,7 @@ TEST_CASE("the sample of packets has its size, and any packet may be in it", "[t
     result.load = load_of({1, 1});
     const std::vector<std::uint64_t> words(2 * RAYA_LINKS);
     for (std::uint32_t step = 0; step < all / 1000 + 2; ++step) {
-        result.supersteps.push_back({.most_cycles = 100});
+        result.supersteps.push_back({.max_node_cycles = 100});
         seen.add_superstep({result.supersteps.back(), {100, 50}, words});
     }
     TraceFile trace(10'000'000);
@@ -138,7 +137,7 @@ TEST_CASE("the sample of packets has its size, and any packet may be in it", "[t
     const Document json = Document::parse(trace.finish(false));
     const TraceSchema schema(json);
     CHECK(schema.faults() == std::vector<std::string>{});
-    CHECK(schema.flows() == TorusTrace::kMostPackets);
+    CHECK(schema.flows() == TorusTrace::kMaxPackets);
     std::vector<int> of_quarter(4);
     for (const Document& e : json["traceEvents"])
         if (e["ph"] == "s")
@@ -146,7 +145,7 @@ TEST_CASE("the sample of packets has its size, and any packet may be in it", "[t
     for (const int count : of_quarter) CHECK(std::abs(count - 5000) < 400);  // 6 standard deviations
 }
 
-TEST_CASE("the works of the torus's kernels are what was counted", "[torus]") {
+TEST_CASE("the work of the torus's kernels agrees with the counts", "[torus]") {
     const Traced t = render(random_view_scene(27), {.lanes = 4}, 0);
     const auto works = torus_kernel_work(t.settings, t.result);
     REQUIRE(works.size() == 5);

@@ -1,4 +1,4 @@
-// Windows of pixels: each holds all whose rays enter the node's voxels, and few others.
+// Pixel windows: each holds all pixels whose rays enter the box at the node's voxels, and few others.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -22,7 +22,7 @@ double rounded(double value, const NumberFormat& format) {
 
 Vec3 vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-// The ray through a place on the image, each operation rounded to the format as the kernels' are (shading/camera.clh).
+// The ray through a point of the image, each operation rounded to the format as in the kernels (shading/camera.clh).
 Vec3 direction_of(const Camera& c, double row, double column) {
     const auto in = [&](double value) { return rounded(value, c.format); };
     Vec3 d;
@@ -35,7 +35,7 @@ Vec3 direction_of(const Camera& c, double row, double column) {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// When a ray comes to the voxels `first` to `last`, both in exact numbers as far as double goes; kNever if it does not.
+// The distance at which a ray enters the voxels `first` to `last`, in double; kNever if it misses them.
 double meets(const raya_grid& grid, const raya_place& first, const raya_place& last, const Vec3& origin,
              const Vec3& direction) {
     double in = 0, out = kNever;
@@ -51,19 +51,20 @@ double meets(const raya_grid& grid, const raya_place& first, const raya_place& l
     return in <= out ? in : kNever;
 }
 
-// Whether a ray enters the box at a voxel.
+// True if a ray enters the box at the voxel.
 bool enters(const raya_grid& grid, const raya_place& at, const Vec3& origin, const Vec3& direction) {
     const raya_place last{{grid.divisions[0] - 1, grid.divisions[1] - 1, grid.divisions[2] - 1}};
     const double box = meets(grid, {{0, 0, 0}}, last, origin, direction);
     return box < kNever && meets(grid, at, at, origin, direction) <= box * (1 + 1e-12);
 }
 
-// Rows from, to, columns from, to, of the places whose rays enter the box at a node's voxels; `fine` places to a pixel.
+// The range of rows and columns, low and high, of the points whose rays enter the box at a node's voxels.
 struct Met {
     double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
     bool any() const { return low[0] <= high[0]; }
 };
 
+// Tries `fine` x `fine` points per pixel.
 Met met_by(const Camera& c, const raya_grid& grid, const raya_torus& torus, std::uint32_t node, int fine) {
     Met met;
     const Vec3 eye = vector_of(c.job.eye);
@@ -101,7 +102,7 @@ Vec3 middle_of(const raya_grid& grid) {
     return middle;
 }
 
-// An eye so far from the middle of the box, which is inside it for short distances.
+// An eye at the distance `away` from the middle of the box; short distances lie inside.
 Camera random_camera(SplitMix& random, const raya_grid& grid, const NumberFormat& format, double away, double angle) {
     Scene scene = empty_scene();
     scene.view.from = middle_of(grid) + away * random_direction(random);
@@ -153,7 +154,7 @@ TEST_CASE("a node's window holds every pixel whose ray enters the box at its vox
     CHECK(partial > 200);
 }
 
-TEST_CASE("the window of voxels before the eye is little larger than what their outer faces cover", "[torus]") {
+TEST_CASE("a window exceeds the projection of the node's outer faces by at most five pixels", "[torus]") {
     const std::uint64_t seed = 77;
     SplitMix random(seed);
     const raya_torus torus = make_torus({3, 3, 3}, Links::kTorus3d);
@@ -167,7 +168,7 @@ TEST_CASE("the window of voxels before the eye is little larger than what their 
             const Met m = met_by(camera, grid, torus, node, 4);
             CAPTURE(seed, i, node, w.rows[0], w.rows[1], w.columns[0], w.columns[1], m.low[0], m.high[0], m.low[1],
                     m.high[1]);
-            // What the image cuts off may reach farther along its edge.
+            // Projections that the image's edge cuts may have larger windows.
             const bool cut = m.low[0] <= 0 || m.low[1] <= 0 || m.high[0] > camera.job.mapping.height - 1.5 ||
                              m.high[1] > camera.job.mapping.width - 1.5;
             if (!m.any() || cut) continue;

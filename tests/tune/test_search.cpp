@@ -1,4 +1,4 @@
-// The search, over costs that are made up: how near it comes to the best, and in how many trials.
+// The search on synthetic cost functions: distance to the optimum, and number of trials.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 using Cost = std::function<double(const Candidate&)>;
 
-const SearchEnd kNeverEnds = [] { return false; };
+const ShouldStop kNeverEnds = [] { return false; };
 
 Space random_space(std::mt19937& random) {
     const auto below = [&](std::uint32_t end) { return static_cast<std::size_t>(random() % end); };
@@ -25,13 +25,13 @@ Space random_space(std::mt19937& random) {
     return space;
 }
 
-double least_cost(const Space& space, const Cost& cost) {
-    double least = INFINITY;
-    for_each_candidate(space, [&](const Candidate& c) { least = std::min(least, cost(c)); });
-    return least;
+double minimum_cost(const Space& space, const Cost& cost) {
+    double minimum = INFINITY;
+    for_each_candidate(space, [&](const Candidate& c) { minimum = std::min(minimum, cost(c)); });
+    return minimum;
 }
 
-// Each knob has a best value, from which its cost grows on either side, by its own steps.
+// Each knob has a best value, from which the cost grows in both directions by a factor of its own.
 struct Valley {
     Valley(const Space& space, std::mt19937& random) {
         std::uniform_real_distribution<double> step(0.02, 0.6);
@@ -56,7 +56,7 @@ Cost separable(const Space& space, std::mt19937& random) {
     };
 }
 
-// The best value of one knob follows another's: as lanes and group share what a device holds at once.
+// The best value of one knob depends on another's: lanes and group share the registers of a device.
 Cost shared(const Space& space, std::mt19937& random) {
     const double share = std::uniform_real_distribution<double>(-0.8, 0.8)(random);
     return [valley = Valley(space, random), share](const Candidate& c) {
@@ -69,26 +69,27 @@ Cost shared(const Space& space, std::mt19937& random) {
     };
 }
 
-// Above a sum of places there are no registers left: a cliff across the valley.
+// A step in the cost where the sum of two knobs exceeds a limit, like spilled registers.
 Cost spilling(const Space& space, std::mt19937& random) {
-    const std::size_t most = 2 + random() % 5;
-    return [valley = Valley(space, random), most](const Candidate& c) {
-        double cost = c[0] + c[1] > most ? 1.5 : 1.0;
+    const std::size_t limit = 2 + random() % 5;
+    return [valley = Valley(space, random), limit](const Candidate& c) {
+        double cost = c[0] + c[1] > limit ? 1.5 : 1.0;
         for (std::size_t k = 0; k < c.size(); ++k) cost *= valley.at(k, static_cast<double>(c[k]));
         return cost;
     };
 }
 
-struct Found {
-    double loss;   // of the best found over the best there is
-    double share;  // of the space that was tried
+/// The result of a search, compared with an exhaustive one.
+struct SearchQuality {
+    double loss;   // cost found / minimum cost
+    double share;  // candidates tried / size of the space
 };
 
-// `noise`: of each measurement, evenly to either side.
-Found find(const Space& space, const Cost& cost, std::mt19937& random, double noise) {
+// `noise`: relative error of each measurement, uniform in -noise..noise.
+SearchQuality search_quality(const Space& space, const Cost& cost, std::mt19937& random, double noise) {
     std::uniform_real_distribution<double> error(-noise, noise);
     std::map<Candidate, int> asked;
-    const Judge judge = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
+    const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
         CHECK(++asked[candidate] == 1);
         CHECK(candidate != space.start);
         return cost(candidate) / cost(best) * (1 + error(random));
@@ -96,15 +97,15 @@ Found find(const Space& space, const Cost& cost, std::mt19937& random, double no
     const SearchResult result = search(space, judge, kNeverEnds);
     CHECK(result.ended);
     CHECK(result.tried == asked.size());
-    return {cost(result.best) / least_cost(space, cost),
+    return {cost(result.best) / minimum_cost(space, cost),
             static_cast<double>(result.tried) / static_cast<double>(space.size())};
 }
 
-TEST_CASE("the search ends within 5 % of the best, having tried a fraction", "[tune]") {
+TEST_CASE("search: ends within 5 % of the minimum after trying a fraction of the space", "[tune]") {
     struct Family {
         const char* name;
         Cost (*make)(const Space&, std::mt19937&);
-        int most_missed;  // of 200
+        int max_missed;  // of 200
     };
     constexpr int kSpaces = 200;
     for (const Family& family :
@@ -115,7 +116,7 @@ TEST_CASE("the search ends within 5 % of the best, having tried a fraction", "[t
             for (unsigned seed = 1; seed <= kSpaces; ++seed) {
                 std::mt19937 random(seed);
                 const Space space = random_space(random);
-                const Found found = find(space, family.make(space, random), random, noise);
+                const SearchQuality found = search_quality(space, family.make(space, random), random, noise);
                 missed += found.loss > 1.05;
                 share += found.share / kSpaces;
                 INFO(family.name << ", noise " << noise << ", seed " << seed << ": " << found.loss);
@@ -123,18 +124,18 @@ TEST_CASE("the search ends within 5 % of the best, having tried a fraction", "[t
             }
             INFO(family.name << ", noise " << noise << ": " << missed << " of " << kSpaces << " missed, " << share
                              << " tried");
-            CHECK(missed <= family.most_missed);
+            CHECK(missed <= family.max_missed);
             CHECK(share < 0.2);
         }
 }
 
-TEST_CASE("what is dropped is never the best, and the search goes on around it", "[tune]") {
+TEST_CASE("search: never returns a dropped candidate", "[tune]") {
     for (unsigned seed = 1; seed <= 100; ++seed) {
         std::mt19937 random(seed);
         const Space space = random_space(random);
         const Cost cost = separable(space, random);
         const std::size_t bad = random() % space.knobs[0].values.size();
-        const Judge judge = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
+        const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
             if (candidate[0] == bad) return {};
             return cost(candidate) / cost(best);
         };
@@ -144,34 +145,34 @@ TEST_CASE("what is dropped is never the best, and the search goes on around it",
     }
 }
 
-TEST_CASE("the search ends when it is told to, with the best so far", "[tune]") {
+TEST_CASE("search: ends when the caller says so, with the best candidate so far", "[tune]") {
     std::mt19937 random(7);
     const Space space = random_space(random);
     const Cost cost = separable(space, random);
-    for (const std::size_t most : {0, 1, 3}) {
+    for (const std::size_t limit : {0, 1, 3}) {
         std::size_t judged = 0;
-        const Judge judge = [&](const Candidate& best, const Candidate& candidate) {
+        const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) {
             ++judged;
             return std::optional(cost(candidate) / cost(best));
         };
-        const SearchResult result = search(space, judge, [&] { return judged >= most; });
-        CHECK(result.tried == most);
+        const SearchResult result = search(space, judge, [&] { return judged >= limit; });
+        CHECK(result.tried == limit);
         CHECK_FALSE(result.ended);
         CHECK(cost(result.best) <= cost(space.start));
     }
 }
 
-TEST_CASE("a search whose time is short has moved the knobs of few values", "[tune]") {
+TEST_CASE("search: tries the knobs with two values first", "[tune]") {
     for (unsigned seed = 1; seed <= 200; ++seed) {
         std::mt19937 random(seed);
         Space space = random_space(random);
-        const std::size_t gains = space.knobs.size();  // the last of them
+        const std::size_t gains = space.knobs.size();  // index of the last knob
         space.knobs.push_back({&TunedValues::link_exchange, {0, 1}});
         space.start.push_back(random() % 2);
         const auto switches = static_cast<std::size_t>(std::count_if(
             space.knobs.begin(), space.knobs.end(), [](const Knob& knob) { return knob.values.size() == 2; }));
         std::size_t judged = 0;
-        const Judge judge = [&](const Candidate& best, const Candidate& candidate) {
+        const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) {
             ++judged;
             return std::optional(candidate[gains] != best[gains] ? 0.7 : 1.1);
         };
@@ -181,39 +182,39 @@ TEST_CASE("a search whose time is short has moved the knobs of few values", "[tu
     }
 }
 
-TEST_CASE("a difference within the noise is no win", "[tune]") {
+TEST_CASE("search: a gain within the noise does not win", "[tune]") {
     std::mt19937 random(1);
     const Space space = random_space(random);
-    const Judge judge = [&](const Candidate&, const Candidate&) { return std::optional(0.985); };
+    const MeasureRatio judge = [&](const Candidate&, const Candidate&) { return std::optional(0.985); };
     CHECK(search(space, judge, kNeverEnds).best == space.start);
 }
 
-TEST_CASE("an exhaustive search finds the best of all", "[tune]") {
+TEST_CASE("search_all: finds the minimum", "[tune]") {
     std::mt19937 random(3);
     const Space space = random_space(random);
     const Cost cost = shared(space, random);
-    const Judge judge = [&](const Candidate& best, const Candidate& candidate) {
+    const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) {
         return std::optional(cost(candidate) / cost(best));
     };
     const SearchResult all = search_all(space, space.start, judge, kNeverEnds);
     CHECK(all.tried == space.size() - 1);
-    CHECK(cost(all.best) <= least_cost(space, cost) / kLeastWin);
+    CHECK(cost(all.best) <= minimum_cost(space, cost) / kMaxWinRatio);
 }
 
-TEST_CASE("a space has the defaults in it, and what the device takes", "[tune]") {
-    for (const auto& [type, most, platform] : {std::tuple{"cpu", 4096, "PoCL"},
-                                               {"cpu", 1, "PoCL"},
-                                               {"gpu", 1024, "NVIDIA CUDA"},
-                                               {"gpu", 8, "rusticl"},
-                                               {"other", 16, "x"}})
+TEST_CASE("space_of: starts at the defaults, and has only values that the device supports", "[tune]") {
+    for (const auto& [type, group_limit, platform] : {std::tuple{"cpu", 4096, "PoCL"},
+                                                      {"cpu", 1, "PoCL"},
+                                                      {"gpu", 1024, "NVIDIA CUDA"},
+                                                      {"gpu", 8, "rusticl"},
+                                                      {"other", 16, "x"}})
         for (const std::uint32_t accel : {RAYA_ACCEL_NONE, RAYA_ACCEL_GRID, RAYA_ACCEL_BVH}) {
             DeviceInfo device;
             device.type = type;
             device.platform = platform;
-            device.max_group_size = static_cast<std::size_t>(most);
+            device.max_group_size = static_cast<std::size_t>(group_limit);
             device.native_float_width = 8;
             const Space space = space_of(device, {.accel = accel});
-            CAPTURE(type, most, platform, accel);
+            CAPTURE(type, group_limit, platform, accel);
             CHECK(space.values_of(space.start) == default_values(device, {.accel = accel}));
             bool limits_registers = false;
             for (const Knob& knob : space.knobs) limits_registers |= knob.value == &TunedValues::registers;
@@ -227,13 +228,13 @@ TEST_CASE("a space has the defaults in it, and what the device takes", "[tune]")
         }
 }
 
-TEST_CASE("groups on CPUs: a few work-items, more where they are a vector's, one for a torus node", "[tune]") {
-    const auto groups_of = [](std::uint32_t loop_turns, const TunedFor& what) {
+TEST_CASE("space_of: groups on CPUs have a few work-items, more if they form vectors, one per torus node", "[tune]") {
+    const auto groups_of = [](std::uint32_t max_loop_iterations, const TunedFor& workload) {
         DeviceInfo device;
         device.type = "cpu";
         device.max_group_size = 256;
-        device.loop_turns = loop_turns;
-        for (const Knob& knob : space_of(device, what).knobs)
+        device.max_loop_iterations = max_loop_iterations;
+        for (const Knob& knob : space_of(device, workload).knobs)
             if (knob.value == &TunedValues::group) return knob.values;
         return std::vector<std::uint32_t>{};
     };
@@ -244,13 +245,13 @@ TEST_CASE("groups on CPUs: a few work-items, more where they are a vector's, one
         CHECK(groups_of(turns, {.torus = true}) == std::vector<std::uint32_t>{1});
 }
 
-TEST_CASE("how packets come over links is a knob of the torus alone, with the kernel by name where it is no default",
+TEST_CASE("space_of: link exchange is a knob of the torus only, with an explicit kernel if that is not the default",
           "[tune]") {
-    const auto moves_of = [](const char* type, const TunedFor& what) {
+    const auto moves_of = [](const char* type, const TunedFor& workload) {
         DeviceInfo device;
         device.type = type;
         device.max_group_size = 256;
-        for (const Knob& knob : space_of(device, what).knobs)
+        for (const Knob& knob : space_of(device, workload).knobs)
             if (knob.value == &TunedValues::link_exchange) return knob.values;
         return std::vector<std::uint32_t>{};
     };

@@ -1,4 +1,4 @@
-// What was tuned, in its file and out of it again.
+// The file of tuned values: writing, reading, damage, and use by renders.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -32,7 +32,7 @@ const TunedFile kFile{.date = "2026-11-22",
                                    .speedup = 1,
                                    .scene = "x.nff"}}};
 
-/// XDG_CACHE_HOME is the folder, and RAYA_TUNED not set, while it lives.
+/// Sets XDG_CACHE_HOME to a new folder and unsets RAYA_TUNED for its lifetime.
 class OwnCache {
   public:
     OwnCache() {
@@ -49,12 +49,13 @@ class OwnCache {
     ScratchFolder folder_;
 };
 
-struct Warned {
+/// A source of tuned values that records warnings.
+struct WarningRecorder {
     std::vector<std::string> texts{};
-    TunedSource source = kept_choices([this](const std::string& text) { texts.push_back(text); });
+    TunedSource source = stored_choices([this](const std::string& text) { texts.push_back(text); });
 };
 
-TEST_CASE("a file of tuned values comes back as it was written", "[tune]") {
+TEST_CASE("read_tuned: inverts tuned_text", "[tune]") {
     const DeviceInfo device = some_device();
     const TunedFile read = read_tuned(tuned_text(device, kFile), "t.json", device);
     CHECK(read.date == kFile.date);
@@ -67,7 +68,7 @@ TEST_CASE("a file of tuned values comes back as it was written", "[tune]") {
     }
 }
 
-TEST_CASE("a damaged file, and one of something else, is refused with the reason", "[tune]") {
+TEST_CASE("read_tuned: refuses damaged and foreign files with the reason", "[tune]") {
     const DeviceInfo device = some_device();
     const std::string text = tuned_text(device, kFile);
     const auto changed = [&](const std::string& from, const std::string& to) {
@@ -96,11 +97,11 @@ TEST_CASE("a damaged file, and one of something else, is refused with the reason
     }
 }
 
-TEST_CASE("what is kept is found by device, driver and kind of kernels", "[tune]") {
+TEST_CASE("stored values: found by device, driver and kind of kernels", "[tune]") {
     const OwnCache cache;
     const DeviceInfo device = some_device();
-    keep_tuned(device, kFile);
-    Warned warned;
+    save_tuned(device, kFile);
+    WarningRecorder warned;
     const auto found = warned.source(device, kFile.entries[0].what);
     REQUIRE(found);
     CHECK(found->values == kFile.entries[0].values);
@@ -113,73 +114,73 @@ TEST_CASE("what is kept is found by device, driver and kind of kernels", "[tune]
     CHECK(cache.folder().entries() == 1);
 }
 
-TEST_CASE("entries of other kinds stay, those of the same are replaced", "[tune]") {
+TEST_CASE("stored values: an entry replaces that of the same kind, and others stay", "[tune]") {
     const OwnCache cache;
     const DeviceInfo device = some_device();
-    keep_tuned(device, kFile);
+    save_tuned(device, kFile);
     TunedEntry other = kFile.entries[0];
     other.values.lanes = 16;
-    keep_tuned(device, {"2027-01-01", {other}});
-    Warned warned;
+    save_tuned(device, {"2027-01-01", {other}});
+    WarningRecorder warned;
     CHECK(warned.source(device, other.what)->values.lanes == 16);
     CHECK(warned.source(device, kFile.entries[1].what)->values == kFile.entries[1].values);
     CHECK(warned.source(device, kFile.entries[1].what)->origin.ends_with(", 2027-01-01"));
 }
 
-TEST_CASE("a file that cannot be used is told of once, ignored, and written over", "[tune]") {
+TEST_CASE("stored values: an invalid file causes one warning, is ignored, and overwritten", "[tune]") {
     const OwnCache cache;
     const DeviceInfo device = some_device();
-    const std::filesystem::path file = tuned_place(device);
+    const std::filesystem::path file = tuned_path(device);
     for (const bool folder : {false, true}) {
         if (!folder) std::ofstream(file) << "{\"kind\":";
         if (folder) std::filesystem::create_directory(file);
-        Warned warned;
+        WarningRecorder warned;
         for (const TunedEntry& entry : kFile.entries) CHECK_FALSE(warned.source(device, entry.what));
         REQUIRE(warned.texts.size() == 1);
         CHECK_THAT(warned.texts[0],
                    Catch::Contains(file.string()) && Catch::Contains("ignored") && Catch::Contains("raya tune"));
         if (folder) break;
-        keep_tuned(device, kFile);
-        CHECK(Warned().source(device, kFile.entries[0].what));
+        save_tuned(device, kFile);
+        CHECK(WarningRecorder().source(device, kFile.entries[0].what));
         std::filesystem::remove(file);
     }
-    CHECK_THROWS_AS(tuned_place(device), UserError);  // a folder lies there
+    CHECK_THROWS_AS(tuned_path(device), UserError);  // the path is a folder
 }
 
-TEST_CASE("a file that other users may write is told of and ignored", "[tune]") {
+TEST_CASE("stored values: a file that other users may write causes a warning and is ignored", "[tune]") {
     const OwnCache cache;
     const DeviceInfo device = some_device();
-    keep_tuned(device, kFile);
-    std::filesystem::permissions(tuned_place(device), std::filesystem::perms(0666));
-    Warned warned;
+    save_tuned(device, kFile);
+    std::filesystem::permissions(tuned_path(device), std::filesystem::perms(0666));
+    WarningRecorder warned;
     CHECK_FALSE(warned.source(device, kFile.entries[0].what));
     REQUIRE(warned.texts.size() == 1);
     CHECK_THAT(warned.texts[0],
                Catch::Contains("other users may write '") && Catch::Contains("(mode 0666); the file is ignored"));
 }
 
-TEST_CASE("RAYA_TUNED=off, and a home that is no absolute path, leave the defaults", "[tune]") {
+TEST_CASE("stored values: RAYA_TUNED=off and a relative home folder leave the defaults", "[tune]") {
     const OwnCache cache;
     const DeviceInfo device = some_device();
-    keep_tuned(device, kFile);
+    save_tuned(device, kFile);
     setenv("RAYA_TUNED", "off", 1);
-    CHECK_FALSE(Warned().source);
+    CHECK_FALSE(WarningRecorder().source);
     unsetenv("RAYA_TUNED");
     setenv("XDG_CACHE_HOME", "relative", 1);
     CHECK((!tuned_folder() || tuned_folder()->is_absolute()));
 }
 
-TEST_CASE("renders take what is known of a device, unless lanes or group are named", "[tune]") {
+TEST_CASE("chosen: uses stored values unless lanes or group are given", "[tune]") {
     DeviceInfo device = some_device();
     device.type = "cpu";
     device.native_float_width = 16;
-    const TunedFor what{.torus = false, .accel = RAYA_ACCEL_NONE, .fp32 = true};
-    CHECK(chosen({}, device, what).origin == "defaults");
-    const TunedUse use([](const DeviceInfo&, const TunedFor& asked) -> std::optional<TunedChoice> {
+    const TunedFor workload{.torus = false, .accel = RAYA_ACCEL_NONE, .fp32 = true};
+    CHECK(chosen({}, device, workload).origin == "defaults");
+    const ScopedTunedSource use([](const DeviceInfo&, const TunedFor& asked) -> std::optional<TunedChoice> {
         if (asked.torus) return {};
         return TunedChoice{{4, 2, 0, 8, 2, 1, 96, 2}, "FILE, DATE"};
     });
-    const KernelChoice tuned = chosen({}, device, what);
+    const KernelChoice tuned = chosen({}, device, workload);
     CHECK(tuned.origin == "FILE, DATE");
     CHECK((tuned.lanes == 4 && tuned.group_size == 2 && !tuned.local_words));
     CHECK(tuned.more == KernelTuning{8, 2, 1, 96});
@@ -187,19 +188,19 @@ TEST_CASE("renders take what is known of a device, unless lanes or group are nam
     CHECK(tuned.link_origin == "FILE, DATE");
     const KernelChoice unknown = chosen({}, device, {.torus = true});
     CHECK(unknown.origin == "defaults");
-    CHECK((unknown.link_move == LinkMove::kOfDevice && unknown.link_origin.empty()));
+    CHECK((unknown.link_move == LinkMove::kAutomatic && unknown.link_origin.empty()));
     KernelChoice by_copies;
     by_copies.link_move = LinkMove::kCopies;
-    CHECK(chosen(by_copies, device, what).link_move == LinkMove::kCopies);
-    CHECK(chosen(by_copies, device, what).link_origin == "options");
-    CHECK(chosen(by_copies, device, what).lanes == 4);
+    CHECK(chosen(by_copies, device, workload).link_move == LinkMove::kCopies);
+    CHECK(chosen(by_copies, device, workload).link_origin == "options");
+    CHECK(chosen(by_copies, device, workload).lanes == 4);
     KernelChoice named;
     named.group_size = 3;
-    const KernelChoice options = chosen(named, device, what);
+    const KernelChoice options = chosen(named, device, workload);
     CHECK(options.origin == "options");
     CHECK((options.lanes == 16 && options.group_size == 3 && options.local_words));
     CHECK(options.more == KernelTuning{});
-    CHECK((options.link_move == LinkMove::kOfDevice && options.link_origin.empty()));
+    CHECK((options.link_move == LinkMove::kAutomatic && options.link_origin.empty()));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What was tried, as the T4 schema has it.
+// The T4 report of trials, and how candidates win.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -8,27 +8,27 @@
 namespace raya {
 namespace {
 
-Trial trial_of(Fate fate) {
+Trial make_trial(TrialStatus status) {
     Trial trial;
-    trial.fate = fate;
+    trial.status = status;
     trial.when = "2026-11-22T23:59:59Z";
     trial.build_s = 0.5;
-    if (fate == Fate::kCorrect) trial.samples = {{0.2, 0.1, 0.3}, {0.08, 0.1, 0.24}};
+    if (status == TrialStatus::kCorrect) trial.samples = {{0.2, 0.1, 0.3}, {0.08, 0.1, 0.24}};
     return trial;
 }
 
-TEST_CASE("a report has what results-schema.json 1.0.0 asks of it", "[tune]") {
+TEST_CASE("t4_text: follows results-schema.json 1.0.0", "[tune]") {
     Tuning tuning;
-    tuning.workload = usual_workloads().front();
+    tuning.workload = default_workloads().front();
     tuning.space = space_of({}, tuning.workload.what());
-    for (const Fate fate :
-         {Fate::kCorrect, Fate::kCompile, Fate::kRuntime, Fate::kCorrectness, Fate::kTimeout, Fate::kUnfinished})
-        tuning.trials.push_back(trial_of(fate));
+    for (const TrialStatus status : {TrialStatus::kCorrect, TrialStatus::kCompile, TrialStatus::kRuntime,
+                                     TrialStatus::kCorrectness, TrialStatus::kTimeout, TrialStatus::kUnfinished})
+        tuning.trials.push_back(make_trial(status));
     const Document report = Document::parse(t4_text({}, {tuning}));
     CHECK(report["schema_version"] == "1.0.0");
     CHECK(report["metadata"]["timeunit"] == "milliseconds");
     const Document& results = report["results"];
-    REQUIRE(results.size() == 5);  // of one nothing is known
+    REQUIRE(results.size() == 5);  // the unfinished trial is left out
     std::vector<std::string> ends;
     for (const Document& one : results) {
         for (const char* key : {"configuration", "times", "invalidity", "correctness"}) CHECK(one.contains(key));
@@ -46,30 +46,30 @@ TEST_CASE("a report has what results-schema.json 1.0.0 asks of it", "[tune]") {
     CHECK(results[0]["measurements"][0]["value"].get<double>() == Approx(80));
 }
 
-TEST_CASE("the best wins surely by nearly all pairs, or the defaults stay", "[tune]") {
-    Trial trial = trial_of(Fate::kCorrect);
+TEST_CASE("wins_significantly: requires nearly all pairs and a gain above the noise", "[tune]") {
+    Trial trial = make_trial(TrialStatus::kCorrect);
     const std::vector<double> defaults(9, 0.1), better(9, 0.09);
     trial.samples = {defaults, better};
-    CHECK(wins_surely(trial));
-    trial.samples[1][4] = 0.2;  // one disturbed
-    CHECK(wins_surely(trial));
+    CHECK(wins_significantly(trial));
+    trial.samples[1][4] = 0.2;  // one disturbed sample
+    CHECK(wins_significantly(trial));
     trial.samples[1][7] = 0.2;
-    CHECK_FALSE(wins_surely(trial));
+    CHECK_FALSE(wins_significantly(trial));
     trial.samples = {defaults, std::vector<double>(9, 0.099)};  // within the noise
-    CHECK_FALSE(wins_surely(trial));
-    CHECK_FALSE(wins_surely(trial_of(Fate::kCorrectness)));
+    CHECK_FALSE(wins_significantly(trial));
+    CHECK_FALSE(wins_significantly(make_trial(TrialStatus::kCorrectness)));
 }
 
-TEST_CASE("a candidate wins by its least time and by the median of pairs, or not", "[tune]") {
-    const Trial wins = trial_of(Fate::kCorrect);  // 0.08 of 0.1; 0.4, 1.0, 0.8
+TEST_CASE("ratio_of: the larger ratio of minimum times and of the median of pairs", "[tune]") {
+    const Trial wins = make_trial(TrialStatus::kCorrect);  // 0.08 of 0.1; 0.4, 1.0, 0.8
     CHECK(ratio_of(wins) == Approx(0.8));
     Trial one_spike = wins;
-    one_spike.samples = {{0.2, 0.2, 0.2}, {0.1, 0.2, 0.21}};  // the least is half, the median is not
+    one_spike.samples = {{0.2, 0.2, 0.2}, {0.1, 0.2, 0.21}};  // the minimum is half, the median is not
     CHECK(ratio_of(one_spike) == Approx(1.0));
     Trial disturbed = wins;
-    disturbed.samples = {{0.1, 0.4, 0.4}, {0.2, 0.2, 0.2}};  // pairs say half, the least does not
+    disturbed.samples = {{0.1, 0.4, 0.4}, {0.2, 0.2, 0.2}};  // pairs are half, the minimum is double
     CHECK(ratio_of(disturbed) == Approx(2.0));
-    CHECK(ratio_of(trial_of(Fate::kTimeout)) == 1);
+    CHECK(ratio_of(make_trial(TrialStatus::kTimeout)) == 1);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The exact value of an operation, and what is remarkable about rounding it: features, by which the known answers are
-// chosen.
+// The exact value of an operation, and the features of its rounding (ties, overflow, ...), by which known answers are
+// selected.
 #pragma once
 #include <mpfr.h>
 
@@ -21,16 +21,16 @@ class Mpfr {
     Mpfr(const Mpfr&) = delete;
     Mpfr& operator=(const Mpfr&) = delete;
     ~Mpfr() { mpfr_clear(value_); }
-    operator mpfr_ptr() { return value_; }  // NOLINT: MPFR's functions take it as it is
+    operator mpfr_ptr() { return value_; }  // NOLINT: MPFR's functions take an mpfr_ptr
 
   private:
     mpfr_t value_;
 };
 
-/// Bits in which sums and products of fp32 numbers, a b + c too, are exact; quotients and roots keep their first ones.
+/// Bits that represent sums, products and a b + c of fp32 numbers exactly; quotients and roots are truncated to them.
 inline constexpr mpfr_prec_t kExactBits = 700;
 
-/// fp32 by IEEE 754 from MPFR, with its infinities, NaNs and denormals.
+/// fp32 operations by MPFR with the infinities, NaNs and denormals of IEEE 754.
 class IeeeOracle {
   public:
     float add(float a, float b) {
@@ -62,7 +62,7 @@ class IeeeOracle {
     float rounded(const Operation& operation) {
         const mpfr_exp_t lowest = mpfr_get_emin(), highest = mpfr_get_emax();
         int inexact = operation(z_);
-        mpfr_set_emin(-148);  // as MPFR's manual has it for binary32
+        mpfr_set_emin(-148);  // binary32, from the MPFR manual
         mpfr_set_emax(128);
         inexact = mpfr_check_range(z_, inexact, MPFR_RNDN);
         mpfr_subnormalize(z_, inexact, MPFR_RNDN);
@@ -74,15 +74,15 @@ class IeeeOracle {
     Mpfr a_{24}, b_{24}, c_{24}, z_{24};
 };
 
-/// The feature of results that are wrong where they are rounded to fp32 first and then to the format.
+/// Feature of results that double rounding, first to fp32 and then to the format, would change.
 inline constexpr const char* kTwice = "rounded twice is wrong";
 
-/// What is remarkable about rounding `exact` to `expected`: where it lies between the numbers of the format, and
-/// whether it leaves the format's range. `bits`: significant ones of the format.
+/// Returns the features of rounding `exact` to `expected`: its place between neighbouring numbers of the format, and
+/// whether it leaves the format's range.
 inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const NumberFormat& format) {
     const int bits = format.fraction_bits + 1;
     std::set<std::string> all;
-    const auto note = [&](const std::string& what) { all.insert(what + (std::signbit(expected) ? " -" : " +")); };
+    const auto note = [&](const std::string& feature) { all.insert(feature + (std::signbit(expected) ? " -" : " +")); };
     if (!mpfr_number_p(exact) || mpfr_zero_p(exact)) {
         note(std::isnan(expected) ? "nan" : std::isinf(expected) ? "infinite" : "zero");
         return all;
@@ -115,7 +115,7 @@ inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const N
         note("just above a number");
     else
         note(half ? "upper half" : "lower half");
-    // Rounded to fp32 first and then to the format, the result would be another one.
+    // Double rounding, first to fp32, would give another result.
     mpfr_set(twice, exact, MPFR_RNDN);
     mpfr_set(again, twice, format.truncates ? MPFR_RNDZ : MPFR_RNDN);
     if (bits < 24 && mpfr_get_flt(again, MPFR_RNDN) != expected) all.insert(kTwice);

@@ -1,4 +1,4 @@
-// Faults of a device, its driver or its compiler, as patches of kernels: in the code that is checked, never in a check.
+// Mutants of kernels that simulate faults of a device, driver or compiler, in the code under test, not in the checks.
 #pragma once
 #include <fmt/core.h>
 
@@ -9,37 +9,37 @@
 
 namespace raya {
 
-/// Ties go to the odd number.
+/// Ties round to the odd number.
 inline const SourcePatch kRoundingFault{"number/reduced.clh", "even = ~(bits <<", "even = (bits <<"};
 /// The compiler may fuse a b + c.
 inline const SourcePatch kContractionFault{"number/lanes.clh", "FP_CONTRACT OFF", "FP_CONTRACT ON"};
 /// The device divides by the reciprocal.
 inline const SourcePatch kDivisionFault{"number/divide.clh", "return a / b;", "return a * (1.0f / b);"};
-/// Of equal distances the last object wins.
+/// The last object of equal distance wins.
 inline const SourcePatch kTieFault{"geometry/sphere.clh", "& (t < h.distance)",
                                    "& ((t < h.distance) | ((t == h.distance) & (h.object != RAYA_NO_OBJECT)))"};
-/// The grid ends a voxel too soon.
+/// The grid traversal ends one voxel early.
 inline const SourcePatch kWalkFault{"grid/walk.clh", "raya_voxel_plane(g, axis, g.divisions[axis])",
                                     "raya_voxel_plane(g, axis, g.divisions[axis] - 1)"};
-/// Products of 64 bits lose their upper half.
+/// 64-bit products lose their upper half.
 inline const SourcePatch kMappingFault{"shared/ratios.h", "(raya_u64)a * b / c", "a * b / c"};
-/// Work-items read before all have written.
+/// Work-items read local memory before all have written it.
 inline const SourcePatch kBarrierFault{
     "checks/machine.cl", "words - 1 - w] + 1;\n        barrier(CLK_LOCAL_MEM_FENCE);", "words - 1 - w] + 1;"};
-/// The filter takes the right border for the middle.
+/// The filter treats pixels at the right border as inner pixels.
 inline const SourcePatch kBorderFault{"ring/filter.cl", "raya_has_neighbour(m, pixel, RAYA_RIGHT)", "1"};
-/// The exchange of the torus turns a bit round in a colour or a limit. Words that it lost would be what the memory held
-/// before, a ray that never ends for one.
+/// The link exchange of the torus flips a bit in a colour or a limit. Lost words would leave old memory contents, for
+/// example a ray that never ends.
 inline const SourcePatch kExchangeFault{"torus/exchange.cl", "to[i] = from[i];",
                                         "to[i] = from[i] ^ (uint8)(0, 0, 0, 0, 0, 0, 1 << 21, 0);"};
-/// A launch that goes on takes what the one before has brought home for gone.
+/// A resumed launch treats results that the previous launch returned as gone.
 inline const SourcePatch kAgainFault{"torus/accept.cl", "gone = !again && (root", "gone = (root"};
 
-/// Of an event that a kernel counts at one place: a wrong kind, a lost count, a double one.
+/// A wrong count of an event that a kernel counts at one place: a wrong kind, a lost count or a double count.
 struct CountFault {
-    const char* event;  // as verify names the counter
+    const char* event;  // verify's name of the counter
     SourcePatch patch;
-    const char* only;  // a check that must see it
+    const char* only;  // name of a check that must fail
 };
 
 inline const char* const kOnGlass = "image glass fp32: tiles";
@@ -86,8 +86,8 @@ inline const std::vector<CountFault> kCountFaults = {
      kOnTorus},
     {"shadow_hits", {"torus/shade_packets.clh", "RAYA_SHADOW_HITS, stopped", "RAYA_LIT, stopped"}, kOnTorus}};
 
-/// The same for any event (RAYA_*), where counts of a pixel or node are added up: `how` is 0 for a wrong kind, 1 for a
-/// lost count, 2 for a double one.
+/// Same for any event (RAYA_*), where counts of a pixel or node are summed. `how`: 0 wrong kind, 1 lost, 2 double
+/// count.
 inline SourcePatch ring_count_fault(int event, int how) {
     if (how == 0)
         return {"ring/pixel_store.clh", "store->totals[e].all += events;",

@@ -1,5 +1,5 @@
-// Makes the known answers of the number layer: operands chosen so that every operation meets everything that is
-// remarkable about rounding, results from MPFR.
+// Makes the known answers of the number layer. Operands are selected so that every operation has rows with every
+// rounding feature; results are from MPFR.
 #pragma once
 #include <bit>
 #include <cmath>
@@ -14,10 +14,10 @@
 
 namespace raya {
 
-/// The feature of rows that are wrong where a b + c is fused or is not, or where a quotient is made by the reciprocal.
-inline constexpr const char* kOtherWay = "another way is wrong";
+/// Feature of rows that another method would change: fused or unfused a b + c, or a quotient by the reciprocal.
+inline constexpr const char* kOtherMethod = "another method is wrong";
 
-/// The operations as functions of bits, by one of the oracles: MpfrOracle, or IeeeOracle for fp32.
+/// The operations by an oracle, with the features of their results. Oracle: MpfrOracle, or IeeeOracle for fp32.
 template <class Oracle>
 class AnswerMaker {
   public:
@@ -27,16 +27,16 @@ class AnswerMaker {
         return operation == kPower ? power(a, b) : oracle_result(oracle_, operation, a, b, c);
     }
 
-    /// What is remarkable about this row; rows of the same features say the same.
+    /// Returns the features of this row; rows with the same features are redundant.
     std::set<std::string> features(std::size_t operation, float a, float b, float c) {
         const float expected = result(operation, a, b, c);
         exact(operation, a, b, c);
         std::set<std::string> all = features_of(exact_, expected, format_);
-        // What a compiler or a device may do in place of the operation.
+        // Methods that a compiler or device may use instead of the operation.
         if ((operation == kMad || operation == kMulAdd) &&
             differ(oracle_.mad(a, b, c), oracle_.add(oracle_.mul(a, b), c)))
-            all.insert(kOtherWay);
-        if (operation == kDiv && differ(expected, oracle_.mul(a, oracle_.div(1, b)))) all.insert(kOtherWay);
+            all.insert(kOtherMethod);
+        if (operation == kDiv && differ(expected, oracle_.mul(a, oracle_.div(1, b)))) all.insert(kOtherMethod);
         const double largest = format_.is_fp32() ? INFINITY : largest_number();
         if (std::abs(expected) == largest) all.insert(std::signbit(expected) ? "largest -" : "largest +");
         if (std::fpclassify(expected) == FP_SUBNORMAL) all.insert("denormal");
@@ -51,7 +51,7 @@ class AnswerMaker {
         return std::ldexp(2 - std::ldexp(1.0, -format_.fraction_bits), range_of(format_).highest);
     }
 
-    // The exact value of operations with one rounding; of the others, their result.
+    // Sets exact_ to the exact value of operations with one rounding, to the result of others.
     void exact(std::size_t operation, float a, float b, float c) {
         Mpfr x(24), y(24), z(24);
         mpfr_set_flt(x, a, MPFR_RNDN);
@@ -77,7 +77,7 @@ class AnswerMaker {
             mpfr_set_flt(exact_, result(operation, a, b, c), MPFR_RNDZ);
     }
 
-    // kernels/number/power.clh, operation by operation.
+    // The operations of kernels/number/power.clh in the same order.
     float constant(float value) { return format_.is_fp32() ? value : round_to_format(value, format_); }
     float log2(float x) {
         const auto bits = std::bit_cast<std::int32_t>(x);
@@ -107,8 +107,8 @@ class AnswerMaker {
     Mpfr exact_{kExactBits};
 };
 
-/// Numbers of the format at which something happens, of either sign.
-inline std::vector<float> landmarks(const NumberFormat& format) {
+/// Special numbers of the format, of either sign: ends of the range, neighbours of 1, ...
+inline std::vector<float> special_numbers(const NumberFormat& format) {
     const Range range = range_of(format);
     const double unit = std::ldexp(1.0, -format.fraction_bits), base = std::ldexp(1.0, range.highest - 1);
     const double smallest = std::ldexp(1.0, range.lowest), step = base * unit;
@@ -137,7 +137,7 @@ inline std::vector<float> landmarks(const NumberFormat& format) {
     return all;
 }
 
-/// Operands that may be worth a row: [row][3].
+/// Candidate operands: [row][3].
 inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const NumberFormat& format) {
     constexpr std::uint64_t kSeed = 19'930;
     constexpr std::size_t kRandomRows = 3000;
@@ -160,31 +160,32 @@ inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const
             all.push_back({rounded(1 - std::ldexp(random.uniform(0, 1), -i)), rounded(random.uniform(1, 30)), 1});
         return all;
     }
-    // By lot first: their operands are richer than the landmarks, which have the features that are left.
-    const NumberFormat drawn = operation == kRound ? NumberFormat{} : format;  // what is rounded is any fp32 number
-    const NumberRows rows = RandomOperands(drawn, kSeed).rows(kRandomRows);
+    // Random operands first: they have more features; special numbers add the missing ones.
+    const NumberFormat operand_format =
+        operation == kRound ? NumberFormat{} : format;  // num_round takes any fp32 number
+    const NumberRows rows = RandomOperands(operand_format, kSeed).rows(kRandomRows);
     for (std::size_t i = 0; i < rows.count(); ++i) all.push_back({rows.a[i], rows.b[i], rows.c[i]});
-    const std::vector<float> marks = landmarks(format);
+    const std::vector<float> marks = special_numbers(format);
     for (const float a : marks)
         for (const float b : marks)
             for (const float c : {1.0F, -a, b, marks[all.size() % marks.size()]}) all.push_back({a, b, c});
     return all;
 }
 
-/// The rows of one operation: the first candidates with which each feature is there twice, and some more.
+/// The rows of one operation: the first candidates with each feature, until each occurs twice (some six times).
 template <class Oracle>
 std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t operation, const NumberFormat& format) {
-    const auto enough = [](const std::string& feature) { return feature == kOtherWay || feature == kTwice ? 6 : 2; };
+    const auto enough = [](const std::string& feature) { return feature == kOtherMethod || feature == kTwice ? 6 : 2; };
     const std::size_t operands = kNumberOperations[operation].operands;
     std::map<std::string, int> seen;
     std::set<std::array<std::uint32_t, 3>> taken;
     std::vector<KnownAnswer> answers;
     for (auto [a, b, c] : candidates(operation, format)) {
-        // num_round is for normal numbers and zeros.
+        // num_round takes normal numbers and zeros only.
         if (operation == kRound && (std::fpclassify(a) == FP_SUBNORMAL || std::isinf(a))) continue;
         if (operands < 2) b = 1;
         if (operands < 3) c = 1;
-        bool wanted = operation == kPower;  // all: its candidates are chosen
+        bool wanted = operation == kPower;  // all candidates of num_power
         const std::set<std::string> features = maker.features(operation, a, b, c);
         for (const std::string& feature : features) wanted = wanted || seen[feature] < enough(feature);
         const std::array<std::uint32_t, 3> bits = {std::bit_cast<std::uint32_t>(a), std::bit_cast<std::uint32_t>(b),
@@ -215,7 +216,7 @@ inline FormatAnswers answers_in(const NumberFormat& format) {
     return answers_by(oracle, format);
 }
 
-/// The text of host/verify/known_answers.csv: a format for each way of the layer and more.
+/// The text of host/verify/known_answers.csv: a format for each variant of the number layer, and more.
 inline std::string make_known_answers() {
     std::vector<FormatAnswers> all;
     for (const char* name :

@@ -1,4 +1,4 @@
-// Makes the known pictures: each as plainly as it can be made, on the default device.
+// Makes the known pictures with the plain settings on the default device.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@ namespace raya {
 
 inline Image plain_picture(const Picture& picture) {
     Session session(choose_device(""));
-    return RingRenderer(session, scene_of(picture), plain_settings(picture)).render().image;
+    return RingRenderer(session, scene_of(picture), reference_settings(picture)).render().image;
 }
 
 /// The text of host/verify/pictures.txt.
@@ -19,7 +19,7 @@ inline std::string make_pictures() {
     for (const Picture& picture : pictures()) {
         const Image image = plain_picture(picture);
         Session session(choose_device(""));
-        all.push_back({picture.name, pixel_hash(image), image, counts_of_ways(session, picture)});
+        all.push_back({picture.name, pixel_hash(image), image, counts_by_variant(session, picture)});
     }
     return pictures_text(all);
 }

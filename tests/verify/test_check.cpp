@@ -1,4 +1,4 @@
-// One check: what becomes of exceptions, what is tried after them, and its text as JSON and back.
+// Checks: exceptions, remedies, depths, and conversion to JSON and back.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -16,7 +16,7 @@ std::string text_of(const std::vector<std::string>& lines) {
     return text;
 }
 
-// The remedies of a check that throws this.
+// Returns the remedies of a check that throws this error.
 template <class Error>
 std::string remedies_after(const std::string& message) {
     const Check check = run_check("layer", "name", [&]() -> Verdict { throw Error(message); });
@@ -26,21 +26,21 @@ std::string remedies_after(const std::string& message) {
 
 }  // namespace
 
-TEST_CASE("a check that throws has failed, with what fits the reason", "[verify]") {
+TEST_CASE("run_check: a check that throws fails, with remedies for the reason", "[verify]") {
     using Catch::Contains;
     CHECK_THAT(remedies_after<DeviceError>("building program 'x.cl': clBuildProgram failed with "
                                            "CL_BUILD_PROGRAM_FAILURE (-11)\n  options: -w"),
                Contains("build log") && Contains("-cl-opt-disable"));
     CHECK_THAT(remedies_after<DeviceError>("allocating buffer 'x' (8 bytes): CL_MEM_OBJECT_ALLOCATION_FAILURE (-4)"),
-               Contains("memory is short") && !Contains("build log"));
+               Contains("out of memory") && !Contains("build log"));
     CHECK_THAT(remedies_after<DeviceError>("'x': clFinish failed with CL_DEVICE_NOT_AVAILABLE (-2)"),
                Contains("the device was lost") && !Contains("memory"));
     CHECK_THAT(remedies_after<DeviceError>("another reason"), Contains("raya devices") && Contains("driver"));
     CHECK_THAT(remedies_after<std::logic_error>("400 packets of kind 1 were made, 399 ended"),
-               Contains("tell its authors") && !Contains("driver"));
+               Contains("report it") && !Contains("driver"));
 }
 
-TEST_CASE("what is tried already is no remedy", "[verify]") {
+TEST_CASE("remedies: leave out what is set already", "[verify]") {
     using Catch::Contains;
     ::unsetenv("RAYA_BUILD_OPTIONS");
     CHECK_THAT(text_of(compiler_remedies()), Contains("-cl-opt-disable"));
@@ -52,13 +52,13 @@ TEST_CASE("what is tried already is no remedy", "[verify]") {
         return text_of(Verification(choose_device(""), settings, {}).lanes_remedies(lanes));
     };
     CHECK_THAT(remedies(Depth::kQuick, 0, 8), Contains("raya verify --lanes 1"));
-    CHECK_THAT(remedies(Depth::kFull, 0, 8), !Contains("--full") && Contains("give --lanes"));
+    CHECK_THAT(remedies(Depth::kFull, 0, 8), !Contains("--full") && Contains("use --lanes"));
     CHECK_THAT(remedies(Depth::kFull, 8, 8), Contains("--lanes 1"));
     CHECK(remedies(Depth::kQuick, 1, 1).empty());
     CHECK(remedies(Depth::kFull, 0, 1).empty());
 }
 
-TEST_CASE("what is deeper has every check that is less deep, and more", "[verify]") {
+TEST_CASE("check_names: a deeper level has all checks of the levels above, and more", "[verify]") {
     const auto names = [](Depth depth) { return check_names(choose_device(""), {.depth = depth, .lanes = 1}); };
     const std::vector<std::string> brief = names(Depth::kBrief), quick = names(Depth::kQuick),
                                    full = names(Depth::kFull);
@@ -76,7 +76,7 @@ TEST_CASE("what is deeper has every check that is less deep, and more", "[verify
     }
 }
 
-TEST_CASE("checks come back from their JSON", "[verify]") {
+TEST_CASE("check_of: inverts to_json", "[verify]") {
     const Fault fault{.where = "there", .expected = "1", .got = "2", .options = "-w", .remedies = {"this", "that"}};
     for (const Verdict& verdict : {passed("3 answers"), skipped("no reason"), failed("wrong", fault)}) {
         const Check check{"layer", "name", 1.5, verdict};
@@ -85,7 +85,7 @@ TEST_CASE("checks come back from their JSON", "[verify]") {
     }
 }
 
-TEST_CASE("checks that are done already are left out", "[verify]") {
+TEST_CASE("verify: skips the first `done` checks", "[verify]") {
     const cl::Device device = choose_device("");
     const std::vector<std::string> names = check_names(device, {.only = "rotations"});
     REQUIRE(names.size() == 3);

@@ -1,4 +1,4 @@
-// verify fails when it must: each fault, put in on purpose, is seen by the checks that it concerns and by no others.
+// Fault injection into kernels: each fault fails the checks that it affects, and no others.
 #include <catch2/catch.hpp>
 #include <set>
 #include <stdexcept>
@@ -20,7 +20,7 @@ std::vector<Check> run(const std::vector<SourcePatch>& faults, const std::string
     return verify(choose_device(""), {.sources = {.patches = faults}, .only = only});
 }
 
-// Names of those that failed.
+// Returns the names of the failed checks.
 Names failures(const std::vector<Check>& checks) {
     Names names;
     for (const Check& check : checks)
@@ -28,7 +28,7 @@ Names failures(const std::vector<Check>& checks) {
     return names;
 }
 
-// Of every check's name what stands before its first comma, of those that ended so.
+// Returns the names, up to the first comma, of the checks with this outcome.
 Names beginnings(const std::vector<Check>& checks, Outcome outcome) {
     Names names;
     for (const Check& check : checks)
@@ -42,7 +42,7 @@ const Fault& first_fault(const std::vector<Check>& checks) {
     throw std::logic_error("nothing failed");
 }
 
-// The kernel of a file, doing nothing.
+// Returns a patch that makes the kernel return at once.
 SourcePatch emptied(const std::string& file, const std::string& kernel) {
     const std::string text = kernel_file(file);
     const std::size_t at = text.find("void " + kernel + "(");
@@ -52,7 +52,7 @@ SourcePatch emptied(const std::string& file, const std::string& kernel) {
 
 }  // namespace
 
-TEST_CASE("a wrong rounding is seen in the formats that round to nearest, no others", "[verify][faults]") {
+TEST_CASE("rounding fault: fails the formats that round to nearest, no others", "[verify][faults]") {
     const auto checks = run({kRoundingFault}, "number");
     CHECK(beginnings(checks, Outcome::kFail) == Names{"e5m10", "e6m15", "e8m12"});
     CHECK(beginnings(checks, Outcome::kPass) == Names{"fp32", "e6m15t", "e8m21t"});
@@ -65,20 +65,20 @@ TEST_CASE("a wrong rounding is seen in the formats that round to nearest, no oth
     CHECK_FALSE(fault.remedies.empty());
 }
 
-TEST_CASE("a contracted multiply-add is seen, and said to be one", "[verify][faults]") {
+TEST_CASE("contraction fault: fails the operation mul_add, not mad", "[verify][faults]") {
     const auto checks = run({kContractionFault}, "number fp32");
     REQUIRE(checks.size() == 1);
-    CHECK_THAT(checks[0].verdict.told, Catch::Contains("mul_add") && !Catch::Contains(" of mad"));
+    CHECK_THAT(checks[0].verdict.result, Catch::Contains("mul_add") && !Catch::Contains(" of mad"));
     CHECK_THAT(checks[0].verdict.fault.where, Catch::StartsWith("mul_add("));
 }
 
-TEST_CASE("a division by the reciprocal is seen", "[verify][faults]") {
+TEST_CASE("division fault: fails div, not mul", "[verify][faults]") {
     const auto checks = run({kDivisionFault}, "number fp32");
     REQUIRE(failures(checks).size() == 1);
-    CHECK_THAT(checks[0].verdict.told, Catch::Contains(" of div") && !Catch::Contains(" of mul"));
+    CHECK_THAT(checks[0].verdict.result, Catch::Contains(" of div") && !Catch::Contains(" of mul"));
 }
 
-TEST_CASE("a wrong rule for equal distances is seen where spheres coincide", "[verify][faults]") {
+TEST_CASE("tie fault: fails known hits of coincident spheres, no others", "[verify][faults]") {
     const auto checks = run({kTieFault}, ", fp32");
     CHECK(beginnings(checks, Outcome::kFail) == Names{"known hits of spheres"});
     CHECK(beginnings(checks, Outcome::kPass) ==
@@ -88,13 +88,13 @@ TEST_CASE("a wrong rule for equal distances is seen where spheres coincide", "[v
     CHECK_THAT(first_fault(checks).got, Catch::StartsWith("object 3"));
 }
 
-TEST_CASE("a walk that ends too soon is seen by hits that lie farther away", "[verify][faults]") {
+TEST_CASE("grid fault: fails all checks of hits by search", "[verify][faults]") {
     const auto checks = run({kWalkFault}, ", fp32");
     CHECK(failures(checks).size() == 5);
     CHECK_THAT(first_fault(checks).where, Catch::Contains("hits_by_search"));
 }
 
-TEST_CASE("faults of arithmetic, hits and walk are seen in images too", "[verify][faults]") {
+TEST_CASE("faults of arithmetic, hits and grid: fail image checks too", "[verify][faults]") {
     struct Row {
         SourcePatch fault;
         const char* only;
@@ -120,14 +120,14 @@ TEST_CASE("faults of arithmetic, hits and walk are seen in images too", "[verify
     }
 }
 
-TEST_CASE("a kernel that does nothing finds no right answers", "[verify][faults]") {
+TEST_CASE("a kernel that does nothing: fails its checks", "[verify][faults]") {
     struct Row {
         const char *file, *kernel, *only;
         std::size_t wrong;
     };
     const Row rows[] = {
         {"checks/hits.cl", "hits_of_all", ", fp32", 5},         {"checks/hits.cl", "hits_by_search", ", fp32", 5},
-        {"checks/machine.cl", "find_owners", "mapping", 7},     {"checks/machine.cl", "find_ways", "ways", 1},
+        {"checks/machine.cl", "find_owners", "mapping", 7},     {"checks/machine.cl", "find_ways", "routes", 1},
         {"checks/machine.cl", "turn_round", "local memory", 2}, {"checks/numbers.cl", "operations", "number fp32", 1}};
     for (const Row& row : rows) {
         CAPTURE(row.kernel);
@@ -137,24 +137,24 @@ TEST_CASE("a kernel that does nothing finds no right answers", "[verify][faults]
     }
 }
 
-TEST_CASE("faults of whole numbers and barriers are seen where they are", "[verify][faults]") {
+TEST_CASE("integer and barrier faults: fail their machine checks, no others", "[verify][faults]") {
     CHECK(failures(run({}, "machine")) == Names{});
     CHECK(failures(run({kMappingFault}, "machine")) == Names{"mapping: cyclic, block fold", "mapping: blocks"});
     CHECK(failures(run({kBarrierFault}, "machine")) == Names{"local memory and barriers, 32 work-items"});
 }
 
-TEST_CASE("a wrong border of the filter is seen in its images alone, with the pixel", "[verify][faults]") {
+TEST_CASE("border fault: fails images with the filter only, and names the pixel", "[verify][faults]") {
     const auto checks = run({kBorderFault}, "image glass");
     CHECK(failures(checks) == Names{"glass fp32 filter: cyclic:5 on 10"});
     CHECK(checks.size() > 4);
     CHECK_THAT(first_fault(checks).where, Catch::StartsWith("row 0, column 19"));
 }
 
-TEST_CASE("faults of links by a kernel and of launches that go on are seen on the torus, where there are such",
+TEST_CASE("faults of link exchange by kernel and of resumed launches: fail the torus checks with them, no others",
           "[verify][faults]") {
-    const Names by_kernel = {"torus3d: exchange of all boxes by a kernel", "torus3d: exchange of few boxes by a kernel",
-                             "torus2d: exchange of all boxes by a kernel",
-                             "torus2d: exchange of few boxes by a kernel"};
+    const Names by_kernel = {
+        "torus3d: exchange of all mailboxes by a kernel", "torus3d: exchange of few mailboxes by a kernel",
+        "torus2d: exchange of all mailboxes by a kernel", "torus2d: exchange of few mailboxes by a kernel"};
     CHECK(failures(run({kExchangeFault}, "exchange of")) == by_kernel);
     CHECK(failures(run({emptied("torus/exchange.cl", "exchange")}, "exchange of")) == by_kernel);
     const Names bounded = {"polygons fp32: torus3d 2x2x2, launches of 3 units, links by a kernel"};
@@ -166,23 +166,22 @@ TEST_CASE("faults of links by a kernel and of launches that go on are seen on th
     }
 }
 
-TEST_CASE("a wrong kind, a lost count and a double count are seen where events are counted", "[verify][faults][slow]") {
+TEST_CASE("count faults at one place: fail the image check with the event", "[verify][faults][slow]") {
     for (const CountFault& fault : kCountFaults) {
         CAPTURE(fault.event, fault.patch.file, fault.patch.replace);
         const auto checks = run({fault.patch}, fault.only);
         REQUIRE(checks.size() == 1);
         REQUIRE(failures(checks).size() == 1);
         const Verdict& verdict = checks[0].verdict;
-        CHECK_THAT(verdict.told, Catch::StartsWith("wrong counts: "));
-        CHECK_THAT(verdict.told + ",", Catch::Contains(fmt::format(" {},", fault.event)));
+        CHECK_THAT(verdict.result, Catch::StartsWith("wrong counts: "));
+        CHECK_THAT(verdict.result + ",", Catch::Contains(fmt::format(" {},", fault.event)));
         CHECK_THAT(verdict.fault.expected, Catch::Contains(fmt::format("{} ", fault.event)));
         CHECK_THAT(verdict.fault.got, Catch::Contains(fmt::format("{} ", fault.event)));
         CHECK(verdict.fault.expected != verdict.fault.got);
     }
 }
 
-TEST_CASE("every event's wrong kind, lost count and double count is seen by the image checks",
-          "[verify][faults][.][long]") {
+TEST_CASE("count faults of every event: fail an image check", "[verify][faults][.][long]") {
     for (int event = 0; event < RAYA_EVENTS; ++event)
         for (const int how : {0, 1, 2}) {
             const bool walks = event == RAYA_WALKS || event == RAYA_STEPS, torus = event == RAYA_DISCARDED;
@@ -198,7 +197,7 @@ TEST_CASE("every event's wrong kind, lost count and double count is seen by the 
         }
 }
 
-TEST_CASE("wrong counts are seen by image checks alone, by all where such events are", "[verify][faults][slow]") {
+TEST_CASE("count faults: fail only image checks, all with the event", "[verify][faults][slow]") {
     const auto checks = run({kCountFaults.front().patch, torus_count_fault(RAYA_SHADOW, 2)}, "");
     std::set<std::string> layers;
     for (const Check& check : checks)
@@ -210,19 +209,19 @@ TEST_CASE("wrong counts are seen by image checks alone, by all where such events
     CHECK(failures(checks).size() >= 8);
 }
 
-TEST_CASE("known pictures have the counts of a ring, and of other ways in which they are rendered", "[verify]") {
+TEST_CASE("known pictures: have the counts of a ring and of the other variants", "[verify]") {
     for (const Picture& picture : pictures()) CHECK(known_picture(picture).counts.contains("ring"));
     CHECK_THAT(known_picture(picture_named("polygons fp32")).counts.at("bvh"), Catch::StartsWith("primary 400 "));
 }
 
-TEST_CASE("a device that refuses a build fails the check, and the others go on", "[verify]") {
+TEST_CASE("verify: a failed build fails its check, and the others continue", "[verify]") {
     const VerifySettings settings{.sources = {"/no/such/folder"}, .only = "machine"};
     const auto checks = verify(choose_device(""), settings);
     CHECK(count_of(checks, Outcome::kFail) > 5);
     CHECK(count_of(checks, Outcome::kPass) > 5);  // transfers need no kernel
 }
 
-TEST_CASE("a patch that does not fit ends verify before any check", "[verify]") {
+TEST_CASE("verify: refuses a patch that does not apply, before any check", "[verify]") {
     CHECK_THROWS_AS(run({{"ring/trace.cl", "no such text", ""}}, "machine"), std::logic_error);
 }
 

@@ -1,4 +1,4 @@
-// The known answers are what MPFR gives, and lead into every corner of rounding.
+// The known answers: equal to MPFR's, with every rounding feature.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -13,17 +13,17 @@ float value(std::uint32_t bits) { return std::bit_cast<float>(bits); }
 
 }  // namespace
 
-TEST_CASE("the file of known answers is what its program makes", "[verify]") {
+TEST_CASE("known_answers.csv: equals the output of make_known_answers", "[verify]") {
     CHECK(embedded_files().at("host/verify/known_answers.csv") == make_known_answers());
 }
 
-TEST_CASE("known answers come back from their text", "[verify]") {
+TEST_CASE("parse_known_answers: inverts known_answers_text", "[verify]") {
     const std::string text = embedded_files().at("host/verify/known_answers.csv");
     CHECK(known_answers_text(parse_known_answers(text)) == text);
-    CHECK(text.size() < 65'536);  // small enough to be carried in the program
+    CHECK(text.size() < 65'536);  // embedded in the program
 }
 
-TEST_CASE("known answers in fp32 are the host's", "[verify]") {
+TEST_CASE("known answers in fp32: equal the host's results", "[verify]") {
     const FormatAnswers& fp32 = known_answers().front();
     REQUIRE(fp32.format.is_fp32());
     HostOracle host;
@@ -40,7 +40,7 @@ TEST_CASE("known answers in fp32 are the host's", "[verify]") {
         }
 }
 
-TEST_CASE("every format has answers of every operation, ties and both ends of the range among them", "[verify]") {
+TEST_CASE("known answers: every format has every operation, ties and both ends of the range", "[verify]") {
     CHECK(known_answers().size() == 11);
     for (const FormatAnswers& answers : known_answers()) {
         CAPTURE(format_name(answers.format));
@@ -55,7 +55,7 @@ TEST_CASE("every format has answers of every operation, ties and both ends of th
                          maker.features(k, value(a.operands[0]), value(a.operands[1]), value(a.operands[2])))
                         seen.insert(feature);
             for (const char* feature : {"flushed +", "flushed -", "largest +", "largest -", "smallest", "zero -",
-                                        "just above a tie +", "just below a tie -", kOtherWay})
+                                        "just above a tie +", "just below a tie -", kOtherMethod})
                 CHECK(seen.count(feature) == 1);
             CHECK(seen.count(answers.format.truncates ? "tie down +" : "tie up +") == 1);
             if (answers.format.fraction_bits >= 10) CHECK(seen.count(kTwice) == 1);
@@ -63,7 +63,7 @@ TEST_CASE("every format has answers of every operation, ties and both ends of th
     }
 }
 
-TEST_CASE("a file of known answers that is not so is refused", "[verify]") {
+TEST_CASE("parse_known_answers: refuses other texts", "[verify]") {
     for (const char* text :
          {"3f8 3f8\n", "fp32 add\n3f8 3f8\n", "fp32 add\n3f8 3f8 3f8x\n", "fp32 pow\n", "fp32 sqrt\n123456789 0\n"}) {
         CAPTURE(text);

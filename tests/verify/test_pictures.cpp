@@ -1,4 +1,4 @@
-// The known pictures: what the default device makes of them plainly, and what the double-precision reference sees.
+// The known pictures, compared with plain renders of the default device and with the double-precision reference.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <stdexcept>
@@ -10,8 +10,8 @@
 
 namespace raya {
 
-// Those that raya verify --quick makes are not made here once more: tools.verify compares them.
-TEST_CASE("pictures that are not in verify --quick are what the default device makes of them", "[verify][slow]") {
+// The test tools.verify compares the pictures of raya verify --quick.
+TEST_CASE("known pictures not in verify --quick: equal plain renders of the default device", "[verify][slow]") {
     const std::vector<std::string> quick = check_names(choose_device(""), {.only = "image "});
     std::size_t made = 0;
     for (const Picture& picture : pictures()) {
@@ -21,13 +21,13 @@ TEST_CASE("pictures that are not in verify --quick are what the default device m
             continue;
         CHECK(pixel_hash(plain_picture(picture)) == known_picture(picture).hash);
         Session session(choose_device(""));
-        CHECK(counts_of_ways(session, picture) == known_picture(picture).counts);
+        CHECK(counts_by_variant(session, picture) == known_picture(picture).counts);
         ++made;
     }
     CHECK(made == 6);
 }
 
-TEST_CASE("known pictures in fp32 are what the reference sees", "[verify]") {
+TEST_CASE("known pictures in fp32: equal the reference within its tolerance", "[verify]") {
     for (const Picture& picture : pictures()) {
         if (picture.format != "fp32" || picture.antialias != AntialiasMethod::kNone) continue;
         CAPTURE(picture.name);
@@ -43,14 +43,14 @@ TEST_CASE("known pictures in fp32 are what the reference sees", "[verify]") {
     }
 }
 
-TEST_CASE("known pictures come back from their text", "[verify]") {
+TEST_CASE("parse_pictures: inverts pictures_text", "[verify]") {
     const std::string text = embedded_files().at("host/verify/pictures.txt");
     const std::vector<KnownPicture> all = parse_pictures(text);
     CHECK(all.size() == pictures().size());
     CHECK(pictures_text(all) == text);
 }
 
-TEST_CASE("a picture whose pixels are not those of its hash is refused", "[verify]") {
+TEST_CASE("parse_pictures: refuses pixels that do not match the hash", "[verify]") {
     const KnownPicture& known = known_picture(pictures().front());
     std::string text = pictures_text({known});
     CHECK_NOTHROW(parse_pictures(text));

@@ -1,5 +1,5 @@
-// The part of fmt that lies in its library, for programs that carry all they need: Debian has fmt as a shared library
-// alone. The instantiations are those that its headers leave to it (src/format.cc of fmt 9) and raya uses.
+// The compiled part of fmt, for programs without shared libraries: Debian has no static library of fmt. Contains the
+// instantiations of src/format.cc (fmt 9) that raya uses.
 #include <fmt/format-inl.h>
 
 FMT_BEGIN_NAMESPACE

@@ -1,6 +1,5 @@
-// How an exception finds the tables by which it unwinds, for C libraries before glibc 2.35, which lack this function:
-// gcc's unwinder, linked into programs that are to run there, calls nothing else of that version. Hidden: nobody else
-// gets it.
+// _dl_find_object() for C libraries before glibc 2.35: gcc's unwinder finds the unwind tables of an exception with it.
+// It is the only function of that version that a statically linked unwinder needs. Hidden from other libraries.
 #include <dlfcn.h>
 #include <link.h>
 
@@ -13,8 +12,8 @@ struct Search {
     dl_find_object* result;
 };
 
-/// 1 where the object has the address among its segments, else 0: go on.
-int look(dl_phdr_info* object, std::size_t, void* data) {
+/// Callback of dl_iterate_phdr(): returns 1 if the address lies in a segment of the object, else 0 to continue.
+int find_object(dl_phdr_info* object, std::size_t, void* data) {
     const auto& search = *static_cast<Search*>(data);
     bool inside = false;
     void* tables = nullptr;
@@ -31,10 +30,10 @@ int look(dl_phdr_info* object, std::size_t, void* data) {
 
 }  // namespace
 
-/// 0 where `address` lies in a loaded object that has such tables; of the result the unwinder reads dlfo_eh_frame
-/// alone.
+/// Returns 0 if `address` lies in a loaded object with unwind tables, else -1. Sets only dlfo_eh_frame, the only member
+/// that the unwinder reads.
 extern "C" __attribute__((visibility("hidden"))) int _dl_find_object(void* address, dl_find_object* result) noexcept {
     *result = {};
     Search search{reinterpret_cast<std::uintptr_t>(address), result};
-    return ::dl_iterate_phdr(look, &search) == 1 && result->dlfo_eh_frame != nullptr ? 0 : -1;
+    return ::dl_iterate_phdr(find_object, &search) == 1 && result->dlfo_eh_frame != nullptr ? 0 : -1;
 }

@@ -1,11 +1,11 @@
-// What raya is measured against: the same Whitted ray tracing (kernels/README.md) of the same scenes on Embree 3, on
-// all cores.
+// Baseline for raya's times: the same Whitted ray tracing (kernels/README.md) of the same scenes with Embree 3 on all
+// cores.
 //
 //   embree_peer SCENE.nff WxH BOUNCES centres|corners SAMPLES
 //
-// Prints, for each of two ways, "WAY RAYS SECONDS...", one time for each sample; then "build SECONDS". `single` asks
-// Embree ray by ray, `sixteen` walks the ray trees of sixteen pixels, 4 x 4, in step and asks for sixteen rays at once.
-// Only the loop over the picture is timed.
+// Prints "METHOD RAYS SECONDS..." for each of two methods, with one time for each sample, and "build SECONDS". `single`
+// traces ray by ray; `sixteen` traces the ray trees of sixteen pixels, 4 x 4, in lockstep, in packets of sixteen rays.
+// Only the loop over the pixels is timed.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -18,7 +18,7 @@
 namespace raya {
 namespace {
 
-void measure(const char* way, Picture& picture, long (Picture::*render)(), int samples) {
+void measure(const char* method, Picture& picture, long (Picture::*render)(), int samples) {
     std::string times;
     long rays = 0;
     for (int i = 0; i <= samples; ++i) {  // the first warms up
@@ -28,17 +28,17 @@ void measure(const char* way, Picture& picture, long (Picture::*render)(), int s
         if (i > 0) times += " " + std::to_string(s);
     }
     const V3 mean = picture.mean();
-    std::printf("%s %ld%s\nmean %s %f %f %f\n", way, rays, times.c_str(), way, mean.x, mean.y, mean.z);
+    std::printf("%s %ld%s\nmean %s %f %f %f\n", method, rays, times.c_str(), method, mean.x, mean.y, mean.z);
 }
 
-int run(char** words) {
-    const Scene scene = read_nff(words[0]);
+int run(char** arguments) {
+    const Scene scene = read_nff(arguments[0]);
     int width = 0, height = 0;
-    if (std::sscanf(words[1], "%dx%d", &width, &height) != 2) return 2;
+    if (std::sscanf(arguments[1], "%dx%d", &width, &height) != 2) return 2;
     const EmbreeScene embree(scene);
-    const Whitted whitted(scene, embree, std::atoi(words[2]));
-    Picture picture(whitted, camera_of(scene.view, width, height, std::string(words[3]) == "corners"));
-    const int samples = std::atoi(words[4]);
+    const Whitted whitted(scene, embree, std::atoi(arguments[2]));
+    Picture picture(whitted, camera_of(scene.view, width, height, std::string(arguments[3]) == "corners"));
+    const int samples = std::atoi(arguments[4]);
     measure("single", picture, &Picture::single, samples);
     measure("sixteen", picture, &Picture::sixteen, samples);
     std::printf("build %f\n", embree.build_s());

@@ -36,9 +36,9 @@ void cone_bounds(const RTCBoundsFunctionArguments* args) {
     }
 }
 
-// t of the nearest hit of the ray between `near` and `far`; beyond `far` where there is none.
+// t of the ray's nearest hit between `near` and `far`; a value beyond `far` if there is none.
 float meet_cone(const PeerCone& c, V3 origin, V3 direction, float near, float far, V3& normal) {
-    // From the ray's point nearest to the base: else a ray that starts on the cone hits it again by rounding.
+    // Computes from the ray's point nearest to the base: otherwise rounding makes a ray that starts on the cone hit it.
     const float moved = dot(c.base - origin, direction);
     const V3 start = (origin - c.base) + moved * direction;
     const float z = dot(start, c.axis), dz = dot(direction, c.axis);
@@ -128,7 +128,7 @@ void EmbreeScene::add_spheres(const Scene& scene) {
     auto* rows = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
                                                              4 * sizeof(float), scene.spheres.size()));
     for (const Sphere& s : scene.spheres) {
-        if (s.radius < 0) throw UserError("a sphere of which only the inside is visible: Embree has none");
+        if (s.radius < 0) throw UserError("a sphere is visible only from inside: Embree does not support it");
         const V3 centre = to_float(s.centre);
         for (const float word : {centre.x, centre.y, centre.z, static_cast<float>(s.radius)}) *rows++ = word;
         centres_.push_back(centre);

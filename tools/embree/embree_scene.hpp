@@ -1,4 +1,4 @@
-// A scene of raya's as Embree holds it: spheres and triangles as Embree knows them, cones as geometry of our own.
+// A raya scene in Embree: Embree's spheres and triangles; cones as user geometry; planes outside Embree.
 #pragma once
 #include <embree3/rtcore.h>
 
@@ -22,16 +22,16 @@ inline V3 to_float(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// A surface as rays meet it.
+/// Shading parameters of a surface, in fp32.
 struct PeerSurface {
     V3 even, odd;
-    float checker = 0;  // side of a square, 0 without one
+    float checker = 0;  // side of a checker's square; 0: no checker
     float diffuse, specular, shine, transmittance, refraction;
 };
 
 struct PeerTriangle {
     int surface;
-    int normals;  // of its three corners: the first in EmbreeScene::normals, -1 for a flat one
+    int normals;  // index of its first of three normals in EmbreeScene::normals_; -1: a flat triangle
 };
 
 struct PeerCone {
@@ -41,16 +41,16 @@ struct PeerCone {
     int surface;
 };
 
-/// What a ray hits.
+/// The nearest hit of a ray.
 struct PeerHit {
     float t = 0;
-    V3 geometric, normal;  // as the object has them, not turned yet
-    int surface = -1;      // -1: nothing
+    V3 geometric, normal;  // the object's, not yet turned towards the ray
+    int surface = -1;      // -1: no hit
 };
 
 class EmbreeScene {
   public:
-    /// Throws UserError for a sphere of which only the inside is visible: Embree has no such thing.
+    /// Throws UserError for a sphere that is visible only from inside, which Embree does not support.
     explicit EmbreeScene(const Scene& scene);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
@@ -60,10 +60,10 @@ class EmbreeScene {
     const std::vector<PeerSurface>& surfaces() const { return surfaces_; }
     double build_s() const { return build_s_; }
 
-    /// The hit that Embree found, or that of a plane where one is nearer.
+    /// The hit that Embree found, or the hit of a plane if that is nearer.
     PeerHit hit(V3 origin, V3 direction, float t, unsigned geometry, unsigned primitive, V3 normal, float u,
                 float v) const;
-    /// Does a plane lie between the origin and t?
+    /// Returns true if a plane lies between the origin and t.
     bool plane_blocks(V3 origin, V3 direction, float t) const;
 
   private:

@@ -1,4 +1,4 @@
-// A picture by Embree on all cores: ray by ray, or the ray trees of sixteen pixels in step.
+// Renders a picture with Embree on all cores: ray by ray, or the ray trees of sixteen pixels in lockstep.
 #pragma once
 #include <embree3/rtcore.h>
 #include <pmmintrin.h>
@@ -15,7 +15,7 @@ namespace raya {
 inline constexpr int kWide = 16, kTile = 4;
 inline constexpr float kFar = 1e30f;
 
-/// The rays that wait of one pixel's tree.
+/// Stack of the rays of a pixel's tree that are still to be traced.
 class RayStack {
   public:
     void push_back(const Waiting& r) { rays_[size_++] = r; }
@@ -32,7 +32,7 @@ class Picture {
     Picture(const Whitted& whitted, const Camera& camera)
         : whitted_(whitted), camera_(camera), pixels_(static_cast<std::size_t>(camera.width) * camera.height) {}
 
-    /// Rays of the picture, ray by ray; in rows.
+    /// Calls trace_row(row) for all rows, on all cores. Returns the sum of its results: the number of rays.
     template <class Row>
     long all(int rows, const Row& trace_row) {
         std::atomic<int> next = 0;
@@ -40,7 +40,7 @@ class Picture {
         std::vector<std::thread> threads;
         for (unsigned i = 0; i < std::thread::hardware_concurrency(); ++i)
             threads.emplace_back([&] {
-                _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);  // as Embree's manual wants it
+                _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);  // recommended by Embree's manual
                 _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
                 long own = 0;
                 for (int row = next++; row < rows; row = next++) own += trace_row(row);
@@ -141,7 +141,7 @@ class Picture {
         return rays;
     }
 
-    // The next ray of each lane's tree; returns how many there were. Shadow rays are added to `rays`.
+    // Traces the next ray of each lane's tree. Returns their number; adds the number of shadow rays to `rays`.
     long step(std::array<Lane, kWide>& lanes, RTCIntersectContext& context, long& rays) const {
         alignas(64) std::array<int, kWide> valid{};
         alignas(64) RTCRayHit16 q;

@@ -1,4 +1,4 @@
-// The rays that Whitted's ray tracing sends and what they add to a pixel (kernels/README.md), in fp32 as it comes.
+// Secondary rays and shading of Whitted ray tracing (kernels/README.md), in fp32 with the compiler's rounding.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace raya {
 
 struct Camera {
-    V3 eye, gaze, right, top;  // right and top to the middle of the image's sides at distance 1
+    V3 eye, gaze, right, top;  // right and top reach from the image's centre to its sides, at distance 1
     int width, height;
     bool corners;
 
@@ -40,14 +40,14 @@ struct PeerLight {
     V3 position, colour;
 };
 
-/// A ray of a pixel's tree that waits.
+/// A ray of a pixel's tree that is still to be traced.
 struct Waiting {
     V3 origin, direction;
     float weight;
     int level;
 };
 
-/// What a ray has met, turned against it.
+/// A hit with its normal turned towards the ray.
 struct Met {
     V3 point, outer, inner, normal, colour;
     const PeerSurface* surface;
@@ -84,7 +84,7 @@ class Whitted {
 
     V3 ambient(const Met& m) const { return (ambient_ * m.surface->diffuse) * m.colour; }
 
-    /// What a light adds that nothing stops; `to_light` has length 1.
+    /// Contribution of a visible light; `to_light` has length 1.
     V3 lit(const Waiting& r, const Met& m, const PeerLight& light, V3 to_light) const {
         const PeerSurface& s = *m.surface;
         const V3 mirror = r.direction - 2 * dot(m.normal, r.direction) * m.normal;
@@ -93,7 +93,7 @@ class Whitted {
         return times(light.colour, (s.diffuse * dot(m.normal, to_light)) * m.colour + V3{bright, bright, bright});
     }
 
-    /// Appends the rays that follow, the one that is to be followed first last.
+    /// Pushes the reflected and refracted rays on the stack; the last one pushed is traced first.
     template <class Stack>
     void follow(Stack& stack, const Waiting& r, const Met& m) const {
         if (r.level >= bounces_) return;

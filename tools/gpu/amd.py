@@ -1,8 +1,9 @@
-"""AMD's CUs: clang makes machine code and says what it takes.
+"""AMD CUs: clang makes machine code and reports its resource usage.
 
-Registers are the vector registers of a work-item, at most 512; spills those kept in memory; scalar registers are kept in lanes of vector
-ones. Each of a CU's four SIMDs has 512 vector registers, handed out by 8, 800 scalar ones, by 16, and 8 waves; 64 KB, 16 groups of more than
-one wave (LLVM, AMDGPUBaseInfo.cpp). What the code says of itself is what -Rpass-analysis=kernel-resource-usage prints.
+Registers are the vector registers of a work-item, at most 512; spills are registers that are spilled to memory; scalar registers are
+spilled to lanes of vector registers. Each of a CU's four SIMDs has 512 vector registers, allocated in units of 8, 800 scalar registers, in
+units of 16, and 8 waves. A CU has 64 KB of local memory and at most 16 groups of more than one wave (LLVM, AMDGPUBaseInfo.cpp). The figures
+come from the metadata of the code, as printed by -Rpass-analysis=kernel-resource-usage.
 """
 import re
 
@@ -13,18 +14,19 @@ LIBRARY = "amdgcn--amdhsa.bc"
 MUST_NOT = {"double precision": re.compile(r"^\s*v_\w+_f64\b", re.M),
             "does not round to nearest": re.compile(r"\.amdhsa_float_round_mode_32 [^0]"),
             "denormals are flushed": re.compile(r"\.amdhsa_float_denorm_mode_32 [^3]"),
-            "a call is left": re.compile(r"^\s*s_swappc_b64\b", re.M)}
+            "a call is not inlined": re.compile(r"^\s*s_swappc_b64\b", re.M)}
 SYMBOL = re.compile(r"\b([A-Za-z_]\w*)@(?:gotpcrel|rel)32")
 
 
 def faults_of(text):
-    said = [f"{what}: {first_line(text, pattern)}" for what, pattern in MUST_NOT.items() if pattern.search(text)]
+    """Texts of the faults in AMD assembly."""
+    found = [f"{what}: {first_line(text, pattern)}" for what, pattern in MUST_NOT.items() if pattern.search(text)]
     unresolved = sorted({name for name in SYMBOL.findall(text) if not re.search(rf"^{re.escape(name)}:", text, re.M)})
-    return said + [f"unresolved: {name}" for name in unresolved]
+    return found + [f"unresolved: {name}" for name in unresolved]
 
 
 def waves_of(vector, scalar):
-    """That the registers of a CU are enough for."""
+    """Number of waves for which a CU has registers; vector, scalar: registers of one."""
     return 4 * min(8, 512 // rounded_up(max(vector, 1), 8), 800 // rounded_up(max(scalar, 1), 16))
 
 
@@ -38,26 +40,27 @@ class Amd:
     def __init__(self, clang):
         self.clang = clang
 
-    def lacking(self):
-        return self.clang.lacking(LIBRARY)
+    def missing(self):
+        return self.clang.missing(LIBRARY)
 
     def version(self):
         return self.clang.version(LIBRARY)
 
     @staticmethod
-    def together(targets):
+    def batches(targets):
+        """Lists of targets that compile() takes together."""
         return [[target] for target in targets]
 
-    def seen(self, folder, build, targets):
+    def compiler_input(self, folder, build, targets):
         return b"\0".join(self.clang.preprocessed(folder, build, options_of(target)) for target in targets)
 
-    def look(self, folder, build, targets):
-        """Figures and faults of the build's kernels for those of its targets."""
+    def compile(self, folder, build, targets):
+        """(figures, faults) of the build's kernels for these targets."""
         figures, faults = [], []
         for target in targets:
             text, error = self.clang.assembly(folder, build, LIBRARY, options_of(target))
-            said = [f"does not build: {error}"] if error else faults_of(text)
-            faults += [Fault(build["file"].removesuffix(".cl"), build["variant"], target, what) for what in said]
+            texts = [f"does not build: {error}"] if error else faults_of(text)
+            faults += [Fault(build["file"].removesuffix(".cl"), build["variant"], target, what) for what in texts]
             figures += [] if error else self.figures(build, target, text)
         return figures, faults
 
@@ -71,4 +74,4 @@ class Amd:
                             value["wavefront_size"], int(group[1]) if group else build["group"], value["vgpr_count"],
                             value["vgpr_spill_count"], value["private_segment_fixed_size"], value["group_segment_fixed_size"],
                             value["sgpr_spill_count"])
-            yield CORES[target].fit(found, waves_of(found.registers, value["sgpr_count"]))
+            yield CORES[target].set_occupancy(found, waves_of(found.registers, value["sgpr_count"]))

@@ -1,10 +1,10 @@
-"""What kernels may take: a file of the figures that they had, with the versions of the compilers that they are from."""
+"""The resource budget of kernels: a file of recorded figures, with the versions of the compilers that gave them."""
 import csv
 
 HEAD = ["kernel", "variant", "target", "width", "registers", "spills", "scalar_spills", "stack", "local"]
-BOUNDED = ["registers", "spills", "scalar_spills", "stack", "local"]  # 5 % more are too much; of nothing, anything
+BOUNDED = ["registers", "spills", "scalar_spills", "stack", "local"]  # may exceed the budget by at most 5 %
 VERSION = "# made for "
-SAYS = "# What kernels take of GPUs: made by `tools/gpu_check --write-budget`, do not edit. docs/gpu_resources.md says what the figures are.\n"
+HEADER = "# GPU resources of kernels: written by `tools/gpu_check --write-budget`, do not edit. docs/gpu_resources.md defines the figures.\n"
 
 
 class Budget:
@@ -19,30 +19,31 @@ class Budget:
             self.rows[row["kernel"], row["variant"], row["target"]] = row
 
     def judges(self, target, version):
+        """Returns true if the budget of a target is of this version of the compilers."""
         return self.versions.get(target) == version
 
     def faults(self, figures):
-        """What is above the budget, each with figure and budget."""
+        """Yields a text for each figure that exceeds the budget."""
         row = self.rows.get(figures.name)
         if row is None:
             yield "has no budget"
             return
         if figures.width < int(row["width"]):
-            yield f"runs {figures.width} work-items in step, {row['width']} in the budget"
+            yield f"threads of {figures.width} work-items, {row['width']} in the budget"
         for what in BOUNDED:
             figure, most = getattr(figures, what), int(row[what])
             if figure > 1.05 * most:
                 yield f"{what.replace('_', ' ')}: {figure}, {most} in the budget"
 
     def stale(self, found, targets):
-        """Rows of kernels that are no more."""
+        """Names of the rows for these targets whose kernels do not exist any more."""
         return sorted(name for name in set(self.rows) - found if name[2] in targets)
 
     def write(self, all_figures, versions, whole=True):
-        """With what was found; the rest stays: of targets that were not looked at, and, where not all kernels were, of the others."""
+        """Writes the file with new figures. Keeps the rows of other targets; if not all kernels were built (whole), also those of other kernels."""
         self.versions.update(versions)
         kept = {name: row for name, row in self.rows.items() if not whole or name[2] not in versions}
         kept.update({f.name: {key: getattr(f, key) for key in HEAD} for f in all_figures})
-        lines = [SAYS, *(f"{VERSION}{target}: {version}\n" for target, version in self.versions.items()), ",".join(HEAD) + "\n"]
+        lines = [HEADER, *(f"{VERSION}{target}: {version}\n" for target, version in self.versions.items()), ",".join(HEAD) + "\n"]
         lines += [",".join(str(row[key]) for key in HEAD) + "\n" for _, row in sorted(kept.items())]
         self.path.write_text("".join(lines))

@@ -1,15 +1,15 @@
-"""clang and libclc, which stand in for the OpenCL compilers of NVIDIA and AMD."""
+"""clang and libclc, used instead of the OpenCL compilers of NVIDIA and AMD."""
 import hashlib, re, shutil, subprocess
 
-INLINES = ["-mllvm", "-inline-threshold=1000000"]  # whatever it can, as compilers inside drivers do; what is left cannot be
+INLINES = ["-mllvm", "-inline-threshold=1000000"]  # inline all calls that can be inlined, as the drivers' compilers do
 
 
 class Clang:
     def __init__(self, program, libclc):
         self.program, self.libclc = program, libclc
 
-    def lacking(self, library):
-        """What is not there, with Debian's packages."""
+    def missing(self, library):
+        """Programs and libraries that are not installed, with their Debian packages."""
         found = []
         if not shutil.which(self.program):
             found.append(f"{self.program} (Debian: clang-15)")
@@ -18,18 +18,19 @@ class Clang:
         return found
 
     def version(self, library):
-        said = subprocess.run([self.program, "--version"], capture_output=True, text=True).stdout
-        number = re.search(r"version (\d+[.\d]*)", said)
+        output = subprocess.run([self.program, "--version"], capture_output=True, text=True).stdout
+        number = re.search(r"version (\d+[.\d]*)", output)
         digest = hashlib.sha256((self.libclc / library).read_bytes()).hexdigest()[:8]
-        return f"clang {number[1] if number else said.split(chr(10))[0]}; libclc {digest}"
+        return f"clang {number[1] if number else output.split(chr(10))[0]}; libclc {digest}"
 
     def preprocessed(self, folder, build, options):
-        """The build's text as the compiler itself gets it; empty where it does not come so far."""
-        done = subprocess.run([self.program, "-x", "cl", "-nogpulib", *options, *build["options"], "-E", "-P", str(folder / build["source"])], capture_output=True)
+        """The build's preprocessed source, without blank lines; empty if the preprocessor fails."""
+        done = subprocess.run([self.program, "-x", "cl", "-nogpulib", *options, *build["options"], "-E", "-P", str(folder / build["source"])],
+                              capture_output=True)
         return b"" if done.returncode else b"\n".join(filter(None, map(bytes.strip, done.stdout.splitlines())))
 
     def assembly(self, folder, build, library, options):
-        """The text, and None; or None, and the compiler's first error."""
+        """(assembly, None), or (None, the compiler's first error)."""
         to = folder / f"{build['source']}.{library}.s"
         done = subprocess.run([self.program, "-x", "cl", "-O3", *INLINES, "-nogpulib", "-Wno-linker-warnings", *options, *build["options"], "-Xclang",
                                "-mlink-builtin-bitcode", "-Xclang", str(self.libclc / library), "-S", "-o", str(to),
@@ -40,4 +41,4 @@ class Clang:
 
 
 def first_error(text):
-    return next((line for line in text.splitlines() if "error" in line or "fatal" in line), text.strip()[-300:] or "no word why")
+    return next((line for line in text.splitlines() if "error" in line or "fatal" in line), text.strip()[-300:] or "without a message")

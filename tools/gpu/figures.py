@@ -1,12 +1,12 @@
-"""What a kernel takes of a GPU's core, and how many of its warps fit there.
+"""Resource usage of a kernel on a GPU's core, and its occupancy: how many of its warps fit there.
 
-A core is what a work-group runs on: NVIDIA's SM, AMD's CU, Intel's Xe core. A warp is what runs in step there: NVIDIA's warp, AMD's wave,
-Intel's thread, of `width` work-items. The formula, for a group of `group` work-items:
+A core runs work-groups: NVIDIA's SM, AMD's CU, Intel's Xe core. A warp runs `width` work-items in lockstep: NVIDIA's warp, AMD's wave, Intel's
+thread. For a group of `group` work-items:
 
     warps of a group  = group / width, rounded up
-    groups            = what registers allow (the vendor's module) / warps of a group, at most what the core holds of either; where the kernel
-                        has local memory of its own, at most the core's / that
-    local memory left = what each of these groups may have before it, and no longer the registers, bounds how many there are
+    groups            = warps for which there are registers (the vendor's module) / warps of a group; at most the core's maximum of warps and groups;
+                        if the kernel uses local memory, at most the core's local memory / the kernel's
+    local memory left = local memory of a group up to which the registers, not local memory, limit the number of groups
 """
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ def rounded_up(number, unit):
 
 @dataclass
 class Figures:
-    """Of one kernel in one variant for one target. Bytes; spills as the vendor counts them; `stack` is of a work-item."""
+    """Figures of one kernel in one variant for one target. Memory in bytes; spills in the vendor's unit; `stack` of a work-item."""
     kernel: str
     variant: str
     target: str
@@ -27,8 +27,8 @@ class Figures:
     spills: int
     stack: int
     local: int
-    scalar_spills: int = 0  # AMD: scalar registers kept in lanes of vector ones
-    warps: int = 0          # that fit
+    scalar_spills: int = 0  # AMD: scalar registers spilled to lanes of vector registers
+    warps: int = 0          # that fit in a core
     local_left: int = 0
 
     @property
@@ -38,7 +38,7 @@ class Figures:
 
 @dataclass
 class Fault:
-    """What a kernel must not have."""
+    """A property that a kernel must not have, in `text`."""
     kernel: str
     variant: str
     target: str
@@ -47,16 +47,17 @@ class Fault:
 
 @dataclass(frozen=True)
 class Core:
-    warps: int        # at most
-    groups: int       # at most, of more than one warp; those of one warp where `lone_groups` says otherwise
-    local: int        # bytes, of all groups together
-    group_local: int  # bytes that one group may have
-    unit: int         # in which local memory is handed out
-    reserved: int = 0  # bytes of each group that the system takes
-    lone_groups: int = 0
+    """Limits of a core; memory in bytes."""
+    warps: int        # maximum number of warps
+    groups: int       # maximum number of groups
+    local: int        # local memory of all groups together
+    group_local: int  # maximum local memory of one group
+    unit: int         # allocation unit of local memory
+    reserved: int = 0  # local memory of each group that the system takes
+    lone_groups: int = 0  # maximum number of groups of a single warp, if it differs from `groups`
 
-    def fit(self, figures, warps_by_registers):
-        """Sets what fits."""
+    def set_occupancy(self, figures, warps_by_registers):
+        """Sets warps and local_left of the figures, and returns them."""
         each = rounded_up(figures.group, figures.width) // figures.width
         most = self.lone_groups if each == 1 and self.lone_groups else self.groups
         groups = min(min(self.warps, warps_by_registers) // each, most)
@@ -69,13 +70,13 @@ class Core:
 
 
 def kernel_name(build, function):
-    """`ring/trace`; of a file with other kernels, `ring/filter take_means`."""
+    """`ring/trace`; for a function with another name than its file, `ring/filter take_means`."""
     stem = build["file"].removesuffix(".cl")
     return stem if stem.split("/")[-1] == function else f"{stem} {function}"
 
 
 def first_line(text, pattern):
-    """The first line that has it, without blanks around; None."""
+    """The first line that matches, stripped; None if there is none."""
     match = pattern.search(text)
     if not match:
         return None

@@ -1,8 +1,9 @@
-"""Intel's Xe cores: ocloc is the compiler of Intel's own driver.
+"""Intel Xe cores: ocloc is the compiler of Intel's own driver.
 
-A thread has 128 registers, or 256 and then half as many threads fit; the compiler chooses its width, 8, 16 or 32 work-items, narrower where
-registers run out. Spills are registers, as it tells them. An Xe core has 128 threads (dg2: 16 engines of 8) or 64 (pvc: 8 of 8) and 128 KB;
-how many groups at most is not known here, so that threads alone bound them (oneAPI GPU Optimization Guide, Intel Xe GPU Architecture).
+A thread has 128 registers, or 256, with half as many threads a core. The compiler chooses the width of a thread, 8, 16 or 32 work-items, and
+narrower threads if registers run out. Spills are counted in registers, as ocloc reports them. An Xe core has 128 threads (dg2: 16 engines of 8) or 64
+(pvc: 8 of 8), and 128 KB of local memory. Its maximum number of groups is not known here, so only threads limit them (oneAPI GPU Optimization Guide,
+Intel Xe GPU Architecture).
 """
 import re, shutil, struct, subprocess, tempfile
 from pathlib import Path
@@ -18,49 +19,50 @@ SPILLED = re.compile(r"kernel (\w+)\s+compiled SIMD\d+ allocated \d+ regs and sp
 class Intel:
     targets = list(CORES)
 
-    def lacking(self):
+    def missing(self):
         return [] if shutil.which("ocloc") else ["ocloc (Debian: intel-opencl-icd)"]
 
     def version(self):
-        with tempfile.TemporaryDirectory() as folder:  # it writes a file where it stands
+        with tempfile.TemporaryDirectory() as folder:  # ocloc writes a file to its current folder
             subprocess.run(["ocloc", "query", "OCL_DRIVER_VERSION"], cwd=folder, capture_output=True)
-            told = Path(folder, "OCL_DRIVER_VERSION")
-            return "ocloc " + (told.read_text().strip("\0\n ") if told.exists() else "unknown")
+            file = Path(folder, "OCL_DRIVER_VERSION")
+            return "ocloc " + (file.read_text().strip("\0\n ") if file.exists() else "unknown")
 
     @staticmethod
-    def together(targets):
-        return [[target] for target in targets]  # the compiler takes one after another
+    def batches(targets):
+        """Lists of targets that compile() takes together."""
+        return [[target] for target in targets]
 
     @staticmethod
-    def compiled(folder, build, target, to, *more):
-        """Whether it is, and what was said."""
+    def run_ocloc(folder, build, target, to, *more):
+        """(True if it compiled, output)"""
         done = subprocess.run(["ocloc", "compile", *more, "-file", str(folder / build["source"]), "-device", target,
                                "-options", " ".join(build["options"]), "-out_dir", str(to)], capture_output=True, text=True)
         return done.returncode == 0, done.stdout + done.stderr
 
-    def seen(self, folder, build, targets):
-        """SPIR-V, which takes no time beside what is made of it."""
+    def compiler_input(self, folder, build, targets):
+        """The build as SPIR-V, which takes little time compared with machine code; empty if it does not compile."""
         found = []
         for target in targets:
             to = folder / target / "spirv" / build["source"]
-            done, _ = self.compiled(folder, build, target, to, "-spv_only")
+            done, _ = self.run_ocloc(folder, build, target, to, "-spv_only")
             found += [path.read_bytes() for path in to.glob("*.spv")] if done else []
         return b"".join(found) if len(found) == len(targets) else b""
 
-    def look(self, folder, build, targets):
-        """Figures and faults of the build's kernels for those of its targets."""
+    def compile(self, folder, build, targets):
+        """(figures, faults) of the build's kernels for these targets."""
         figures, faults = [], []
         for target in targets:
             to = folder / target / build["source"]
-            done, said = self.compiled(folder, build, target, to, "--format", "zebin")
+            done, output = self.run_ocloc(folder, build, target, to, "--format", "zebin")
             made = [next(to.glob(f"*.{end}"), None) for end in ("bin", "spv")] if done else [None]
             if not all(made):
-                told = [f"does not build: {first_error(said)}"]
+                texts = [f"does not build: {first_error(output)}"]
             else:
                 about = section(made[0].read_bytes(), ".ze_info")
-                told = faults_of(made[1].read_bytes()) + ["a call is left"] * ("has_stack_calls: true" in about)
-                figures += self.figures(build, target, about, dict(SPILLED.findall(said)))
-            faults += [Fault(build["file"].removesuffix(".cl"), build["variant"], target, what) for what in told]
+                texts = faults_of(made[1].read_bytes()) + ["a call is not inlined"] * ("has_stack_calls: true" in about)
+                figures += self.figures(build, target, about, dict(SPILLED.findall(output)))
+            faults += [Fault(build["file"].removesuffix(".cl"), build["variant"], target, what) for what in texts]
         return figures, faults
 
     @staticmethod
@@ -72,11 +74,11 @@ class Intel:
             simd = value["simd_size"]
             found = Figures(kernel_name(build, function), build["variant"], target, simd, int(group[1]) if group else build["group"],
                             value["grf_count"], int(spilled.get(function, 0)), stack_of(kernel, simd), value.get("slm_size", 0))
-            yield CORES[target].fit(found, CORES[target].warps * 128 // found.registers)
+            yield CORES[target].set_occupancy(found, CORES[target].warps * 128 // found.registers)
 
 
 def stack_of(kernel, simd):
-    """Bytes of a work-item, from the memories that the compiler asks for: each of a thread, unless it says of a work-item."""
+    """Bytes of stack of a work-item. The compiler lists memory of a thread, or of a work-item with is_simt_thread."""
     bytes_of_item = 0
     for memory in re.split(r"^      - type:", kernel.split("per_thread_memory_buffers:")[-1], flags=re.M)[1:]:
         size = re.search(r"^        size: +(\d+)", memory, re.M)
@@ -86,7 +88,7 @@ def stack_of(kernel, simd):
 
 
 def section(elf, name):
-    """The text of a section of a 64-bit ELF file."""
+    """Text of a section of a 64-bit ELF file."""
     start, = struct.unpack_from("<Q", elf, 0x28)
     size, count, names_at = struct.unpack_from("<HHH", elf, 0x3A)
     headers = [struct.unpack_from("<IIQQQQ", elf, start + i * size) for i in range(count)]
@@ -98,15 +100,15 @@ def section(elf, name):
 
 
 def faults_of(code):
-    """Double precision, and functions that nobody defines, in a SPIR-V module."""
+    """Texts of the faults in a SPIR-V module: double precision, and undefined functions."""
     words = struct.unpack(f"<{len(code) // 4}I", code)
-    at, said = 5, []
+    at, found = 5, []
     while at < len(words):
         length, operation = words[at] >> 16, words[at] & 0xFFFF
         if operation == 22 and words[at + 2] == 64:  # OpTypeFloat
-            said.append("double precision: OpTypeFloat 64")
+            found.append("double precision: OpTypeFloat 64")
         if operation == 71 and words[at + 2] == 41 and words[at + length - 1] == 1:  # OpDecorate, LinkageAttributes, Import
             name = code[4 * (at + 3):4 * (at + length - 1)].split(b"\0")[0].decode()
-            said += [] if name.startswith("__spirv_BuiltIn") else [f"unresolved: {name}"]
+            found += [] if name.startswith("__spirv_BuiltIn") else [f"unresolved: {name}"]
         at += length
-    return said
+    return found

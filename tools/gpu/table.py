@@ -1,11 +1,11 @@
-"""Figures as tables: a row for each kernel and variant, a column for each target."""
+"""Tables of figures: a row for each kernel and variant, a column for each target."""
 import sys
 
 from gpu import figures
 
-LEGEND = """A cell: registers of a work-item (r); what spills, if anything does (sp; of AMD's scalar registers ssp); stack of a work-item in bytes
-(B); warps that fit in a core with the group's size that is told (w), and up to how much local memory of each group, in KB. On Intel's the
-width of a thread comes first, since registers are always 128 or 256."""
+LEGEND = """A cell: registers of a work-item (r); spills, if any (sp; AMD's scalar registers: ssp); stack of a work-item in bytes (B); warps
+that fit in a core with the given size of groups (w), and the local memory of each group up to which they fit, in KB. Intel's cells start
+with the width of a thread, since a thread always has 128 or 256 registers."""
 CORE = {"sm_80": "A100, SM: 64 warps of 32", "sm_90": "H100, SM: 64 warps of 32", "gfx90a": "MI200, CU: 32 waves of 64",
         "dg2": "Arc, Xe core: 128 threads of 8, 16 or 32", "pvc": "Max, Xe core: 64 threads of 16 or 32"}
 
@@ -17,7 +17,7 @@ def cell(f):
 
 
 def rows(all_figures, targets):
-    """Lists of cells, the head first, in the order of the figures."""
+    """Rows of cells, the header first, in the order of the figures."""
     by_name = {f.name: f for f in all_figures}
     kernels = dict.fromkeys((f.kernel, f.variant, f.group) for f in all_figures)
     found = [["kernel", "variant", "group", *targets]]
@@ -37,20 +37,20 @@ def markdown(cells):
 
 
 def page(cells, versions, vendors):
-    """docs/gpu_resources.md. The modules' own words say how figures are made."""
+    """Text of docs/gpu_resources.md. The docstrings of the vendors' modules describe how figures are made."""
     words = {vendor: sys.modules[type(vendor).__module__].__doc__.strip().split("\n\n") for vendor, _ in vendors}
     made = "".join(f"| {target} | {CORE[target]} | {version} |\n" for target, version in versions.items())
     about = "".join(f"**{', '.join(vendor.targets)}.** {' '.join(text)}\n\n" for vendor, text in words.items())
-    return f"""# What kernels take of GPUs
+    return f"""# Resource usage of kernels on GPUs
 
-Written by `tools/gpu_check --write`, which compiles the kernels for GPUs on a machine that has none, as raya builds them there
-(`host/cl/kernel_options.cpp`), and holds them against `tests/portability/gpu_budget.csv`. For NVIDIA and AMD clang and libclc stand in
-for the compilers of their drivers, which may come to other figures, and inline all that they can; ocloc is Intel's own.
+Written by `tools/gpu_check --write`, which compiles the kernels for GPUs on a machine without one, with raya's own options
+(`host/cl/kernel_options.cpp`), and compares them with `tests/portability/gpu_budget.csv`. For NVIDIA and AMD it uses clang and libclc, and inlines
+all calls; the compilers of their drivers may give other figures. ocloc is the compiler of Intel's driver.
 
 | target | core | compilers |
 | --- | --- | --- |
 {made}
-## How many warps fit
+## Occupancy
 
 {figures.__doc__.strip()}
 
@@ -58,7 +58,7 @@ for the compilers of their drivers, which may come to other figures, and inline 
 
 {LEGEND}
 
-Variants: `spheres`, a scene of spheres and planes alone; `grid`, `bvh`, with what rays walk through, in global memory; `costs`, torus nodes
-tell what packets cost; `refined`, for a device that lacks correctly rounded division or `fma`; `any`, kernels that compute nothing.
+Variants: `spheres`, a scene of spheres and planes only; `grid`, `bvh`, with this acceleration structure in global memory; `costs`, torus nodes record
+the cost of packets; `refined`, for a device without correctly rounded division or `fma`; `any`, kernels without arithmetic.
 
 {markdown(cells)}"""

@@ -1,7 +1,7 @@
-"""The load laboratory: the papers' experiments, and what goes beyond them, on your scenes.
+"""The load laboratory: repeats and extends the papers' experiments, on your scenes.
 
-A study is one file: its docstring says what is asked and how, `run(lab, scenes)` renders and returns a Page. See
-docs/my_study.py for one of 30 lines, tools/lab/studies for all others.
+A study is one file. Its docstring holds the title, the question and the method; `run(lab, scenes)` renders and returns a Page. Example:
+docs/my_study.py. The built-in studies are in tools/lab/studies.
 """
 import sys
 from importlib.util import find_spec
@@ -9,11 +9,10 @@ from importlib.util import find_spec
 _MISSING = [name for name in ("numpy", "scipy", "pandas", "matplotlib", "jinja2", "tqdm") if find_spec(name) is None]
 if _MISSING:
     _TEXT = (f"study needs the Python packages {', '.join(_MISSING)}, which {sys.executable} does not have; remedy: "
-             f"sudo apt-get install {' '.join('python3-' + name for name in _MISSING)}, or name another Python in "
-             "RAYA_PYTHON")
+             f"sudo apt-get install {' '.join('python3-' + name for name in _MISSING)}, or set RAYA_PYTHON to another Python")
     if sys.argv[0] != "-m":
         raise ImportError(_TEXT)
-    print(f"raya: {_TEXT}", file=sys.stderr)  # python3 -m raya.lab comes by here first
+    print(f"raya: {_TEXT}", file=sys.stderr)  # `python3 -m raya.lab` imports this file before __main__.py
     sys.exit(2)
 
 from raya.lab import papers

@@ -20,7 +20,7 @@ EXIT_USER, EXIT_DEVICE = 2, 3
 
 
 def settings_of(arguments):
-    """The options of `raya study`, as the program hands them over, or parsed by the same code."""
+    """The options of `raya study`: passed by the program as JSON, or parsed here by the program's own code."""
     if arguments[:1] != ["--settings"]:
         arguments = ["--settings", _engine.study_settings(arguments)]
     options = SimpleNamespace(**json.loads(arguments[1]))
@@ -30,20 +30,20 @@ def settings_of(arguments):
 
 
 def wanted_studies(name):
-    """(studies to run, why others are left out). ValueError for one that there is not, or that cannot run here."""
+    """(studies to run, sentences on the studies that are skipped). Raises ValueError if the named study cannot run here."""
     if name.endswith(".py"):
         return [study_of_file(name)], []
     known = studies()
     if name != "all":
-        if known[name].lacks():
-            raise ValueError(f"study {name}: {known[name].lacks()}")
+        if known[name].missing():
+            raise ValueError(f"study {name}: {known[name].missing()}")
         return [known[name]], []
-    left_out = [f"study {one.name} is left out: {one.lacks()}" for one in known.values() if one.lacks()]
-    return [one for one in known.values() if not one.lacks()], left_out
+    left_out = [f"study {one.name} is left out: {one.missing()}" for one in known.values() if one.missing()]
+    return [one for one in known.values() if not one.missing()], left_out
 
 
 def command_of(study, options):
-    """The command that makes one study's page and no other."""
+    """The command that repeats one study."""
     scenes = options.scenes[:1] if study.one_scene else options.scenes
     words = ["raya", "study", options.study if options.study.endswith(".py") else study.name, *map(quote, scenes)]
     words += [f"--size {options.size}"] if options.size else []
@@ -65,7 +65,7 @@ def print_page(page, folder):
 
 
 def make_folder(path):
-    """Makes a folder and says which of its parents were missing, the innermost first."""
+    """Creates a folder. Returns the folders that were created, the innermost first."""
     missing = [one for one in [path, *path.parents] if not one.exists()]
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -127,7 +127,7 @@ def main(arguments):
 
 
 class Ended(BaseException):
-    """A signal that ends the call."""
+    """A signal that terminates the program."""
 
 
 if __name__ == "__main__":
@@ -142,9 +142,9 @@ if __name__ == "__main__":
     except Ended as ended:
         print("raya: interrupted", file=sys.stderr)
         signal.signal(ended.args[0], signal.SIG_DFL)
-        os.kill(os.getpid(), ended.args[0])  # as the signal would have ended it, so that the caller sees why
+        os.kill(os.getpid(), ended.args[0])  # the exit status then names the signal
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes it once more at its end
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes stdout at exit
         print("raya: cannot write to stdout: Broken pipe", file=sys.stderr)
         sys.exit(EXIT_USER)
     except (ValueError, OSError) as error:

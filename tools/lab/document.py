@@ -1,4 +1,4 @@
-"""The files of studies: CSV, JSON, plots and Markdown of each, and one HTML document of all."""
+"""Writes the output of studies: CSV, JSON, plots and Markdown for each, and one HTML document for all."""
 import base64
 import dataclasses
 import json
@@ -17,32 +17,32 @@ from raya.lab.page import shown
 from raya.lab.papers import REFERENCES
 from raya.lab.statistics import NOT_REPRODUCED, REPRODUCED, UNDECIDED
 
-OPEN_ROWS, MOST_ROWS = 24, 400  # of a table that is shown unfolded, and that is shown at all
+OPEN_ROWS, MOST_ROWS = 24, 400  # a table of up to OPEN_ROWS is unfolded; HTML shows at most MOST_ROWS
 
-# No script, nothing from elsewhere.
+# No scripts and no external resources.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
 ABOUT = {
     "title": "The load laboratory",
-    "question": "What do the papers on two array machines that trace rays say, which of it is seen when their machines "
-                "are modelled again, and what lies beyond?",
+    "question": "Which claims of the papers on two ray-tracing array machines can be reproduced on models of these machines, "
+                "and what do the models show beyond the papers?",
     "method": [
-        "Kohata & Ito 1993 divide the screen: 256 processors on a ring and a bus, the SPA, share the pixels by a "
-        "cyclic mapping. Yoshitani & Yamazaki, about 1995, divide space: 64 transputers on a torus hold a voxel each, "
-        "and rays travel between them as packets. Havran & Sixta 1999 count tests and steps in uniform grids, with "
-        "which raya's are compared.",
-        "Both machines are models that run as OpenCL kernels. The image is the same, bit for bit, whatever machine and "
-        "mapping make it. Loads, packets and tests are counted where they happen; times are modelled from these counts "
-        "unless a page calls them measured.",
-        "A claim is what a paper says. It is reproduced or not by a rule over the figures next to it; it cannot be "
-        "told where the paper leaves out what decides it, or where our interval holds both answers.",
-        "A paper's figure that is marked as derived is arithmetic on printed ones. After +- stands the half width of a "
-        "95 % confidence interval by Student's t.",
+        "Kohata & Ito 1993 divide the screen: the SPA has 256 processors on a ring and a bus, which share the pixels by a "
+        "cyclic mapping. Yoshitani & Yamazaki, about 1995, divide space: each of 64 transputers on a torus holds one voxel, "
+        "and rays travel between them as packets. Havran & Sixta 1999 count tests and steps in uniform grids; raya's counts "
+        "are compared with theirs.",
+        "Both machines are models that run as OpenCL kernels. The image is the same, bit for bit, on every machine and with "
+        "every mapping. The kernels count loads, packets and tests; times are modelled from these counts unless a page calls "
+        "them measured.",
+        "A claim is a statement of a paper. A rule over the figures next to it decides whether it is reproduced. It cannot be "
+        "told if the paper does not give the facts that decide it, or if our confidence interval contains both answers.",
+        "\"Derived\" marks a figure that follows by arithmetic from figures that the paper prints. \"+-\" is the half width "
+        "of a 95 % confidence interval by Student's t.",
     ],
 }
 
 
 def write_whole(path, content):
-    """Writes a file that appears whole or not at all."""
+    """Writes a file atomically: to a temporary file, which is then renamed."""
     data = content if isinstance(content, bytes) else content.encode()
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".raya-", suffix=".tmp")
     try:
@@ -58,7 +58,7 @@ def write_whole(path, content):
 
 
 def plain(value):
-    """A value as JSON has it: numpy's numbers as Python's, nan as null, inf as text."""
+    """Converts a value for JSON: numpy numbers to Python's, nan to null, inf to text."""
     if dataclasses.is_dataclass(value):
         return plain({f.name: getattr(value, f.name) for f in dataclasses.fields(value)})
     if isinstance(value, dict):
@@ -73,7 +73,7 @@ def plain(value):
 
 
 def rows_of(table):
-    """Each cell as its column has it: whole numbers stay whole."""
+    """Rows of cells, each with its column's type: integers stay integers."""
     return list(table.rows.itertuples(index=False, name=None))
 
 
@@ -83,7 +83,7 @@ def json_of(page):
     pictures = [{"name": p.name, "title": p.title, "words": p.words} for p in page.pictures]
     comparisons = [{**plain(c), "ratio": plain(ratio(c))} for c in page.comparisons]
     drawn = [{**plain(p), "description": plots.description(p)} for p in page.plots]
-    members = {f.name: getattr(page, f.name) for f in dataclasses.fields(page) if f.name not in ("name", "words")}
+    members = {f.name: getattr(page, f.name) for f in dataclasses.fields(page) if f.name not in ("name", "placeholders")}
     return {"study": page.name, **plain({**members, "tables": tables, "pictures": pictures,
                                          "comparisons": comparisons, "plots": drawn})}
 
@@ -93,7 +93,7 @@ def ratio(comparison):
 
 
 def cells_of_comparisons(page):
-    """The header and rows of the table that compares with papers; without papers, of the chief figures."""
+    """Header and rows of the table of comparisons. Without figures of a paper: the main figures alone."""
     def ours(c):
         return f"{shown(c.ours)}{f' +- {c.half_width:.2g}' if c.half_width else ''} {c.unit}".rstrip()
 
@@ -111,7 +111,7 @@ def cells_of_comparisons(page):
 
 def title_of_comparisons(page):
     if all(c.paper is None for c in page.comparisons):
-        return "Chief figures"
+        return "Main figures"
     return f"Compared with {page.beside or 'the papers'}"
 
 
@@ -134,22 +134,22 @@ def cells_of_table(table):
 
 
 def lines_of_run(page):
-    """How to repeat a page: what ran, and with which settings."""
+    """(name, value) of the command, version, device and settings that made a page."""
     return [(key, value if isinstance(value, str) else json.dumps(plain(value)))
             for key, value in [*page.run.items(), *page.settings.items()]]
 
 
 def command_of(pages):
-    """What makes all of them: of several, the longest command names all options and scenes."""
+    """The command that makes all pages. The longest command of several pages names all options and scenes."""
     command = max((page.run.get("command", "") for page in pages), key=len)
     return command if len(pages) == 1 else re.sub(r"^raya study \S+", "raya study all", command)
 
 
 def verdict_sentences(pages):
-    """A sentence on all claims, and where there are several papers one on each."""
+    """A sentence that counts the verdicts on all claims; with several papers, one more for each paper."""
     claims = [claim for page in pages for claim in page.claims]
     if not claims:
-        return ["No claim of a paper is judged here."]
+        return ["This page judges no claim of a paper."] if len(pages) == 1 else ["No study here judges a claim of a paper."]
 
     def sentence(some, whose):
         count = Counter(claim.verdict for claim in some)
@@ -170,23 +170,23 @@ def not_reproduced(pages):
 
 
 def prose(text):
-    """HTML of a sentence: `code`, and +- as a sign."""
+    """HTML of a sentence: `text` becomes code, +- becomes ±."""
     return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", str(escape(text)).replace("+-", "±")))
 
 
-# '-', or a number, its interval, a unit.
+# '-', or a number with its interval and unit.
 NUMBER = re.compile(r"-?|(-?[\d.]+(e[-+]?\d+)?|-?inf)( \+- \S+)?( [^\s\d]+)?( \(derived\))?")
 
 
 def classes_of(cells):
-    """n: a column of numbers; t: of text; w: of sentences, which need width."""
+    """CSS class of each column: n, numbers; t, text; w, sentences, which need width."""
     columns = list(zip(*cells[1:])) or [()] * len(cells[0])
     return ["n" if all(map(NUMBER.fullmatch, c)) else "w" if max(map(len, c)) > 60 else
             "t" if max(map(len, c)) > 15 else "" for c in columns]
 
 
 def inlined(svg):
-    """A drawing for HTML, whose colours follow the page's."""
+    """An SVG drawing for HTML whose colours follow the page's colour scheme."""
     return Markup(re.sub(r": #([0-9a-f]{6})", r": var(--plot-\1, #\1)", svg[svg.index("<svg"):]))
 
 
@@ -212,7 +212,7 @@ def environment():
 
 
 def write_page(folder, page):
-    """Writes all files of one study; returns its drawings for the document, as HTML by name."""
+    """Writes all files of one study. Returns its drawings for the document: {name: HTML}."""
     drawings, files = {}, {}
     for table in page.tables:
         files[f"{table.name}.csv"] = table.rows.to_csv(index=False, na_rep="-")
@@ -225,13 +225,13 @@ def write_page(folder, page):
         drawings[plot.name] = inlined(drawn["svg"].decode())
     files[f"{page.name}.json"] = json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n"
     files[f"{page.name}.md"] = environment().get_template("page.md.j2").render(page=page)
-    for name, content in files.items():  # not before all of them could be made
+    for name, content in files.items():  # after all of them have been made: an error leaves no partial output
         write_whole(folder / name, content)
     return drawings
 
 
 def write_document(folder, pages, drawings, left_out=()):
-    """index.html of all pages, and of several index.md. `left_out`: sentences on studies that did not run."""
+    """Writes index.html, and index.md if there are several pages. `left_out`: sentences on studies that did not run."""
     made = environment()
     body = made.get_template("document.html.j2").render(pages=pages, drawings=drawings, left_out=left_out,
                                                         references=REFERENCES)

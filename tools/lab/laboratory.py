@@ -1,4 +1,4 @@
-"""Where studies get their material: renders, and what each pixel of a scene costs."""
+"""Renders for studies, and cost images: the modelled cycles of each pixel of a scene."""
 import hashlib
 import pickle
 from collections import namedtuple
@@ -24,13 +24,13 @@ def tests_of(events):
 
 @dataclass
 class Costs:
-    """What one render counted. The load of every array and mapping follows from it."""
+    """The cost image of one render. The load of every array and mapping follows from it."""
 
     label: str
     trace: np.ndarray  # uint64 [H, W]: modelled cycles of each pixel in the first pass
-    supersample: np.ndarray  # of supersampling; None without
+    supersample: np.ndarray  # the same for supersampling; None without it
     report: dict
-    job_words: int  # what a PE holds of the scene
+    job_words: int  # 32-bit words of the scene that a PE stores
 
     @property
     def recomputed(self):
@@ -40,21 +40,21 @@ class Costs:
 
 @dataclass
 class Ensemble:
-    """A scene's own picture, and random views of it, of the seeds 1, 2, ..."""
+    """Costs of a scene's own picture and of random views of it, seeds 1, 2, ..."""
 
     picture: Costs
     views: list
 
 
 def format_for(scene):
-    """The SPA's format, but fp32 for a scene that none of its PEs could hold."""
+    """The SPA's number format; fp32 for a scene that does not fit the memory of an SPA's PE."""
     return SPA["format"] if 4 * raya.job_words(scene) <= SPA["pe_memory_bytes"] else "fp32"
 
 
 class Laboratory:
-    """Renders, each once: cost images are kept in a folder, by scene and settings, for all studies of a call.
+    """Renders scenes. Cost images are cached in a folder, by scene and settings, for all studies of a call.
 
-    size: pixels a side that the user asked for; network: (alpha s, beta s a byte); options: of every render (device).
+    size: pixels a side that the user asked for; network: (alpha in s, beta in s/byte); options: of every render (device).
     """
 
     def __init__(self, folder, size=None, network=None, **options):
@@ -73,7 +73,7 @@ class Laboratory:
         return raya.render(scene, session=self.session, **kept, **options)
 
     def costs(self, scene, size, antialias="none"):
-        """The scene rendered as PEs of the SPA do it, without its memory limit."""
+        """Cost image of the scene as the SPA's PEs render it, without their memory limit."""
         options = dict(machine="grande", format=format_for(scene), bounces=SPA["bounces"], size=size, pes=size,
                        offset=16 % size, accel="none", antialias=antialias)
         key = hashlib.sha256(repr((scene.nff, sorted(options.items()))).encode()).hexdigest()
@@ -89,7 +89,7 @@ class Laboratory:
         return costs
 
     def ensemble(self, scene, size, antialias="none", most=VIEWS):
-        """64 views of scenes like the paper's at 256 x 256; fewer of large images and of many objects, 4 at least."""
+        """64 views of scenes like the paper's at 256 x 256; fewer for larger images and more objects, at least 4."""
         count = max(min(4, most), min(2**27 // (size * size * max(scene.objects, 1)), most))
         views = [self.costs(scene.random_view(seed).renamed(f"{scene.name}, view {seed}"), size, antialias)
                  for seed in range(1, count + 1)]
@@ -97,12 +97,12 @@ class Laboratory:
 
 
 def one_of(scenes):
-    """For studies of one scene: the first of those that were named, else centre, the paper's kind."""
+    """The scene of a study of one scene: the first that the user named; by default centre, which resembles the paper's."""
     return scenes[0] if scenes else raya.example("centre")
 
 
 def balance_pass(lab, scenes, first):
-    """One pass over one scene, a PE for each column: (settings, cost image of the picture, those of the views)."""
+    """One pass over one scene, a PE for each column. Returns (settings, cost image of the picture, cost images of the views)."""
     scene, size = one_of(scenes), lab.size(256)
     ensemble = lab.ensemble(scene, size, "none" if first else "supersample")
     picture, *views = (one.trace if first else one.supersample for one in [ensemble.picture, *ensemble.views])
@@ -111,16 +111,16 @@ def balance_pass(lab, scenes, first):
 
 
 VIEWS_PROSE = """
-- Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
-  distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
-  looks at."""  # of the studies of one pass, below what they measure
+- The picture is accompanied by {views} random views of the same scene, seeds {view_seeds}. The camera keeps its distance; its
+  direction is uniform on the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above the point that it
+  looks at."""  # part of the method of fig7, fig8, fig12 and fig13
 
 
-Measured = namedtuple("Measured", "least median largest runs")  # seconds
+Measured = namedtuple("Measured", "minimum median maximum runs")  # seconds; runs: a count
 
 
 def measured(run, runs, enough_s, warm=True):
-    """Of the seconds that run() returns; after a call that does not count. No further one after enough_s seconds."""
+    """Statistics of the seconds that run() returns, over at most `runs` calls after a warm-up. Stops after enough_s seconds."""
     if warm:
         run()
     seconds = [run()]
@@ -129,10 +129,10 @@ def measured(run, runs, enough_s, warm=True):
     return Measured(min(seconds), float(np.median(seconds)), max(seconds), len(seconds))
 
 
-def sampled(run, least_s=0.02):
-    """Mean seconds of a call, of as many as take 20 ms together: shorter ones measure clock and launch as well."""
+def sampled(run, minimum_s=0.02):
+    """Mean seconds of a call, over as many calls as take 20 ms: clock and launch overhead distort shorter measurements."""
     total = calls = 0
-    while total < least_s:
+    while total < minimum_s:
         total += run()
         calls += 1
     return total / calls

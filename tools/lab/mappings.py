@@ -1,23 +1,23 @@
 """Mappings that follow from the number of PEs, and the lattice of pixels that one PE owns.
 
-The lattice is that of the cyclic mapping with a PE for each column: (p, 1) and (W, 0).
+The lattice is that of the cyclic mapping with a PE for each column. Its basis is (p, 1) and (W, 0): offset p, image width W.
 """
 import numpy as np
 
 
 def squarest_grid(pes):
-    """(A, B): A rows of B PEs, A the largest divisor of P up to its root."""
+    """(A, B): A rows of B PEs, where A is the largest divisor of P up to sqrt(P)."""
     rows = max(a for a in range(1, int(pes**0.5) + 1) if pes % a == 0)
     return rows, pes // rows
 
 
 def shortest_square(offset, side):
-    """The square of the length of its shortest vector, pixels."""
-    rows = np.arange(1, side + 1)  # the last one is back at its column
+    """Squared length of the lattice's shortest vector, in pixels squared."""
+    rows = np.arange(1, side + 1)  # after `side` rows a PE is back in its column
     right = rows * offset % side
     return int((rows**2 + np.minimum(right, side - right)**2).min())
 
 
 def shares_blocks(offset, side, n):
-    """Whether no PE owns two pixels of any n x n block."""
+    """Returns true if no PE owns two pixels of any n x n block."""
     return n <= side and all(min(rows * offset % side, side - rows * offset % side) >= n for rows in range(1, n))

@@ -1,4 +1,4 @@
-"""What a study has found, as plain data: from this its files and its part of the document are made."""
+"""The result of a study as plain data. document.py writes a study's files and its part of the document from it."""
 import numbers
 import re
 from dataclasses import dataclass, field, replace
@@ -11,17 +11,17 @@ from raya.lab.statistics import VERDICTS
 
 @dataclass
 class Table:
-    """Rows under columns; 'load (cycles)' names a column and its unit. A missing value is nan."""
+    """A table. A column name includes its unit: 'load (cycles)'. A missing value is nan."""
 
     name: str  # stem of its CSV
     title: str
-    rows: pd.DataFrame  # or what makes one: a list of dicts
-    on_page: bool = True  # False: in the CSV alone, for long ones
+    rows: pd.DataFrame  # or what pandas.DataFrame() takes, such as a list of dicts
+    on_page: bool = True  # False: a long table, written to the CSV only
 
     def __post_init__(self):
         self.rows = pd.DataFrame(self.rows)
         if self.rows.empty or not self.rows.columns.is_unique:
-            raise ValueError(f"table {self.name}: has no rows, or two columns of one name")
+            raise ValueError(f"table {self.name}: has no rows, or two columns with the same name")
 
 
 @dataclass
@@ -30,7 +30,7 @@ class Series:
     x: list
     y: list
     style: str = "line"  # line, points, steps, paper
-    half_widths: list = field(default_factory=list)  # of the 95 % intervals of y
+    half_widths: list = field(default_factory=list)  # of the 95 % confidence intervals of y
 
     def __post_init__(self):
         try:
@@ -39,11 +39,11 @@ class Series:
         except (TypeError, ValueError) as error:
             raise ValueError(f"series {self.label}: {error}") from None
         if len(self.y) != len(self.x) or len(self.half_widths) not in (0, len(self.x)):
-            raise ValueError(f"series {self.label}: x, y and half widths are not of one length")
+            raise ValueError(f"series {self.label}: x, y and half_widths differ in length: {len(self.x)}, {len(self.y)}, {len(self.half_widths)}")
 
 
 def series_by(rows, label, x, y, half=None, style="line"):
-    """A series of each value of the column `label`, in the order in which they first occur."""
+    """A series for each value of the column `label`, in order of first occurrence."""
     return [Series(str(value), some[x], some[y], style, some[half] if half else [])
             for value, some in rows.groupby(label, sort=False)]
 
@@ -62,37 +62,37 @@ class Plot:
 class Picture:
     name: str  # stem of its PNG
     title: str
-    words: str  # what is seen, for those who do not see it
+    words: str  # alternative text for readers who do not see the picture
     png: bytes
 
 
 @dataclass
 class Comparison:
-    """A figure of ours next to a paper's, where it has one."""
+    """A figure of ours and the paper's figure, if it has one."""
 
     what: str
     unit: str
     paper: Optional[float]
     ours: float
     remark: str = ""
-    derived: bool = False  # the paper's is arithmetic on printed figures
+    derived: bool = False  # the paper's figure follows by arithmetic from printed figures
     half_width: Optional[float] = None
 
     def __post_init__(self):
         if self.paper is not None and np.isnan(self.paper):
             self.paper = None
         if not isinstance(self.ours, numbers.Real) or np.isnan(self.ours):
-            raise ValueError(f"comparison '{self.what}': ours is {self.ours!r}, not a number")
+            raise ValueError(f"comparison '{self.what}': our figure is {self.ours!r}, not a number")
 
 
 def with_paper(in_paper, comparisons):
-    """The paper's figures are left out where a study is not made as the paper made it."""
+    """Removes the paper's figures unless the study has the paper's scene and size (in_paper)."""
     return comparisons if in_paper else [replace(one, paper=None) for one in comparisons]
 
 
 @dataclass
 class Claim:
-    """What a paper says, and whether it was seen."""
+    """A statement of a paper, our verdict on it and the reason."""
 
     paper: str
     place: str
@@ -102,22 +102,22 @@ class Claim:
 
     def __post_init__(self):
         if self.verdict not in VERDICTS:
-            raise ValueError(f"claim '{self.words}': there is no verdict {self.verdict!r}")
+            raise ValueError(f"claim '{self.words}': unknown verdict {self.verdict!r}; one of {', '.join(VERDICTS)}")
 
 
 @dataclass
 class Page:
     settings: dict
-    findings: list = field(default_factory=list)  # sentences, the chief one first
+    findings: list = field(default_factory=list)  # sentences, the most important one first
     comparisons: list = field(default_factory=list)
     claims: list = field(default_factory=list)
     tables: list = field(default_factory=list)
     plots: list = field(default_factory=list)
-    news: list = field(default_factory=list)  # what no paper has
+    news: list = field(default_factory=list)  # sentences on results that go beyond the papers
     pictures: list = field(default_factory=list)
-    clock: str = ""  # by what the times on the page are counted
-    words: dict = field(default_factory=dict)  # for braces in the prose that no setting fills
-    beside: str = ""  # whose figures are compared
+    clock: str = ""  # how the times on the page are modelled or measured
+    placeholders: dict = field(default_factory=dict)  # values of {names} in the prose that are not settings
+    beside: str = ""  # authors of the figures that ours are compared with
     name: str = ""
     title: str = ""
     question: str = ""
@@ -125,24 +125,25 @@ class Page:
     run: dict = field(default_factory=dict)
 
     def describe(self, name, prose):
-        """Title, question and method from a study's prose: a line, a paragraph, a list, filled from the settings."""
+        """Sets title, question and method from a study's prose (a line, a paragraph, a list), with {names} replaced by settings."""
         self.name = name
         try:
-            prose = prose.format_map({**self.settings, **self.words})
+            prose = prose.format_map({**self.settings, **self.placeholders})
         except KeyError as error:
-            raise ValueError(f"study {name}: its docstring has {{{error.args[0]}}}, which no setting fills") from None
+            raise ValueError(f"study {name}: its docstring has {{{error.args[0]}}}, which is not a setting: add it to Page's settings or "
+                             "placeholders") from None
         head, *items = re.split(r"^- ", prose, flags=re.MULTILINE)
         self.title, _, question = head.strip().partition("\n")
         self.question, *self.method = (" ".join(text.split()) for text in (question, *items))
         for kind in (self.tables, self.plots + self.pictures):
             names = [one.name for one in kind]
             if len(names) != len(set(names)):
-                raise ValueError(f"study {name}: two files have one name: {sorted(names)}")
+                raise ValueError(f"study {name}: two files have the same name: {', '.join(sorted(names))}")
         return self
 
 
 def shown(value):
-    """A number as pages show it, in five digits."""
+    """Text of a number on a page, with five significant digits."""
     if isinstance(value, str):
         return value
     if value is None or (isinstance(value, float) and np.isnan(value)):

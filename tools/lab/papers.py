@@ -1,4 +1,4 @@
-"""What papers printed, each figure with its place; [D] marks arithmetic on printed figures."""
+"""Figures that the papers print, with their place; [D] marks figures derived from printed ones."""
 
 SPA = "Kohata & Ito 1993"
 TP = "Yoshitani & Yamazaki, about 1995"
@@ -7,7 +7,7 @@ DYNAMIC = "Heirich & Arvo 1998"
 
 # Kohata & Ito 1993.
 SIZE = PES = 256
-# Table 2: milliseconds of the scene of Fig. 6 on 256 PEs and on one; computing alone on a PC and a workstation.
+# Table 2: milliseconds for the scene of Fig. 6 on 256 PEs and on one PE; computing time of a PC and a workstation.
 OBJECTS_MS, COMPUTE_MS, IMAGE_MS, DISPLAY_MS, TOTAL_MS = 2, 283, 140, 1130, 1555
 ONE_PE_COMPUTE_MS, ONE_PE_TOTAL_MS = 64_800, 66_072
 PC_MS, WORKSTATION_MS = 295_910, 28_800
@@ -16,22 +16,22 @@ TRACE_0_MS, TRACE_16_MS, FILTER_0_MS, FILTER_16_MS = 653, 283, 9, 19
 FILTERED_0_MS, FILTERED_16_MS = TRACE_0_MS + FILTER_0_MS, TRACE_16_MS + FILTER_16_MS
 # Table 4: supersampling, communication and computation, p = 0 and p = 16.
 EXCHANGE_0_MS, EXCHANGE_16_MS, SUPERSAMPLE_0_MS, SUPERSAMPLE_16_MS = 2, 12, 739, 407
-# [D] Table 3: what a rotation takes, and that filtering's arithmetic takes the same for every p, give p = 8.
+# [D] Table 3: the time of a rotation, and the filter's arithmetic, which takes the same for every p, give p = 8.
 FILTER_ARITHMETIC_MS, FILTER_8_MS, EXCHANGE_8_MS = 7, 14, 7
 # [D] Table 4, if its computation is the supersampling alone.
 RECOMPUTED_LEAST, RECOMPUTED_MOST = 0.16, 0.18
-# [D] Tables 2 and 3, with the digits that the rounding of 653, 283 and 64,800 ms leaves them.
-SPEEDUP_16 = 229  # stands in the abstracts
+# [D] Tables 2 and 3, with the digits that the rounding of 653, 283 and 64,800 ms leaves.
+SPEEDUP_16 = 229  # printed in the abstracts
 SPEEDUP_0 = 99.2
 IMBALANCE_0, IMBALANCE_16 = 1.58, 0.118  # u(0), u(16); Figs 7 and 8 print no u
-IMBALANCE_16_ROUNDING = "the paper's: 0.115 .. 0.121 by the rounding of its times"
+IMBALANCE_16_ROUNDING = "the paper's lies in 0.115 .. 0.121, as its times are rounded"
 EFFICIENCY_0, EFFICIENCY_16 = 0.388, 0.895
 CAP_RATIO = 3.86  # next to Fig. 9: CAP, 256 PEs over 64
 PIXEL_MACHINE_SPEEDUP = 60  # next to Fig. 9: 64 nodes, "60 or more"
 EXCHANGE_SETUP_MS = 1.375  # [D] Table 4: 2 - 2 x 0.3125 = 12 - 34 x 0.3125
 
 # Yoshitani & Yamazaki, about 1995.
-RAY_WORDS = 22  # [D] Table 1: scalars of a ray packet, next to data for the search and of the object
+RAY_WORDS = 22  # [D] Table 1: scalars of a ray packet, without the data for the search and of the object
 FEW_DIVISIONS, MANY_DIVISIONS = 32, 1024  # Fig. 3: 1024 objects on one machine
 FEW_DIVISIONS_S, MANY_DIVISIONS_S = 313, 60
 DIVISIONS_FALL = FEW_DIVISIONS_S / MANY_DIVISIONS_S  # [D]
@@ -72,5 +72,5 @@ REFERENCES = [
 
 
 def is_papers(scene, size):
-    """Whether a study is made as the paper made it: of the scene of its kind, at its size."""
+    """Returns true if a study has the scene that resembles the paper's, at the paper's size."""
     return scene == "centre" and size == SIZE

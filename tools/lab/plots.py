@@ -1,4 +1,4 @@
-"""Draws the plots of a page as SVG and PNG: the same plot gives the same bytes under the same matplotlib."""
+"""Draws the plots of a page as SVG and PNG. The same plot gives the same bytes with the same version of matplotlib."""
 import io
 import math
 import re
@@ -13,12 +13,12 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter, NullLocator
 from raya.lab.page import shown
 
-# M. Okabe and K. Ito's colours, which colour-blind readers can tell apart; without yellow, which is faint on white.
+# The colour-blind safe palette of M. Okabe and K. Ito, without yellow, which is faint on white.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
 PAPER_COLOURS = ["#000000", "#8b1a1a", "#1a3a8b", "#1a5e1a"]
 DASHES = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (3, 1.5, 1, 1.5, 1, 1.5))]
 MARKERS = ["o", "s", "^", "v", "P", "X", "d", "<", ">"]
-FEW = 40  # points of a line that are marked one by one
+FEW = 40  # maximum number of points of a line that get a marker each
 HALO = [withStroke(linewidth=3, foreground="white")]
 
 STYLE = {
@@ -32,12 +32,12 @@ STYLE = {
 
 
 def plain(text):
-    """Text in which a dollar is a dollar and no formula."""
+    """Escapes dollar signs, which start formulas in matplotlib."""
     return str(text).replace("$", r"\$")
 
 
 def look_of(style, number, count):
-    """How the number-th series of its kind is drawn: no two are alike in colour or in shape."""
+    """Line and marker style of the number-th series of its kind: no two share a colour or a shape."""
     colour, dash, marker = (some[number % len(some)] for some in (COLOURS, DASHES, MARKERS))
     if style in ("line", "steps"):
         look = {"color": colour, "linestyle": dash, "linewidth": 1.7 if count <= 100 else 1.3}
@@ -51,12 +51,12 @@ def look_of(style, number, count):
 
 
 def is_shown(plot, x, y):
-    """Infinite points have no place on a plot, nor have those at or below zero on a logarithmic axis."""
+    """Returns true for a finite point that is above zero on every logarithmic axis."""
     return math.isfinite(x + y) and (x > 0 or "x" not in plot.log) and (y > 0 or "y" not in plot.log)
 
 
 def draw_intervals(axes, plot, series, colour):
-    """As bars; as a band along a line of many points. On a logarithmic axis what reaches down to 0 ends in the plot."""
+    """Draws error bars, or a band along a line of many points. On a logarithmic axis, intervals that reach 0 are clipped."""
     points = [(x, y, h) for x, y, h in zip(series.x, series.y, series.half_widths) if is_shown(plot, x, y)]
     if not points:
         return
@@ -71,7 +71,7 @@ def draw_intervals(axes, plot, series, colour):
 
 
 def draw_series(axes, plot):
-    """Returns the lines that stand for the series in the legend."""
+    """Draws all series. Returns their lines, for the legend."""
     lines, kinds = [], {True: 0, False: 0}
     for series in plot.series:
         paper = series.style == "paper"
@@ -85,7 +85,7 @@ def draw_series(axes, plot):
 
 
 def name_paper_points(axes, plot):
-    """Writes the paper's figures next to their points, where they are few."""
+    """Labels the paper's points with their figures, if there are at most eight."""
     papers = [s for s in plot.series if s.style == "paper"]
     if sum(len(s.x) for s in papers) > 8:
         return
@@ -107,7 +107,7 @@ def power_of_ten(value, _):
 
 
 def mark_powers_of_two(axis, values):
-    """Marks at most nine of them, the lowest first."""
+    """Puts ticks at powers of two, at most about nine."""
     first, last = (math.frexp(value)[1] - 1 for value in (min(values), max(values)))
     axis.set_major_locator(FixedLocator([2.0**n for n in range(first, last + 1, (last - first) // 9 + 1)]))
     axis.set_minor_locator(NullLocator())
@@ -116,7 +116,7 @@ def mark_powers_of_two(axis, values):
 
 
 def mark_powers_of_ten(axis, values):
-    """And 2 and 5 times each where there are few of them."""
+    """Puts ticks at powers of ten; also at 2 and 5 times each if the range is small."""
     low, high = (min(values), max(values)) if values else (1, 10)
     axis.set_major_locator(LogLocator(base=10, subs=(1, 2, 5) if high / low < 300 else (1,), numticks=12))
     axis.set_minor_formatter(NullFormatter())
@@ -126,13 +126,13 @@ def mark_powers_of_ten(axis, values):
 def set_log_axis(axes, name, values):
     by_two = len(set(values)) > 2 and all(math.frexp(value)[0] == 0.5 for value in values)
     (axes.set_xscale if name == "x" else axes.set_yscale)("log", base=2 if by_two else 10, nonpositive="mask")
-    if not values:  # then autoscaling has nothing to go by
+    if not values:  # nothing to scale automatically to
         (axes.set_xlim if name == "x" else axes.set_ylim)(1, 10)
     (mark_powers_of_two if by_two else mark_powers_of_ten)(axes.xaxis if name == "x" else axes.yaxis, values)
 
 
 def set_axes(axes, plot, points):
-    """Scales, labels, and a zero on the y axis where the figures reach down towards it."""
+    """Sets scales and labels. The y axis starts at 0 if the lowest value is at most half of the highest."""
     axes.set_xlabel(plain(plot.x_label))
     axes.set_ylabel(plain(plot.y_label))
     x, y = zip(*points) if points else ((), ())
@@ -156,15 +156,15 @@ def draw(plot):
     inside = [at for at in points if is_shown(plot, *at)]
     set_axes(axes, plot, inside)
     axes.set_title(textwrap.fill(plain(plot.title), 76))
-    if any(labels):  # on the right of the data, never over it; matplotlib leaves out what begins with "_"
+    if any(labels):  # to the right of the data; matplotlib omits labels that begin with "_"
         axes.legend(handles, [" " + text if text.startswith("_") else text for text in labels], loc="upper left",
                     bbox_to_anchor=(1.01, 1), borderaxespad=0, handlelength=2.6)
     hidden = len(points) - len(inside)
     if hidden:
-        figure.text(0.01, 0.01, f"{hidden} point{'s' if hidden > 1 else ''} without a place on these axes "
-                    "(infinite, or not above 0 on a logarithmic one)", fontsize=9, color="#555555", va="bottom")
+        figure.text(0.01, 0.01, f"{hidden} point{'s' if hidden > 1 else ''} not shown "
+                    "(infinite, or not above 0 on a logarithmic axis)", fontsize=9, color="#555555", va="bottom")
     figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08, rect=(0, 0.035, 1, 0.965) if hidden else (0, 0, 1, 1))
-    figure.draw_without_rendering()  # fixes the layout, which stays: SVG and PNG are alike
+    figure.draw_without_rendering()  # fixes the layout, so that SVG and PNG agree
     figure.set_layout_engine("none")
     name_paper_points(axes, plot)
     return figure
@@ -179,7 +179,7 @@ def range_of(values):
 
 
 def description(plot):
-    """What the plot shows, for those who do not see it."""
+    """Text description of a plot, for readers who do not see it."""
     def axis(label, name, values):
         return f"{label}{', logarithmic' if name in plot.log else ''}, {range_of(values)}"
 
@@ -190,11 +190,11 @@ def description(plot):
 
 
 def described(svg, plot):
-    """The drawing with what it shows in words, and with names that no other drawing on a page has."""
+    """The SVG with its title and description, and with ids that are unique on a page."""
     name = f"plot-{plot.name}"
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
     svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{name}-", svg)
-    svg = svg.replace("*{stroke", f"#{name} *{{stroke")  # a style for all elements is for those of the drawing
+    svg = svg.replace("*{stroke", f"#{name} *{{stroke")  # confines the style to this drawing
     svg = svg.replace("<svg ", f'<svg id="{name}" role="img" aria-labelledby="{name}-title" '
                       f'aria-describedby="{name}-desc" ', 1)
     head = svg.index(">", svg.index("<svg ")) + 1

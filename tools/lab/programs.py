@@ -1,4 +1,4 @@
-"""Programs that studies start: raya itself on MPI ranks, and those that are built beside it."""
+"""Runs programs for studies: raya on MPI ranks, and programs that are built with raya."""
 import json
 import os
 import shlex
@@ -11,31 +11,32 @@ import raya
 LAUNCHER = shlex.split(os.environ.get("RAYA_MPIRUN", "mpirun --bind-to none"))
 
 
-def beside_raya(name):
-    """The path of a program that was built with raya; None where it was not."""
+def sibling_program(name):
+    """Path of a program in raya's folder; None if it was not built."""
     path = os.path.join(os.path.dirname(raya.program()), name)
     return path if os.access(path, os.X_OK) else None
 
 
 def output_of(words, name, **how):
-    """What a program prints. Where it fails, its last complaint is an InputError, one of raya's own before others."""
+    """Standard output of a program. If it fails, raises InputError with the last line on stderr, preferably one by raya."""
     run = subprocess.run(words, capture_output=True, text=True, **how)
     if run.returncode:
-        said = [line for line in run.stderr.splitlines() if line.strip()]
-        own = [line for line in said if line.startswith("raya: ")]
-        raise raya.InputError(f"{name}: {(own or said or [f'exit code {run.returncode}'])[-1]}")
+        lines = [line for line in run.stderr.splitlines() if line.strip()]
+        own = [line for line in lines if line.startswith("raya: ")]
+        raise raya.InputError(f"{name}: {(own or lines or [f'exit code {run.returncode}'])[-1]}")
     return run.stdout
 
 
-def lacks_mpirun():
+def missing_mpirun():
+    """Message if there is no MPI launcher, else an empty string."""
     name = LAUNCHER[0] if LAUNCHER else "RAYA_MPIRUN"
     return "" if shutil.which(name) else (
-        f"cannot start {name}; remedy: install openmpi-bin or mpich, of the MPI that raya was built with, or name "
-        "another launcher in RAYA_MPIRUN")
+        f"cannot start {name}; remedy: install openmpi-bin or mpich, whichever MPI raya was built with, or set RAYA_MPIRUN to "
+        "another launcher")
 
 
 def on_ranks(ranks, arguments):
-    """What `raya` prints on so many ranks of one thread each."""
+    """Standard output of `raya` on `ranks` MPI ranks of one thread each."""
     settings = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
                 "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     words = LAUNCHER + ["-n", str(ranks), "env", "POCL_MAX_PTHREAD_COUNT=1", raya.program(), *arguments]
@@ -43,7 +44,7 @@ def on_ranks(ranks, arguments):
 
 
 def render_on_ranks(ranks, arguments):
-    """The report of a render."""
+    """The report (raya render --report) of a render on `ranks` MPI ranks."""
     with tempfile.TemporaryDirectory(prefix="raya-ranks-") as folder:
         report = os.path.join(folder, "report.json")
         on_ranks(ranks, ["render", *arguments, "--quiet", "-o", os.path.join(folder, "image.pfm"), "--report", report])

@@ -1,4 +1,4 @@
-"""What both machines take on MPI ranks: predicted from what one rank took, what a render counted, and a network."""
+"""Predicts render times on MPI ranks from the measured times of one rank, the counts of a render, and a network's alpha and beta."""
 import os
 
 import numpy as np
@@ -16,7 +16,7 @@ def rounds(ranks):
 
 
 class Ring:
-    """A ring with the filter: as many PEs as the image has columns, or as ranks where these are more."""
+    """A ring with the 3 x 3 filter. It has as many PEs as image columns or ranks, whichever is larger."""
 
     name, label = "ring", "trace"
 
@@ -37,11 +37,11 @@ class Ring:
         self.arrays = [f"{part['pes']} PEs" for part in self.parts]
 
     def weak(self, ranks):
-        """Arguments of a render with that many times as many pixels."""
+        """Arguments of a render with `ranks` times as many pixels (weak scaling)."""
         return [*self.arguments[:-1], str(round(int(self.arguments[-1]) * ranks**0.5))]
 
     def predict(self, i, one, network, processors):
-        """Seconds by what they are spent on."""
+        """Predicted seconds of each of PARTS. one: measured seconds of one rank; network: (alpha in s, beta in s/byte)."""
         part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
         parts = dict.fromkeys(PARTS, 0.0)
         parts.update(compute=(one["trace"] * (1 + part["u"]) + one["rest"]) / processors, host=one["host"])
@@ -53,8 +53,7 @@ class Ring:
 
 
 class Torus:
-    """A torus of 8 x 8 x 8 nodes, counted in one render; beyond as many ranks, tori whose nodes have been cut
-    further."""
+    """A torus of 8 x 8 x 8 nodes, counted in one render. More ranks than nodes have extrapolated tori (cut_further())."""
 
     name, label = "torus", "trace_voxel"
 
@@ -75,7 +74,7 @@ class Torus:
         self.objects = scene.objects
 
     def weak(self, ranks):
-        """Arguments of a render with that many times as many objects, spread evenly."""
+        """Arguments of a render with `ranks` times as many objects, spread evenly (weak scaling)."""
         file = os.path.join(os.path.dirname(self.arguments[0]), f"even-{ranks}.nff")
         even_scene(self.objects * ranks).save(file)
         return [file, *self.arguments[1:]]
@@ -94,27 +93,27 @@ class Torus:
 
 
 def bricks(result, ranks):
-    """Sums over the supersteps, each of the rank that has most in it. What the nodes of a brick send over one of their
-    links to the same rank is one message."""
+    """Sums over the supersteps of the maximum over ranks. All that the nodes of a brick send in one direction to the same rank
+    is one message."""
     rank_of, ends = raya.ranks_of_nodes(SIDES, ranks), raya.link_ends(SIDES)
     cycles, words = result.step_cycles, result.step_link_words
     by_rank = np.stack([cycles[:, rank_of == rank].sum(1) for rank in range(ranks)], 1)
     source, target = np.repeat(rank_of[:, None], 6, 1), rank_of[ends]
-    node, way = np.nonzero(source != target)
-    face = (source[node, way].astype(np.int64) * ranks + target[node, way]) * 6 + way
+    node, direction = np.nonzero(source != target)
+    face = (source[node, direction].astype(np.int64) * ranks + target[node, direction]) * 6 + direction
     faces, index = np.unique(face, return_inverse=True)
     sums, most = np.zeros((len(words), len(faces))), {}  # [superstep, face]
-    np.add.at(sums.T, index, 4 * words[:, node, way].T.astype(float))
+    np.add.at(sums.T, index, 4 * words[:, node, direction].T.astype(float))
     for name, values in (("messages", (sums > 0).astype(float)), ("bytes", sums)):
-        ways = [np.stack([values[:, end == rank].sum(1) for rank in range(ranks)], 1)
-                for end in (faces // 6 // ranks, faces // 6 % ranks)]
-        most[name] = np.maximum(*ways).max(1).sum()
+        sent_received = [np.stack([values[:, end == rank].sum(1) for rank in range(ranks)], 1)
+                         for end in (faces // 6 // ranks, faces // 6 % ranks)]
+        most[name] = np.maximum(*sent_received).max(1).sum()
     return {"nodes": len(rank_of), "most": np.bincount(rank_of).max(), "supersteps": len(cycles),
             "cycles": float(by_rank.max(1).sum()), "all": float(cycles.sum()), **most}
 
 
 def cut_further(part, times):
-    """The torus of so many times as many nodes, each of whose nodes has been cut into so many, a rank for each."""
+    """Extrapolates to a torus with `times` as many nodes, a rank for each: every node is cut into `times` nodes."""
     side = times ** (1 / 3)
     change = {"nodes": times, "supersteps": side, "cycles": 1 / times, "messages": side, "bytes": 1 / side**2,
               "status": times, "host": side * times}

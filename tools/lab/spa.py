@@ -1,4 +1,4 @@
-"""Modelled times of the SPA on one clock, and how sure it is: CLOCK tells."""
+"""Modelled times of the SPA on one clock. CLOCK describes the clock and its uncertainty."""
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -8,27 +8,28 @@ import raya
 from raya.lab import papers
 from raya.lab.laboratory import SPA, format_for, one_of
 
-ROUNDING = 0.5  # ms: the tables print whole ones
+ROUNDING = 0.5  # ms: the tables print whole milliseconds
 FACTORS = list(range(1, 9))
 
 
 def spa_ms(cycles):
-    """Milliseconds of a PE for so many modelled cycles, without a factor."""
+    """Milliseconds that a PE takes for modelled cycles, at factor 1."""
     return cycles * SPA["cycle_ns"] * 1e-6
 
 
 FILTER_BUDGET_MS = spa_ms(raya.filter_cycles(papers.SIZE))
-# 9 - 2 and 19 - 12 ms: each of the four is rounded, and both differences are met.
+# 9 - 2 = 19 - 12 = 7 ms; each of the four figures is rounded to 1 ms.
 FACTOR, FACTOR_LEAST, FACTOR_MOST = ((papers.FILTER_ARITHMETIC_MS + off) / FILTER_BUDGET_MS
                                      for off in (0, -2 * ROUNDING, 2 * ROUNDING))
-CLOCK = (f"modelled, one clock: the budget's cycles of 100 ns times {FACTOR:.2f} ({FACTOR_LEAST:.2f} .. "
-         f"{FACTOR_MOST:.2f} by rounding), which is the filter's factor, 7 ms [D] over what the budget gives it and of "
-         "no scene; rotations, exchanges and transfers at the rates of the real machine. Nothing is fitted to a scene. "
-         "That the factor holds for ray tracing too is an assumption: conclusions are shown for factors of 1 to 8.")
+CLOCK = (f"modelled on one clock. Computing takes the instruction budget's cycles of 100 ns times a factor of {FACTOR:.2f} "
+         f"({FACTOR_LEAST:.2f} .. {FACTOR_MOST:.2f} by rounding): the filter's 7 ms [D] over the time that the budget gives it, "
+         "which does not depend on a scene. Rotations, exchanges and transfers take the printed rates. Nothing is fitted to a "
+         "scene. We assume that the factor holds for ray tracing too; conclusions are therefore shown for factors of 1 to 8.")
 
 
 def host_model():
-    """What a call of the host takes, (least, most), from printed ms: of 2 and 34 rotations, of 256 x 256 x 3 words."""
+    """(minimum, maximum) of a host call's set-up, rotation time and word rate, from the printed times of 2 rotations, of 34
+    rotations and of 256 x 256 x 3 words."""
     few, many = 2, 34
     few_ms, many_ms, image_ms = (np.array([value - ROUNDING, value + ROUNDING]) for value in
                                  (papers.EXCHANGE_0_MS, papers.EXCHANGE_16_MS, papers.IMAGE_MS))
@@ -41,13 +42,13 @@ def host_model():
 
 @dataclass
 class SpaRun:
-    """An image made on PEs of the SPA, or on the same PEs without a limit of memory where the scene does not fit."""
+    """An image rendered on PEs of the SPA; without their memory limit if the scene does not fit."""
 
     result: raya.Result
     report: dict
 
     def time(self, factor=FACTOR):
-        """The report's modelled_ms with computing times a factor, and the set-up of exchanges."""
+        """The report's modelled_ms with computing multiplied by a factor, and with the set-up of exchanges."""
         t = dict(self.report["modelled_ms"])
         more = (factor - 1) * t["compute"]
         setup = papers.EXCHANGE_SETUP_MS if self.rotations else 0
@@ -71,8 +72,8 @@ def run_on_spa(lab, scene, size, pes, offset, antialias="none"):
 
 
 def offset_times(costs, pes, antialias, factor=FACTOR):
-    """Modelled ms of every offset, cyclic fold: offset, imbalance, trace_ms, smooth_ms, supersample_ms, ring_ms,
-    rotations, total_ms. Broadcast and gather are not in it: they take the same for every offset."""
+    """Modelled times of every offset with the cyclic fold: columns offset, imbalance, trace_ms, smooth_ms, supersample_ms,
+    ring_ms, rotations, total_ms. Broadcast and gather are excluded: they take the same for every offset."""
     times = pd.DataFrame(raya.offset_times(costs.trace, pes, antialias,
                                            costs.supersample if antialias == "supersample" else None))
     times[["trace_ms", "smooth_ms", "supersample_ms"]] *= factor
@@ -84,16 +85,16 @@ def offset_times(costs, pes, antialias, factor=FACTOR):
 
 @dataclass
 class SmoothingRuns:
-    """A scene smoothed with a PE for each column: the offsets 0, 8 and 16 rendered, every one from their costs."""
+    """Anti-aliased renders of a scene with a PE for each column, at offsets 0, 8 and 16. Their costs give every other offset."""
 
     scene: raya.Scene
     size: int
     antialias: str
-    runs: dict  # by offset: SpaRun
+    runs: dict  # {offset: SpaRun}
     costs: object
 
     def rows(self, factor=FACTOR):
-        """A row of each offset that was rendered; times in ms."""
+        """A row for each rendered offset; times in ms."""
         all_rows = []
         for p, run in self.runs.items():
             t, load = run.time(factor), run.report["load"]
@@ -113,7 +114,7 @@ class SmoothingRuns:
 
     @property
     def recomputed(self):
-        """Share of the pixels."""
+        """Share of the pixels that were recomputed, 0..1."""
         report = list(self.runs.values())[-1].report
         return report["antialias"].get("recomputed_pixels", 0) / self.size**2
 
@@ -125,9 +126,9 @@ def smoothing_runs(lab, scenes, antialias):
     return SmoothingRuns(scene, size, antialias, runs, SimpleNamespace(**{"supersample": costs["trace"], **costs}))
 
 
-def usual_size(scene):
-    """Pixels a side in which a scene's offsets are compared: its own where it is square, else 256; halved while the
-    scene's objects would make it take minutes."""
+def default_size(scene):
+    """Default pixels a side of best-offset: the scene's own size if it is square, else 256; halved while pixels times objects
+    exceed 2^30, which would take minutes."""
     square = scene.width == scene.height and 16 <= scene.width <= 4096
     size = scene.width if square else 256
     while size // 2 >= 64 and size * size * scene.objects > 2**30:

@@ -1,16 +1,16 @@
-"""Intervals, predictions and verdicts. Everything that a library has comes from numpy and scipy."""
+"""Confidence intervals, prediction intervals and verdicts, with numpy and scipy."""
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import stats
 
 VERDICTS = REPRODUCED, NOT_REPRODUCED, UNDECIDED = "reproduced", "not reproduced", "cannot be told"
-PREDICTABLE = 39  # pictures; the least and the largest of fewer hold less than 95 %
+PREDICTABLE = 39  # pictures: with fewer, their minimum and maximum contain another one with less than 95 %
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """The mean of independent values and the half width of its confidence interval; nan for one value."""
+    """The mean of independent values and the half width of its confidence interval (nan for a single value)."""
 
     mean: float
     half: float
@@ -18,7 +18,7 @@ class Estimate:
 
     low = property(lambda self: self.mean - self.half)
     high = property(lambda self: self.mean + self.half)
-    # The same, or where there is no interval the value itself.
+    # low and high; the mean itself if there is no interval.
     least = property(lambda self: self.mean if np.isnan(self.half) else self.low)
     most = property(lambda self: self.mean if np.isnan(self.half) else self.high)
 
@@ -29,7 +29,7 @@ class Estimate:
 
 
 def estimate(values, confidence=0.95):
-    """By Student's t distribution: exact for values that scatter normally."""
+    """Mean and confidence interval by Student's t distribution; exact for normally distributed values."""
     values = np.asarray(values, float)
     if len(values) < 2:
         return Estimate(float(values[0]), np.nan, 1)
@@ -38,24 +38,24 @@ def estimate(values, confidence=0.95):
 
 
 def each_of(tests):
-    """The confidence of each of n intervals that together hold with 95 % (Bonferroni)."""
+    """Confidence of each of `tests` intervals so that all hold together with 95 % (Bonferroni correction)."""
     return 1 - 0.05 / tests
 
 
 def prediction(values):
-    """(low, high): between these one more value lies with 95 %, whatever the distribution (order statistics)."""
+    """(low, high) of the 95 % prediction interval of one more value, for any distribution (order statistics)."""
     return tuple(np.quantile(values, [0.025, 0.975], method="weibull"))
 
 
 def verdict(seen, contrary):
-    """Of a claim that was seen, or whose contrary was; undecided where neither was."""
+    """Verdict on a claim: `seen` if the figures support it, `contrary` if they contradict it; undecided if neither or both."""
     if bool(seen) == bool(contrary):
         return UNDECIDED
     return REPRODUCED if seen else NOT_REPRODUCED
 
 
 def verdict_among(paper, pictures):
-    """Of a paper's figure for one picture: whether it lies in the prediction interval of many pictures."""
+    """Verdict on a paper's figure for one picture: reproduced if it lies in the prediction interval of many pictures."""
     low, high = prediction(pictures)
     among = low <= paper <= high
     return verdict(among, not among and len(pictures) >= PREDICTABLE)
@@ -71,10 +71,10 @@ def range_text(values, digits=3):
 
 
 def holding_to_the_end(values, holds):
-    """The values from the first on from which something holds for all: pandas series."""
+    """The values (pandas series) from the first one on from which `holds` is true for all."""
     return values[holds[::-1].cummin()[::-1]]
 
 
 def fitted_exponent(x, y):
-    """The e for which c x^e lies nearest to y, by least squares of the logarithms."""
+    """The exponent e of the fit y = c x^e, by least squares of the logarithms."""
     return float(stats.linregress(np.log(x), np.log(y)).slope)

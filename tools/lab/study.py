@@ -1,4 +1,4 @@
-"""Studies: how one is declared, found and run."""
+"""Declares and finds studies."""
 import importlib
 import importlib.util
 import pkgutil
@@ -12,14 +12,14 @@ REGISTRY = {}
 @dataclass(frozen=True)
 class Study:
     name: str
-    run: Callable  # (laboratory, scenes) -> Page; `scenes` are those that the user named, or none
+    run: Callable  # (laboratory, scenes) -> Page; `scenes`: those that the user named, or an empty list
     prose: str  # title, question, method: a line, a paragraph, a list
     one_scene: bool = False
-    lacks: Callable = lambda: ""  # what it needs and this machine does not have, with the remedy
+    missing: Callable = lambda: ""  # message with remedy if the study cannot run on this machine
 
 
 def study(name, *, prose=None, **more):
-    """Declares a study, of which studies.txt has a line; its prose is the docstring of its module unless given."""
+    """Decorator that declares a study; studies.txt must list its name. `prose` defaults to the docstring of its module."""
     def declare(run):
         text = prose or importlib.import_module(run.__module__).__doc__
         REGISTRY[name] = Study(name, run, text, **more)
@@ -27,12 +27,12 @@ def study(name, *, prose=None, **more):
     return declare
 
 
-# Their names, in the order in which they tell the story.
+# Names of the studies in the order of the document.
 ORDER = [line.partition(":")[0] for line in (Path(__file__).parent / "studies.txt").read_text().splitlines()]
 
 
 def studies():
-    """All studies of the laboratory, by name."""
+    """{name: Study} of all built-in studies, in the order of studies.txt."""
     from raya.lab import studies as package
 
     for module in pkgutil.iter_modules(package.__path__):
@@ -41,7 +41,7 @@ def studies():
 
 
 def study_of_file(path):
-    """A user's study: a Python file with a docstring and a function run(lab, scenes) -> Page."""
+    """Loads a user's study: a Python file with a docstring and a function run(lab, scenes) -> Page. Raises ValueError."""
     path = Path(path)
     spec = importlib.util.spec_from_file_location(path.stem, path)
     module = importlib.util.module_from_spec(spec)
@@ -50,6 +50,6 @@ def study_of_file(path):
     except Exception as error:
         raise ValueError(f"{path}: {type(error).__name__}: {error}") from error
     if not callable(getattr(module, "run", None)) or not module.__doc__:
-        raise ValueError(f"{path}: is not a study: it needs a docstring (title, question, method) and run(lab, scenes)")
+        raise ValueError(f"{path}: not a study: it needs a docstring (title, question, method) and run(lab, scenes)")
     name = path.stem.replace("_", "-")
     return Study(name, module.run, module.__doc__)

@@ -1,15 +1,15 @@
-"""What the studies of divided space share: renders on the torus machine, or in one PE, and the figures of each."""
+"""Common code of the studies of space division: renders on the torus machine or on one PE, and their figures."""
 import math
 
 import pandas as pd
 import raya
 from raya.lab.laboratory import measured, rays_of, sampled, tests_of
 
-CLOCK = ("modelled, of T805 transputers at 25 MHz (data sheet of the IMS T805, SGS-Thomson 1996), from what was "
-         "counted: 40 ns a cycle, links of 1.7 MB/s one way and 2.4 MB/s both ways, 2 w + 19 cycles of the processor "
-         "at either end of a message of w words. Overlapped: the busiest processor or link, no one ever waiting for "
-         "another; stepwise: every superstep waits for its busiest node, then for its busiest link. A real machine "
-         "lies between the two. Nothing on this page is measured.")
+CLOCK = ("modelled from counted events on T805 transputers at 25 MHz (data sheet of the IMS T805, SGS-Thomson 1996): 40 ns a "
+         "cycle; links of 1.7 MB/s one way and 2.4 MB/s both ways; a message of w words costs the processor at either end "
+         "2 w + 19 cycles. Overlapped: the time of the busiest processor or link, which nothing else delays. Stepwise: every "
+         "superstep waits for its busiest node, then for its busiest link. A real machine lies between the two. Nothing on "
+         "this page is measured.")
 NO_LIMIT = 1 << 40  # bytes of a node's memory
 BOUNCES = next(m for m in raya.machines() if m["name"] == "torus")["bounces"]
 
@@ -19,13 +19,13 @@ def sides_text(sides):
 
 
 def near_cube(count):
-    """The sides of 2^n nodes or voxels that are most alike, the longer ones first: 1x1x1, 2x1x1, 2x2x1, 2x2x2, ..."""
+    """Sides of the box of 2^n nodes or voxels nearest to a cube, longer sides first: 1x1x1, 2x1x1, 2x2x1, 2x2x2, ..."""
     bits = count.bit_length() - 1
     return 1 << (bits + 2) // 3, 1 << (bits + 1) // 3, 1 << bits // 3
 
 
 def powers(most):
-    """1, 2, 4, ... `most`."""
+    """1, 2, 4, ... up to `most`."""
     return [1 << k for k in range(most.bit_length())]
 
 
@@ -38,18 +38,18 @@ def balls_scene(level):
     return raya.generate.balls(level).renamed(f"balls-{level}")
 
 
-# Columns of the studies' tables, and what they show of a run, where it has another name.
+# {column of a table: member of Run}, where the two names differ.
 MEMBERS = {
     "divisions": "voxels", "A x B x C": "sides", "tests a ray": "tests_per_ray", "steps a ray": "steps_per_ray",
     "modelled (s)": "modelled_s", "measured (ms)": "measured_ms", "measured, median (ms)": "median_ms",
     "voxels of an object": "voxels_of_object", "overlapped (ms)": "overlapped_ms", "stepwise (ms)": "stepwise_ms",
     "the root's processor (ms)": "root_processor_ms", "the root's busiest link (ms)": "root_link_ms",
     "root / overlapped (%)": "root_share", "busiest link (bytes)": "busiest_link_bytes", "u": "imbalance",
-    "rays thrown away": "discarded", "hops a packet": "hops_per_packet", "most packets in a queue": "queue_max"}
+    "rays discarded": "discarded", "hops a packet": "hops_per_packet", "most packets in a queue": "queue_max"}
 
 
 class Run:
-    """Figures of one render. Times of the torus are modelled; those of one PE, `time`, are measured as well."""
+    """Figures of one render. Times of the torus are modelled; those of one PE are also measured (`time`)."""
 
     def __init__(self, scene, result, voxels, time=None):
         e, report = result.events, result.report
@@ -57,12 +57,12 @@ class Run:
         self.voxels, self.sides = math.prod(voxels), sides_text(voxels)
         self.rays, self.tests, self.steps, self.primary = rays_of(e), tests_of(e), e["steps"], e["primary"]
         self.tests_per_ray, self.steps_per_ray = self.tests / max(1, self.rays), self.steps / max(1, self.rays)
-        # Entries of the voxels' lists beyond each object's first.
+        # Entries in the voxels' object lists beyond the first of each object.
         self.copies = report["torus" if time is None else "accel"]["copies"]
         self.voxels_of_object = 1 + self.copies / self.objects
         if time is not None:
             self.modelled_s = 1e-3 * raya.t805_ms(e)
-            self.measured_ms, self.median_ms = 1e3 * time.least, 1e3 * time.median
+            self.measured_ms, self.median_ms = 1e3 * time.minimum, 1e3 * time.median
             return
         torus, modelled_ms = report["torus"], report["modelled_ms"]
         self.packets = sum(kind["made"] for kind in torus["packets"].values())
@@ -83,13 +83,13 @@ class Run:
 
 
 def swept(cases, run, columns):
-    """A row of each case, a dict of what is varied: run(**case) in those columns, and the run itself as the last."""
+    """Table with a row for each case (a dict of arguments): its arguments, the columns of run(**case), and the Run in `run`."""
     return pd.DataFrame([{**case, **one.row(columns), "run": one} for case in cases for one in [run(**case)]])
 
 
 def run_on_torus(lab, scene, size, nodes, voxels, queue=None, **options):
-    """A render without a limit of memory. Where the queue is too short for the machine to come to an end, twice its
-    length is tried, and so on up to the default."""
+    """Renders on the torus without a memory limit. If the machine deadlocks because its queues are too short, doubles their
+    length, up to the default."""
     while True:
         try:
             result = lab.render(scene, machine="torus", size=size, nodes=sides_text(nodes), voxels=sides_text(voxels),
@@ -102,9 +102,9 @@ def run_on_torus(lab, scene, size, nodes, voxels, queue=None, **options):
 
 
 def run_in_one_pe(lab, scene, size, voxels, bounces=0, sampling="centres", runs=1):
-    """The scene in fp32 on one PE of grande, every ray walking through the grid; `runs` samples are timed."""
+    """Renders the scene in fp32 on one PE of grande with a grid; takes up to `runs` timing samples."""
     options = dict(machine="grande", format="fp32", size=size, pes=1, offset=0, bounces=bounces, sampling=sampling,
                    accel=f"grid:{sides_text(voxels)}")
-    counted = lab.render(scene, **options)  # a warm-up for those that are timed
+    counted = lab.render(scene, **options)  # also warms up the timed renders
     time = measured(lambda: sampled(lambda: lab.render(scene, **options).device_s), runs, 1, warm=False)
     return Run(scene, counted, voxels, time)

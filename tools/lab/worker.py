@@ -1,4 +1,4 @@
-"""A process that runs studies: a driver that crashes ends one of them, and the next has a new process."""
+"""Runs studies in a child process, so that a crashing OpenCL driver ends one study only."""
 import os
 import signal
 import sys
@@ -11,16 +11,16 @@ from raya.lab.laboratory import Laboratory
 from raya.lab.page import Page
 from raya.lab.study import studies, study_of_file
 
-laboratory = None  # of this process: it keeps its device from one study to the next
+laboratory = None  # of this process; its device session is reused from study to study
 
 
 def warn_as_raya(options):
-    """From now on warnings are lines on stderr as the program writes them; none with -qq."""
+    """Prints Python's warnings in raya's form on stderr; no warnings with -qq."""
     warnings.showwarning = lambda text, *_: options.verbosity > -2 and print(f"raya: warning: {text}", file=sys.stderr)
 
 
 def run_study(study, scenes, folder, options):
-    """(page, device)"""
+    """Runs one study. Returns (page, device description); raises ValueError for an error in the study's code."""
     global laboratory
     warn_as_raya(options)
     one = study_of_file(study) if study.endswith(".py") else studies()[study]
@@ -39,15 +39,15 @@ def run_study(study, scenes, folder, options):
 
 
 def place_of(error, run):
-    """'file.py, line N: ', the last one of the study's own that led to the error."""
+    """'file.py, line N: ' of the study's innermost frame in the error's traceback."""
     file = run.__code__.co_filename
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
     return f"{os.path.basename(file)}, line {lines[-1]}: " if lines else ""
 
 
 def answer(pipe):
-    """Runs what the pipe brings until nobody is at its other end, and sends back (result, error)."""
-    for number in (signal.SIGINT, signal.SIGQUIT):  # of a terminal, which goes to every process: the first one ends this one
+    """Main loop of the child: receives arguments of run_study() from the pipe, sends (result, error), ends at EOF."""
+    for number in (signal.SIGINT, signal.SIGQUIT):  # a terminal sends these to every process; the parent ends this one
         signal.signal(number, signal.SIG_IGN)
     while True:
         try:
@@ -61,13 +61,13 @@ def answer(pipe):
 
 
 class Worker:
-    """Not an executor of concurrent.futures: a signal leaves that one's semaphores behind, and Python warns of them."""
+    """A child process. concurrent.futures would leak semaphores on a signal, and Python would warn of them."""
 
     def __init__(self):
         self._process = None
 
     def run(self, *arguments):
-        """(page, device) of run_study(). DeviceError when the process dies of it."""
+        """Result of run_study(). Raises DeviceError if the process crashes."""
         if self._process is None:
             context = get_context("spawn")
             self._pipe, theirs = context.Pipe()

@@ -1,15 +1,14 @@
-// The history of a render on the torus, carried out by SimGrid (https://simgrid.org): processors and links are
-// SimGrid's, the tasks of a node are actors. Nothing of raya's simulator is in it but the rules, which
-// host/torus/async_machine.hpp has; what is written here is how they look where a simulator gives processes, semaphores
-// and messages.
+// Replays the work of a render on the torus with SimGrid (https://simgrid.org). Processors and links are SimGrid's; the
+// tasks of a node are actors. The code is independent of raya's simulator and implements the same rules
+// (host/torus/async_machine.hpp) with actors, semaphores and messages.
 //
 //   simgrid_replay PLATFORM.xml REPLAY [--cfg=...]
 //
-// prints "finish_ms T" and "delivered N". Exit code 2 for what cannot be read, 4 where the machine stands still.
-// REPLAY, by `raya render --machine torus --packets FILE.csv.gz --replay simgrid` (docs/packets.md), is text:
+// Prints "finish_ms T" and "delivered N". Exit codes: 2 for a file that cannot be read, 4 for a deadlock.
+// REPLAY is text, written by `raya render --machine torus --packets FILE.csv.gz --replay simgrid` (docs/packets.md):
 //   machine NODES BUFFER ENTERING MESSAGE_CYCLES WORD_CYCLES
-//   t NODE CYCLES CAUSE             a task; CAUSE: the message whose arrival starts it, counted from 0, or -
-//   m WORDS CLASS DIRECTION NODE .. a message of the task before it; CLASS 0: return, 1: ray; its way
+//   t NODE CYCLES CAUSE             a task; CAUSE: index of the message whose arrival starts it, from 0, or -
+//   m WORDS CLASS DIRECTION NODE .. a message of the preceding task; CLASS 0: return, 1: ray; then its hops
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -29,7 +28,7 @@ namespace {
 
 namespace sg = simgrid::s4u;
 
-constexpr double kFirst = 1e9;  // priority of the communication task over the main task, which has 1
+constexpr double kCommunicationPriority = 1e9;  // the main task has 1
 constexpr std::size_t kNoTask = SIZE_MAX;
 
 struct Hop {
@@ -40,8 +39,8 @@ struct Hop {
 struct Message {
     double words = 0;
     int cls = 0;
-    std::vector<Hop> way;
-    std::size_t hop = 0;  // links behind it
+    std::vector<Hop> route;
+    std::size_t hop = 0;  // number of links that it has passed
     std::size_t task = kNoTask;
 };
 
@@ -51,7 +50,7 @@ struct Task {
     std::vector<Message*> sends;
 };
 
-// One way of a link: what its output thread holds of each class, and whether its input thread has room.
+// One direction of a link. By class: messages in the output thread; whether the input thread is occupied.
 struct Port {
     std::size_t from = 0, to = 0;
     int direction = 0;
@@ -64,7 +63,7 @@ struct Node {
     sg::Host* host = nullptr;
     sg::MutexPtr lock = sg::Mutex::create(), communication = sg::Mutex::create();
     sg::ConditionVariablePtr changed = sg::ConditionVariable::create();
-    std::deque<std::size_t> queue, own;  // tasks that wait, tasks that it begins by itself
+    std::deque<std::size_t> queue, own;  // tasks started by messages; tasks that the node starts itself
 };
 
 struct Machine {
@@ -88,12 +87,12 @@ Machine machine;
 
 void wake(Node& node) { node.changed->notify_all(); }
 
-// The processor's part of a message, before what the main task does and one after another.
+// The processor's part of a message: it preempts the main task; messages are handled one after another.
 void handle(Node& node, const Message& message) {
     const double cycles = machine.message_cycles + machine.word_cycles * message.words;
     if (cycles <= 0) return;
     node.communication->lock();
-    sg::this_actor::exec_init(cycles)->set_priority(kFirst)->wait();
+    sg::this_actor::exec_init(cycles)->set_priority(kCommunicationPriority)->wait();
     node.communication->unlock();
 }
 
@@ -105,18 +104,18 @@ void deliver(Message* message, std::size_t at) {
     wake(machine.nodes[at]);
 }
 
-// Into the output thread of the next link; `came` is the direction by which it came, -1 from the main task. Waits for
-// room.
+// Puts a message into the output thread of its next link; waits for a free buffer. `came`: direction from which it
+// arrived; -1: from the main task.
 void put(std::size_t at, Message* message, int came) {
     Node& node = machine.nodes[at];
-    const Hop next = message->way[message->hop];
+    const Hop next = message->route[message->hop];
     Port& port = *machine.ports.at({at, next.direction});
-    std::deque<Message*>& room = port.out[message->cls];
-    const bool goes_on = message->cls == 0 || came == next.direction;
-    const std::size_t needs = goes_on ? 1 : machine.entering;
+    std::deque<Message*>& out = port.out[message->cls];
+    const bool stays_in_ring = message->cls == 0 || came == next.direction;
+    const std::size_t needs = stays_in_ring ? 1 : machine.entering;
     std::unique_lock<sg::Mutex> lock(*node.lock);
-    while (room.size() + needs > machine.buffer) node.changed->wait(lock);
-    room.push_back(message);
+    while (out.size() + needs > machine.buffer) node.changed->wait(lock);
+    out.push_back(message);
     wake(node);
 }
 
@@ -134,14 +133,14 @@ void main_task(std::size_t at) {
         if (machine.tasks[task].cycles > 0) sg::this_actor::execute(machine.tasks[task].cycles);
         machine.finish_one();
         for (Message* message : machine.tasks[task].sends)
-            if (message->way.empty())
+            if (message->route.empty())
                 deliver(message, at);
             else
                 put(at, message, -1);
     }
 }
 
-// Returns first.
+// Returns (class 0) have priority over rays.
 void output_thread(Port* port) {
     Node& node = machine.nodes[port->from];
     for (;;) {
@@ -166,7 +165,7 @@ void input_thread(Port* port, int cls) {
     for (;;) {
         Message* const message = port->wire[cls]->get<Message>();
         handle(node, *message);
-        if (++message->hop == message->way.size())
+        if (++message->hop == message->route.size())
             deliver(message, port->to);
         else
             put(port->to, message, port->direction);
@@ -180,12 +179,12 @@ void input_thread(Port* port, int cls) {
 void read_message(std::istringstream& words) {
     Message message;
     if (machine.tasks.empty() || !(words >> message.words >> message.cls)) fail("a message without a task");
-    if (message.cls != 0 && message.cls != 1) fail("a message that is neither return nor ray");
+    if (message.cls != 0 && message.cls != 1) fail("a message's class is not 0 (return) or 1 (ray)");
     for (Hop hop; words >> hop.direction;) {
-        if (!(words >> hop.node) || hop.node >= machine.nodes.size()) fail("a way to no node");
-        message.way.push_back(hop);
+        if (!(words >> hop.node) || hop.node >= machine.nodes.size()) fail("a hop to an unknown node");
+        message.route.push_back(hop);
     }
-    if (!words.eof()) fail("a way that is no way");
+    if (!words.eof()) fail("a route that is not a list of DIRECTION NODE");
     machine.messages.push_back(message);
     machine.tasks.back().sends.push_back(&machine.messages.back());
 }
@@ -193,7 +192,7 @@ void read_message(std::istringstream& words) {
 void read_task(std::istringstream& words) {
     Task task;
     std::string cause;
-    if (!(words >> task.node >> task.cycles >> cause) || task.node >= machine.nodes.size()) fail("no task");
+    if (!(words >> task.node >> task.cycles >> cause) || task.node >= machine.nodes.size()) fail("expected t NODE CYCLES CAUSE");
     if (cause == "-")
         machine.nodes[task.node].own.push_back(machine.tasks.size());
     else
@@ -203,7 +202,7 @@ void read_task(std::istringstream& words) {
 
 void read_replay(const std::string& file) {
     std::ifstream in(file);
-    if (!in) fail("cannot be opened: " + file);
+    if (!in) fail(file + ": cannot open file");
     for (std::string line; std::getline(in, line);) {
         std::istringstream words(line);
         std::string what;
@@ -212,14 +211,14 @@ void read_replay(const std::string& file) {
             std::size_t nodes = 0;
             if (!(words >> nodes >> machine.buffer >> machine.entering >> machine.message_cycles >>
                   machine.word_cycles))
-                fail("no machine");
+                fail("expected machine NODES BUFFER ENTERING MESSAGE_CYCLES WORD_CYCLES");
             machine.nodes = std::vector<Node>(nodes);
         } else if (what == "t") {
             read_task(words);
         } else if (what == "m") {
             read_message(words);
         } else {
-            fail("a line of another kind: " + line);
+            fail("unknown line: " + line);
         }
     }
     machine.left = machine.tasks.size() + machine.messages.size();
@@ -229,12 +228,12 @@ void start(const std::string& name, sg::Host* host, const std::function<void()>&
     sg::Actor::create(name, host, code)->daemonize();
 }
 
-// Threads for the links that are used.
+// Creates ports and threads for the links that messages use.
 void start_actors() {
     for (const Task& task : machine.tasks)
         for (const Message* message : task.sends) {
             std::size_t from = task.node;
-            for (const Hop& hop : message->way) {
+            for (const Hop& hop : message->route) {
                 auto& port = machine.ports[{from, hop.direction}];
                 if (!port) {
                     port = std::make_unique<Port>();
@@ -263,12 +262,12 @@ void start_actors() {
 
 int main(int argc, char* argv[]) {
     sg::Engine engine(&argc, argv);
-    // A link's time is its words over its rate, as on the wire; no allowance for the protocols of other networks.
+    // A message takes its bytes divided by the link's rate, without SimGrid's corrections for TCP.
     sg::Engine::set_config("network/model:CM02");
     sg::Engine::set_config("network/crosstraffic:0");
     sg::Engine::set_config("contexts/stack-size:128");
     if (argc != 3) {
-        std::cerr << "simgrid_replay PLATFORM.xml REPLAY\n";
+        std::cerr << "usage: simgrid_replay PLATFORM.xml REPLAY\n";
         return 2;
     }
     try {
@@ -283,7 +282,7 @@ int main(int argc, char* argv[]) {
     }
     engine.run();
     if (machine.left > 0) {
-        std::cerr << "simgrid_replay: the machine stands still\n";
+        std::cerr << "simgrid_replay: deadlock: " << machine.left << " tasks and messages are left\n";
         return 4;
     }
     std::cout.precision(12);

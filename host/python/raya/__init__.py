@@ -5,8 +5,8 @@
     result = raya.render(scene, machine="spa", offset=16, cost=True)
     result.imbalance, raya.imbalances(result.cost, pes=256, offsets=range(256))
 
-Keyword arguments of render() are the long options of `raya render`, with underscores: --pe-memory is pe_memory,
---async async_. Bad input raises ValueError, devices DeviceError, with the command line's text.
+Keyword arguments of render() are the long options of `raya render` with underscores: pe_memory for --pe-memory, async_ for
+--async. Invalid input raises ValueError, a device DeviceError, with the message of the command line.
 """
 import contextlib
 import os
@@ -54,7 +54,7 @@ from raya._engine import (
 
 @contextlib.contextmanager
 def _shown(progress):
-    """What the engine calls with the share done: `progress` itself, a bar for True, nothing for False."""
+    """The progress callback of the engine: `progress` itself, a progress bar for True, None for False."""
     if progress is not True:
         yield progress or None
         return
@@ -65,11 +65,11 @@ def _shown(progress):
 
 
 def render(scene, *, progress=False, session=None, **options):
-    """Renders a scene; returns a Result.
+    """Renders a scene and returns a Result.
 
-    scene: a Scene, or the path of an NFF file. Options: those of `raya render`; of them `cost` and `packets` may be
-    True, which keeps the arrays and writes no file. progress: True draws a bar, a function is called with the share
-    that is done, 0..1. session: a Session; default: one for each device, kept. Raises ValueError, DeviceError.
+    scene: a Scene, or the path of an NFF file. options: those of `raya render`; cost=True and packets=True store the
+    arrays in the Result instead of a file. progress: True draws a progress bar; a function is called with the completed
+    share, 0..1. session: a Session; default: a shared one per device. Raises ValueError, DeviceError.
     """
     if not isinstance(scene, Scene):
         scene = load(scene)
@@ -80,18 +80,18 @@ def render(scene, *, progress=False, session=None, **options):
 
 
 def program():
-    """The path of the program raya that lies with this package: of its build or its installation."""
+    """The path of the program raya of the build or installation that contains this package."""
     package = Path(__file__).absolute().parent
     candidates = [os.environ.get("RAYA_PROGRAM"), package / "raya", package / "../../raya", package / "../../../../bin/raya",
                   shutil.which("raya")]
     for path in candidates:
         if path and os.access(path, os.X_OK) and os.path.isfile(path):
             return os.path.realpath(path)
-    raise FileNotFoundError("the program raya was not found next to its Python package; name it in RAYA_PROGRAM")
+    raise FileNotFoundError("the program raya was not found next to its Python package; set RAYA_PROGRAM to its path")
 
 
 def _run_program():
-    """The command `raya` of an installation by pip, whose studies run in this Python."""
+    """The command `raya` of an installation by pip. Its studies run in this Python."""
     os.environ.setdefault("RAYA_PYTHON", sys.executable)
     path = program()
     os.execv(path, [path, *sys.argv[1:]])

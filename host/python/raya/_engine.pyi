@@ -1,4 +1,4 @@
-# The types of what the module in C++ has; what each does stands in its docstring: help(raya).
+# Type stubs of the C++ module. For documentation see the docstrings: help(raya).
 from os import PathLike
 from types import SimpleNamespace
 from typing import Any, Callable, Iterable, Optional, Sequence, Union

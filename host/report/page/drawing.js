@@ -1,8 +1,8 @@
-// Drawings as SVG in the page's own colours, and maps of pixels, each with words for those who do not see it.
+// Charts as SVG in the page's colours, and pixel maps on canvases. `description`: text for screen readers.
 "use strict";
 
-// --- Colours: OKLCH (B. Ottosson, "A perceptual color space for image processing", 2020), so that all hues are as
-// light. Hue: degrees.
+// --- Colours: OKLCH (B. Ottosson, "A perceptual color space for image processing", 2020), where all hues have equal
+// lightness. Hue in degrees.
 
 function rgbOf(light, chroma, hue) {
   const a = chroma * Math.cos(hue * Math.PI / 180), b = chroma * Math.sin(hue * Math.PI / 180);
@@ -19,11 +19,11 @@ function rgbOf(light, chroma, hue) {
 
 const hueOf = (pe, pes) => (205 + 360 * pe / pes) % 360;
 const bright = (pe, pes, light, alpha = 1) => `rgb(${rgbOf(light, 0.13, hueOf(pe, pes)).join(" ")} / ${alpha})`;
-const wordOf = ([r, g, b]) => (255 << 24 | b << 16 | g << 8 | r) >>> 0;  // a pixel of a canvas, the least byte first
+const wordOf = ([r, g, b]) => (255 << 24 | b << 16 | g << 8 | r) >>> 0;  // RGBA pixel of a canvas, little-endian
 
-// word(row, column): of each pixel.
-function pixelMap(width, height, words, word) {
-  const canvas = make("canvas", {class: "picture", width, height, role: "img", "aria-label": words});
+// word(row, column): RGBA word of a pixel.
+function pixelMap(width, height, description, word) {
+  const canvas = make("canvas", {class: "picture", width, height, role: "img", "aria-label": description});
   const pixels = new Uint32Array(width * height), context = canvas.getContext("2d");
   for (let row = 0, at = 0; row < height; ++row)
     for (let column = 0; column < width; ++column, ++at) pixels[at] = word(row, column);
@@ -31,17 +31,17 @@ function pixelMap(width, height, words, word) {
   return canvas;
 }
 
-// value -> word: red above the mean, blue below, full at the value that lies farthest from it.
+// Returns value -> RGBA word: red above the mean, blue below, saturated at the value farthest from it.
 function diverging(values) {
   const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
-  const farthest = values.reduce((most, value) => Math.max(most, Math.abs(value - mean)), 0) || 1;
+  const farthest = values.reduce((max, value) => Math.max(max, Math.abs(value - mean)), 0) || 1;
   return (value) => {
-    const way = (value - mean) / farthest, far = Math.min(Math.abs(way), 1);
-    return wordOf(rgbOf(0.93 - 0.4 * far, 0.17 * far, way < 0 ? 255 : 29));
+    const distance = (value - mean) / farthest, far = Math.min(Math.abs(distance), 1);
+    return wordOf(rgbOf(0.93 - 0.4 * far, 0.17 * far, distance < 0 ? 255 : 29));
   };
 }
 
-// --- SVG. Units of the drawing; letters are 12.5 high (style.css).
+// --- SVG, in units of the view box; the font size is 12.5 (style.css).
 
 const WIDE = 480, HIGH = 250, LEFT = 52, RIGHT = 456, TOP = 26, BOTTOM = 212;
 
@@ -59,34 +59,35 @@ const box = (kind, x0, y0, x1, y1) => path(kind, `M${at(x0)} ${at(y0)}H${at(x1)}
 const label = (anchor, x, y, text) => svg("text", {x: at(x), y: at(y), "text-anchor": anchor}, text);
 const dot = (x, y, radius = 4, kind = "dot") => svg("circle", {class: kind, cx: at(x), cy: at(y), r: radius});
 
-const chart = (words, marks, high = HIGH) => svg(
-  "svg", {class: "chart", viewBox: `0 0 ${WIDE} ${high}`, role: "img", "aria-label": words},
+const chart = (description, marks, high = HIGH) => svg(
+  "svg", {class: "chart", viewBox: `0 0 ${WIDE} ${high}`, role: "img", "aria-label": description},
   box("ground", 0, 0, WIDE, high), ...marks.flat());
 
-// Round numbers from 0 to `most`, about `count` of them.
-function ticksOf(most, count) {
-  const raw = most / count, power = 10 ** Math.floor(Math.log10(raw));
+// About `count` round numbers from 0 to `max`.
+function ticksOf(max, count) {
+  const raw = max / count, power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].find((s) => s * power >= raw * 0.999) * power;
-  return Array.from({length: Math.floor(most / step * 1.0001) + 1}, (_, i) => Number((i * step).toPrecision(6)));
+  return Array.from({length: Math.floor(max / step * 1.0001) + 1}, (_, i) => Number((i * step).toPrecision(6)));
 }
 
-// An axis: `to` maps a value to 0..1; `whole`: of numbers that stand for things.
-function linear(name, most, count, whole = false) {
-  const [unit, prefix] = most >= 1e9 ? [1e9, "thousand million "] :
-    most >= 1e6                      ? [1e6, "million "] :
-    most >= 1e4                      ? [1e3, "thousand "] :
-                                       [1, ""];
-  const ticks = ticksOf(most, count).filter((tick) => !whole || Number.isInteger(tick));
+// A linear axis; `to` maps a value to 0..1. `whole`: integer ticks without a unit prefix.
+function linear(name, max, count, whole = false) {
+  const [unit, prefix] = max >= 1e9 ? [1e9, "thousand million "] :
+    max >= 1e6                      ? [1e6, "million "] :
+    max >= 1e4                      ? [1e3, "thousand "] :
+                                      [1, ""];
+  const ticks = ticksOf(max, count).filter((tick) => !whole || Number.isInteger(tick));
   return {
     name: whole ? name : prefix + name,
-    to: (v) => v / most,
+    to: (v) => v / max,
     ticks,
     text: (tick) => String(Number((tick / (whole ? 1 : unit)).toPrecision(6)))
   };
 }
 
-function decades(name, least, most) {
-  const begin = Math.floor(Math.log10(least)), end = Math.max(begin + 1, Math.ceil(Math.log10(most)));
+// A logarithmic axis over whole decades.
+function decades(name, min, max) {
+  const begin = Math.floor(Math.log10(min)), end = Math.max(begin + 1, Math.ceil(Math.log10(max)));
   const step = Math.max(1, Math.ceil((end - begin) / 8)), ticks = [];
   for (let power = begin; power <= end; power += step) ticks.push(10 ** power);
   return {
@@ -94,7 +95,7 @@ function decades(name, least, most) {
     to: (v) => (Math.log10(v) - begin) / (end - begin),
     ticks,
     text: (tick) => String(Number(tick.toPrecision(6))),
-    least: 10 ** begin
+    min: 10 ** begin
   };
 }
 
@@ -107,13 +108,13 @@ function plane(across, up) {
   return {x, y, grid};
 }
 
-// Bars from 0 by their number, and a line at their mean. Many share columns: dark up to the least of a column, pale up
-// to the most. `colour(i)`: of one bar, where it has its own.
-function bars(words, [across, up], values, mean, {colour = null, top = 0} = {}) {
+// Vertical bars of `values`, and a line at their mean. Above 416 values several share a column, dark up to their
+// minimum and pale up to their maximum. `colour(first, count)`: optional colour of a column.
+function bars(description, [across, up], values, mean, {colour = null, top = 0} = {}) {
   const count = values.length, columns = count <= 416 ? count : 208, wide = (RIGHT - LEFT) / columns,
         gap = columns > 100 ? 0.1 : 0.2;
-  const most = values.reduce((a, b) => Math.max(a, b), Math.max(top, 1e-9));
-  const {x, y, grid} = plane(linear(across, count, 8, true), linear(up, most * 1.04, 5)), marks = [];
+  const max = values.reduce((a, b) => Math.max(a, b), Math.max(top, 1e-9));
+  const {x, y, grid} = plane(linear(across, count, 8, true), linear(up, max * 1.04, 5)), marks = [];
   for (let column = 0; column < columns; ++column) {
     const from = Math.floor(column * count / columns),
           own = values.slice(from, Math.floor((column + 1) * count / columns));
@@ -124,15 +125,14 @@ function bars(words, [across, up], values, mean, {colour = null, top = 0} = {}) 
     if (colour)
       for (const mark of marks.slice(high > low ? -2 : -1)) mark.style.fill = colour(from, own.length);
   }
-  return chart(words, [grid, marks, line("mark", [LEFT, y(mean)], [RIGHT, y(mean)])]);
+  return chart(description, [grid, marks, line("mark", [LEFT, y(mean)], [RIGHT, y(mean)])]);
 }
 
-// Bars below each other, each with its name above it: {name, text, value, mark}; mark: a line across it, of what it is
-// compared with.
-function namedBars(words, rows) {
-  const most = rows.reduce((a, {value, mark = 0}) => Math.max(a, value, mark), 1e-300), x = (v) => 6 + 358 * v / most;
+// Horizontal bars with names above them: {name, text, value, mark}. mark: optional value of a line across the bar.
+function namedBars(description, rows) {
+  const max = rows.reduce((a, {value, mark = 0}) => Math.max(a, value, mark), 1e-300), x = (v) => 6 + 358 * v / max;
   return chart(
-    words, rows.map(({name, text, value, mark}, i) => {
+    description, rows.map(({name, text, value, mark}, i) => {
       const y = 36 * i + 14, end = Math.max(x(value), 7);
       return [
         label("start", 6, y, name), box("bar", 6, y + 4, end, y + 16),
@@ -143,14 +143,14 @@ function namedBars(words, rows) {
     36 * rows.length + 6);
 }
 
-// Points [operations a byte, operations a second], numbered from 1, below the roof min(across * slope, top); a second,
-// lower top is dashed.
-function roof(words, slope, tops, points) {
+// Roofline chart: numbered points [operations per byte, operations per second] below the roof min(x * slope, top). A
+// second, lower top is dashed.
+function roof(description, slope, tops, points) {
   const xs = [tops[0][1] / slope, ...points.map(([x]) => x)],
         ys = [...tops.map(([, v]) => v), ...points.map(([, y]) => y)];
-  const across = decades("operations a byte", Math.min(...xs) / 2, Math.max(...xs) * 2);
-  const up = decades("thousand million operations a second", Math.min(...ys) / 1.5, Math.max(...ys) * 1.2);
-  const {x, y, grid} = plane(across, up), from = Math.max(across.least, up.least / slope);
+  const across = decades("operations per byte", Math.min(...xs) / 2, Math.max(...xs) * 2);
+  const up = decades("thousand million operations per second", Math.min(...ys) / 1.5, Math.max(...ys) * 1.2);
+  const {x, y, grid} = plane(across, up), from = Math.max(across.min, up.min / slope);
   for (const tick of across.ticks) grid.push(line("grid", [x(tick), TOP], [x(tick), BOTTOM]));
   const marks = tops.flatMap(
     ([name, top], i) =>
@@ -158,7 +158,7 @@ function roof(words, slope, tops, points) {
            line("roof", [x(from), y(from * slope)], [x(top / slope), y(top)], [RIGHT, y(top)]),
        label("end", RIGHT, y(top) - 5, name)]);
   marks.push(label("start", x(from) + 4, Math.min(y(from * slope) + 14, BOTTOM - 4), "copies"));
-  const taken = [];  // labels; one below the last that is near
+  const taken = [];  // positions of labels; a label too near to another moves below it
   const places = points.map(([px, py], i) => [x(px), y(py), i + 1]).sort((a, b) => a[1] - b[1]);
   for (const [px, py, number] of places) {
     const right = px + 22 > RIGHT, lx = right ? px - 8 : px + 8;
@@ -168,5 +168,5 @@ function roof(words, slope, tops, points) {
     taken.push([lx, ly]);
     marks.push(dot(px, py), label(right ? "end" : "start", lx, ly, String(number)));
   }
-  return chart(words, [grid, marks]);
+  return chart(description, [grid, marks]);
 }

@@ -1,9 +1,9 @@
-// The explorer: the page of one render's costs. Reads them, keeps the state, and has shown what model.js computes of
-// it.
+// The explorer: the page of one render's costs. Decodes the costs, keeps the state, and displays the figures of
+// model.js.
 "use strict";
 
-// Options break between lines, not within.
-const commandWords = (text) => text.split(" ").flatMap((word, i) => [i ? " " : "", make("span", {}, word)]);
+// Allows line breaks only between options.
+const commandElements = (text) => text.split(" ").flatMap((word, i) => [i ? " " : "", make("span", {}, word)]);
 
 const explorer = {
   report: null,
@@ -15,18 +15,18 @@ const explorer = {
   curves: {pes: 0, known: 0, values: null, best: null, worst: 0},
 
   get focus() { return this.hovered ?? this.state.pe; },
-  get root() { return rootOf(this.figures.setting.pes); },  // may lie beyond the last offset
+  get root() { return rootOf(this.figures.setting.pes); },  // may exceed the last offset
 
   // --- From the report to the first view
 
   async start(report) {
     const {width, height} = this.size = {width: whole(report, "image.width"), height: whole(report, "image.height")};
     this.report = report;
-    this.opens = stateOf(member(report, "machine", "object"), this.size);
+    this.initialState = stateOf(member(report, "machine", "object"), this.size);
     this.rates = has(report, "machine.rates") ? member(report, "machine.rates", "object") : null;
-    this.costs = await this.read();
-    this.most = this.costs.reduce((most, cost) => Math.max(most, cost), 0);
-    await this.look();
+    this.costs = await this.decodeCosts();
+    this.maxCost = this.costs.reduce((max, cost) => Math.max(max, cost), 0);
+    await this.decodeImage();
     $("main").append($("explorer").content.cloneNode(true));
     const texts = {
       width,
@@ -38,24 +38,24 @@ const explorer = {
     fillControls(this);
     listen(this);
     listenToPointer(this);
-    this.follow();
+    this.followLink();
   },
 
-  // Planes of bytes, the lowest first, packed by gzip.
-  async read() {
+  // Inverse of cost_json() in page.cpp.
+  async decodeCosts() {
     const packed = Uint8Array.from(atob(str(this.report, "cost.gzip")), (c) => c.charCodeAt(0));
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
     const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
     const pixels = this.size.width * this.size.height, costs = new Float64Array(pixels);
     if (bytes.length !== pixels * whole(this.report, "cost.bytes"))
-      throw new Error("the costs within the page are not whole");
+      throw new Error("the embedded costs are incomplete");
     for (let at = 0; at < bytes.length; ++at) costs[at % pixels] += bytes[at] * 2 ** (8 * Math.floor(at / pixels));
     return costs;
   },
 
-  // The picture's pixels, and how light each is.
-  async look() {
-    const {width, height} = this.size, photo = picture(this.report, "image.png", "the picture");
+  // The image's pixels, and the lightness of each.
+  async decodeImage() {
+    const {width, height} = this.size, photo = picture(this.report, "image.png", "the image");
     const context = make("canvas", {width, height}).getContext("2d");
     await photo.decode();
     context.drawImage(photo, 0, 0, width, height);
@@ -73,19 +73,19 @@ const explorer = {
     this.show();
   },
 
-  hover(pe, words = "") {
-    if (pe === this.hovered && words === this.pointed) return;
-    [this.hovered, this.pointed] = [pe, words];
-    this.soon();
+  hover(pe, text = "") {
+    if (pe === this.hovered && text === this.pointed) return;
+    [this.hovered, this.pointed] = [pe, text];
+    this.requestDraw();
   },
 
   pick(pe) { this.choose("pe", pe); },
 
-  // A link that was followed, or the page's own.
-  follow() {
+  // Sets the state from the address, at the start and after a link.
+  followLink() {
     if (location.hash === this.hash) return;
-    const {state, problems} = withLink(this.opens, location.hash, this.size);
-    $("message").textContent = problems.length ? `The link asks for what cannot be: ${problems.join("; ")}.` : "";
+    const {state, problems} = withLink(this.initialState, location.hash, this.size);
+    $("message").textContent = problems.length ? `Invalid values in the link: ${problems.join("; ")}.` : "";
     $("message").hidden = problems.length === 0;
     this.state = state;
     this.compute();
@@ -96,11 +96,11 @@ const explorer = {
 
   show() {
     this.computing = true;
-    this.soon();
+    this.requestDraw();
   },
 
-  // Once for all that happens before the next frame.
-  soon() {
+  // Draws once at the next frame.
+  requestDraw() {
     if (this.waiting) return;
     this.waiting = requestAnimationFrame(() => {
       this.waiting = null;
@@ -121,46 +121,46 @@ const explorer = {
     for (const element of document.querySelectorAll("[data-figure]"))
       element.textContent = this.texts[element.dataset.figure];
     sync(this, document.activeElement);
-    this.keep();
+    this.updateLink();
     clearTimeout(this.speaking);
     this.speaking = setTimeout(() => {
       const {u, speedup, efficiency} = this.texts;
       $("spoken").textContent =
         `${mappingText(this.state)} on ${setting.pes} PEs: u ${u}, speed-up ${speedup}, efficiency ${efficiency}`;
     }, 600);
-    if (this.curves.pes !== setting.pes) this.trace(setting.pes);
+    if (this.curves.pes !== setting.pes) this.computeCurves(setting.pes);
   },
 
-  // In the address, in the link, and as a command; not at every step of a drag, which browsers do not like.
-  keep() {
+  // Updates link, command and, with a delay, the address: browsers limit the rate of changes.
+  updateLink() {
     const link = linkText(this.state), before = location.hash;
     $("link").setAttribute("href", link);
-    $("command").replaceChildren(...commandWords(`${str(this.report, "command")} ${optionsText(this.state)}`));
-    clearTimeout(this.keeping);
-    this.keeping = setTimeout(() => {
-      if (location.hash !== before) return;  // a link that is about to be followed
+    $("command").replaceChildren(...commandElements(`${str(this.report, "command")} ${optionsText(this.state)}`));
+    clearTimeout(this.updating);
+    this.updating = setTimeout(() => {
+      if (location.hash !== before) return;  // followLink() will run
       this.hash = link;
       if (location.hash !== link) history.replaceState(null, "", link);
     }, 250);
   },
 
-  // The curves of this number of PEs, some offsets at a time, so that nothing else waits for them.
-  trace(pes) {
+  // Computes the curves for this number of PEs, a few offsets at a time, so that the page stays responsive.
+  computeCurves(pes) {
     const {width} = this.size, values = {cyclic: new Float64Array(width)};
     if (pes !== width) values.block = new Float64Array(width);
     const own = this.curves = {pes, known: 0, values, best: null, worst: 0};
     const more = () => {
-      if (own !== this.curves) return;  // another number of PEs by now
+      if (own !== this.curves) return;  // the number of PEs has changed
       own.known = addToCurves(values, this.costs, this.size, pes, own.known, performance.now() + 10);
       if (own.known < width) setTimeout(more);
       else
-        this.traced();
-      this.soon();
+        this.finishCurves();
+      this.requestDraw();
     };
     setTimeout(more);
   },
 
-  traced() {
+  finishCurves() {
     const {curves} = this, {cyclic, block} = curves.values;
     for (const [fold, us] of Object.entries(curves.values))
       us.forEach((u, offset) => {
@@ -182,47 +182,49 @@ const explorer = {
       f.setting.kind === "slots" ? {offset: f.setting.offset, fold: values.block ? state.fold : "cyclic"} : null;
     $("curves").replaceChildren(offsetCurves(f, texts, curves, this.root, here));
     const {pe, cells} = drawCloseUp($("close-up"), f, this.size, focus),
-               close = `${cells} × ${cells} pixels of the middle of the picture, those of PE ${pe} in white`;
+               close = `${cells} × ${cells} pixels in the middle of the image, those of PE ${pe} in white`;
     const owns = focus === null ?
       "" :
-      `PE ${focus} owns ${grouped(f.sizes[focus])} pixels and has ${grouped(f.loads[focus])} cycles to do, ` +
+      `PE ${focus} owns ${grouped(f.sizes[focus])} pixels; its load is ${grouped(f.loads[focus])} cycles, ` +
         `${f.mean > 0 ? fixed(f.loads[focus] / f.mean, 2) : 0} of the mean.`;
-    $("view-words").textContent = VIEW_WORDS[state.view](this.most);
+    $("view-text").textContent = VIEW_TEXTS[state.view](this.maxCost);
     $("pointed").textContent = this.hovered === null ? owns : `${this.pointed} ${owns}`;
     $("picture").setAttribute(
-      "aria-label", `The picture, coloured by ${state.view}. ${setting} on ${f.setting.pes} PEs. ${owns}`);
+      "aria-label", `Image, coloured by ${state.view}. ${setting} on ${f.setting.pes} PEs. ${owns}`);
     $("close-up").setAttribute("aria-label", `${close}. Shortest vector: ${texts.vector}.`);
-    $("close-words").textContent = `The close-up shows ${close}. ` +
-      (f.vector ? `The arrow is the shortest vector of its lattice: ${texts.vector}.` : "Its pixels are no lattice.");
+    $("close-up-text").textContent = `The close-up shows ${close}. ` +
+      (f.vector ? `The arrow is the shortest vector of its lattice: ${texts.vector}.` :
+                  "Its pixels are not a lattice.");
     $("block-key").hidden = !values.block;
     $("best").disabled = !best;
-    $("best-words").textContent = best ?
-      `Circle: the least, ${fixed(best.u, 3)} at p = ${best.offset}${values.block ? `, fold ${best.fold}` : ""}.` :
+    $("best-text").textContent = best ?
+      `Circle: minimum, ${fixed(best.u, 3)} at p = ${best.offset}${values.block ? `, fold ${best.fold}` : ""}.` :
                                                                                     "";
     if (!best) return;
-    const own = (state.fold === "block" && values.block) || values.cyclic;  // of the fold that is chosen
+    const own = (state.fold === "block" && values.block) || values.cyclic;  // of the selected fold
     $("best").dataset.offset = own.indexOf(own.reduce((a, u) => Math.min(a, u)));
-    $("best").textContent = `best here: p = ${$("best").dataset.offset}`;
+    $("best").textContent = `best p = ${$("best").dataset.offset}`;
   },
 };
 
 function showExplorer(r) {
   head(
-    "raya explore", "Who traces which pixel?",
+    "raya explore", "Pixel mappings and load balance",
     make(
       "p", {class: "lead"},
       `${str(r, "scene")}, ${num(r, "image.width")} × ${
-        num(r, "image.height")} pixels, is shared out among processing elements (PEs) that have no ` +
-        "memory in common. A pixel whose rays bounce many times costs more than one of plain background; who owns which pixel decides how evenly the PEs are busy. Kohata & " +
+        num(r, "image.height")} pixels, is rendered by processing elements (PEs) without shared ` +
+        "memory. A pixel whose rays bounce many times costs more than a pixel of the background, so the mapping of " +
+        "pixels to PEs determines the balance of loads. Kohata & " +
         "Ito’s ",
       make("em", {}, "cyclic mapping"), " shifts every row by an offset ", make("var", {}, "p"),
-      " against the row above. Drag ", make("var", {}, "p"), ", and see."));
+      " against the row above. Drag ", make("var", {}, "p"), " to see the effect."));
   document.title = `raya explore: ${str(r, "scene")}`;
   document.body.className = "explorer";
   return explorer.start(r).then(
     () => $("head").append(note(
       `From one render: ${str(r, "machine.name")}, ${str(r, "machine.format")}, ${
         num(r, "machine.bounces")} bounces, accelerator ${str(r, "machine.accel")}. ` +
-      `Everything here follows from the cycles that each pixel was counted to cost, ${
+      `All figures are computed from the counted cycles of each pixel, ${
         grouped(sum(explorer.costs))} in all.`)));
 }

@@ -1,7 +1,7 @@
-// From the explorer's controls and pointer to its state, and back.
+// Connects the explorer's controls and the pointer with its state.
 "use strict";
 
-// Controls and what they say of the state; both ways.
+// Controls and the members of the state that they edit: [name, index].
 const CONTROLS = {
   mapping: ["mapping"],
   offset: ["offset"],
@@ -31,20 +31,20 @@ function fillControls(page) {
     $(id).append(...divisorsOf(side).map((d) => new Option(d, d)));
   Object.assign($("picture"), page.size);
   const tries = [
-    [`cyclic:0&pes=${width}&view=loads`, "The column split, by load", ": red columns where rays bounce."],
+    [`cyclic:0&pes=${width}&view=loads`, "Columns, by load", ": red columns where rays bounce."],
     [
       `cyclic:${root}&pes=${width}&view=loads`, "The paper’s choice, p = √P, by load",
       ": the same cycles, spread over all."
     ],
-    [`cyclic:${root}&pes=${width}&pe=0`, "One PE’s pixels", ": the lattice, over the whole picture."],
-    [`blocks&pes=${Math.min(width, height)}&view=loads`, "Contiguous blocks of lines", ": what one would do first."],
+    [`cyclic:${root}&pes=${width}&pe=0`, "One PE’s pixels", ": the lattice over the whole image."],
+    [`blocks&pes=${Math.min(width, height)}&view=loads`, "Contiguous blocks of lines", ": the simplest mapping."],
     [
-      `random:1&pes=${width}`, "Every pixel drawn at random",
-      ": shares are even, and neighbours everywhere, so that raya refuses to filter there."
+      `random:1&pes=${width}`, "Pixels at random",
+      ": even loads, but the neighbours of a PE's pixels are on all PEs; raya refuses to filter with this mapping."
     ]
   ];
   $("tries").append(
-    ...tries.map(([link, name, words]) => make("li", {}, make("a", {href: `#mapping=${link}`}, name), words)));
+    ...tries.map(([link, name, text]) => make("li", {}, make("a", {href: `#mapping=${link}`}, name), text)));
 }
 
 function listen(page) {
@@ -61,13 +61,13 @@ function listen(page) {
     radio.addEventListener("change", () => page.choose(radio.name, radio.value));
   for (const button of document.querySelectorAll("[data-offset], #root, #best"))
     button.addEventListener("click", () => page.choose("offset", Number(button.dataset.offset)));
-  for (const field of document.querySelectorAll("input[type=number]"))  // what cannot be is not left there
+  for (const field of document.querySelectorAll("input[type=number]"))  // replaces invalid values
     field.addEventListener("change", () => sync(page, null));
   $("form").addEventListener("submit", (event) => event.preventDefault());
-  addEventListener("hashchange", () => page.follow());
+  addEventListener("hashchange", () => page.followLink());
 }
 
-// On picture, bars and curves.
+// Pointer events on image, bars and curves.
 function listenToPointer(page) {
   const share = (id, {clientX, clientY}) => {
     const {left, top, width, height} = $(id).getBoundingClientRect();
@@ -97,7 +97,7 @@ function listenToPointer(page) {
   $("curves").addEventListener("pointermove", (event) => event.buttons & 1 && drag(event));
 }
 
-// All controls say what the state is; not the field that is being written in.
+// Sets all controls to the state, except a field that the user is typing in (`active`).
 function sync(page, active) {
   const {state, size: {width}} = page, pes = settingOf(state).pes;
   for (const [id, [name, which]] of Object.entries(CONTROLS))

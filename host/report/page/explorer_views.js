@@ -1,5 +1,5 @@
-// What the explorer shows of a setting: the picture, its close-up, the bars of the loads and the curves. Knows the
-// figures of model.js, and no control.
+// Views of the explorer: image, close-up, bars of loads, and curves, from the figures of model.js. Independent of the
+// controls.
 "use strict";
 
 const HUES = 360, LEVELS = 64;
@@ -11,16 +11,16 @@ const OWNERS =
 const LOADS = colours(129, (t, level) => rgbOf(0.22 + 0.66 * level, 0.19 * Math.abs(2 * t - 1), t < 0.5 ? 255 : 29));
 const COSTS = colours(256, (t) => rgbOf(0.17 + 0.79 * t, 0.04 + 0.22 * t * (1.25 - t), 295 + 160 * t));
 
-const VIEW_WORDS = {
-  owners: () => "Hue: the number of the PE that owns the pixel.",
+const VIEW_TEXTS = {
+  owners: () => "Hue: number of the PE that owns the pixel.",
   loads: () =>
-    "Red: the pixel's PE has more to do than the mean, blue: less. Full colour at twice the mean, and at nothing.",
-  costs: (most) => `The brighter, the more cycles a pixel costs; the most expensive takes ${grouped(most)}.`,
-  picture: () => "What the machine has rendered.",
+    "Red: the load of the pixel's PE is above the mean; blue: below. Full colour at twice the mean and at 0.",
+  costs: (max) => `Brightness: cycles of the pixel, up to ${grouped(max)}.`,
+  picture: () => "The rendered image.",
 };
 
-// `levels`: 0..63 for each pixel, how light it is. `focus`: a PE, whose pixels are white and all others dim, or null.
-function drawPicture(canvas, f, {levels, costs, most, photo}, view, focus) {
+// `levels`: lightness of each pixel, 0..63. `focus`: a PE, whose pixels become white and all others dim, or null.
+function drawPicture(canvas, f, {levels, costs, maxCost, photo}, view, focus) {
   const {owners, loads, mean, setting: {pes}} = f, shown = new Uint32Array(photo.data.buffer.slice(0));
   const level = (pe) => view === "owners" ? Math.floor(hueOf(pe, pes)) :
                                             Math.round(64 * (1 + (mean > 0 ? Math.min(loads[pe] / mean - 1, 1) : 0)));
@@ -28,7 +28,7 @@ function drawPicture(canvas, f, {levels, costs, most, photo}, view, focus) {
         palette = view === "owners" ? OWNERS : LOADS;
   const third = (word, shift) => (word >>> shift & 255) / 3 << shift;
   for (let i = 0; i < shown.length; ++i) {
-    if (view === "costs") shown[i] = COSTS[Math.round(255 * Math.sqrt(most > 0 ? costs[i] / most : 0)) * LEVELS];
+    if (view === "costs") shown[i] = COSTS[Math.round(255 * Math.sqrt(maxCost > 0 ? costs[i] / maxCost : 0)) * LEVELS];
     else if (view !== "picture")
       shown[i] = palette[row[owners[i]] + levels[i]];
     if (focus === null) continue;
@@ -39,30 +39,31 @@ function drawPicture(canvas, f, {levels, costs, most, photo}, view, focus) {
     new ImageData(new Uint8ClampedArray(shown.buffer), photo.width, photo.height), 0, 0);
 }
 
-// Loads in parts of the mean, each in its PE's colour. `most`: of all offsets.
-function loadBars(f, texts, focus, most) {
-  const {mean, setting: {pes}} = f,
-                        words = `Loads of ${pes} PEs: from ${texts.idlest} to ${texts.busiest}, mean ${texts.mean}.`;
+// Loads relative to the mean, each in its PE's colour. `top`: the least value at the top of the axis.
+function loadBars(f, texts, focus, top) {
+  const {mean, setting: {pes}} = f;
+  const description = `Loads of ${pes} PEs: from ${texts.idlest} to ${texts.busiest}, mean ${texts.mean}.`;
   return bars(
-    words, ["PE", "load, in parts of the mean"], Array.from(f.loads, (load) => mean > 0 ? load / mean : 0), 1, {
-      top: Math.max(most, 1.2),
+    description, ["PE", "load / mean"], Array.from(f.loads, (load) => mean > 0 ? load / mean : 0), 1, {
+      top: Math.max(top, 1.2),
       colour: (from, count) => focus >= from && focus < from + count && focus !== null ?
         "var(--ink)" :
         bright(from, pes, 0.69, focus === null ? 1 : 0.45)
     });
 }
 
-// u over all offsets, as far as they are known. `here`: the offset and fold, or null.
+// u over the offsets computed so far. `here`: the current offset and fold, or null.
 function offsetCurves(f, texts, {values, known, best}, root, here) {
   const side = values.cyclic.length, last = Math.max(side - 1, 1), folds = Object.entries(values);
-  const most = folds.reduce(
+  const max = folds.reduce(
     (top, [, us]) => us.subarray(0, known).reduce((a, u) => Math.max(a, u), top), Math.max(f.imbalance, 1e-3));
-  const {x, y, grid} = plane(linear("offset p", last, 5, true), linear("u", 1.06 * most, 4));
+  const {x, y, grid} = plane(linear("offset p", last, 5, true), linear("u", 1.06 * max, 4));
   const curve = ([fold, us]) => line(
     `curve ${fold}${here && here.fold !== fold ? " dim" : ""}`,
     ...Array.from(us.subarray(0, known), (u, p) => [x(p), y(u)]));
-  const least = best ? `least ${fixed(best.u, 3)} at p = ${best.offset}, fold ${best.fold}` : "not all computed yet";
-  return chart(`u of the offsets 0 to ${side - 1}, now ${texts.u}; ${least}.`, [
+  const minimum =
+    best ? `minimum ${fixed(best.u, 3)} at p = ${best.offset}, fold ${best.fold}` : "not all computed yet";
+  return chart(`u of the offsets 0 to ${side - 1}, current ${texts.u}; ${minimum}.`, [
     grid, root < side ? [line("root", [x(root), TOP], [x(root), BOTTOM])] : [], known > 0 ? folds.map(curve) : [],
     best ? [dot(x(best.offset), y(best.u), 4, "ring")] : [],
     here ?
@@ -71,7 +72,7 @@ function offsetCurves(f, texts, {values, known, best}, root, here) {
   ]);
 }
 
-// The middle of the picture, large: who owns what, one PE's pixels marked, and its shortest vector.
+// Draws the middle of the image enlarged: owners, one PE's pixels marked, and its shortest vector.
 function drawCloseUp(canvas, f, {width: across, height: down}, focus) {
   const context = canvas.getContext("2d"), {owners, vector, setting: {pes}} = f,
         reach = vector ? Math.ceil(Math.hypot(...vector)) : 12;

@@ -1,16 +1,15 @@
-// The model behind the page: owners, loads and figures of a setting, as the program computes them (kernels/shared/
-// mapping.h, host/ring/route.cpp, host/model/), to the last digit; tests/tools/test_explore.py compares them.
-// Whole numbers below 2^53 are exact in JavaScript; products of 32 bits go through Math.imul. Knows nothing of the
-// page.
+// Owners, loads and figures of a setting, equal to those of the program to the last digit (kernels/shared/mapping.h,
+// host/ring/route.cpp, host/model/; compared by tests/tools/test_explore.py). Integers below 2^53 are exact in
+// JavaScript; products of 32-bit integers use Math.imul. Independent of the page.
 //
 // A setting: {kind, offset, fold, pes, a, b, seed}; kind: slots, rows, blocks, grid, tiles or random; a, b: rows and
 // columns of a grid, or width and height of a tile.
 "use strict";
 
-// --- Who owns a pixel
+// --- Owners of pixels
 
-// floor(n / d) of whole numbers, n < 2^53: the quotient lies at least 1 / d below the next whole number, which is more
-// than what a double rounds it by.
+// floor(n / d) of integers, n < 2^53. It is exact: a quotient that is not an integer is at least 1 / d below the next
+// integer, which exceeds the rounding error of a double.
 const floorRatio = (n, d) => Math.floor(n / d);
 const stepsBelow = (first, step, end) => first < end ? floorRatio(end - first - 1, step) + 1 : 0;
 
@@ -33,7 +32,7 @@ function mixed(x) {
   return (x ^ x >>> 16) >>> 0;
 }
 
-// number -> number: the bijection of 0 .. count - 1 of kernels/shared/scramble.h, a Feistel network of six rounds.
+// Returns the bijection of 0 .. count - 1 in kernels/shared/scramble.h, a Feistel network of six rounds.
 function scrambler(count, seed) {
   let bits = 0;
   while (2 ** bits < count) ++bits;
@@ -50,7 +49,7 @@ function scrambler(count, seed) {
   };
 }
 
-// (row, column) -> PE of what is no slot mapping.
+// (row, column) -> PE of the other mappings.
 function plainOwner({kind, pes, a, b, seed}, {width, height}) {
   if (kind === "rows") return (row) => row % pes;
   if (kind === "blocks") return (row) => floorRatio(row * pes, height);
@@ -83,7 +82,7 @@ function loadsOf(owners, costs, pes) {
   return loads;
 }
 
-// host/model/time_model.cpp, in the same order of operations.
+// As host/model/time_model.cpp, with the same order of operations.
 function balanceOf(loads) {
   const pes = loads.length;
   let sum = 0, busiest = 0, idlest = 0;
@@ -105,15 +104,15 @@ function balanceOf(loads) {
   };
 }
 
-// Fills curves.cyclic and curves.block, where they are asked for, with u of the offsets from `first` on until the time
-// is over; the next offset.
+// Writes u of the offsets from `first` on into curves.cyclic and curves.block, if they exist, until `deadline`. Returns
+// the next offset.
 function addToCurves(curves, costs, size, pes, first, deadline) {
   const {width, height} = size, folds = Object.keys(curves);
   const owner = folds.map((fold) => slotOwner({fold, pes}, size));
   const loads = new Float64Array(pes), slots = new Float64Array(width);
   let offset = first;
   for (; offset < width && performance.now() < deadline; ++offset) {
-    // With no more PEs than slots each has whole ones; their loads serve both folds.
+    // With P <= W every PE has whole slots, so both folds use the loads of slots.
     if (pes <= width) {
       slots.fill(0);
       for (let row = 0, begin = 0, at = 0; row < height; ++row, at += width) {
@@ -140,7 +139,7 @@ function addToCurves(curves, costs, size, pes, first, deadline) {
 
 // --- Neighbours
 
-// found[d] for left, right, above, below: whether the neighbour of some pixel of some PE i is on PE i + d, modulo P.
+// For left, right, above, below: found[d] = 1 if some pixel of a PE i has that neighbour on PE i + d, modulo P.
 function distancesOf(owners, {width, height}, pes) {
   const [left, right, above, below] = [0, 1, 2, 3].map(() => new Uint8Array(pes));
   const away = (from, to) => from >= to ? from - to : from + pes - to;
@@ -153,7 +152,7 @@ function distancesOf(owners, {width, height}, pes) {
   return [left, right, above, below];
 }
 
-// The fewest turns of the ring past all distances: the nearer ones one way, the others the other way.
+// Minimum number of rotations that reach all distances: near ones in one direction, the others in the other.
 function turnsOf(found) {
   const pes = found.length, distances = [];
   for (let d = 0; d < pes; ++d)
@@ -165,7 +164,7 @@ function turnsOf(found) {
   return fewest;
 }
 
-// What the 3 x 3 filter moves: rotations of the ring, or transfers or broadcasts over the bus.
+// Communication of the 3 x 3 filter: rotations of the ring, or transfers or broadcasts over the bus.
 function movesOf(owners, size, pes) {
   const moves = {rotations: 0, transfers: 0, broadcasts: 0};
   for (const found of distancesOf(owners, size, pes)) {
@@ -190,7 +189,7 @@ function shortestVector(offset, side) {
   return least;
 }
 
-// null where the pixels of a PE are no lattice.
+// null if the pixels of a PE are not a lattice.
 function vectorOf({kind, fold, offset, pes, a, b}, {width}) {
   if (kind === "slots" && (fold === "cyclic" ? width % pes === 0 : width === pes))
     return shortestVector(offset % pes, pes);
@@ -199,7 +198,7 @@ function vectorOf({kind, fold, offset, pes, a, b}, {width}) {
   return null;
 }
 
-// --- All of a setting
+// --- All figures of a setting
 
 function figuresOf(setting, size, costs, rates) {
   const owners = ownersOf(setting, size), loads = loadsOf(owners, costs, setting.pes),
@@ -221,8 +220,8 @@ function figuresOf(setting, size, costs, rates) {
 
 // --- As text
 
-// So many digits behind the point, as the program prints them: what lies just between two goes to the even one, where
-// toFixed() goes up. A hundred digits are all that a double of a usual size has.
+// Formats with `digits` decimals as the program does: ties round to even, where toFixed() rounds up. 100 decimals are
+// exact for doubles of ordinary size.
 function fixed(value, digits) {
   const all = value.toFixed(100), point = all.indexOf("."), cut = point + 1 + digits;
   if (!/^50*$/.test(all.slice(cut))) return value.toFixed(digits);
@@ -230,7 +229,7 @@ function fixed(value, digits) {
   return Number(down.at(-1)) % 2 === 0 ? down : value.toFixed(digits);
 }
 
-// A narrow blank between thousands.
+// Groups thousands with narrow no-break spaces.
 const grouped = (number) => String(number).replace(/\B(?=(\d{3})+(\.|$))(?<!\.\d*)/g, "\u202f");
 
 // host/model/unit_text.cpp
@@ -241,7 +240,7 @@ function timeText(ms) {
 }
 
 function vectorText(vector) {
-  if (!vector) return "no lattice";
+  if (!vector) return "not a lattice";
   const [rows, columns] = vector;
   const across = columns === 0 ? "" : `, ${Math.abs(columns)} ${columns > 0 ? "right" : "left"}`;
   return `${fixed(Math.sqrt(rows * rows + columns * columns), 2)} pixels (${rows} down${across})`;
@@ -259,6 +258,6 @@ function textsOf(f) {
     rotations: `${grouped(f.rotations)} rotations of ${grouped(3 * f.share)} words`,
     bus: `${grouped(f.transfers)} transfers or ${grouped(f.broadcasts)} broadcasts`,
     time: f.time ? `${timeText(f.time.compute)} to trace, ${timeText(f.time.rotations)} to rotate` :
-                   "not known of this machine",
+                   "unknown for this machine",
   };
 }

@@ -1,4 +1,4 @@
-// The pages of reports of `raya bench` and `raya verify`, and of tools/gpu_day.
+// Pages of reports of `raya bench`, `raya verify` and tools/gpu_day.
 "use strict";
 
 // --- raya bench
@@ -8,13 +8,13 @@ const rowName = (row) =>
   `${str(row, "kernel")}, ${str(row, "format")}, ${num(row, "lanes")} lanes, group ${num(row, "group")}`;
 const rowCells = (row) => [str(row, "kernel"), str(row, "format"), count(row, "lanes"), count(row, "group")];
 
-// compare_bench() has written the run's rows first, in their order.
+// In compared.rows, compare_bench() puts the run's rows first, in their order.
 function rates(r, rows) {
   const compared = has(r, "compared") ? list(r, "compared.rows", "object") : [];
-  const words = `Rays per second, medians of the samples${compared.length ? "; the lines are the baseline's" : ""}.`;
+  const description = `Rays per second, medians of the samples${compared.length ? "; lines: the baseline" : ""}.`;
   return [
     caption(
-      namedBars(words, rows.map((row, i) => ({
+      namedBars(description, rows.map((row, i) => ({
                                   name: rowName(row),
                                   text: `${rate(num(row, "mrays_per_s.median"))} Mrays/s`,
                                   value: row.mrays_per_s.median,
@@ -22,7 +22,7 @@ function rates(r, rows) {
                                     num(compared[i], "mrays_per_s_was.median") :
                                     undefined
                                 }))),
-      words),
+      description),
     table(
       "Rates",
       ["kernel", "format", "lanes", "group", "Mrays/s best", "median", "ms best", "median", "samples", "image"],
@@ -32,13 +32,13 @@ function rates(r, rows) {
            fixed(num(row, "ms.best"), 2), fixed(num(row, "ms.median"), 2), count(row, "samples"),
            str(row, "hash").slice(0, 8)])),
     note(
-      "image: the first digits of its hash; it is the same in all rows of a format, or nothing would have been measured.")
+      "image: first digits of its hash, which is equal in all rows of a format; otherwise raya bench fails.")
   ];
 }
 
 function comparison(r) {
   if (!has(r, "compared"))
-    return [paragraph("This run was compared with no baseline; ", code("raya bench --compare"), " does so.")];
+    return [paragraph("No baseline; ", code("raya bench --compare"), " compares a run with one.")];
   const c = member(r, "compared", "object"), heads = ["best Mrays/s", "was", "change", "median", "was", "change"];
   const kindOf = (text) => /^(OTHER IMAGE|SLOWER$)/.test(text) ? "no" :
     ["faster", "as before"].includes(text)                     ? "yes" :
@@ -54,7 +54,7 @@ function comparison(r) {
   };
   return [
     paragraph(
-      `Compared with ${str(c, "baseline")}: of ${num(c, "compared")} rows that both have, ${
+      `Compared with ${str(c, "baseline")}: of ${num(c, "compared")} common rows, ${
         num(c, "slower")} slower by more than ${num(c, "tolerance_percent")} %, ` +
       `${num(c, "other_images")} with another image.`),
     list(c, "remarks", "text").map(message),
@@ -68,11 +68,11 @@ function comparison(r) {
   ];
 }
 
-// One drawing for each number format: the peak is of one.
+// One chart for each number format, because a peak is measured for one.
 function rooflines(rows) {
   const formats = new Map(), shown = [];
   for (const row of rows) {
-    if (has(row, "no_roofline")) shown.push(paragraph(`${rowName(row)}: none, ${str(row, "no_roofline")}.`));
+    if (has(row, "no_roofline")) shown.push(paragraph(`${rowName(row)}: no roofline: ${str(row, "no_roofline")}.`));
     if (!has(row, "roofline") || !has(row, "peak")) continue;
     const format = str(row, "peak.format");
     formats.set(format, [...formats.get(format) ?? [], row]);
@@ -84,7 +84,7 @@ function rooflines(rows) {
         member(own.at(-1), "peak", "object"), own.map((row) => [rowName(row), member(row, "roofline", "object")])),
       own.length > 1 &&
         note(
-          "Each row's shares are of the peak measured with its own lanes; the drawing and the sentence have the last row's.")));
+          "Shares refer to the peak measured with the row's own lanes; chart and text show the peak of the last row.")));
   return shown.length ?
     shown :
     [paragraph(
@@ -120,11 +120,11 @@ function failure(check) {
   const block = (title, key) => str(check, key) && [make("h4", {}, title), make("pre", {tabindex: 0}, check[key])];
   const remedies = list(check, "remedies", "text");
   return [
-    paragraph(verdict("no", "FAIL"), ` ${str(check, "layer")} ${str(check, "name")}: `, prose(str(check, "told"))),
+    paragraph(verdict("no", "FAIL"), ` ${str(check, "layer")} ${str(check, "name")}: `, prose(str(check, "result"))),
     block("Where", "where"), block("Expected", "expected"), block("Got", "got"),
     block("Build options", "build_options"),
     remedies.length > 0 &&
-      [make("h4", {}, "What to try"), make("ul", {}, remedies.map((remedy) => make("li", {}, prose(remedy))))]
+      [make("h4", {}, "Remedies"), make("ul", {}, remedies.map((remedy) => make("li", {}, prose(remedy))))]
   ].flat(2)
     .filter(Boolean);
 }
@@ -134,25 +134,25 @@ function deviceChecks(device) {
   const rows = checks.map(
     (check) =>
       [verdict({PASS: "yes", FAIL: "no"}[str(check, "status")] ?? "open", check.status), str(check, "layer"),
-       str(check, "name"), fixed(num(check, "seconds"), 2), str(check, "told").slice(0, 300)]);
+       str(check, "name"), fixed(num(check, "seconds"), 2), str(check, "result").slice(0, 300)]);
   return [
     tiles([
       ["passed", count(device, "passed")], ["failed", count(device, "failed")], ["skipped", count(device, "skipped")],
       ["took", `${fixed(num(device, "seconds"), 1)} s`]
     ]),
     definitions(["platform", "version", "driver"].map((key) => [key, str(device, key)])),
-    failed ? part("The first failure", ...failure(failed)) : [],
+    failed ? part("First failure", ...failure(failed)) : [],
     part(
-      "Every check",
+      "All checks",
       ...rows.length ?
-        table(`Every check on ${str(device, "name")}`, ["status", "layer", "check", "seconds", "result"], rows) :
+        table(`All checks on ${str(device, "name")}`, ["status", "layer", "check", "seconds", "result"], rows) :
         [paragraph("No check ran.")])
   ];
 }
 
 function showVerify(r) {
   const devices = list(r, "devices", "object");
-  const right = (device) => num(device, "failed") > 0 ? verdict("no", "is not right") :
+  const right = (device) => num(device, "failed") > 0 ? verdict("no", "failed") :
     num(device, "passed") === 0                       ? verdict("open", "was not checked") :
                                                         verdict("yes", "passed every check that ran");
   head(
@@ -160,7 +160,7 @@ function showVerify(r) {
     devices.map((device) => paragraph(`${str(device, "name")} `, right(device), ".")),
     note(`Depth: ${
       str(
-        r, "depth")}. Layers rest on each other from the number layer up: the first failure is nearest to the fault.`));
+        r, "depth")}. Each layer relies on those before it, so the first failure is nearest to the cause.`));
   devices.forEach((device, i) => section(`device-${i + 1}`, device.name, () => deviceChecks(device)));
 }
 
@@ -171,20 +171,20 @@ const stepKind = (step) => str(step, "verdict") === "right" ? "yes" :
                                                               "no";
 
 function goalRows(r) {
-  const goals = list(r, "goals", "object"), words = "Best rates of the trace kernel; the lines are what is asked for.";
+  const goals = list(r, "goals", "object"), description = "Best rates of the trace kernel; lines: goals.";
   const measured = goals.filter((goal) => has(goal, "measured"));
   return [
     measured.length > 0 &&
       caption(
-        namedBars(words, measured.map((goal) => ({
+        namedBars(description, measured.map((goal) => ({
                                         name: str(goal, "what"),
                                         text: `${rate(num(goal, "measured"))} Mrays/s`,
                                         value: goal.measured,
                                         mark: num(goal, "asked")
                                       }))),
-        words),
+        description),
     table(
-      "Goals", ["goal", "asked, Mrays/s", "measured", "verdict"],
+      "Goals", ["kernel", "goal, Mrays/s", "measured", "verdict"],
       goals.map(
         (goal) =>
           [str(goal, "what"), rate(num(goal, "asked")), has(goal, "measured") ? rate(num(goal, "measured")) : "-",
@@ -206,7 +206,8 @@ function stageRows(r, steps) {
   return [table("Stages", ["stage", "what", "right", "wrong", "not here", "s"], rows)];
 }
 
-const stepText = (step) => str(step, "command") && make("pre", {tabindex: 0}, `$ ${step.command}\n${str(step, "output")}`);
+const stepText = (step) =>
+  str(step, "command") && make("pre", {tabindex: 0}, `$ ${step.command}\n${str(step, "output")}`);
 
 function showGpuDay(r) {
   const steps = list(r, "steps", "object"), of = (kind) => steps.filter((step) => stepKind(step) === kind),
@@ -214,14 +215,14 @@ function showGpuDay(r) {
   head(
     "raya gpu_day", str(r, "device") || "no device",
     paragraph(`${str(r, "raya")}, ${str(r, "date")}, ${str(r, "system")}.`),
-    r.small === true && message("Small pictures: its speeds say nothing."), tiles([
+    r.small === true && message("Small images: the rates are not meaningful."), tiles([
       ["steps right", String(of("yes").length)], ["wrong", String(wrong.length)],
       ["not here", String(of("open").length)]
     ]));
   section(
     "wrong", "Wrong",
     () => wrong.length === 0 ?
-      [paragraph("Nothing of what has run.")] :
+      [paragraph("No step failed.")] :
       wrong.map((step) => [paragraph(verdict("no", str(step, "name")), `: ${step.verdict}`), stepText(step)]).flat());
   section("goals", "Goals", () => goalRows(r));
   section("stages", "Stages", () => stageRows(r, steps));
@@ -230,9 +231,9 @@ function showGpuDay(r) {
     () => steps.filter((step) => /^(verify|bench|roofline|goal|large|ranks|tune)/.test(step.name) && stepText(step))
             .map((step) => make("details", {}, make("summary", {}, step.name), stepText(step))));
   section(
-    "steps", "Every step",
+    "steps", "All steps",
     () => [table(
-      "Every step", ["step", "stage", "verdict", "s"],
+      "All steps", ["step", "stage", "verdict", "s"],
       steps.map(
         (step) =>
           [str(step, "name"), count(step, "stage"), verdict(stepKind(step), step.verdict), count(step, "seconds")]))]);

@@ -10,21 +10,21 @@ namespace {
 
 const std::string& asset(const std::string& name) { return embedded_files().at("host/report/page/" + name); }
 
-// In JSON these stand in texts alone; escaped, no text looks like a tag or an entity, and the script reads it back.
-std::string without_tags(std::string json) {
+// Escapes <, > and &, which JSON has only within strings, so that no string can look like a tag or an entity.
+std::string escape_tags(std::string json) {
     for (const auto& [sign, escape] : {std::pair{"<", "\\u003c"}, {">", "\\u003e"}, {"&", "\\u0026"}})
         json = replaced(std::move(json), sign, escape);
     return json;
 }
 
-// Every {{NAME}} of the asset once: a file beside it, or the report. No {{NAME}} of what is put in.
-std::string filled(const std::string& text, const Json& report) {
+// Replaces every {{NAME}} of `text` by the asset NAME or the report. Does not replace in inserted text.
+std::string fill_template(const std::string& text, const Json& report) {
     std::string page;
     std::size_t from = 0;
     for (std::size_t at = text.find("{{"); at != std::string::npos; at = text.find("{{", from)) {
         const std::size_t end = text.find("}}", at);
         const std::string name = text.substr(at + 2, end - at - 2);
-        page += text.substr(from, at - from) + (name == "report" ? without_tags(report.dump(2)) : asset(name));
+        page += text.substr(from, at - from) + (name == "report" ? escape_tags(report.dump(2)) : asset(name));
         from = end + 2;
     }
     return page + text.substr(from);
@@ -32,12 +32,12 @@ std::string filled(const std::string& text, const Json& report) {
 
 }  // namespace
 
-std::string report_page(const Json& report) { return filled(asset("page.html"), report); }
+std::string report_page(const Json& report) { return fill_template(asset("page.html"), report); }
 
 Json cost_json(const std::vector<std::uint64_t>& cycles) {
-    const std::uint64_t most = cycles.empty() ? 0 : *std::ranges::max_element(cycles);
+    const std::uint64_t maximum = cycles.empty() ? 0 : *std::ranges::max_element(cycles);
     std::uint32_t bytes = 1;
-    while (bytes < 8 && most >> 8 * bytes != 0) ++bytes;
+    while (bytes < 8 && maximum >> 8 * bytes != 0) ++bytes;
     GzipText gzip;
     std::string plane(cycles.size(), '\0');
     for (std::uint32_t byte = 0; byte < bytes; ++byte) {

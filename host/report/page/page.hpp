@@ -1,4 +1,4 @@
-// A report as a page for a browser: its JSON within one HTML file, whose scripts show it.
+// HTML page of a report: one file with the JSON, and scripts that display it.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace raya {
 
-/// The page of a report of render, bench, verify or explore. No text in the report can end its element or run; the page
-/// needs no network, and shows the JSON itself where scripts are off.
+/// Returns the page of a report of render, bench, verify, explore or tools/gpu_day. Texts of the report are escaped, so
+/// that none can end its element or run as a script. The page needs no network; without scripts it shows the JSON.
 std::string report_page(const Json& report);
 
-/// The explorer's script adds up costs in doubles, which hold whole numbers below this one exactly.
+/// Limit of the sum of costs: the explorer's script uses doubles, which represent integers exactly up to here.
 inline constexpr std::uint64_t kExactCycles = std::uint64_t{1} << 53;
 
-/// A cost image as the explorer's script reads it back, {"bytes": B, "gzip": base64}: the lowest bytes of all pixels
-/// row by row, then the next ones, B times; as one gzip file. Neighbours differ little in their high bytes, so that
-/// planes of bytes take less room than pixels one after another.
+/// Encodes a cost image for the explorer's script: {"bytes": B, "gzip": base64}. The gzip data has B planes: the lowest
+/// bytes of all pixels row by row, then the next higher ones. Planes compress better than interleaved bytes, because
+/// neighbours rarely differ in their high bytes.
 Json cost_json(const std::vector<std::uint64_t>& cycles);
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// Shows the report that the page carries. What cannot be shown is named, and the report stays readable as JSON.
+// Displays the report embedded in the page. If that fails, shows the reason above the JSON.
 "use strict";
 
 const SHOWN = {
@@ -11,7 +11,7 @@ const SHOWN = {
 
 async function show() {
   const report = JSON.parse($("report").textContent), kind = str(report, "kind");
-  if (!Object.hasOwn(SHOWN, kind)) throw new Error(`its kind is ${kind}, which this page does not know`);
+  if (!Object.hasOwn(SHOWN, kind)) throw new Error(`unknown kind ${kind}`);
   await SHOWN[kind](report);
 }
 
@@ -21,5 +21,5 @@ const ready = show().then(
   },
   (problem) => {
     $("head").append(
-      message(`This report cannot be shown: ${problem.message}. Below it is as raya saved it, in JSON.`));
+      message(`This report cannot be shown: ${problem.message}. Below is its JSON.`));
   });

@@ -1,10 +1,10 @@
-// What pages are made of: members of a report, elements, tables. A report's text becomes text of the page through
-// text nodes and attributes without a meaning of their own, and never through HTML.
+// Building blocks of pages: members of a report, elements, tables. Texts of a report go only into text nodes and inert
+// attributes, never into HTML.
 "use strict";
 
 const $ = (id) => document.getElementById(id);
 
-// --- Members of a report, by paths such as "load.mean"; an error names the one that is missing or of another type.
+// --- Members of a report, by paths such as "load.mean". Throws an Error for a missing member or a wrong type.
 
 const TYPES = {
   number: (value) => typeof value === "number",
@@ -38,7 +38,7 @@ const list = (object, path, type) => member(object, path, "list").map((value, i)
 
 // --- Elements
 
-// Children: elements, text, lists of these; null and false are left out.
+// `children`: elements, text, and lists of these; null and false are skipped.
 function make(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
@@ -46,7 +46,7 @@ function make(tag, attributes = {}, ...children) {
   return made;
 }
 
-// A sentence: `code` in backticks, +- as one sign.
+// Formats text: `code` in backticks, +- as ±.
 const prose = (text) => text.replaceAll("+-", "±").split("`").map(
   (part, i, parts) => i % 2 && i < parts.length - 1 ? make("code", {}, part) :
     i % 2                                           ? "`" + part :
@@ -58,7 +58,7 @@ const message = (text) => make("p", {class: "message"}, prose(text));
 const code = (text) => make("code", {}, text);
 const part = (title, ...children) => children.flat().length ? [make("h3", {}, prose(title)), ...children] : [];
 
-// [name, text or element] of those that have one.
+// rows: [name, text or element]; rows with "" are skipped.
 const definitions = (rows, attributes = {}) => make(
   "dl", attributes,
   rows.filter(([, what]) => what !== "").map(([name, what]) => [make("dt", {}, name), make("dd", {}, what)]));
@@ -67,13 +67,13 @@ const tiles = (rows) => make(
   rows.filter(([, what]) => what !== "").map(([name,
                                                what]) => make("div", {}, make("dt", {}, name), make("dd", {}, what))));
 
-// kind: yes, no or open.
+// kind: "yes", "no" or "open".
 const verdict = (kind, text) => make("span", {class: `verdict ${kind}`}, text);
 
-// --- Tables. Cells: text, numbers as text, or elements. Columns of numbers are set and sorted as such, a long table
-// is folded away.
+// --- Tables. Cells: text, numbers as text, or elements. Columns of numbers are right-aligned and sorted by value; long
+// tables are collapsed.
 
-const OPEN_ROWS = 24, MOST_ROWS = 400;
+const OPEN_ROWS = 24, MAX_ROWS = 400;
 const NUMBER = /^(-|[-+]?(inf|[\d.,\u202f]+(e[-+]?\d+)?)( (%|ms|s|min|h))?)?$/;
 
 function wideTable(label, header, rows) {
@@ -98,13 +98,13 @@ function wideTable(label, header, rows) {
 
 function table(label, header, rows, rest = "All rows are in the report.") {
   if (rows.length === 0) return [];
-  const whole = wideTable(label, header, rows.slice(0, MOST_ROWS));
+  const whole = wideTable(label, header, rows.slice(0, MAX_ROWS));
   if (rows.length <= OPEN_ROWS) return [whole];
-  const cut = rows.length > MOST_ROWS && note(...prose(`The first ${MOST_ROWS} of ${rows.length} rows. ${rest}`));
+  const cut = rows.length > MAX_ROWS && note(...prose(`The first ${MAX_ROWS} of ${rows.length} rows. ${rest}`));
   return [make("details", {}, make("summary", {}, `${rows.length} rows`), whole, cut)];
 }
 
-// Numbers by size, empty cells last; a second click turns the order round.
+// Sorts by value, cells without a number last; a second click reverses the order.
 function sortBy(head, column, body) {
   const sign = head.getAttribute("aria-sort") === "ascending" ? -1 : 1, numeric = head.className === "n";
   const key = (row) => {
@@ -122,10 +122,10 @@ function sortBy(head, column, body) {
 
 // --- The page itself
 
-const caption = (element, ...words) => make(
-  "figure", {}, element, make("figcaption", {}, words.map((text) => typeof text === "string" ? prose(text) : text)));
+const caption = (element, ...texts) => make(
+  "figure", {}, element, make("figcaption", {}, texts.map((text) => typeof text === "string" ? prose(text) : text)));
 
-// A section with its link in the contents. Where a member is missing, the section says which.
+// Adds a section and its link in the contents. If build() throws, the section shows the error.
 function section(id, title, build) {
   let children;
   try {
@@ -140,7 +140,7 @@ function section(id, title, build) {
   nav.firstChild.append(make("li", {}, make("a", {href: `#${id}`}, title)));
 }
 
-// What is above the sections; where a member is missing, they follow all the same.
+// Builds the head. If build() throws, shows the error; the sections follow in any case.
 function heading(build) {
   try {
     build();

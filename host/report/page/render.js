@@ -7,21 +7,21 @@ const titled = (name) => name.replaceAll("_", " ");
 const kilobytes = (bytes) => bytes < 1024 ? `${bytes} bytes` : `${fixed(bytes / 1024, 1)} KB`;
 const msText = (ms) => ms > 0 && ms < 1 ? `${fixed(ms, 3)} ms` : timeText(ms);
 const count = (object, path) => grouped(num(object, path));
-const RED_AND_BLUE = "Red has more than the mean, blue less; the fullest colour is what lies farthest from it.";
+const RED_AND_BLUE = "Red: above the mean; blue: below; full colour: farthest from the mean.";
 
 function rateText(rays) {
   const [unit, name] = rays >= 1e6 ? [1e6, "Mrays/s"] : rays >= 1e3 ? [1e3, "krays/s"] : [1, "rays/s"];
   return `${fixed(rays / unit, 1)} ${name}`;
 }
 
-// A picture in the report itself.
-function picture(r, path, words) {
+// An image embedded in the report.
+function picture(r, path, description) {
   const png = str(r, path);
   if (!/^iVBORw0KGgo[\w+/]*=*$/.test(png)) throw new Error(`${path} is not a PNG file in base64`);
-  return make("img", {class: "picture", alt: words, src: "data:image/png;base64," + png});
+  return make("img", {class: "picture", alt: description, src: "data:image/png;base64," + png});
 }
 
-// --- Its head
+// --- Head
 
 function renderHead(r) {
   const torus = has(r, "torus"), machine = member(r, "machine", "object"), seconds = num(r, "measured.render_s");
@@ -45,20 +45,20 @@ function renderHead(r) {
     list(r, "warnings", "text").map(message));
 }
 
-// --- Its picture, and who owns which pixel or voxel
+// --- Image, and maps of loads and owners
 
 const range = (r) => !(num(r, "load.mean") > 0) ?
   "all 0" :
   `from ${percent(1 - num(r, "load.min") / num(r, "load.mean"))} below to ${
     percent(num(r, "load.max") / num(r, "load.mean") - 1)} above the mean`;
 
-// At most 256 cells a side, each the mean load of the pixels that it stands for; and the upper left pixels by owner.
+// Two maps: loads, with at most 256 cells a side, each the mean of its pixels; and owners of the upper left pixels.
 function ownerMaps(r, size) {
   const {width, height} = size, machine = member(r, "machine", "object"), setting = settingOf(stateOf(machine, size));
   const loads = list(r, "load.per_pe", "number"), owners = ownersOf(setting, size), colour = diverging(loads);
   const shrink = Math.max(1, Math.max(width, height) / 256), w = Math.max(1, Math.round(width / shrink)),
         h = Math.max(1, Math.round(height / shrink));
-  if (loads.length !== setting.pes) throw new Error("load.per_pe has another length than machine.pes says");
+  if (loads.length !== setting.pes) throw new Error("load.per_pe does not have machine.pes values");
   const mean = (row, column) => {
     const [top, bottom, left, right] =
       [row * height / h, (row + 1) * height / h, column * width / w, (column + 1) * width / w].map(Math.floor);
@@ -71,18 +71,18 @@ function ownerMaps(r, size) {
   const hues = Uint32Array.from({length: setting.pes}, (_, pe) => wordOf(rgbOf(0.72, 0.14, hueOf(pe, setting.pes))));
   return [
     caption(
-      pixelMap(w, h, `A map of the picture: each pixel in the colour of its PE's load, ${range(r)}`, mean),
+      pixelMap(w, h, `Map of the image: each pixel coloured by the load of its PE, ${range(r)}`, mean),
       `Each pixel by the load of its PE, ${range(r)}. ${RED_AND_BLUE}`),
     caption(
       pixelMap(
-        ...side, `A close-up of which PE owns which pixel, mapping ${mapping}`,
+        ...side, `Close-up of the owners of pixels, mapping ${mapping}`,
         (row, column) => hues[owners[row * width + column]]),
-      `Owners of the upper left ${side.join(" × ")} pixels: hue is the number of the PE, of ${setting.pes}; mapping ${
+      `Owners of the upper left ${side.join(" × ")} pixels. Hue: number of the PE, of ${setting.pes}; mapping ${
         mapping}.`)
   ];
 }
 
-// The number of node (i, j, k) of kernels/shared/torus.h; on a 2-D torus slabs of equal k lie beside one another.
+// Number of node (i, j, k), as in kernels/shared/torus.h. On a 2-D torus, slabs of equal k are next to each other.
 function nodeNumbers([I, J, K], flat) {
   let slabs = 1;
   const apart = (c) => Math.abs(I * c - J * (K / c));
@@ -92,14 +92,14 @@ function nodeNumbers([I, J, K], flat) {
                 (i, j, k) => i + I * (j + J * k);
 }
 
-// One cell for each node: slices of equal z beside and below one another, x to the right, y down.
-function nodeMap(r, values, words) {
-  const nodes = list(r, "torus.nodes", "number"), [I, J, K] = nodes, beside = Math.ceil(Math.sqrt(K));
+// One cell for each node: slices of equal z in rows, x to the right, y down.
+function nodeMap(r, values, description) {
+  const nodes = list(r, "torus.nodes", "number"), [I, J, K] = nodes, slices = Math.ceil(Math.sqrt(K));  // in a row
   if (nodes.length !== 3 || I * J * K !== values.length)
-    throw new Error("a list by nodes has another length than there are nodes");
+    throw new Error("a list does not have one value for each node");
   const number = nodeNumbers(nodes, str(r, "torus.links") === "torus2d"), colour = diverging(values);
-  return pixelMap(beside * (I + 1) - 1, Math.ceil(K / beside) * (J + 1) - 1, words, (y, x) => {
-    const k = floorRatio(y, J + 1) * beside + floorRatio(x, I + 1), i = x % (I + 1), j = y % (J + 1);
+  return pixelMap(slices * (I + 1) - 1, Math.ceil(K / slices) * (J + 1) - 1, description, (y, x) => {
+    const k = floorRatio(y, J + 1) * slices + floorRatio(x, I + 1), i = x % (I + 1), j = y % (J + 1);
     return i < I && j < J && k < K ? colour(values[number(i, j, k)]) : wordOf(rgbOf(0.45, 0, 0));
   });
 }
@@ -107,9 +107,11 @@ function nodeMap(r, values, words) {
 function nodeMaps(r) {
   const nodes = `${list(r, "torus.nodes", "number").join(" × ")} nodes`;
   return [
-    ["load.per_pe", `The load of each of ${nodes}, slices of equal z beside one another, ${range(r)}.`],
-    ["torus.bytes_per_link.sent_by_node", `Bytes that each of ${nodes} sends over its links.`]
-  ].map(([path, words]) => caption(nodeMap(r, list(r, path, "number"), words), `${words} ${RED_AND_BLUE}`));
+    ["load.per_pe", `Load of each of ${nodes}, by slices of equal z, ${range(r)}.`],
+    ["torus.bytes_per_link.sent_by_node", `Bytes that each of ${nodes} sends over its links, by slices of equal z.`]
+  ].map(
+    ([path, description]) =>
+      caption(nodeMap(r, list(r, path, "number"), description), `${description} ${RED_AND_BLUE}`));
 }
 
 function pictures(r) {
@@ -118,7 +120,7 @@ function pictures(r) {
   shown.push(caption(
     picture(r, "image.preview.png", `The rendered picture of ${str(r, "scene")}, ${pixels}`),
     `${str(r, "image.file")}, ${pixels}${
-      small < size.width ? `; here ${small} × ${num(r, "image.preview.height")}` : ""}.`));
+      small < size.width ? `; shown with ${small} × ${num(r, "image.preview.height")}` : ""}.`));
   if (has(r, "torus")) shown.push(...nodeMaps(r));
   else if (!has(r, "load.requests") && size.width * size.height <= 2 ** 24)
     shown.push(...ownerMaps(r, size));
@@ -126,7 +128,7 @@ function pictures(r) {
     make("div", {class: "pictures"}, shown),
     has(r, "load.requests") &&
       note(
-        "PEs take their pixels while the machine runs, so no rule says who owns which; loads are simulated exactly, from the pixels' costs.")
+        "PEs request pixels at run time, so there are no fixed owners; loads are simulated from the pixels' costs.")
   ];
 }
 
@@ -141,24 +143,24 @@ function loads(r) {
       .map(
         (key) =>
           `${key}: u = ${fixed(num(load, `${key}.imbalance`), 3)}, speed-up ${fixed(num(load, `${key}.speedup`), 1)}`);
-  const words = `The load of each ${unit}: modelled cycles, from ${grouped(num(load, "min"))} to ${
-    grouped(num(load, "max"))}; the line is their mean, ${grouped(fixed(mean, 1))}.`;
+  const description = `Load of each ${unit}: modelled cycles, from ${grouped(num(load, "min"))} to ${
+    grouped(num(load, "max"))}; the line is the mean, ${grouped(fixed(mean, 1))}.`;
   return [
     paragraph(
-      `u = (max − mean) / mean = ${fixed(num(load, "imbalance"), 3)}. A load is the events that the rays of a ${
-        unit} counted, times what each costs by the ` +
+      `u = (max − mean) / mean = ${fixed(num(load, "imbalance"), 3)}. The load of a ${
+        unit} is the number of each event of its rays times its cost in the ` +
       `machine's instruction budget.${phases.length ? ` By phase: ${phases.join("; ")}.` : ""}`),
-    caption(bars(words, [`number of the ${unit}`, "cycles"], values, mean), words),
+    caption(bars(description, [`number of the ${unit}`, "cycles"], values, mean), description),
     table(
-      `The load of each ${unit}`, [unit, "cycles", "of the mean"],
+      `Load of each ${unit}`, [unit, "cycles", "of the mean"],
       values.map((value, i) => [String(i), grouped(value), mean > 0 ? percent(value / mean) : "-"]),
-      "All are in the report, as `load.per_pe`.")
+      "The report has all of them in `load.per_pe`.")
   ];
 }
 
 function traffic(r) {
   if (!has(r, "torus")) return null;
-  const links = "torus.bytes_per_link", words = "Bytes over the links of all nodes, by direction on the torus.";
+  const links = "torus.bytes_per_link", description = "Bytes over the links of all nodes, by direction on the torus.";
   const packets = member(r, "torus.packets", "object"), directions = list(r, `${links}.by_direction`, "number");
   return [
     tiles([
@@ -167,26 +169,26 @@ function traffic(r) {
       ["mean of links", `${fixed(num(r, `${links}.mean`), 0)} bytes`], ["supersteps", count(r, "torus.supersteps")]
     ]),
     caption(
-      namedBars(words, directions.map((bytes, i) => ({
+      namedBars(description, directions.map((bytes, i) => ({
                                         name: ["+x", "-x", "+y", "-y", "+z", "-z"][i] ?? "?",
                                         text: `${Number((1e-6 * bytes).toPrecision(3))} MB`,
                                         value: bytes
                                       }))),
-      words),
+      description),
     table(
       "Packets", ["packets", "made", "ended"],
       Object.keys(packets).map((kind) => [kind, count(packets, `${kind}.made`), count(packets, `${kind}.ended`)]))
   ];
 }
 
-// --- Counts, and what made it
+// --- Counts, device and build
 
 const counts = (r) => [make(
   "div", {class: "tables"},
   Object
     .entries({
       rays: "rays",
-      tests: "tests of rays against objects",
+      tests: "intersection tests",
       shading: "shading",
       communication: "bus and ring",
     })
@@ -205,7 +207,7 @@ function making(r) {
   return [
     definitions([
       ...deviceRows(r), ["lanes, group", `${num(r, "device.lanes")}, ${num(r, "device.group_size")}`],
-      ["set by", str(r, "device.tuned")],
+      ["lanes and group from", str(r, "device.tuned")],
       [
         "memory of a PE",
         has(r, "machine.pe_memory_bytes") ? `${used} of ${kilobytes(num(r, "machine.pe_memory_bytes"))}` :
@@ -235,12 +237,12 @@ function making(r) {
 function showRender(r) {
   heading(() => renderHead(r));
   const torus = has(r, "torus");
-  section("pictures", torus ? "Picture and nodes" : "Picture and owners", () => pictures(r));
+  section("pictures", torus ? "Image and nodes" : "Image and owners", () => pictures(r));
   section("loads", torus ? "Load of each node" : "Load of each PE", () => loads(r));
   section("traffic", "Traffic of the links", () => traffic(r));
   section("model", "Modelled and measured", () => model(r));
   section("labels", "Times by label", () => labels(r));
   section("roof", "Roofline", () => roofline(r));
-  section("counts", "What was counted", () => counts(r));
+  section("counts", "Counts", () => counts(r));
   section("made", "Device and build", () => making(r));
 }

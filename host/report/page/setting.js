@@ -1,8 +1,8 @@
-// A setting of mapping and PEs: from a report's machine, as text and from a link, #mapping=cyclic:16&pes=256, with the
-// words of raya's options. Knows nothing of the page.
+// Settings of mapping and PEs: converts between a report's machine, raya's options and links such as
+// #mapping=cyclic:16&pes=256. Independent of the page.
 //
-// A state: {mapping, offset, fold, pes, grid: [A, B], tile: [w, h], seed, view, pe}, where each mapping keeps its own
-// figures while another is looked at; pe: the PE that is shown, or null.
+// A state: {mapping, offset, fold, pes, grid: [A, B], tile: [w, h], seed, view, pe}. The parameters of each mapping are
+// kept while another is selected. pe: the highlighted PE, or null.
 "use strict";
 
 const MAPPINGS = ["cyclic", "column", "rows", "blocks", "grid", "tiles", "random"];
@@ -11,15 +11,16 @@ const divisorsOf = (side) => Array.from({length: side}, (_, i) => i + 1).filter(
 const pairOf = (text) => /^\d{1,5}x\d{1,5}$/.test(text) ? text.split("x").map(Number) : null;
 const rootOf = (pes) => Math.round(Math.sqrt(pes));
 
-// Of the machine of a report; the other mappings get defaults: the offset of the paper, the squarest grid, small tiles.
+// Initial state, from the machine of a report. The other mappings get defaults: the paper's offset, the squarest grid,
+// tiles of up to 8 x 8.
 function stateOf(machine, {width, height}) {
   const [mapping, more] = str(machine, "mapping").split(":"), pes = whole(machine, "pes"),
                   slots = mapping === "cyclic" || mapping === "column";
-  if (!MAPPINGS.includes(mapping)) throw new Error(`machine.mapping is ${mapping}, which this page does not know`);
+  if (!MAPPINGS.includes(mapping)) throw new Error(`unknown machine.mapping ${mapping}`);
   if (pes > width * height) throw new Error("machine.pes is larger than the number of pixels");
-  const divisor = (number, most) => {  // the largest up to `most`
-    while (number % most !== 0) --most;
-    return most;
+  const divisor = (number, limit) => {  // the largest one up to `limit`
+    while (number % limit !== 0) --limit;
+    return limit;
   };
   const rows = divisor(pes, Math.floor(Math.sqrt(pes)));
   return {
@@ -35,7 +36,7 @@ function stateOf(machine, {width, height}) {
   };
 }
 
-// What model.js takes.
+// The setting for model.js.
 function settingOf(state) {
   const slots = state.mapping === "cyclic" || state.mapping === "column";
   const [a, b] = state.mapping === "grid" ? state.grid : state.mapping === "tiles" ? state.tile : [0, 0];
@@ -50,7 +51,7 @@ function settingOf(state) {
   };
 }
 
-// As --mapping takes it.
+// Value of --mapping.
 function mappingText(state) {
   const more = {
     cyclic: () => `:${state.offset}`,
@@ -75,18 +76,18 @@ function optionsText(state) {
   return `--mapping ${mappingText(state)} --pes ${setting.pes}${fold}`;
 }
 
-// Reads a link over `state`. What it asks for and cannot be is left as it was, and told.
+// Returns `state` changed by a link, and error messages for invalid values, which are ignored.
 function withLink(state, link, {width, height}) {
   const next = {...state}, problems = [], pixels = width * height;
-  const asked = new Map(link.replace(/^#/, "").split("&").filter(Boolean).map((part) => part.split("=", 2)));
-  const whole = (text, least, most, what) => {
-    if (/^\d{1,10}$/.test(text) && Number(text) >= least && Number(text) <= most) return Number(text);
-    problems.push(`${what} must be ${least} to ${most}`);
+  const values = new Map(link.replace(/^#/, "").split("&").filter(Boolean).map((part) => part.split("=", 2)));
+  const whole = (text, min, max, what) => {
+    if (/^\d{1,10}$/.test(text) && Number(text) >= min && Number(text) <= max) return Number(text);
+    problems.push(`${what} must be ${min} to ${max}`);
     return null;
   };
-  const one = (text, words, what) => {
-    if (words.includes(text)) return text;
-    problems.push(`${what} must be ${words.join(", ")}`);
+  const one = (text, names, what) => {
+    if (names.includes(text)) return text;
+    problems.push(`${what} must be ${names.join(", ")}`);
     return null;
   };
 
@@ -103,14 +104,14 @@ function withLink(state, link, {width, height}) {
     if (name === "tiles") next.tile = sides;
     next.mapping = name;
   };
-  if (asked.has("mapping")) {
-    next.fold = "cyclic";  // which links leave out
-    takeMapping(asked.get("mapping") ?? "");
+  if (values.has("mapping")) {
+    next.fold = "cyclic";  // the default, omitted in links
+    takeMapping(values.get("mapping") ?? "");
   }
-  if (asked.has("fold")) next.fold = one(asked.get("fold"), ["cyclic", "block"], "the fold") ?? next.fold;
-  if (asked.has("view")) next.view = one(asked.get("view"), VIEWS, "the view") ?? next.view;
-  if (asked.has("pes") && next.mapping !== "grid")
-    next.pes = whole(asked.get("pes") ?? "", 1, pixels, "the number of PEs") ?? next.pes;
-  if (asked.has("pe")) next.pe = whole(asked.get("pe") ?? "", 0, settingOf(next).pes - 1, "the PE to show");
+  if (values.has("fold")) next.fold = one(values.get("fold"), ["cyclic", "block"], "the fold") ?? next.fold;
+  if (values.has("view")) next.view = one(values.get("view"), VIEWS, "the view") ?? next.view;
+  if (values.has("pes") && next.mapping !== "grid")
+    next.pes = whole(values.get("pes") ?? "", 1, pixels, "the number of PEs") ?? next.pes;
+  if (values.has("pe")) next.pe = whole(values.get("pe") ?? "", 0, settingOf(next).pes - 1, "the PE to show");
   return {state: next, problems};
 }

@@ -1,24 +1,25 @@
-// Times of a render, modelled and measured, and rooflines of any report.
+// Modelled and measured times of a render, and rooflines.
 "use strict";
 
-// Part, member of modelled_ms, meaning, and how the labels of commands begin that stand in for it here.
+// Part, member of modelled_ms, meaning, and pattern for the labels of the device's corresponding commands.
 const RING_PARTS = [
   ["objects", "objects", "the scene over the bus to all PEs", /^bus\.broadcast/],
   ["compute", "compute", "tracing, and anti-aliasing", /^(trace|supersample|filter\.)/],
   ["of it filter", "filter", "sums and means of neighbours", /^filter\./],
-  ["of it compare", "compare", "which pixels differ from a neighbour", /^supersample\.compare/],
+  ["of it compare", "compare", "finding pixels that differ from a neighbour", /^supersample\.compare/],
   ["communication", "communication", "neighbours' pixels over ring or bus", /^(ring\.|bus\.send|bus\.pe)/],
   ["image", "image", "pixels to the host", /^bus\.gather/]
 ];
 const TORUS_PARTS = [
-  ["compute", "compute", "the busiest processor: making and tracing packets", /^(inject|trace_voxel)/],
+  ["compute", "compute", "the busiest processor: generating and tracing packets", /^(inject|trace_voxel)/],
   ["messages", "messages", "the busiest processor: handling packets", /^(route|look|accept)/],
   ["links", "links", "the busiest link", /^(exchange|return)/]
 ];
 
 function model(r) {
   const torus = has(r, "torus"), machine = torus ? "the torus of T805s" : str(r, "machine.name");
-  if (!has(r, "modelled_ms")) return [paragraph(`The rates of ${machine} are not known, so it has no modelled time.`)];
+  if (!has(r, "modelled_ms"))
+    return [paragraph(`There is no modelled time, because the rates of ${machine} are unknown.`)];
   const commands = list(r, "measured.commands", "object"), rows = [],
         ms = (key) => msText(num(r, `modelled_ms.${key}`));
   for (const [name, key, what, labels] of torus ? TORUS_PARTS : RING_PARTS) {
@@ -37,10 +38,10 @@ function model(r) {
     if (has(r, "modelled_ms.asynchronous"))
       rows.push(["whole, without supersteps", "simulated packet by packet", ms("asynchronous.finish"), "-", ""]);
   } else
-    rows.push(["whole", "all of it; what is \"of it\" is part of compute", ms("total"), ...measured]);
+    rows.push(["whole", "the sum; parts named \"of it\" are included in compute", ms("total"), ...measured]);
   return [
-    paragraph(`What the modelled machine, ${
-      machine}, would take by its own rates, next to what this device took for the commands that stand in for that part.`),
+    paragraph(`Modelled time of ${
+      machine} at its own rates, next to the measured time of this device's corresponding commands.`),
     table("Modelled and measured time", ["part", "what", "modelled", "measured here", "commands here"], rows)
   ];
 }
@@ -50,7 +51,7 @@ function labels(r) {
         total = sum(commands.map((command) => num(command, "total_ns")));
   if (commands.length === 0) return [paragraph("The device does not time its commands.")];
   const ms = (command, key) => fixed(1e-6 * num(command, key), 3),
-        words = "Commands of the device by their total time, the longest.";
+        description = "Commands of the device with the longest total times.";
   const longest = [...commands].sort((a, b) => b.total_ns - a.total_ns).slice(0, 8);
   return [
     paragraph(
@@ -58,12 +59,12 @@ function labels(r) {
         timeText(1e3 * num(r, "measured.build_s"))} before it. ` +
       "Times of commands are the device's, from start to end."),
     caption(
-      namedBars(words, longest.map((command) => ({
+      namedBars(description, longest.map((command) => ({
                                      name: `${str(command, "label")} (${str(command, "kind")})`,
                                      text: `${ms(command, "total_ns")} ms`,
                                      value: command.total_ns
                                    }))),
-      words),
+      description),
     table(
       "Times by label", ["label", "kind", "launches", "total ms", "share", "minimum ms", "mean ms", "maximum ms", "MB"],
       commands.map(
@@ -75,7 +76,7 @@ function labels(r) {
   ];
 }
 
-// A drawing and a table of [name, row] against the peak, and what the peak is.
+// Chart and table of rows [name, row] with the device's peak.
 function rooflineOf(peak, rows) {
   const format = str(peak, "format"), points = [], giga = (path, digits = 2) => fixed(1e-9 * num(peak, path), digits);
   const cells = rows.map(([name, row]) => {
@@ -94,10 +95,10 @@ function rooflineOf(peak, rows) {
   const slope = 1e-9 * num(peak, "copy_bytes_per_s");
   if (![slope, ...tops.map(([, top]) => top)].every((rate) => rate > 0))
     throw new Error("peak has a rate that is not above 0");
-  const words =
-    "Kernels, by their numbers in the table, below the device's roof: as fast as their bytes are copied, or as multiply-adds are computed.";
+  const description =
+    "Kernels, numbered as in the table, below the device's roof: the rate of copies, or the rate of multiply-adds.";
   return [
-    caption(roof(words, slope, tops, points), words),
+    caption(roof(description, slope, tops, points), description),
     table(
       "Roofline", ["no.", "kernel", "Mrays/s", "Gop/s", "GB/s", "op/byte", "bound", "of the roof", "of the format"],
       cells),
@@ -108,16 +109,16 @@ function rooflineOf(peak, rows) {
         giga("format_roots_per_s")} of roots; ` +
       `${
         giga(
-          "copy_bytes_per_s")} GB/s copied, each byte counted as read and as written. An operation is one of the budgets of the counted events; bytes are the ` +
+          "copy_bytes_per_s")} GB/s copied, each byte counted as read and as written. Operations are those in the budgets of the counted events; bytes are the ` +
       "minimum that the kernel has to move."),
     num(peak, "scatter") > 0.15 &&
-      message(`The peak, measured three times, scattered by ${
-        percent(peak.scatter, 0)}: something else ran on the device, and shares of the peak say little.`)
+      message(`Three measurements of the peak differ by ${
+        percent(peak.scatter, 0)}: other programs used the device, and shares of the peak are unreliable.`)
   ];
 }
 
 function roofline(r) {
-  if (has(r, "measured.no_roofline")) return [paragraph(`There is none: ${str(r, "measured.no_roofline")}.`)];
+  if (has(r, "measured.no_roofline")) return [paragraph(`No roofline: ${str(r, "measured.no_roofline")}.`)];
   if (!has(r, "measured.peak"))
     return [paragraph(
       "The device's peak was not measured; ", code("raya render --page"), " and ", code("--profile"), " measure it.")];

@@ -1,8 +1,9 @@
-// 1 + 1/2 + 1/3 + ... in the format that the -D options choose, until another term changes nothing. One work-item.
+// harmonic: sums 1 + 1/2 + 1/3 + ... in the format that the -D options choose, until a term no longer changes the sum.
+// One work-item.
 #include "number/number.clh"
 
 __kernel void harmonic(__global float* restrict sum,   // [1]
-                       __global uint* restrict terms)  // [1], those that changed the sum
+                       __global uint* restrict terms)  // [1], number of terms that changed the sum
 {
     real last, next = num_const(0.0f);
     uint count = 0;

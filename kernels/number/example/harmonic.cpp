@@ -1,8 +1,7 @@
-// How another OpenCL program uses the number layer: the harmonic series, which diverges, but not on a computer.
-//   harmonic OPTIONS     in the folder of harmonic.cl; the options tell the compiler of kernels where number/ lies: -I
-//   ../..,
-//                        or $(pkg-config --cflags raya-number) where raya is installed
-// Needs OpenCL alone:  c++ -std=c++17 harmonic.cpp -lOpenCL
+// An OpenCL program that uses the number layer: sums the harmonic series, which diverges, until the sum stops growing.
+//   harmonic OPTIONS     in the folder of harmonic.cl; the options are for the kernel compiler and name the folder that
+//                        holds number/: -I ../.., or $(pkg-config --cflags raya-number) if raya is installed
+// Needs OpenCL only:   c++ -std=c++17 harmonic.cpp -lOpenCL
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
@@ -31,8 +30,7 @@ cl_device_id first_device() {
     return device;
 }
 
-/// The options that a format needs. Where the device's own division and fma are not to be relied on, the layer mends
-/// them.
+/// The build options of a format. The layer replaces the device's division and fma if they are not exact.
 std::string build_options(cl_device_id device, const std::string& given, int exponent_bits, int fraction_bits) {
     cl_device_fp_config floats = 0;
     check(clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr), "asking for CL_FP_*");

@@ -1,32 +1,32 @@
 """The best offset for a scene
 
-Which offset of the cyclic mapping makes this image soonest, communication in the balance?
+Which offset of the cyclic mapping renders this image fastest, communication included?
 
-- For every offset: the busiest PE's modelled cycles in the first pass and in supersampling, the arithmetic between
-  neighbours, and the rotations that bring the neighbours by the shortest route, on the SPA's rates. Broadcast and image
-  transfer take the same for every offset and are left out.
-- A PE for each column, 256 PEs and 64; fold cyclic; sqrt(P) is rounded. PEs have memory for the shares that go round,
-  which the SPA's have only for small ones.
-- A scene is rendered at its own size, if that is square, and smaller where its objects would make that take minutes;
-  --size overrides. Of equal offsets the smallest is named.
-- What holds for the scene and not for one picture of it follows from {views} random views, as in Fig. 8 (fewer where
-  there are many objects): offsets are chosen by the views of odd seeds and judged in those of even seeds, compared in
-  the same view. 0..sqrt(P) are enough where in all cases together the best of them takes at most {rule} % longer than
-  the best of all, and not where it takes longer in one.
+- For every offset: the busiest PE's modelled cycles in the first pass and in supersampling, the arithmetic of the filter or the
+  comparison, and the rotations that bring the neighbours' pixels by the shortest route, at the SPA's rates. Broadcast and image transfer
+  take the same for every offset and are excluded.
+- A PE for each column, 256 PEs and 64 PEs; cyclic fold; sqrt(P) is rounded. PEs have memory for the shares that circulate on the ring;
+  the SPA's PEs have it for small shares only.
+- A scene is rendered at its own size if that is square, and at a smaller size if it has so many objects that rendering would take
+  minutes; --size overrides. Of equally fast offsets the smallest is named.
+- Results for the scene rather than for one picture of it come from {views} random views, as in Fig. 8 (fewer for many objects). The views
+  of odd seeds choose the offsets; the views of even seeds judge them, compared within the same view. The offsets 0..sqrt(P) are enough
+  if in all cases together the best of them takes at most {rule} % longer than the best of all; they are not enough if it takes longer in
+  one case.
 """
 import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Claim, Comparison, Page, Plot, Series, Table, each_of, estimate, papers, study, verdict
 from raya.lab.laboratory import format_for
-from raya.lab.spa import CLOCK, FACTOR, FACTORS, offset_times, usual_size
+from raya.lab.spa import CLOCK, FACTOR, FACTORS, offset_times, default_size
 
-VIEWS, ENOUGH = 40, 1  # ENOUGH, %: ours; what an offset may lose and still be enough
+VIEWS, ENOUGH = 40, 1  # ENOUGH, %: our choice; the loss up to which an offset counts as enough
 METHODS = ("none", "filter", "supersample")
 
 
 class Choice:
-    """One scene, one number of PEs and one way of anti-aliasing."""
+    """The offsets of one scene, one number of PEs and one anti-aliasing method."""
 
     def __init__(self, scene, size, pes, antialias, ensemble):
         self.scene, self.size, self.pes, self.antialias = scene.name, size, pes, antialias
@@ -39,14 +39,14 @@ class Choice:
         sums = self.chosen_by.sum(0)
         self.chosen, self.chosen_near = int(sums.argmin()), int(sums[:self.root + 1].argmin())
         self.time = estimate(self.judged_by[:, self.chosen])
-        # The best offset, were computing so many times as dear.
+        # The best offset for each factor of the clock.
         self.factors = ", ".join(dict.fromkeys(
             str((self.times["ring_ms"] + f / FACTOR * (total - self.times["ring_ms"])).idxmin()) for f in FACTORS))
 
     method = property(lambda c: "without anti-aliasing" if c.antialias == "none" else f"with --antialias {c.antialias}")
 
     def longer(self, offset, confidence=0.95):
-        """By how many % longer an offset takes than the chosen one, in the views by which nothing was chosen."""
+        """By how many % longer an offset takes than the chosen one, in the views that did not choose it."""
         return estimate(100 * (self.judged_by[:, offset] / self.judged_by[:, self.chosen] - 1), confidence)
 
     def loss(self, ms):
@@ -54,7 +54,7 @@ class Choice:
 
 
 def choices_of(lab, scene):
-    size = lab.size(usual_size(scene))
+    size = lab.size(default_size(scene))
     ensemble = lab.ensemble(scene, size, "supersample", VIEWS)
     numbers = [size] + [pes for pes in (256, 64) if pes != size and pes <= size * size]
     return [Choice(scene, size, pes, method, ensemble) for pes in numbers for method in METHODS]
@@ -75,9 +75,8 @@ def best_offset(lab, scenes):
                  for c in first],
                 [claim_of_enough(first), claim_of_square(first)], tables_of(every),
                 [plot for number, choices in enumerate(by_scene, 1) for plot in plots_of(choices, number)],
-                ["Kohata & Ito weigh balance and communication in words. Here is the offset that makes an image "
-                 "soonest, for each number of PEs and each way of anti-aliasing, and how the clock's uncertainty moves "
-                 "it."],
+                ["Kohata & Ito discuss balance against communication without figures. This study computes the fastest offset for each "
+                 "number of PEs and each anti-aliasing method, and how the clock's uncertainty changes it."],
                 clock=CLOCK)
 
 
@@ -90,10 +89,9 @@ def chief_finding(choices):
 def views_finding(c):
     picture = int(c.best["offset"])
     near, root, zero, own = (c.longer(offset).text(1) for offset in (c.chosen_near, c.root, 0, picture))
-    return (f"{c.scene}, {c.pes} PEs, {c.method}: of {len(c.chosen_by) + len(c.judged_by)} views one half chooses p = "
-            f"{c.chosen}; it takes {c.time.text(1)} ms in the other half. There the best of 0..sqrt(P), p "
-            f"= {c.chosen_near}, takes {near} % longer, p = {c.root} {root} %, p = 0 {zero} %, and p = {picture}, the "
-            f"best for the scene's own picture, {own} %.")
+    return (f"{c.scene}, {c.pes} PEs, {c.method}: one half of {len(c.chosen_by) + len(c.judged_by)} views chooses p = {c.chosen}, which "
+            f"takes {c.time.text(1)} ms in the other half. There p = {c.chosen_near}, the best of 0..sqrt(P), takes {near} % longer, "
+            f"p = {c.root} {root} %, p = 0 {zero} %, and p = {picture}, the best for the scene's own picture, {own} %.")
 
 
 def choice_finding(c):
@@ -105,7 +103,7 @@ def choice_finding(c):
     ring = 100 * c.best["ring_ms"] / total if total > 0 else 0
     return (f"{c.scene}, {c.pes} PEs, {c.method}: p = {c.best['offset']:.0f} takes {total:.1f} ms, {ring:.1f} % of it "
             f"on the ring, u of the first pass {c.best['imbalance']:.3f}; {near}; {of_root}p = 0 takes "
-            f"{c.loss(zero):.1f} % longer; the best for factors of 1 to 8: p = {c.factors}.")
+            f"{c.loss(zero):.1f} % longer; the best offset for factors of 1 to 8: p = {c.factors}.")
 
 
 def claim_of_enough(choices):
@@ -114,8 +112,8 @@ def claim_of_enough(choices):
     return Claim(papers.SPA, "section on the cyclic mapping",
                  "Offsets of 0..sqrt(P) are enough, communication with neighbours considered.",
                  verdict(none == len(near), more > 0),
-                 f"In {none} of {len(near)} cases (numbers of PEs and ways of anti-aliasing) the best of 0..sqrt(P) "
-                 f"takes at most {ENOUGH} % longer than the best of all with certainty, in {more} longer than that.")
+                 f"In {none} of {len(near)} cases (numbers of PEs and anti-aliasing methods) the best of 0..sqrt(P) takes with "
+                 f"certainty at most {ENOUGH} % longer than the best of all, in {more} cases longer than that.")
 
 
 def claim_of_square(choices):
@@ -127,8 +125,8 @@ def claim_of_square(choices):
             cases, equal = cases + len(ms), equal + (ms[:, square] == ms[:, 0]).sum()
     return Claim(papers.SPA, "section on the cyclic mapping", "On n x n PEs p = n^2 is the same as p = 0.",
                  verdict(cases > 0 and equal == cases, equal < cases),
-                 f"Offset n^2 and offset 0 take the same in {equal} of {cases} cases (pictures and ways of "
-                 "anti-aliasing) on those numbers n x n of PEs for which the image has an offset of n^2.")
+                 f"Offsets n^2 and 0 take the same time in {equal} of {cases} cases (pictures and anti-aliasing methods), for the "
+                 "numbers n x n of PEs at which n^2 is less than the image's width.")
 
 
 def tables_of(every):
@@ -151,13 +149,13 @@ def tables_of(every):
                                      "first pass (ms)": t["trace_ms"], "neighbours' arithmetic (ms)": t["smooth_ms"],
                                      "supersampling (ms)": t["supersample_ms"], "rotations": t["rotations"],
                                      "ring (ms)": t["ring_ms"], "total (ms)": t["total_ms"]}))
-    return [Table("best-offset-views", "Offsets chosen by one half of the views, in the other half", views),
+    return [Table("best-offset-views", "Offsets chosen by one half of the views, judged in the other half", views),
             Table("best-offset", "Best offsets, modelled", best),
             Table("best-offset-all", "Every offset", pd.concat(offsets, ignore_index=True), on_page=False)]
 
 
 def plots_of(choices, number):
-    """A plot for each number of PEs, a line for each way of anti-aliasing, its best offset marked."""
+    """A plot for each number of PEs, with a line for each anti-aliasing method; the best offset is marked."""
     for pes in dict.fromkeys(c.pes for c in choices):
         series = []
         for c in (c for c in choices if c.pes == pes):

@@ -1,11 +1,11 @@
 """Number formats against the double-precision reference
 
-How far is an image in a reduced format from the exact one, and what does the format cost?
+How much does an image in a reduced format differ from the exact one, and what does the format cost?
 
 - {size} x {size} pixels, rays through pixel centres, {bounces} bounces, machine {machine} with {pes} PEs at offset
   {offset}. Each image is compared with the double-precision reference on values clamped to 0..1.
-- Formats: `eXmY` has X exponent and Y fraction bits and rounds to nearest, with `t` it truncates; `e6m15` is `spa22`.
-- Times are measured on {device}, {lanes} lanes: the minimum of {samples} renders of each format, taken in turn.
+- Formats: `eXmY` has X exponent bits and Y fraction bits and rounds to nearest; with a `t` it truncates. `e6m15` is `spa22`.
+- Times are measured on {device}, {lanes} lanes: the minimum of {samples} renders of each format, in turn.
 """
 import re
 
@@ -15,7 +15,7 @@ import raya
 from raya.lab import Page, Plot, Table, series_by, study
 
 REDUCED = [name + cut for name in "e8m21 e8m18 e8m15 e7m15 e6m15 e6m14 e6m13".split() for cut in ("", "t")]
-STEP, SAMPLES = 1 / 255, 5  # what a shown image can show: one step of 8 bits
+STEP, SAMPLES = 1 / 255, 5  # STEP: one step of an 8-bit image, the smallest visible difference
 GRANDE = next(m for m in raya.machines() if m["name"] == "grande")
 
 
@@ -26,8 +26,8 @@ def bits_of(form):
 
 
 def difference(expected, image):
-    """PSNR (dB, peak 1), largest error and pixels with a channel off by more than STEP, of values clamped to 0..1; a
-    value that is not finite is infinitely far."""
+    """PSNR (dB, peak 1), largest error, and number and share of pixels with a channel off by more than STEP. Values are clamped to 0..1;
+    the error of a value that is not finite is infinite."""
     finite = np.isfinite(expected) & np.isfinite(image)
     off = np.where(finite, np.abs(np.clip(expected, 0, 1) - np.clip(image.astype(float), 0, 1)), np.inf)
     with np.errstate(divide="ignore"):
@@ -92,5 +92,5 @@ def findings_of(rows):
             f"{text(spa, 'share_over', 100, 2)} % of its pixels are off by more than 1/255, "
             f"{text(fp32, 'share_over', 100, 2)} % of fp32's; it takes {text(spa, 'measured_ratio_to_fp32', 1, 2)} "
             "times fp32's kernel time (measured).",
-            f"Rounding to nearest has a higher PSNR than truncation in {(gains > 0).sum()} of {len(gains)} pairs of "
-            f"the same format and scene: {spread(gains)}.", *changes]
+            f"Rounding to nearest has a higher PSNR than truncation in {(gains > 0).sum()} of {len(gains)} pairs of the same "
+            f"format and scene: {spread(gains)}.", *changes]

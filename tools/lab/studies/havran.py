@@ -1,14 +1,14 @@
-"""Tests and steps a ray in uniform grids, beside Havran & Sixta 1999
+"""Tests and steps a ray in uniform grids, compared with Havran & Sixta 1999
 
-Does our grid do what others' grids do on the same scenes?
+Does our grid need as many tests and steps as others' grids on the same scenes?
 
-- One PE of grande in fp32, {size} x {size} rays through pixel corners{spd}, tree depth {depth} with the eye ray as 1,
-  as SPD has it. The grid cuts the box of the whole scene.
-- A ray: every eye, reflected, refracted and shadow ray, whether it meets the box or not. Tests: with spheres, polygons
-  and cylinders, of any ray. Steps: voxels that rays enter, the first one among them.
-- Where ours may differ: no mailbox, so that an object in several voxels on a ray's way is tested in each; a shadow ray
-  ends at the first object that is found to hide the light; objects are registered with a margin for rounding. What
-  Havran & Sixta do in each of these, and whether they count the first voxel, is not known to us.
+- One PE of grande in fp32, {size} x {size} rays through pixel corners{spd}, tree depth {depth} with the eye ray as 1, as SPD prescribes.
+  The grid divides the bounding box of the whole scene.
+- Rays: every eye, reflected, refracted and shadow ray, whether it meets the box or not. Tests: of any ray with spheres, polygons and
+  cylinders. Steps: voxels that rays enter, including the first one.
+- Possible differences: raya has no mailbox, so a ray tests an object in each voxel that contains it; a shadow ray ends at the first
+  object that is found to hide the light; objects are registered with a margin for rounding. We do not know what Havran & Sixta do in
+  these cases, nor whether they count the first voxel.
 """
 import math
 
@@ -22,7 +22,7 @@ COLUMNS = ("scene", "A x B x C", "copies", "tests", "steps", "measured (ms)")
 
 
 def grids_for(name):
-    """Those published for the scene, or cubes as fine as those for lattice."""
+    """The grids published for the scene; by default those published for lattice."""
     known = [grid for scene, grid in papers.UNIFORM_GRIDS if scene == name]
     return known or [(20, 20, 20), (44, 44, 44)]
 
@@ -48,11 +48,11 @@ def havran(lab, scenes):
                  *(finding_of_finer(a, b) for (_, a), (_, b) in zip(rows.iterrows(), rows[1:].iterrows())
                    if a["scene"] == b["scene"])],
                 [c for _, row in rows.iterrows() for c in comparisons_of(row)],
-                tables=[Table("havran", "What was counted", table)],
+                tables=[Table("havran", "Counts", table)],
                 plots=[Plot("havran", "Tests against steps a ray", "steps a ray", "tests a ray",
                             series_by(rows, "scene", "steps", "tests", style="points") + published, "xy")],
                 beside=papers.GRID,
-                words={"spd": "" if size == SPD_SIZE else " (SPD: 513 x 513)", "depth": BOUNCES + 1})
+                placeholders={"spd": "" if size == SPD_SIZE else " (SPD: 513 x 513)", "depth": BOUNCES + 1})
 
 
 def row_of(run, grid):
@@ -70,16 +70,16 @@ def comparisons_of(row):
 
 def finding_of(known, what):
     if not len(known):
-        return f"{what.capitalize()} a ray: none were published for these grids."
+        return f"{what.capitalize()} a ray: no figures are published for these grids."
     ratios = ", ".join(f"{row[what] / row[f'their {what}']:.2f} ({row['scene']} {row['sides']})"
                        for _, row in known.iterrows())
-    return f"{what.capitalize()} a ray are {ratios} times those that Havran & Sixta publish."
+    return f"{what.capitalize()} a ray are {ratios} times those of Havran & Sixta."
 
 
 def finding_of_finer(coarse, fine):
-    """What a finer grid of one scene does, in ours and in theirs: free of how a ray or a test is counted."""
+    """Effect of a finer grid on one scene, ours and theirs. These ratios do not depend on how rays and tests are counted."""
     tests, steps, *others = (f"{fine[name] / coarse[name]:.2f}" for name in ("tests", "steps", "their tests",
                                                                              "their steps"))
-    theirs = "" if "nan" in others else f"; theirs to {others[0]} and {others[1]}"
-    return (f"{fine['scene']}, from {coarse['sides']} to {fine['sides']} voxels: tests fall to {tests}, steps grow to "
-            f"{steps} times{theirs}.")
+    theirs = "" if "nan" in others else f"; theirs by factors of {others[0]} and {others[1]}"
+    return (f"{fine['scene']}, from {coarse['sides']} to {fine['sides']} voxels: tests change by a factor of {tests} and steps by a "
+            f"factor of {steps}{theirs}.")

@@ -1,17 +1,16 @@
 """Screen and space divided together: groups of nodes
 
-In how many groups should the nodes share the screen, and what does memory allow?
+In how many groups should the nodes share the screen, and which numbers of groups fit in memory?
 
-- {nodes} nodes in G groups, each a 3-D torus of {nodes} / G nodes that holds the whole scene and renders the pixels p
-  with p mod G = g at {size} x {size}, p counted row by row: each row is shifted by {size} mod G against the one above
-  it, as in a cyclic mapping. fp32; all nodes of a group make primary rays and are charged for those that they make and
-  discard.
-- Each group cuts the scene into the same voxels, laid out cyclically on its nodes, so that all G do the same work. G =
-  1 divides space alone, G as many as nodes divides the screen alone.
-- The machine's time is that of its slowest group; speed-up is against one node that has all pixels and the same voxels.
-  How the groups' roots hand their pixels to the host is not modelled.
-- Memory: the part of the scene that the fullest node holds; with it the shortest queue and mailboxes that a hit can ask
-  for; with it those that the study has.
+- {nodes} nodes in G groups. Each group is a 3-D torus of {nodes} / G nodes, holds the whole scene and renders the pixels p with p mod G =
+  g at {size} x {size}, where p counts row by row: as in a cyclic mapping, each row is shifted by {size} mod G relative to the row above.
+  fp32. All nodes of a group make primary rays, and are charged for those that they make and discard.
+- Each group divides the scene into the same voxels, laid out cyclically on its nodes, so that the work is the same for every G. G = 1
+  divides space alone; G = {nodes} divides the screen alone.
+- The machine's time is that of its slowest group. Speed-up is relative to one node that has all pixels and the same voxels. The transfer
+  of pixels from the groups' roots to the host is not modelled.
+- Memory of the fullest node: its part of the scene; the same with the shortest queue and mailboxes that a hit can need; the same with
+  those of this study.
 """
 import numpy as np
 import pandas as pd
@@ -19,8 +18,8 @@ import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, series_by, study
 from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers, run_on_torus, sides_text
 
-NODES, SIDES = 64, (4, 8)  # voxels along each axis, of every group: the paper's, finer
-MEMORIES = {"32 KB": 32 * 1024, "4 MB": 4 * 1024 * 1024}  # of a node: the SPA's, a board's
+NODES, SIDES = 64, (4, 8)  # SIDES: voxels along each axis in every group, as in the paper and finer
+MEMORIES = {"32 KB": 32 * 1024, "4 MB": 4 * 1024 * 1024}  # of a node: as a PE of the SPA; as a transputer board
 
 
 def row_of(lab, scene, size, sides, groups):
@@ -35,7 +34,7 @@ def row_of(lab, scene, size, sides, groups):
             "hops a packet": sum(run.hops for run in runs) / max(1, sum(run.packets for run in runs)),
             "supersteps": max(run.supersteps for run in runs),
             "tests a ray": sum(run.tests for run in runs) / max(1, sum(run.rays for run in runs)),
-            "rays thrown away": sum(run.discarded for run in runs), "its part of the scene (bytes)": memory["scene"],
+            "rays discarded": sum(run.discarded for run in runs), "its part of the scene (bytes)": memory["scene"],
             "with the shortest buffers (bytes)": memory["shortest"], "with the study's (bytes)": memory["used"],
             "work": sum(run.work_ms for run in runs)}
 
@@ -43,7 +42,7 @@ def row_of(lab, scene, size, sides, groups):
 def rows_of(lab, scene, size, sides):
     """1, 2, 4, ... groups."""
     rows = pd.DataFrame([row_of(lab, scene, size, sides, groups) for groups in powers(NODES)])
-    # With a node a group none sends a message or discards a ray: together they compute what one node alone would.
+    # With one node a group no node sends a message or discards a ray: their work is that of a single node with all pixels.
     for bound in ("overlapped", "stepwise"):
         rows[f"speed-up, {bound}"] = rows["work"].iloc[-1] / rows[f"{bound} (ms)"]
     for name, size in MEMORIES.items():
@@ -53,31 +52,30 @@ def rows_of(lab, scene, size, sides):
 
 @study("hybrid")
 def hybrid(lab, scenes):
-    size = lab.size(72)  # 64 + 8: on 64 groups each row is shifted by the root of their number, the best offset
+    size = lab.size(72)  # 64 + 8: with 64 groups each row is shifted by 8, the square root of their number, the best offset
     some = scenes or [even_scene(8320), raya.example("centre"), balls_scene(3)]
     every = [rows_of(lab, scene, size, sides) for scene in some for sides in SIDES]
     rows = pd.concat(every, ignore_index=True)
     head = ["scene", "voxels", "groups"]
     times = rows[head + ["nodes a group", "overlapped (ms)", "stepwise (ms)", "speed-up, overlapped",
                          "speed-up, stepwise", "u over all nodes", "most messages (ms)", "hops a packet", "supersteps",
-                         "tests a ray", "rays thrown away"]]
+                         "tests a ray", "rays discarded"]]
     memory = rows[head + ["its part of the scene (bytes)", "with the shortest buffers (bytes)",
                           "with the study's (bytes)", "fits 32 KB", "fits 4 MB"]]
     return Page({"scenes": [scene.name for scene in some], "size": size, "nodes": NODES, "voxels": list(SIDES),
                  "links": "torus3d", "format": "fp32", "bounces": BOUNCES}, findings_of(every),
                 [Comparison(f"best G, {r['scene'][0]}, {r['voxels'][0]} voxels", "groups", None,
                             int(r["groups"][r["overlapped (ms)"].idxmin()]),
-                            "modelled, overlapped, whatever the memory") for r in every],
+                            "modelled, overlapped, without a memory limit") for r in every],
                 tables=[Table("hybrid", "Time of the whole machine", times),
                         Table("hybrid-memory", "Memory of the fullest node", memory)], plots=plots_of(rows),
-                news=["Yoshitani & Yamazaki name the combination of screen and space division (Harada et al. 1995, "
-                      "their reference [1]) and do not try it; here every number of groups is weighed, in time and in "
-                      "memory."],
+                news=["Yoshitani & Yamazaki mention the combination of screen and space division (Harada et al. 1995, their reference "
+                      "[1]) and do not try it. This study compares every number of groups in time and in memory."],
                 clock=CLOCK)
 
 
 def size_text(size):
-    """'1.6 KB', rounded up: what is needed."""
+    """'1.6 KB'; rounded up, as it states a requirement."""
     for unit, scale in (("GB", 1 << 30), ("MB", 1 << 20), ("KB", 1 << 10)):
         if size >= scale:
             return f"{np.ceil(10 * size / scale) / 10:.1f} {unit}"
@@ -85,7 +83,7 @@ def size_text(size):
 
 
 def findings_of(every):
-    def said(text, with_voxels=", {}"):
+    def for_each_scene(text, with_voxels=", {}"):
         return "; ".join(f"{r['scene'][0]}{with_voxels.format(r['voxels'][0])}: {text(r)}" for r in every)
 
     def balance(r):
@@ -102,7 +100,7 @@ def findings_of(every):
         def text(r):
             fit = r[r[f"fits {name}"] == "yes"]
             if not len(fit):
-                return f"no G, one group needs {size_text(r['with the shortest buffers (bytes)'][0])} a node"
+                return f"no G (one group needs {size_text(r['with the shortest buffers (bytes)'][0])} a node)"
             if len(fit) == len(r):
                 return "any G"
             i = fit["overlapped (ms)"].idxmin()
@@ -110,11 +108,11 @@ def findings_of(every):
                     f"{r['speed-up, overlapped'][i]:.1f}")
         return text
 
-    return [f"The best number of groups on {NODES} nodes where memory is no matter, overlapped: "
-            f"{said(best('overlapped'), ' with {} voxels')}.",
-            f"Where every superstep waits for its busiest node and link: {said(best('stepwise'))}.",
-            *(f"Nodes of {name}, with the shortest buffers that work, can hold: {said(memory(name))}."
-              for name in MEMORIES), f"u over all nodes, from one group to a group for each node: {said(balance)}."]
+    return [f"The best number of groups on {NODES} nodes without a memory limit, overlapped: "
+            f"{for_each_scene(best('overlapped'), ' with {} voxels')}.",
+            f"The same stepwise: {for_each_scene(best('stepwise'))}.",
+            *(f"Numbers of groups that fit nodes of {name}, with the shortest buffers that work: {for_each_scene(memory(name))}."
+              for name in MEMORIES), f"u over all nodes, from one group to a group for each node: {for_each_scene(balance)}."]
 
 
 def plots_of(rows):

@@ -1,4 +1,4 @@
-"""Figs 8 and 13: the imbalance u of each offset, in one picture and in many views, next to the offset's lattice."""
+"""Figs 8 and 13: the imbalance u of each offset, in one picture and in many views, with the offset's lattice."""
 import numpy as np
 import pandas as pd
 import raya
@@ -8,28 +8,27 @@ from raya.lab.laboratory import VIEWS_PROSE
 from raya.lab.mappings import shortest_square
 
 U_AND_VIEWS = """
-- u = (max load - mean load) / mean load, from one cost image: the load of a static mapping is the sum of its pixels'
-  modelled cycles. No clock is needed.""" + VIEWS_PROSE
+- u = (max load - mean load) / mean load, from one cost image. The load of a PE is the sum of its pixels' modelled cycles. u needs no
+  clock.""" + VIEWS_PROSE
 
 PROSE_8 = """Fig. 8: imbalance against the offset
 
 Which offset of the cyclic mapping spreads the load best?
 
 - {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass.""" + U_AND_VIEWS + """
-- Offsets are compared in the same views. "Best" is reproduced where every other offset of 0..n is worse, the {tests}
-  differences together with 95 % (Bonferroni); it is not reproduced where one is better with that certainty.
-- A figure that Kohata & Ito have for one picture counts as reproduced where it lies in the 95 % prediction interval of
-  the views: that which 2.5 % of pictures fall below and 2.5 % above, by the order of the views, whatever their
-  distribution. Outside it is not reproduced."""
+- Offsets are compared within the same views. "Best" is reproduced if every other offset of 0..n is worse, all {tests} differences
+  together with 95 % (Bonferroni); it is not reproduced if one offset is better with that certainty.
+- A figure of Kohata & Ito for one picture is reproduced if it lies in the 95 % prediction interval of the views. The interval comes from
+  order statistics, for any distribution: 2.5 % of pictures lie below it and 2.5 % above. A figure outside it is not reproduced."""
 
 PROSE_13 = """Fig. 13: imbalance against the offset in supersampling
 
 Does the offset that suits the first pass suit supersampling as well?
 
 - {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; supersampling alone.""" + U_AND_VIEWS + """
-- Offsets are compared in the same views, {tests} differences together with 95 % (Bonferroni)."""
+- Offsets are compared within the same views, all {tests} differences together with 95 % (Bonferroni)."""
 
-GOOD = 0.9  # ours: the part of all that an offset of 0..n gains over p = 0, from which on the balance is good
+GOOD = 0.9  # our limit: a balance is good if it has this part of the gain of the best of 0..n over p = 0
 
 
 def page_of(name, lab, scenes, first):
@@ -53,9 +52,9 @@ def page_of(name, lab, scenes, first):
                  Table(name, "Imbalance for each offset", rows, on_page=False)],
                 plots_of(name, scene, "first pass" if first else "supersampling alone", rows, near, len(views),
                          in_paper),
-                ["Kohata & Ito drew u for one picture. Which offset is best changes from view to view; means over many "
-                 "views with intervals tell what belongs to the offset."],
-                words={"tests": n}, beside=papers.SPA)
+                ["Kohata & Ito plot u for one picture. The best offset changes from view to view; means over many views, with "
+                 "intervals, show the effect of the offset itself."],
+                placeholders={"tests": n}, beside=papers.SPA)
 
 
 def claims_of(place, of_views, means, n, first, in_paper):
@@ -70,17 +69,16 @@ def claims_of(place, of_views, means, n, first, in_paper):
               ("Of the offsets 0..n on n x n PEs p = n gives the best balance.", verdict(worse == n, better > 0),
                f"Over {len(of_views)} views mean u is {means[n].text()} at p = {n}; the lowest of 0..{n} is that of p "
                f"= {lowest}, {means[lowest].text()}. Of the {n} other offsets {worse} are worse than p = {n} and "
-               f"{better} are better with certainty; p = {n} is the best of them in {(single <= best).sum()} of "
+               f"{better} are better with certainty; p = {n} is the best of 0..{n} in {(single <= best).sum()} of "
                f"{len(of_views)} views.")]
     if first:
         claims.append(("The balance is already good at p = 8, half of n.", verdict(half.low >= GOOD, half.high < GOOD),
-                       f"p = {n // 2} gains {half.text(2)} of what the best of 0..n gains over p = 0; good is called a "
-                       f"part of {GOOD} or more."))
+                       f"p = {n // 2} gains {half.text(2)} of what the best of 0..n gains over p = 0; a part of {GOOD} or more counts "
+                       "as good."))
     if in_paper:
         claims.append(("u is 0.118 at p = 16 (derived from Table 3).", verdict_among(papers.IMBALANCE_16, single),
-                       f"Over {len(single)} views u(16) is {means[n].text()} in the mean and {range_text(single)} in "
-                       "single ones, so the figure of one picture is a draw: with 95 % it lies in "
-                       f"{prediction_text(single)}."))
+                       f"Over {len(single)} views u(16) is {means[n].text()} in the mean and {range_text(single)} in single views; "
+                       f"the figure of one more picture lies in {prediction_text(single)} with 95 %."))
     return [Claim(papers.SPA, place, *claim) for claim in claims]
 
 
@@ -89,13 +87,13 @@ def findings_of(u, means, n, why_best, views):
     return [f"Over {views} views u is {means[0].text()} at p = 0, {means[half].text()} at p = 8 and "
             f"{means[best].text()} at p = 16.",
             why_best,
-            f"In the picture u is {u[0]:.3f} at p = 0, {u[half]:.3f} at p = 8 and {u[best]:.3f} at p = 16. Of the "
-            f"offsets 0..{n} p = {u[:n + 1].argmin()} is best, u = {u[:n + 1].min():.3f}; of all {len(u)} p = "
+            f"In the picture u is {u[0]:.3f} at p = 0, {u[half]:.3f} at p = 8 and {u[best]:.3f} at p = 16. The best of the "
+            f"offsets 0..{n} is p = {u[:n + 1].argmin()}, u = {u[:n + 1].min():.3f}; the best of all {len(u)} is p = "
             f"{u.argmin()}, u = {u.min():.3f}. {(u < u[best]).sum()} offsets are better than p = 16."]
 
 
 def comparisons_of(rows, of_views, n, in_paper):
-    known = {0: (papers.IMBALANCE_0, "calibrated on: see scenes/README.md"),
+    known = {0: (papers.IMBALANCE_0, "our scene is calibrated on it: see scenes/README.md"),
              8: (None, 'the paper: "already good"'), 16: (papers.IMBALANCE_16, papers.IMBALANCE_16_ROUNDING)}
     all_of = []
     for p, (figure, remark) in known.items():

@@ -1,24 +1,23 @@
-"""Who makes the primary rays: the root or all nodes
+"""Primary rays from the root or from all nodes
 
-From how many nodes on does the root hold the machine up?
+From how many nodes on is the root the bottleneck?
 
-- {scene} at {size} x {size} on 1 to {nodes} nodes of a 3-D torus, doubling, one voxel a node, fp32. Root: it makes all
-  primary rays, one after another, and sends each to where it enters the box, as Yoshitani & Yamazaki have it. All:
-  every node makes those that enter at its voxel, and is charged for those that it makes and discards. Either way ray
-  packets have 16 words, and each term of a ray is a return.
-- The root's time is the greater of its processor's, computing and messages, and its busiest link's. Contributions to
-  pixels come home to the root either way.
-- One node has the whole scene in one voxel, and is its own root: where more nodes are more than so many times as fast,
-  it is the grid's doing.
+- {scene} at {size} x {size} on 1 to {nodes} nodes of a 3-D torus, doubling, one voxel a node, fp32. Root: the root makes all primary
+  rays, one after another, and sends each to the node where it enters the bounding box, as in Yoshitani & Yamazaki. All: every node makes
+  the rays that enter at its voxel, and is charged for those that it makes and discards. In both cases ray packets have 16 words, and
+  each term of a ray is a return.
+- The root's time is the larger of its processor's time (computing and messages) and its busiest link's. In both cases the contributions
+  to pixels return to the root.
+- A single node has the whole scene in one voxel and is its own root. A speed-up above the number of nodes is therefore due to the grid.
 """
 from raya.lab import Page, Plot, Series, Table, holding_to_the_end, series_by, study
 from raya.lab.voxels import BOUNCES, CLOCK, even_scene, near_cube, powers, run_on_torus, swept
 
-MOST, PART = 512, 1.1  # PART: times as long; more than this and the two ways have parted
-CASES = [{"nodes": nodes, "inject": way} for nodes in powers(MOST) for way in ("root", "all")]
+MOST, DIFFERENT = 512, 1.1  # DIFFERENT: ratio of times above which the two methods count as different
+CASES = [{"nodes": nodes, "inject": method} for nodes in powers(MOST) for method in ("root", "all")]
 COLUMNS = ("supersteps", "overlapped (ms)", "stepwise (ms)", "the root's processor (ms)",
            "the root's busiest link (ms)", "root / overlapped (%)", "busiest link (bytes)", "packets",
-           "rays thrown away", "hops a packet", "most packets in a queue", "primary")
+           "rays discarded", "hops a packet", "most packets in a queue", "primary")
 
 
 @study("inject", one_scene=True)
@@ -27,10 +26,10 @@ def inject(lab, scenes):
 
     rows = swept(CASES, lambda nodes, inject: run_on_torus(lab, scene, size, near_cube(nodes), near_cube(nodes),
                                                            inject=inject), COLUMNS)
-    root, every = (rows[rows["inject"] == way].reset_index() for way in ("root", "all"))
+    root, every = (rows[rows["inject"] == method].reset_index() for method in ("root", "all"))
     return Page({"scene": scene.name, "size": size, "nodes": MOST, "links": "torus3d", "format": "fp32",
                  "bounces": BOUNCES}, findings_of(root, every),
-                tables=[Table("inject", "The root or all nodes make the primary rays",
+                tables=[Table("inject", "Primary rays from the root and from all nodes",
                               rows.drop(columns=["primary", "run"]))],
                 plots=[Plot("inject", "Time against the number of nodes", "nodes", "modelled ms",
                             [Series(f"{some['inject'][0]}, {bound}", some["nodes"], some[f"{bound} (ms)"])
@@ -39,38 +38,38 @@ def inject(lab, scenes):
                             series_by(rows, "inject", "nodes", "root / overlapped (%)"), "x"),
                        Plot("inject-supersteps", "Supersteps", "nodes", "supersteps",
                             series_by(rows, "inject", "nodes", "supersteps"), "xy")],
-                news=["Yoshitani & Yamazaki let the root send all rays and do not ask what that costs; here both ways "
-                      "stand side by side, from 1 to 512 nodes."], clock=CLOCK)
+                news=["Yoshitani & Yamazaki let the root send all rays and do not discuss the cost. This study compares both methods "
+                      "on 1 to 512 nodes."], clock=CLOCK)
 
 
 def bound_text(rows):
-    """The fewest nodes, two or more, from which on the machine waits for its root with every number of nodes."""
+    """Sentence part: the number of nodes, two or more, from which on the root is always the bottleneck."""
     nodes = holding_to_the_end(rows["nodes"][1:], rows["root / overlapped (%)"][1:] >= 100)
-    return f"from {nodes.iloc[0]} nodes on" if len(nodes) else "not with the most nodes"
+    return f"from {nodes.iloc[0]} nodes on" if len(nodes) else "not even with the most nodes"
 
 
-def finding_of_parting(root, every):
+def finding_of_difference(root, every):
     ratio = root["overlapped (ms)"] / every["overlapped (ms)"]
-    last = f"with {every['nodes'].iloc[-1]} nodes the root's way takes {ratio.iloc[-1]:.2f} times as long"
-    parted = ratio[ratio > PART]
-    if not len(parted):
-        return f"The two ways never part by more than 10 %: {last}."
-    return (f"The two ways part by more than 10 % at {every['nodes'][parted.index[0]]} nodes: {parted.iloc[0]:.2f} "
-            f"times as long; {last}.")
+    last = f"with {every['nodes'].iloc[-1]} nodes injection by the root takes {ratio.iloc[-1]:.2f} times as long"
+    different = ratio[ratio > DIFFERENT]
+    if not len(different):
+        return f"The two methods never differ by more than 10 %: {last}."
+    return (f"The two methods first differ by more than 10 % on {every['nodes'][different.index[0]]} nodes, where injection by the root "
+            f"takes {different.iloc[0]:.2f} times as long; {last}.")
 
 
 def findings_of(root, every):
     a, b = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (root, every))
     one, last, all_last = every["overlapped (ms)"][0], root.iloc[-1], every.iloc[-1]
-    return [f"The whole machine waits for its root, overlapped: where the root makes all primary rays "
-            f"{bound_text(root)}, where all nodes do {bound_text(every)}.",
-            f"Injection by the root ends at {a['overlapped (ms)']:.0f} ms on {a['nodes']} nodes, "
-            f"{one / a['overlapped (ms)']:.1f} times as fast as one node; by all nodes at {b['overlapped (ms)']:.0f} "
-            f"ms on {b['nodes']}, {one / b['overlapped (ms)']:.1f} times.",
-            finding_of_parting(root, every),
+    return [f"The root is the bottleneck of the machine, overlapped: {bound_text(root)} if it makes all primary rays, "
+            f"{bound_text(every)} if all nodes do.",
+            f"The fastest machine with injection by the root takes {a['overlapped (ms)']:.0f} ms, with {a['nodes']} nodes, "
+            f"{one / a['overlapped (ms)']:.1f} times as fast as one node; with injection by all nodes "
+            f"{b['overlapped (ms)']:.0f} ms, with {b['nodes']} nodes, {one / b['overlapped (ms)']:.1f} times.",
+            finding_of_difference(root, every),
             f"{all_last['nodes']} nodes that make their own primary rays make "
-            f"{1 + all_last['rays thrown away'] / all_last['primary']:.1f} for each that they keep, all of which they "
-            "are charged for: the other rays of their windows enter elsewhere.",
-            f"Stepwise the root's way takes {last['stepwise (ms)'] / all_last['stepwise (ms)']:.2f} times as long with "
-            f"{last['nodes']} nodes, in {last['supersteps']} supersteps against {all_last['supersteps']}: the root "
-            "makes no more rays at a time than an eighth of its queue holds."]
+            f"{1 + all_last['rays discarded'] / all_last['primary']:.1f} for each that they keep, and are charged for all of them: "
+            "the other rays of their pixel windows enter at other voxels.",
+            f"Stepwise, injection by the root takes {last['stepwise (ms)'] / all_last['stepwise (ms)']:.2f} times as long on "
+            f"{last['nodes']} nodes, in {last['supersteps']} supersteps against {all_last['supersteps']}: at a time the root "
+            "makes no more rays than an eighth of its queue holds."]

@@ -1,4 +1,4 @@
-"""Figs 7 and 12: the load of each PE over the mean load, in the first pass and in supersampling."""
+"""Figs 7 and 12: the load of each PE divided by the mean load, in the first pass and in supersampling."""
 import numpy as np
 import pandas as pd
 import raya
@@ -11,20 +11,20 @@ PROSE = """{figure}
 {question}
 
 - {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; {phase}.
-- Loads are the sums of the modelled cycles that the kernels counted for each pixel, over the mean load of all PEs: no
-  clock is needed.""" + VIEWS_PROSE
+- The load of a PE is the sum of the modelled cycles that the kernels counted for its pixels, divided by the mean load of all PEs. It
+  needs no clock.""" + VIEWS_PROSE
 
-FLAT = 0.1  # ours: mean loads by which the middle may differ from the sides and yet be called flat
+FLAT = 0.1  # our limit, in mean loads: middle and sides may differ by this much in a flat load
 
 
 def shares(image, offset):
-    """The load of each PE over the mean load; 1 where there is no load."""
+    """The load of each PE divided by the mean load; 1 for all PEs if there is no load."""
     loads = raya.loads(image, offset=offset)
     return loads / loads.mean() if loads.any() else np.ones(len(loads))
 
 
 def middle_and_sides(loads):
-    """Mean loads of the middle quarter of the PEs, and of the quarter at both sides; [..., PE]."""
+    """Mean load of the middle quarter of the PEs, and of the outer eighths at both sides together; loads: [..., PE]."""
     eighth, middle = loads.shape[-1] // 8, loads.shape[-1] // 2
     sides = (loads[..., :eighth].mean(-1) + loads[..., loads.shape[-1] - eighth:].mean(-1)) / 2
     return loads[..., middle - eighth:middle + eighth].mean(-1), sides
@@ -48,12 +48,11 @@ def page_of(name, lab, scenes, first):
                 comparisons_of(own_u, u, first and papers.is_papers(scene, size)), claims_of(place, of_views),
                 [Table(name, "Load of each PE", rows, on_page=False)],
                 plots_of(name, scene, phase, rows, own, len(views)),
-                ["Kohata & Ito show one image. Many views of a scene tell what belongs to the mapping and what to the "
-                 "picture."], beside=papers.SPA,
-                words={"figure": f"{place}: load of each PE{'' if first else ' in supersampling'}", "phase": phase,
-                       "question": "How is the work of one image spread over the PEs, by columns and by the cyclic "
-                       "mapping?" if first else "Is the extra work of supersampling spread as evenly as the first "
-                       "pass?"})
+                ["Kohata & Ito show one image. Many views of a scene separate the effect of the mapping from that of the picture."],
+                beside=papers.SPA,
+                placeholders={"figure": f"{place}: load of each PE{'' if first else ' in supersampling'}", "phase": phase,
+                              "question": "How is the work of one image spread over the PEs, by columns and by the cyclic mapping?"
+                              if first else "Is the extra work of supersampling spread as evenly as the first pass?"})
 
 
 def findings_of(own, own_u, u):
@@ -67,7 +66,7 @@ def findings_of(own, own_u, u):
 
 def comparisons_of(own_u, u, in_paper):
     figures = papers.IMBALANCE_0, papers.IMBALANCE_16
-    remarks = ("calibrated on: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
+    remarks = ("our scene is calibrated on it: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
     mean_u = [estimate(some) for some in u]
     own = [Comparison(f"u({p})", "", *some, True) for p, *some in zip((0, 16), figures, own_u, remarks)]
     return with_paper(in_paper, own + [Comparison(f"u({p}), mean of views", "", figure, mean.mean, "", True, mean.half)
@@ -82,8 +81,7 @@ def claims_of(place, of_views):
                   f"{over}{columns.text(2)} mean loads more than one of the quarter at the sides."),
             Claim(papers.SPA, place, "With p = 16 the load is flat.",
                   verdict(cyclic.low >= -FLAT and cyclic.high <= FLAT, cyclic.high < -FLAT or cyclic.low > FLAT),
-                  f"{over}{cyclic.text(2)} mean loads more than one at the sides; flat is called what is within "
-                  f"{FLAT}.")]
+                  f"{over}{cyclic.text(2)} mean loads more than one of the quarter at the sides; within {FLAT} counts as flat.")]
 
 
 def plots_of(name, scene, phase, rows, own, views):

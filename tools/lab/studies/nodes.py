@@ -1,30 +1,29 @@
 """The torus machine from one node to {nodes}
 
-How many transputers are worth having, and what is it that they wait for?
+How many transputers pay, and what is their bottleneck?
 
-- {size} x {size} pixels on 1, 2, 4, ... nodes, their sides as alike as powers of two allow; fp32, all nodes make
-  primary rays and are charged for those that they make and discard; ray packets of 16 words, a return for each term;
-  queues of {queue} packets.
-- Two ways to cut the scene: one voxel a node, as Yoshitani & Yamazaki do, and {voxels} voxels laid out cyclically on
-  any number of nodes. With the latter all machines do the same work, so their speed-up is that of the nodes alone; with
-  the former it is that of a finer grid as well.
-- A processor has its part in each message at either end; u and tests are of computing alone.
-- 2-D: slabs of nodes next to one another, four links a node as a T805 has them; 3-D: six.
-- A series ends where supersteps times nodes would come to more than {launches}: rays that have to visit all voxels,
-  such as those from far away on a plane, make very many supersteps.
+- {size} x {size} pixels on 1, 2, 4, ... nodes, as near to a cube as powers of two allow; fp32. All nodes make primary rays and are
+  charged for those that they make and discard; ray packets have 16 words, each term of a ray is a return; queues hold {queue} packets.
+- Two divisions of the scene: one voxel a node, as in Yoshitani & Yamazaki, and {voxels} voxels laid out cyclically on any number of
+  nodes. With the latter all machines do the same work, so the speed-up is due to the nodes alone; with the former it is also due to a
+  finer grid.
+- The processors at both ends of a message spend time on it; u and tests are of computing alone.
+- 2-D: slabs of nodes next to each other, four links a node, as a T805 has; 3-D: six links a node.
+- A series ends before supersteps times nodes exceed {launches}: rays that have to visit all voxels, such as those from far away on a
+  plane, cause very many supersteps.
 """
 import pandas as pd
 from raya.lab import Comparison, Page, Plot, Series, Table, study
 from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers, run_on_torus, sides_text
 
-QUEUE = 256  # so short that the queues of 4096 nodes are no burden, and long enough for the project's scenes
+QUEUE = 256  # short enough for the memory of 4096 nodes, long enough for the project's scenes
 MOST, SIDES, MOST_LAUNCHES = 4096, 16, 1 << 22
 VOXELS = sides_text((SIDES,) * 3)
-COLUMNS = ("u", "hops a packet", "supersteps", "busiest link (bytes)", "tests a ray", "steps a ray", "rays thrown away")
+COLUMNS = ("u", "hops a packet", "supersteps", "busiest link (bytes)", "tests a ray", "steps a ray", "rays discarded")
 
 
 def series_of(lab, scene, size, fixed, links, known):
-    """The machines of one kind, each with twice the nodes of the one before. `known`: runs, by their settings."""
+    """Table of the machines of one kind, each with twice the nodes of the one before. `known`: cache of runs, by settings."""
     rows, one = [], None
     for nodes in powers(MOST):
         if rows and rows[-1]["supersteps"] * nodes > MOST_LAUNCHES:
@@ -63,16 +62,16 @@ def nodes(lab, scenes):
             best = one.loc[one["overlapped (ms)"].idxmin()]
             comparisons.append(Comparison(f"{best['scene']}, {best['voxels']}: best speed-up", "", None,
                                           best["speed-up, overlapped"], f"modelled, overlapped, {best['nodes']} nodes; "
-                                          "Yoshitani & Yamazaki measured none"))
+                                          "Yoshitani & Yamazaki print no speed-up"))
         findings += [*findings_of_speedup(three, fixed), finding_of_links(three, two),
                      *findings_of_making(three, fixed)]
     rows = pd.concat(sum(by_scene, ()), ignore_index=True).drop(columns=["run", "balance"])
     return Page({"scenes": [scene.name for scene in some], "size": size, "nodes": MOST,
                  "voxels": VOXELS, "queue": QUEUE, "format": "fp32", "bounces": BOUNCES}, findings, comparisons,
                 tables=[Table("nodes", "Every machine", rows)], plots=plots_of(by_scene),
-                news=["Yoshitani & Yamazaki measured neither speed-up nor balance, and had 64 nodes: here are both, "
-                      "for 1 to 4,096 nodes, on tori of four and of six links a node."], clock=CLOCK,
-                words={"launches": MOST_LAUNCHES})
+                news=["Yoshitani & Yamazaki had 64 nodes and measured neither speed-up nor balance. This study has both, "
+                      "for 1 to 4,096 nodes, on tori with four and with six links a node."], clock=CLOCK,
+                placeholders={"launches": MOST_LAUNCHES})
 
 
 def findings_of_speedup(one, fixed):
@@ -80,13 +79,12 @@ def findings_of_speedup(one, fixed):
     half = fixed["nodes"][(fixed["efficiency, overlapped"] >= 0.5).cummin()].iloc[-1]
     return [f"{best['scene']}, {best['voxels']} voxels on every machine: {best['nodes']} nodes are fastest, "
             f"{best['speed-up, overlapped']:.1f} times as fast as one (overlapped; stepwise "
-            f"{best['speed-up, stepwise']:.1f} times), and what they wait for is {best['waits for']}. Half of the "
-            f"nodes' power or more is used up to {half} nodes.",
-            f"{first['scene']}, one voxel a node: {own['nodes']} nodes are {own['speed-up, overlapped']:.0f} times "
-            f"as fast as one, but that one has no grid: {first['tests a ray'] / max(1e-9, own['tests a ray']):.1f} "
-            f"times as many tests a ray, {first['tests a ray']:.1f} beside {own['tests a ray']:.1f}. With one node "
-            f"and {best['voxels']} voxels it is {first['overlapped (ms)'] / fixed['overlapped (ms)'][0]:.0f} times "
-            "as fast already."]
+            f"{best['speed-up, stepwise']:.1f} times); their bottleneck is {best['waits for']}. The efficiency is at least 50 % up to "
+            f"{half} nodes.",
+            f"{first['scene']}, one voxel a node: {own['nodes']} nodes are {own['speed-up, overlapped']:.0f} times as fast as one. But "
+            f"that one node has no grid, and makes {first['tests a ray'] / max(1e-9, own['tests a ray']):.1f} times as many tests a ray, "
+            f"{first['tests a ray']:.1f} compared with {own['tests a ray']:.1f}. One node with {best['voxels']} voxels is already "
+            f"{first['overlapped (ms)'] / fixed['overlapped (ms)'][0]:.0f} times as fast."]
 
 
 def finding_of_links(three, two):
@@ -94,10 +92,10 @@ def finding_of_links(three, two):
     ratios = two["overlapped (ms)"][:count] / three["overlapped (ms)"][:count]
     a, b = three.iloc[count - 1], two.iloc[count - 1]
     bytes_ratio = b["busiest link (bytes)"] / max(1, a["busiest link (bytes)"])
-    return (f"{a['scene']}, 2-D against 3-D torus with {a['nodes']} nodes: {b['hops a packet']:.2f} hops a packet for "
-            f"{a['hops a packet']:.2f}, {b['supersteps']} supersteps for {a['supersteps']}, {bytes_ratio:.2f} times "
-            f"the bytes over the busiest link; overlapped it takes {ratios.iloc[-1]:.2f} times as long, of all numbers "
-            f"of nodes {ratios.min():.2f} to {ratios.max():.2f}.")
+    return (f"{a['scene']}, 2-D compared with 3-D torus with {a['nodes']} nodes: {b['hops a packet']:.2f} hops a packet instead of "
+            f"{a['hops a packet']:.2f}, {b['supersteps']} supersteps instead of {a['supersteps']}, {bytes_ratio:.2f} times "
+            f"the bytes over the busiest link; overlapped it takes {ratios.iloc[-1]:.2f} times as long, over all numbers "
+            f"of nodes {ratios.min():.2f} to {ratios.max():.2f} times.")
 
 
 def findings_of_making(one, fixed):
@@ -105,16 +103,16 @@ def findings_of_making(one, fixed):
     last = fixed.iloc[-1]
 
     def text(rows):
-        most = rows.loc[rows["rays thrown away"].idxmax()]
-        kept = most["rays thrown away"] / most["run"].events["primary"]
+        most = rows.loc[rows["rays discarded"].idxmax()]
+        discarded = most["rays discarded"] / most["run"].events["primary"]
         how = "a voxel each" if most["voxels"] == "one a node" else f"{most['voxels']} voxels laid out cyclically"
-        return f"{1 + kept:.1f} with {how} ({most['nodes']} nodes)"
+        return f"{1 + discarded:.1f} with {how} ({most['nodes']} nodes)"
 
     return [f"{a['scene']}, balance: u of {a['nodes']} nodes is {a['u']:.2f} with a voxel each and {b['u']:.2f} with "
             f"{b['voxels']} voxels laid out cyclically, {SIDES**3 // b['nodes']} a node; of {last['nodes']} nodes "
             f"{last['u']:.2f}.",
-            f"{a['scene']}: nodes that make their own primary rays make up to {text(one)} for each that is kept, up to "
-            f"{text(fixed)}; what is discarded is charged."]
+            f"{a['scene']}: nodes that make their own primary rays make up to {text(one)} for each that they keep, up to "
+            f"{text(fixed)}; discarded rays are charged."]
 
 
 def plots_of(by_scene):
@@ -125,10 +123,10 @@ def plots_of(by_scene):
         series = [Series(f"{label}, {bound}", rows["nodes"], rows[f"speed-up, {bound}"])
                   for rows, label in both for bound in ("overlapped", "stepwise")]
         plots.append(Plot(f"nodes-speedup-{number}", f"Speed-up of {scene}, 3-D torus", "nodes", "speed-up, modelled",
-                          series + [Series("as the nodes", fixed["nodes"], fixed["nodes"])], "xy"))
+                          series + [Series("linear", fixed["nodes"], fixed["nodes"])], "xy"))
         hops += [Series(f"{scene}, {rows['links'][0]}", rows["nodes"], rows["hops a packet"]) for rows in (three, two)]
         balance += [Series(f"{scene}, {label}", rows["nodes"], rows["balance"])
                     for rows, label in both[::-1]]
     return plots + [
-        Plot("nodes-hops", "Links that a packet takes, a voxel a node", "nodes", "hops a packet", hops, "x"),
+        Plot("nodes-hops", "Hops of a packet, a voxel a node", "nodes", "hops a packet", hops, "x"),
         Plot("nodes-balance", "Balance of computing, 3-D torus", "nodes", "mean load / largest load", balance, "xy")]

@@ -2,13 +2,13 @@
 
 Is every offset beyond sqrt(P) = {reference} worse, as Kohata & Ito say?
 
-- {labels} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass. Views are of the seeds 1, 2,
-  ..., as in Fig. 8: {pictures} pictures.
-- The pixels of a PE form a lattice. Its shortest vector, the least distance between two pixels of one PE, says how
-  well an offset can spread what is costly; measured in the image, and the same on the torus.
-- Offsets are compared with p = {reference}, vector {length} pixels; p = {mirror}, its mirror, is in no group.
-  Differences are of the same picture.
-- "0..n is enough" where no offset beyond gains 0.02 of the mean load, all together with 95 % (Bonferroni).
+- {labels} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass. Views have the seeds 1, 2, ..., as in Fig. 8:
+  {pictures} pictures.
+- The pixels of a PE form a lattice. Its shortest vector, the smallest distance between two pixels of one PE, limits how well an offset
+  can spread expensive regions. It is measured in the image; wrapped round at the image's edges it is the same.
+- Offsets are compared with p = {reference}, whose shortest vector has {length} pixels; its mirror, p = {mirror}, is in no group.
+  Differences are taken within the same picture.
+- "0..n is enough" is reproduced if no offset beyond n gains 0.02 of the mean load, all together with 95 % (Bonferroni).
 """
 import numpy as np
 import pandas as pd
@@ -19,9 +19,9 @@ from raya.lab.mappings import shares_blocks, shortest_square
 from raya.lab.studies.images import paper_like_scenes
 from scipy.stats import rankdata, spearmanr
 
-NOTHING = 0.02  # ours: a part of the mean load that is no gain worth an offset
-OTHERS = 16  # views of each scene but the first, whose views Fig. 8 has too
-CORRELATED = -0.5
+NOTHING = 0.02  # our limit: a gain up to this part of the mean load is negligible
+OTHERS = 16  # views of each scene except the first, which has those of Fig. 8
+CORRELATED = -0.5  # rank correlation up to which the shortest vector predicts u
 OWN = "centre", "mirrors", "glass", "random-12", "random-30"
 
 
@@ -57,12 +57,12 @@ def lattice(lab, scenes):
                 findings_of(rows, u, n, longer, as_long, correlations, squares),
                 comparisons_of(rows, n, longer, as_long, correlations),
                 [claim_of_blocks(rows, n)] + ([claim_of_enough(u, means, n)] if len(u) > 1 else []),
-                [Table("lattice-chosen", f"p = 0, p = {n}, those that spread as well or better, and the best of all",
+                [Table("lattice-chosen", f"p = 0, p = {n}, offsets with as long or longer vectors, and the best of all",
                        table), Table("lattice", "Every offset", rows, on_page=False)],
                 [*plots_of(rows, n, longer, as_long, len(u))],
-                ["The lattice of an offset is not in Kohata & Ito. It names the offsets beyond sqrt(P) that spread as "
-                 "well, and shows why those near the rest do not."],
-                words={"labels": labels, "length": f"{squares[n]**0.5:.2f}", "mirror": size - n}, beside=papers.SPA)
+                ["Kohata & Ito do not use the lattice of an offset. It finds the offsets beyond sqrt(P) that spread the load as "
+                 "well, and shows why the other ones do not."],
+                placeholders={"labels": labels, "length": f"{squares[n]**0.5:.2f}", "mirror": size - n}, beside=papers.SPA)
 
 
 def claim_of_blocks(rows, n):
@@ -70,12 +70,12 @@ def claim_of_blocks(rows, n):
     own = shared[n] and n * n == len(rows)
     return Claim(papers.SPA, "section on the cyclic mapping",
                  "With p = n on n x n PEs every n x n block is shared by all PEs, a pixel each.", verdict(own, not own),
-                 f"Counted for n = {n}: the PEs {'do' if own else 'do not'} share every n x n block so. {shared.sum()} "
-                 f"offsets have no two pixels of one PE in any such block: {', '.join(map(str, rows['p'][shared]))}.")
+                 f"Counted for n = {n}: the PEs {'do' if own else 'do not'} share every n x n block in this way. For {shared.sum()} "
+                 f"offsets no such block has two pixels of one PE: {', '.join(map(str, rows['p'][shared]))}.")
 
 
 def claim_of_enough(u, means, n):
-    """Whether no offset beyond n gains more than nothing over the best of 0..n, or one does."""
+    """Compares every offset beyond n with the best of 0..n; a gain up to NOTHING is negligible."""
     near = int(np.argmin([m.mean for m in means[:n + 1]]))
     beyond = range(n + 1, len(means))
     gains = [estimate(u[:, p] - u[:, near], each_of(len(beyond))) for p in beyond]
@@ -86,7 +86,7 @@ def claim_of_enough(u, means, n):
                  verdict(all(g.low >= -NOTHING for g in gains), any(g.high < -NOTHING for g in gains)),
                  f"Over {len(u)} pictures the best of 0..n is p = {near}, mean u {means[near].text()}; the best beyond "
                  f"is p = {best}, {means[best].text()}. Of {len(beyond)} offsets beyond n {better} are better than the "
-                 f"best of 0..n with certainty; a gain of {NOTHING} or less is called nothing.")
+                 f"best of 0..n with certainty; a gain up to {NOTHING} counts as negligible.")
 
 
 def findings_of(rows, u, n, longer, as_long, correlations, squares):
@@ -94,36 +94,36 @@ def findings_of(rows, u, n, longer, as_long, correlations, squares):
 
     def group(offsets, vector):
         if not offsets:
-            return f"none has a vector {vector}"
-        return (f"{len(offsets)} have a vector {vector}, of which {(mean[offsets] < mean[n]).sum()} have a lower mean "
-                f"u than p = {n}, their mean {mean[offsets].mean():.4f}")
+            return f"none has a shortest vector {vector}"
+        return (f"{len(offsets)} have a shortest vector {vector}; {(mean[offsets] < mean[n]).sum()} of these have a lower mean "
+                f"u than p = {n}, and their mean is {mean[offsets].mean():.4f}")
 
-    both, verdict_text = longer + as_long, "So nothing can be gained beyond sqrt(P)."
+    both, verdict_text = longer + as_long, "So no offset beyond sqrt(P) is better."
     if both:
         gain = estimate(u[:, both].mean(1) - u[:, n])
         how = ("they are better on the whole" if gain.high < 0 else "they are worse on the whole" if gain.low > 0 else
-               "no difference can be told")
+               "there is no significant difference")
         verdict_text = f"In the same picture their mean u is {gain.text(4)} above that of p = {n}: {how}."
     spread = (f"Of the offsets beyond {n} (u = {estimate(u[:, n]).text(4)}), {group(longer, 'longer than its own')}; "
               f"{group(as_long, 'as long')}. {verdict_text}")
     best = mean.idxmin()
     rest = [p for p in range(n + 1, size - n) if squares[p] < squares[n]]
     low, high = min(correlations), max(correlations)
-    how = ("in every picture a longer shortest vector goes with a lower u" if high <= CORRELATED else
-           "in no picture does the shortest vector tell much about u" if low > CORRELATED else
-           "the shortest vector tells u in some pictures and not in others")
+    how = ("in every picture the shortest vector predicts u" if high <= CORRELATED else
+           "in no picture does the shortest vector predict u" if low > CORRELATED else
+           "the shortest vector predicts u in some pictures only")
     half = squares[n]**0.5 / 2
     some = np.sqrt(squares) >= half
     of_some = np.mean([spearmanr(np.sqrt(squares[some]), one[some])[0] for one in u])
     return [spread,
-            f"Best of all {size} is p = {best}, mean u = {mean[best]:.4f}: a largest load "
+            f"The best of all {size} is p = {best}, mean u = {mean[best]:.4f}: its largest load is "
             f"{100 * (1 - (1 + mean[best]) / (1 + mean[n])):.1f} % below that of p = {n}, which has a mean rank of "
             f"{rows['mean rank'][n]:.1f}.",
             f"Of the {len(rest)} offsets from {n + 1} to {size - n - 1} with a shorter vector, "
             f"{(mean[rest] > mean[n]).sum()} are worse than p = {n}.",
             f"Rank correlation of u with the shortest vector over all offsets: {low:.2f} to {high:.2f}; {how} "
-            f"(\"tells\": {CORRELATED} or below). Over the offsets with a vector of {half:.1f} pixels or more it is "
-            f"{of_some:.2f} in the mean."]
+            f"(predicts: {CORRELATED} or below). Over the offsets with a shortest vector of {half:.1f} pixels or more the mean "
+            f"correlation is {of_some:.2f}."]
 
 
 def comparisons_of(rows, n, longer, as_long, correlations):

@@ -1,29 +1,29 @@
 """Renders on 1 to {ranks} ranks
 
-How many MPI ranks are worth having, and from where on do they talk more than they trace?
+How many MPI ranks pay, and from how many on does communication take more time than tracing?
 
-- Ring: {scene} at {size} x {size} with the 3 x 3 filter; a PE for each column, or for each rank where there are more
-  ranks than columns; p = 16, beyond that round(sqrt(P)). Torus: {torus_scene} at {torus_size} x {torus_size} on 8 x 8 x
-  8 nodes, a voxel each, queues of 1024 packets.
-- A rank is one core of this machine's CPU, or a device of its own where that is no CPU. One rank is measured: what its
-  device takes for tracing, for all else, and the rest of the render, which is rank 0's host.
-- Ring on R ranks: tracing / R times (1 + u) of the ranks' segments, by the pixels' modelled cycles; all else / R; each
-  rotation alpha + beta for the block of one PE; pixels and loads of all ranks come to rank 0 one after another; the
-  scene goes out in log2 R rounds.
-- Torus on R ranks: bricks as `raya render` cuts them. In each superstep tracing is that of the rank with most modelled
-  cycles, all else goes with the nodes of the largest brick; faces take alpha for each message and beta for each byte
-  that a rank sends or receives, whichever is more, of the rank with most; the status of all nodes goes to every rank in
-  log2 R rounds. Supersteps, cycles and words of links are counted in one render.
-- More than 512 ranks have a torus with a node for each, assumed: supersteps grow with its side, a node's cycles in one
-  shrink with its voxel and its words with a face of that, and rank 0's host looks at so many more nodes.
-- Times of the model do not include what commands to the device cost beyond one rank's, collisions of messages, or
-  waiting for a rank that is late for another reason.
-- Networks: fitted to a ping-pong of `raya ping`, two that are assumed, and one that is given (`--network`).
-  Measured: `mpirun -n R raya render`, up to {turns} of each in turn after a warm-up, none after {enough} s of them, one
-  thread a rank; the model is compared with the minimum.
-- Scaling, measured the same way: strong has the same picture on more ranks; weak has pixels in proportion to ranks on
-  the ring, and objects, spread evenly, on the torus. Efficiency is the work (modelled cycles) that a core does in a
-  second, by the minimum, over that of one rank.
+- Ring: {scene} at {size} x {size} with the 3 x 3 filter; a PE for each column, or for each rank if there are more ranks than columns;
+  p = 16, with more ranks than columns round(sqrt(P)). Torus: {torus_scene} at {torus_size} x {torus_size} on 8 x 8 x 8 nodes, a voxel
+  each, queues of 1024 packets.
+- A rank has one core of this machine's CPU, or a device of its own if the device is not a CPU. One rank is measured: the time of its
+  device for tracing, its time for all other kernels, and the rest of the render, which is the host's part of rank 0.
+- Ring on R ranks: tracing / R times (1 + u) of the ranks' segments, by the pixels' modelled cycles; the other kernels / R; each rotation
+  takes alpha + beta for the block of one PE; rank 0 receives the pixels and loads of all ranks one after another; the scene is broadcast
+  in log2 R rounds.
+- Torus on R ranks: bricks as in `raya render`. In each superstep tracing takes the time of the rank with the most modelled cycles; the
+  other kernels take time in proportion to the nodes of the largest brick; faces take alpha for each message and beta for each byte that
+  the busiest rank sends or receives, whichever is more; every rank receives the status of all nodes in log2 R rounds. Supersteps, cycles
+  and words of links are counted in one render.
+- More than 512 ranks have a torus with a node for each, which is extrapolated: the supersteps grow with its side, a node's cycles in a
+  superstep shrink with its voxel and its words with a face of the voxel, and the host of rank 0 processes more nodes.
+- The model excludes the cost of device commands beyond those of one rank, collisions of messages, and waiting for a rank that is late
+  for another reason.
+- Networks: fitted to a ping-pong of `raya ping`; two that are assumed; and one from the command line (`--network`). Measured:
+  `mpirun -n R raya render`, up to {turns} of each in turn after a warm-up, none after {enough} s, one thread a rank. The model is
+  compared with the minimum.
+- Scaling is measured the same way. Strong: the same picture on more ranks. Weak: pixels in proportion to ranks on the ring; objects,
+  spread evenly, in proportion to ranks on the torus. Efficiency is the work (modelled cycles) of a core in a second, by the minimum,
+  relative to one rank.
 """
 import json
 import os
@@ -34,15 +34,15 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, one_of, series_by, study
-from raya.lab.programs import lacks_mpirun, on_ranks, render_on_ranks
+from raya.lab.programs import missing_mpirun, on_ranks, render_on_ranks
 from raya.lab.rank_model import PARTS, Ring, Torus
 from raya.lab.voxels import even_scene, powers
 
 TURNS, ENOUGH_S, WEAK_ENOUGH_S, QUIET = 3, 5, 2, 0.05
 
 
-def look_around():
-    """(numbers of ranks that are measured, processors that each of these has, ping-pong)"""
+def measurable_ranks():
+    """({number of ranks to measure: cores that they have together}, result of `raya ping`)"""
     here, ping = {1: 1}, None
     for ranks in powers(min(max(2 * os.cpu_count(), 4), 16))[1:]:
         one = json.loads(on_ranks(ranks, ["ping"]))
@@ -55,7 +55,7 @@ def look_around():
 
 
 def work_of(machine, report):
-    """What one rank took, measured: tracing, all else on the device, and the rest of the render."""
+    """Measured seconds of one rank: tracing, other kernels and commands, and the rest of the render."""
     commands = report["measured"]["commands"]
     device = 1e-9 * sum(c["total_ns"] for c in commands)
     trace = 1e-9 * sum(c["total_ns"] for c in commands if c["label"] == machine.label)
@@ -63,11 +63,11 @@ def work_of(machine, report):
 
 
 def measure(renders, device, enough_s=ENOUGH_S):
-    """{ranks: arguments} -> {ranks: (seconds of each render, report of the fastest)}"""
-    first = render_on_ranks(1, renders[1])  # which builds the kernels
+    """{ranks: arguments of a render} -> {ranks: (seconds of each render, report of the fastest)}. Raises InputError for --device."""
+    first = render_on_ranks(1, renders[1])  # builds the kernels
     if first["device"]["name"] != device:
-        raise raya.InputError(f"study ranks runs on the default devices of its ranks, here {first['device']['name']}, "
-                              f"and was given {device}: leave --device out, or name the device in RAYA_DEVICE")
+        raise raya.InputError(f"study ranks uses the default device of its ranks, {first['device']['name']}, not {device}: omit --device, "
+                              "or name the device in RAYA_DEVICE")
     trials = {ranks: ([], None) for ranks in renders}
     for _ in range(TURNS):
         for ranks, (seconds, best) in trials.items():
@@ -79,7 +79,7 @@ def measure(renders, device, enough_s=ENOUGH_S):
 
 
 def scaling_of(machine, scaling, trials, here):
-    """Measured: modelled cycles that a core works off in a second, over those of one rank."""
+    """Rows of measured efficiency: modelled cycles that a core does in a second, relative to one rank."""
     def rate(ranks):
         seconds, report = trials[ranks]
         return sum(report["load"]["per_pe"]) / min(seconds) / cores_of(report, ranks, here)
@@ -88,8 +88,7 @@ def scaling_of(machine, scaling, trials, here):
     for ranks, (seconds, report) in trials.items():
         image = report["image"]
         if scaling == "strong" and image["hash"] != one["image"]["hash"]:
-            raise raya.DeviceError(f"{ranks} ranks make another image than one: {image['hash']} and "
-                                   f"{one['image']['hash']}")
+            raise raya.DeviceError(f"{ranks} ranks and one rank give different images: {image['hash']} and {one['image']['hash']}")
         yield {"machine": machine.name, "scaling": scaling, "ranks": ranks, "cores": cores_of(report, ranks, here),
                "size": f"{image['width']}x{image['height']}", "work (cycles)": sum(report["load"]["per_pe"]),
                "measured, best (ms)": 1e3 * min(seconds), "median (ms)": 1e3 * float(np.median(seconds)),
@@ -97,19 +96,19 @@ def scaling_of(machine, scaling, trials, here):
 
 
 def cores_of(report, ranks, here):
-    """Processors that the ranks have together; a device that is none counts as one."""
+    """Cores that the ranks have together. A device that is not a CPU counts as one core."""
     return here[ranks] if report["device"]["platform"] == "Portable Computing Language" else ranks
 
 
 def processor_time():
-    """(busy, all) seconds of all processors; of this process and those that it ran to their end."""
+    """(busy, total) seconds of all processors, and the seconds of this process with its finished children."""
     with open("/proc/stat", encoding="utf-8") as file:
         ticks = [int(word) / os.sysconf("SC_CLK_TCK") for word in file.readline().split()[1:9]]
     own = sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     return sum(ticks) - ticks[3] - ticks[4], sum(ticks), own
 
 
-@study("ranks", one_scene=True, lacks=lacks_mpirun)
+@study("ranks", one_scene=True, missing=missing_mpirun)
 def ranks(lab, scenes):
     on_ring, on_torus = one_of(scenes), scenes[0] if scenes else even_scene(8320)
     size = lab.size(512)
@@ -118,7 +117,7 @@ def ranks(lab, scenes):
         for scene, file in zip((on_ring, on_torus), files):
             scene.save(file)
         before = processor_time()
-        here, ping = look_around()
+        here, ping = measurable_ranks()
         machines = [kind(lab, scene, file, size) for kind, scene, file in
                     zip((Ring, Torus), (on_ring, on_torus), files)]
         device = lab.session.device["name"]
@@ -143,25 +142,23 @@ def ranks(lab, scenes):
                             c["predicted / measured"], c["remark"])
                  for _, c in checks[checks["ranks"] > 1].iterrows()],
                 tables=tables_of(rows, checks, scaling, summary, networks, ping), plots=[*plots_of(rows, checks)],
-                news=["Neither paper has more than one machine to run on; here its array is divided over as many hosts "
-                      "as one likes, with the same image."],
-                clock="measured here where it says so, all else predicted from measured seconds of one rank. What a "
-                "render takes begins when its kernels are built and the scene has been sent; the time in all has the "
-                "sending too.")
+                news=["The papers have one machine. This study divides its array over any number of hosts, with the same image."],
+                clock="measured on this host where stated; all others are predicted from the measured seconds of one rank. The time of "
+                "a render starts when its kernels are built and the scene has been broadcast; the total includes the broadcast.")
 
 
 def networks_of(ping, given):
-    """{name: ((alpha s, beta s a byte), where they are from)}"""
+    """{name: ((alpha in s, beta in s/byte), source)}"""
     fitted = ping["alpha_s"], ping["beta_s_per_byte"]
     networks = {"this host": (fitted, f"fitted to the ping-pong, {ping['library']}"),
                 "10 GbE": ((30e-6, 0.8e-9), "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes"),
                 "InfiniBand HDR": ((1e-6, 0.04e-9), "assumed: 200 Gbit/s of a 4x port; 1 us, an adapter's 0.6 us and "
                                    "what MPI adds")}
-    return {**networks, "given": (given, "given with --network")} if given else networks
+    return {**networks, "given": (given, "--network")} if given else networks
 
 
 def rows_of(machine, one, networks):
-    """What is predicted from one rank's seconds, for each network and number of ranks."""
+    """Rows of predictions from the seconds of one rank, for each network and number of ranks."""
     one_s = sum(machine.predict(0, one, (0, 0), 1).values())
     for name, (network, _) in networks.items():
         for i, count in enumerate(machine.ranks):
@@ -173,7 +170,7 @@ def rows_of(machine, one, networks):
 
 
 def checks_of(machine, one, trial, network, here):
-    """What is predicted for the ranks that were measured, beside it."""
+    """Rows of predicted and measured times, for the numbers of ranks that were measured."""
     for i, (count, (seconds, _)) in enumerate(trial.items()):
         cores = cores_of(trial[1][1], count, here)
         parts = machine.predict(i, one, network, cores)
@@ -181,7 +178,7 @@ def checks_of(machine, one, trial, network, here):
         yield {"machine": machine.name, "ranks": count, "cores": cores, "predicted (ms)": predicted,
                "measured, best (ms)": 1e3 * min(seconds), "median (ms)": 1e3 * float(np.median(seconds)),
                "largest (ms)": 1e3 * max(seconds), "predicted / measured": predicted / min(seconds) / 1e3,
-               "remark": "ranks share cores" if cores < count else "the model rests on it" if count == 1 else ""}
+               "remark": "ranks share cores" if cores < count else "the model is based on it" if count == 1 else ""}
 
 
 def summary_of(key, some):
@@ -199,8 +196,7 @@ def findings_of_model(summary, checks):
                            f"({r['network']})" for _, r in some.iterrows())
         fastest = ", ".join(f"{r['fastest (ranks)']} ({r['network']}, {r['speed-up']:.3g} times as fast as one)"
                             for _, r in some.iterrows())
-        findings.append(f"{machine}: communication takes half of the time on {halves}. The fewest seconds are had on "
-                        f"so many ranks: {fastest}.")
+        findings.append(f"{machine}: communication takes half of the time on {halves}. The fastest numbers of ranks are {fastest}.")
 
     def text(some):
         ratio = some["predicted / measured"]
@@ -208,33 +204,31 @@ def findings_of_model(summary, checks):
 
     shared = more["cores"] < more["ranks"]
     return findings + [
-        f"On the ranks that can be measured here the prediction is {text(more[~shared])} times the measured time where "
-        f"each rank has a core, and {text(more[shared])} times where ranks share cores; the minimum of up to {TURNS} "
-        "renders each."]
+        f"On the numbers of ranks that this host can run, the prediction is {text(more[~shared])} times the measured time if each rank "
+        f"has a core, and {text(more[shared])} times if ranks share cores; measured: the minimum of up to {TURNS} renders each."]
 
 
 def findings_of_measures(scaling, share, ping):
-    """share: of the host's processors, what other programs had."""
+    """share: part of the host's processor time that other programs used."""
     kinds = [f"{machine}, {name}: " + ", ".join(f"{r['measured efficiency']:.2f} on {r['ranks']}"
                                                 for _, r in some[some["ranks"] > 1].iterrows())
              for (machine, name), some in scaling.groupby(["machine", "scaling"], sort=False)]
-    others = (f"While this was measured other programs had {100 * share:.1f} % of this host's processors." if share <=
-              QUIET else
-              f"While this was measured other programs had {100 * share:.0f} % of this host's processors: ranks waited "
-              "for one another, and times of several ranks say little. To be repeated when the host is quiet.")
+    others = (f"During the measurements other programs used {100 * share:.1f} % of this host's processor time." if share <= QUIET else
+              f"During the measurements other programs used {100 * share:.0f} % of this host's processor time: ranks waited for each "
+              "other, and times of several ranks are unreliable. Repeat this study when the host is idle.")
     first, last = ping["messages"][0], ping["messages"][-1]
-    return [f"Measured efficiency against one rank of one core: {'; '.join(kinds)}.", others,
-            f"A message between two ranks here ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us and "
-            f"{1e9 * ping['beta_s_per_byte']:.3f} ns a byte by the fit; one byte took {1e6 * first['seconds']:.2f} us, "
-            f"and 4 MB went at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s."]
+    return [f"Measured efficiency relative to one rank on one core: {'; '.join(kinds)}.", others,
+            f"By the fit, a message between two ranks on this host ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us and "
+            f"{1e9 * ping['beta_s_per_byte']:.3f} ns a byte. Measured: one byte takes {1e6 * first['seconds']:.2f} us, and 4 MB are "
+            f"sent at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s."]
 
 
 def tables_of(rows, checks, scaling, summary, networks, ping):
     alpha, beta = ping["alpha_s"], ping["beta_s_per_byte"]
-    return [Table("ranks", "Where communication takes half, and the fewest seconds", summary),
+    return [Table("ranks", "Numbers of ranks at which communication takes half of the time, and the fastest", summary),
             Table("ranks-here", "Predicted and measured on one core a rank", checks),
             Table("ranks-scaling", "Strong and weak scaling, measured here", scaling),
-            Table("ranks-networks", "The networks", [
+            Table("ranks-networks", "Networks", [
                 {"network": name, "alpha (us)": 1e6 * a, "beta (ns a byte)": 1e9 * b, "source": source}
                 for name, ((a, b), source) in networks.items()]),
             Table("ranks-messages", "Messages between two ranks here", [
@@ -256,4 +250,4 @@ def plots_of(rows, checks):
         parts = [Series(label, *zip(*[(r, ms) for r, ms in zip(one["ranks"], one[f"{part} (ms)"]) if ms > 0]))
                  for part, label in labels.items()]
         yield Plot(f"ranks-{machine}", f"{machine} on ranks, by 10 GbE", "ranks", "time (ms)",
-                   [Series("in all", one["ranks"], one["time (ms)"]), *parts], "xy")
+                   [Series("total", one["ranks"], one["time (ms)"]), *parts], "xy")

@@ -1,14 +1,13 @@
 """From 16 PEs to one for each pixel
 
-How far do static mappings go, and does it take two dimensions beyond a PE for each column?
+Up to how many PEs do static mappings scale, and is a two-dimensional mapping necessary beyond a PE for each column?
 
 - {scene} at {size} x {size} on {fewest} to {most} PEs of the SPA, doubling; first pass.
-- Where there are more PEs than columns, PEs share a slot: its rows go to them in turn (cyclic fold) or in runs (block
-  fold).
-- p = sqrt(P) or W / sqrt(P): the former up to a PE for each column, the latter beyond, where the rows of a PE lie P / W
-  apart and the same square spacing takes a smaller offset. All rounded.
-- Upper bound: all cycles / max(mean load, largest pixel). "Keeps up": {close} % of the 2-D mapping's efficiency or
-  more.
+- If there are more PEs than columns, several PEs share a slot: they take its rows in turn (cyclic fold) or in runs (block fold).
+- p = sqrt(P) or W / sqrt(P): the former up to a PE for each column, the latter beyond, where the rows of a PE lie P / W apart and a
+  smaller offset gives the same square spacing. All offsets are rounded.
+- Upper bound: all cycles / max(mean load, largest pixel). A mapping "keeps up" if it has at least {close} % of the 2-D mapping's
+  efficiency.
 """
 import numpy as np
 import pandas as pd
@@ -22,7 +21,7 @@ FIXED, ROOT, LIKE = "p = 16", "p = sqrt(P)", "p = sqrt(P) or W / sqrt(P)"
 # Rounded. Where P > W the rows of a PE lie P / W apart; its next pixel lies sqrt(W W / P) to the side for W / sqrt(P).
 OFFSETS = {FIXED: lambda w, p: 16, ROOT: lambda w, p: round(p**0.5), LIKE: lambda w, p: round(min(p**0.5, w / p**0.5)),
            "column split": lambda w, p: 0}
-PLAIN = [*OFFSETS, GRID, "random"]  # with the cyclic fold, or without any
+PLAIN = [*OFFSETS, GRID, "random"]  # with the cyclic fold, or without a fold
 FOLDED = [f"{name}, block fold" for name in OFFSETS]
 
 
@@ -54,32 +53,32 @@ def scale(lab, scenes):
     rows = efficiencies(image)
     of_views = [efficiencies(view.trace) for view in ensemble.views]
     between = (rows["P"] > side) & (rows["P"] < side * side)
-    largest = int(image.max()) * image.size / int(image.sum())  # pixel, in mean pixels
+    largest = int(image.max()) * image.size / int(image.sum())  # cost of the largest pixel over the mean pixel
     halves = pd.DataFrame([half_of(name, rows) for name in ["upper bound", *PLAIN, *FOLDED]])
     texts = [f"{name}: {pes or 'none'}" for name, pes, _ in halves[1:1 + len(PLAIN)].itertuples(index=False)]
     means = means_of(of_views)
     return Page({"scene": scene.name, "size": side, "pes": rows["P"].tolist(), "offset": 16 % side, "seed": 1,
                  "views": len(of_views)},
-                [f"PEs up to which half of the array's power or more is used: {'; '.join(texts)}; whole pixels, "
-                 f"however given out: {halves.iloc[0, 1]}.",
+                [f"Numbers of PEs up to which the efficiency is at least 50 %: {'; '.join(texts)}; for any distribution of whole "
+                 f"pixels: {halves.iloc[0, 1]}.",
                  finding_of_2d(rows[between]), finding_of_resonance(rows[between], side),
-                 f"The largest pixel costs {largest:.1f} times the mean one, so no distribution of whole pixels gains "
-                 f"more than {side * side / largest:.0f} times; that is what a PE for each pixel gives whatever the "
-                 f"mapping, an efficiency of {1 / largest:.3f}."],
+                 f"The largest pixel costs {largest:.1f} times the mean one, so no distribution of whole pixels has a speed-up of more "
+                 f"than {side * side / largest:.0f}. A PE for each pixel reaches it with every mapping, at an efficiency of "
+                 f"{1 / largest:.3f}."],
                 comparisons_of(rows, side, side * side / largest),
                 [claim_of_2d(rows["P"][between], of_views)] if len(of_views) > 1 else [],
-                [Table("scale-half", "Where each falls under an efficiency of 50 %", halves),
+                [Table("scale-half", "Numbers of PEs up to which the efficiency is at least 50 %", halves),
                  Table("scale", "Efficiency for each number of PEs", rows),
                  Table("scale-views", "Efficiency for each number of PEs, mean of the pictures", means, on_page=False)],
                 plots_of(rows, means, len(of_views)),
-                ["Kohata & Ito end at a PE for each column. Here arrays go on to a PE for each pixel, next to the "
-                 "bound that no distribution of whole pixels passes."],
-                words={"fewest": rows["P"].min(), "most": rows["P"].max(), "close": f"{100 * CLOSE:.0f}"},
+                ["Kohata & Ito stop at a PE for each column. This study extends the arrays to a PE for each pixel, and shows the "
+                 "upper bound of any distribution of whole pixels."],
+                placeholders={"fewest": rows["P"].min(), "most": rows["P"].max(), "close": f"{100 * CLOSE:.0f}"},
                 beside=papers.SPA)
 
 
 def half_of(name, rows):
-    """The last P up to which the efficiency is 50 % or more, and the speed-up there; 0: never."""
+    """The largest P up to which the efficiency is at least 50 %, and the speed-up there; 0 if there is none."""
     some = rows[(rows[name] >= HALF).cummin()]
     pes, efficiency = some[["P", name]].iloc[-1] if len(some) else (0, 0.0)
     return {"mapping": name, "50 % or more up to P": int(pes), "speed-up there": efficiency * pes}
@@ -98,31 +97,30 @@ def finding_of_2d(between):
             for name in (FIXED, ROOT, LIKE, "column split", "random")}
     best = max((FIXED, ROOT, LIKE), key=lambda name: len(kept[name]))
     if len(kept[best]) == len(between):
-        need = f"So it does not take 2-D, but it takes \"the like\": {best}, its rows shared, is enough."
+        need = f"So 2-D is not necessary, but \"the like\" is: {best}, with shared rows, is enough."
     elif not kept[best]:
-        need = "So it does take 2-D, as Kohata & Ito say."
+        need = "So 2-D is necessary, as Kohata & Ito say."
     else:
-        need = f"So it does not always take 2-D: {best} does for P = {', '.join(map(str, kept[best]))}."
+        need = f"So 2-D is not always necessary: {best} is enough for P = {', '.join(map(str, kept[best]))}."
     counts = "; ".join(f"{name}: {len(pes)}" for name, pes in kept.items())
-    return (f"More PEs than pixels a side, where Kohata & Ito ask for 2-D \"or the like\": of {len(between)} such "
-            f"arrays 2-D is kept up with on ({counts}). {need}")
+    return (f"For more PEs than pixels a side Kohata & Ito ask for 2-D \"or the like\". Of {len(between)} such arrays, the number on "
+            f"which a mapping keeps up with 2-D is: {counts}. {need}")
 
 
 def finding_of_resonance(between, side):
-    """With s = P / W rows from one row of a PE to its next, p shifts these by s p columns: not at all for multiples of
-    W."""
+    """Offsets that cancel out. The next row of a PE is s = P / W rows further on, where the offset shifts it by s p columns: by none if
+    s p is a multiple of W."""
     lost = {name: [str(p) for p in between["P"] if p % side == 0 and p // side * OFFSETS[name](side, p) % side == 0]
             for name in (FIXED, ROOT, LIKE)}
     words = [f"{name} for P = {', '.join(pes)}" for name, pes in lost.items() if pes]
     if not words:
-        return "No offset here falls back to the column split where PEs share the rows of a slot."
-    return ("Where PEs share the rows of a slot, an offset can cancel out: P / W rows further on the shift is a "
-            f"multiple of W, and the load is the column split's. So it is with {'; '.join(words)}.")
+        return "No offset here has the load of the column split where PEs share the rows of a slot."
+    return ("Where PEs share the rows of a slot, an offset can cancel out: if the shift after P / W rows is a multiple of W, the load "
+            f"is that of the column split. This happens with {'; '.join(words)}.")
 
 
 def claim_of_2d(between, of_views):
-    """2-D is needed where no cyclic mapping keeps up on any array of more PEs than columns; not where one does on
-    all."""
+    """2-D is necessary if no cyclic mapping keeps up on any array with more PEs than columns; it is not if one keeps up on all."""
     over = {name: [estimate([v[name][i] / v[GRID][i] for v in of_views]) for i in between.index]
             for name in (FIXED, ROOT, LIKE)}
     none = all(e.high < CLOSE for estimates in over.values() for e in estimates)
@@ -131,15 +129,15 @@ def claim_of_2d(between, of_views):
     worst = min(range(len(between)), key=lambda i: over[best][i].mean)
     return Claim(papers.SPA, "conclusions", "More PEs than pixels a side need 2-D or the like.",
                  verdict(none, lows[best] >= CLOSE),
-                 f"Over {len(of_views)} pictures, on {len(between)} arrays of more PEs than columns, the best of the "
-                 f"cyclic mappings is {best}, its rows shared: at worst {over[best][worst].text(2)} of the 2-D "
-                 f"mapping's efficiency, on {between.iloc[worst]} PEs; it keeps up with {CLOSE} or more.")
+                 f"Over {len(of_views)} pictures, on {len(between)} arrays with more PEs than columns, the best of the "
+                 f"cyclic mappings is {best}, with shared rows. It has at least {over[best][worst].text(2)} of the 2-D "
+                 f"mapping's efficiency (on {between.iloc[worst]} PEs); {CLOSE} or more counts as keeping up.")
 
 
 def comparisons_of(rows, side, most):
     row = rows[rows["P"] * 2 > side].iloc[0]
     return [Comparison(f"efficiency on {row['P']:.0f} PEs, {name}", "", None, row[name]) for name in PLAIN] + [
-        Comparison("largest speed-up there can be", "", None, most, "all cycles / those of the largest pixel")]
+        Comparison("upper bound of the speed-up", "", None, most, "all cycles / those of the largest pixel")]
 
 
 def plots_of(rows, means, pictures):

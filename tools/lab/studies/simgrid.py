@@ -1,19 +1,19 @@
-"""The asynchronous torus beside SimGrid
+"""The asynchronous torus, compared with SimGrid
 
-Does another simulator take as long for the same history on the same machine?
+Do raya's simulator and SimGrid give the same time for the same work on the same machine?
 
-- A history: what each packet of a render cost its node and which messages it led to ({scene}, {size} x {size} pixels,
-  {nodes} nodes, primary rays made by the root or by all nodes, ray packets of 22 words, one return a ray). It holds for
-  any order in time, so two simulators can carry it out.
-- raya: discrete events of its own (`host/torus/async_machine.hpp`). SimGrid 3.32: hosts, links, actors and messages of
-  its S4U interface (`tools/simgrid/replay.cpp`); it shares processors and links by its own solver. The rules are
-  common: a main task and a communication task that goes first, one message at a time over each way of a link, ports
-  with room for {buffer} messages of a class, two of them free before a ray enters a ring.
-- The platform has explicit links and routes between neighbours, two links to a hop: the way, and the wire that both
-  ways share. SimGrid's own torus lets a message hold all links of its way at once; transputers store it in every node.
-- Effects are switched on one after another, each machine having all that the one before has: computing alone, in which
-  messages take no time; the processors' part of messages; links of 1.7 MB/s each way; both ways sharing 2.4 MB/s;
-  finite buffers. On the plot they are numbered from 0.
+- The work: the cost of each packet of a render on its node, and the messages that it causes ({scene}, {size} x {size} pixels, {nodes}
+  nodes, primary rays made by the root or by all nodes, ray packets of 22 words, one return a ray). It does not depend on the order in
+  time, so two simulators can replay it.
+- raya: its own discrete-event simulation (`host/torus/async_machine.hpp`). SimGrid 3.32: hosts, links, actors and messages of the S4U
+  interface (`tools/simgrid/replay.cpp`); SimGrid's solver shares processors and links. Common rules: a main task and a communication
+  task with priority; one message at a time in each direction of a link; ports that buffer {buffer} messages of a class, two of which
+  must be free before a ray enters a ring.
+- The platform has explicit links and routes between neighbours. A hop has two links: one for its direction, and the wire that both
+  directions share. SimGrid's own torus is not used: there a message occupies all links of its route at once, while transputers store it
+  in every node.
+- Effects are enabled one after another, each in addition to those before: computing alone, where messages take no time; the processors'
+  part of messages; links of 1.7 MB/s each way; both directions sharing 2.4 MB/s; finite buffers. The plot numbers them from 0.
 """
 import os
 import tempfile
@@ -21,33 +21,34 @@ import tempfile
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, papers, study
-from raya.lab.programs import beside_raya, output_of
+from raya.lab.programs import sibling_program, output_of
 from raya.lab.voxels import even_scene, run_on_torus
 
-GOAL, BUFFER = 10, 4  # %, how near the two are to be; messages of a class in a port
-ROOMY = {"buffer": 1 << 20}  # no message ever waits for room
+GOAL, BUFFER = 10, 4  # %: accepted difference; messages of a class that a port buffers
+UNLIMITED = {"buffer": 1 << 20}  # buffers that never fill up
 NO_LINKS = {"one_way": 0, "both_ways": 0}
-# Each machine has all that the one before it has, and one thing more; the last is the machine as it is.
-EFFECTS = {"computing alone": {"message_cycles": 0, "word_cycles": 0, **NO_LINKS, **ROOMY},
-           "+ processors handle messages": {**NO_LINKS, **ROOMY}, "+ links take time": {"both_ways": 3.4e6, **ROOMY},
-           "+ both ways share a link": ROOMY, "+ finite buffers": {}}
+# Each machine adds one effect to the one before; the last one is the complete machine.
+EFFECTS = {"computing alone": {"message_cycles": 0, "word_cycles": 0, **NO_LINKS, **UNLIMITED},
+           "+ processors handle messages": {**NO_LINKS, **UNLIMITED}, "+ links take time": {"both_ways": 3.4e6, **UNLIMITED},
+           "+ both ways share a link": UNLIMITED, "+ finite buffers": {}}
 
 
-def lacks():
-    return "" if beside_raya("simgrid_replay") else (
-        "SimGrid is not there: no program simgrid_replay lies beside raya. `tools/setup --studies` installs it "
-        "(Debian: libsimgrid-dev), then build again.")
+def missing():
+    """Message if simgrid_replay was not built, else an empty string."""
+    return "" if sibling_program("simgrid_replay") else (
+        "there is no program simgrid_replay next to raya; remedy: `tools/setup --studies`, which installs SimGrid (Debian: "
+        "libsimgrid-dev), then build again")
 
 
 def ask_simgrid(result, changes):
-    """(messages, ms) by SimGrid."""
+    """(messages, ms) simulated by SimGrid."""
     with tempfile.TemporaryDirectory(prefix="raya-simgrid-") as folder:
         platform, replay = os.path.join(folder, "platform.xml"), os.path.join(folder, "replay.txt")
         messages = result.write_replay(platform, replay, **changes)
-        words = output_of([beside_raya("simgrid_replay"), platform, replay, "--log=root.thres:error"],
+        words = output_of([sibling_program("simgrid_replay"), platform, replay, "--log=root.thres:error"],
                           "simgrid_replay").split()
     if words[0::2] != ["finish_ms", "delivered"] or int(words[3]) != messages:
-        raise raya.InputError(f"simgrid_replay: does not deliver {messages} messages, but prints {' '.join(words)}")
+        raise raya.InputError(f"simgrid_replay: expected {messages} delivered messages, found the output '{' '.join(words)}'")
     return messages, float(words[1])
 
 
@@ -67,7 +68,7 @@ def rows_of(lab, scene, size, links, inject):
     return rows
 
 
-@study("simgrid", one_scene=True, lacks=lacks)
+@study("simgrid", one_scene=True, missing=missing)
 def simgrid(lab, scenes):
     scene, size = scenes[0] if scenes else even_scene(512), lab.size(48)
     rows = pd.DataFrame([row for links in ("torus3d", "torus2d") for inject in ("root", "all")
@@ -76,33 +77,32 @@ def simgrid(lab, scenes):
     series = [Series(f"{shape}, {inject}, {who}", range(len(some)), some[f"{who} (ms)"], style)
               for (shape, inject), some in rows.groupby(["torus", "inject"], sort=False)
               for who, style in (("raya", "line"), ("SimGrid", "points"))]
-    bounds = [f"{row['torus']}, inject {row['inject']}: the whole machine takes {row['raya (ms)']:.1f} ms, between "
-              f"{row['overlapped']:.1f} ms if nothing waited and {row['stepwise']:.1f} ms step by step."
+    bounds = [f"{row['torus']}, inject {row['inject']}: the complete machine takes {row['raya (ms)']:.1f} ms, between "
+              f"{row['overlapped']:.1f} ms overlapped and {row['stepwise']:.1f} ms stepwise."
               for _, row in whole.iterrows()]
     return Page({"scene": scene.name, "size": size, "nodes": "4x4x4", "buffer": BUFFER, "goal": GOAL},
                 findings_of(rows) + bounds,
-                [Comparison(f"{row['torus']}, {row['inject']}, the whole machine, ours / SimGrid", "", None,
+                [Comparison(f"{row['torus']}, {row['inject']}, complete machine, ours / SimGrid", "", None,
                             row["raya (ms)"] / row["SimGrid (ms)"], "modelled, asynchronous")
                  for _, row in whole.iterrows()],
-                tables=[Table("simgrid", "Time of one history, by raya and by SimGrid",
+                tables=[Table("simgrid", "Time of the same work, simulated by raya and by SimGrid",
                               rows.drop(columns=["overlapped", "stepwise"]))],
                 plots=[Plot("simgrid", "Time of the machine, one effect after another", "effects", "modelled ms",
                             series)],
-                news=["The asynchronous torus is compared with a simulator that others wrote; neither paper has been."],
+                news=["The asynchronous torus is compared with an independent simulator. Neither paper was."],
                 clock="Modelled on T805s from counted cycles, 40 ns each; both simulators have the same rates.")
 
 
 def findings_of(rows):
-    """Whether the two are near one another; the effect, other than computing itself, that takes most."""
+    """Sentences on the difference of the two simulators, and on the effect, other than computing, that takes most."""
     worst = rows.loc[rows["difference (%)"].abs().idxmax()]
     most, where = abs(worst["difference (%)"]), f"{worst['torus']}, inject {worst['inject']}, {worst['machine']}"
-    near = (f"On all {len(rows)} machines the two times lie within {GOAL} % of one another; the most that they differ "
-            f"is {most:.2g} % ({where})." if most <= GOAL else
-            f"The two times are not within {GOAL} % of one another on all {len(rows)} machines: they differ by "
-            f"{most:.2f} % on {where}.")
+    near = (f"On all {len(rows)} machines the two times differ by less than {GOAL} %, at most by {most:.2g} % ({where})."
+            if most <= GOAL else
+            f"The two times differ by up to {most:.2f} % ({where}), more than {GOAL} %, on {len(rows)} machines.")
     more = rows[rows["machine"].str.startswith("+")]
     ours, theirs = more["raya, the effect (ms)"], more["SimGrid, the effect (ms)"]
     i = ours.idxmax()
-    return [near, f"Of the effects next to computing the largest is that {more['machine'][i][2:]} ({more['torus'][i]}, "
-            f"inject {more['inject'][i]}): it adds {ours[i]:.2f} ms by raya and {theirs[i]:.2f} ms by SimGrid. In no "
-            f"effect are the two more than {(ours - theirs).abs().max():.3f} ms apart."]
+    return [near, f"The largest effect after computing is \"{more['machine'][i][2:]}\" ({more['torus'][i]}, inject "
+            f"{more['inject'][i]}): it adds {ours[i]:.2f} ms by raya and {theirs[i]:.2f} ms by SimGrid. The two differ by at most "
+            f"{(ours - theirs).abs().max():.3f} ms in any effect."]

@@ -4,12 +4,12 @@ How many times faster do P PEs compute the image than one?
 
 - {scene} at {size} x {size} on 1 to {pes} PEs of the SPA, every number; first pass.
 - Speed-up = sum of all loads / largest load, from one cost image: modelled computing alone, without transfers.
-- Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}, as in Fig. 8.
-- A speed-up of one picture (229, 3.86) counts as reproduced as in Fig. 8; "60 or more" where the mean's interval does.
-- Kohata & Ito do not say which offset they took for fewer than 256 PEs, nor which PE has which columns then: p = 16
-  throughout is drawn, and p = round(sqrt(P)), with both folds.
-- CAP's and the Pixel Machine's mapping: A x A PEs, each has every A-th pixel of every A-th line. Kohata & Ito quote
-  those machines' own measurements; here their mapping meets the same scene as the others.
+- The picture is accompanied by {views} views of the same scene, seeds {view_seeds}, as in Fig. 8.
+- A speed-up of one picture (229, 3.86) is reproduced under the rule of Fig. 8; "60 or more" if the interval of the mean is.
+- Kohata & Ito do not say which offset they used for fewer than 256 PEs, nor which PE then has which columns. The plots show p = 16 and
+  p = round(sqrt(P)), with both folds.
+- The mapping of CAP and the Pixel Machine: A x A PEs, each with every A-th pixel of every A-th line. Kohata & Ito quote measurements of
+  those machines; here their mapping has the same scene as the others.
 """
 import numpy as np
 import pandas as pd
@@ -29,7 +29,7 @@ def speedups(image, pes, fold="cyclic"):
 
 
 def all_of(image):
-    """The speed-ups on 1 .. W PEs, and on A x A PEs by A."""
+    """(table of the speed-ups on 1 .. W PEs, {A: speed-up on A x A PEs})"""
     pes = np.arange(1, image.shape[1] + 1)
     rows = pd.DataFrame({"P": pes})
     for fold in ("cyclic", "block"):
@@ -61,8 +61,8 @@ def fig9(lab, scenes):
                 with_paper(in_paper, comparisons_of(rows, grids, means.iloc[-1], ratios, fewer, more)),
                 claims_of(views) if in_paper else [], tables_of(rows, grids, means, sides),
                 plots_of(rows, grids, means, in_paper),
-                ["Kohata & Ito drew one picture. Here stand every number of PEs, two ways to fold, and many views with "
-                 "intervals."], beside=papers.SPA)
+                ["Kohata & Ito plot one picture. This study has every number of PEs, two folds, and many views with intervals."],
+                beside=papers.SPA)
 
 
 def rows_of_size(image):
@@ -92,23 +92,23 @@ def comparisons_of(rows, grids, mean, ratios, fewer, more):
     last, half, pes = rows.iloc[-1], more // 2, f"speed-up on {len(rows)} PEs, "
     ratio, few = estimate(ratios), estimate(fewer)
     return [Comparison(pes + "p = 16", "", papers.SPEEDUP_16, last["p = 16, cyclic fold"],
-                       "the paper's stands in its abstracts"),
+                       "the paper's is printed in its abstracts"),
             Comparison(pes + "p = 16, mean of views", "", papers.SPEEDUP_16, mean["p = 16"], "", False,
                        mean["p = 16, +-"]),
             Comparison(pes + "p = 0", "", papers.SPEEDUP_0, last["p = 0, cyclic fold"],
-                       "centre at 256 x 256 is calibrated on its u(0)", derived=True),
+                       "our scene, centre at 256 x 256, is calibrated on the paper's u(0)", derived=True),
             Comparison(pes + "p = 0, mean of views", "", papers.SPEEDUP_0, mean["p = 0"], derived=True,
                        half_width=mean["p = 0, +-"]),
             Comparison(f"CAP's mapping, {more} x {more} PEs over {half} x {half}", "", papers.CAP_RATIO,
-                       grids[more] / grids[half], "the paper's from the makers of CAP, who had another scene"),
+                       grids[more] / grids[half], "the paper's is from the makers of CAP, with another scene"),
             Comparison("... mean of views", "", papers.CAP_RATIO, ratio.mean, half_width=ratio.half),
             Comparison(f"Pixel Machine's mapping, {half} x {half} PEs", "", papers.PIXEL_MACHINE_SPEEDUP,
-                       grids[half], "the paper: 60 or more, from the makers, who had another scene"),
+                       grids[half], "the paper's: 60 or more, from the makers, with another scene"),
             Comparison("... mean of views ", "", papers.PIXEL_MACHINE_SPEEDUP, few.mean, half_width=few.half)]
 
 
 def claims_of(views):
-    """For the paper's own case alone: 256 PEs, views of its scene."""
+    """Claims on the paper's own case: 256 PEs, views of its scene."""
     def of(column):
         return np.array([rows[f"{column}, cyclic fold"] for rows, _ in views])  # [view, P - 1]
 
@@ -117,7 +117,7 @@ def claims_of(views):
     ratios, grids = [g[16] / g[8] for _, g in views], [g[8] for _, g in views]
 
     def why(values, what):
-        return (f"{what} {estimate(values).text(2)} in the mean of {len(values)} views; another picture's lies in "
+        return (f"{what} {estimate(values).text(2)} in the mean of {len(values)} views; the figure of another picture lies in "
                 f"{prediction_text(values, 2)} with 95 %.")
 
     last_16, last_0, few = of("p = 16")[:, -1], of("p = 0")[:, -1], estimate(grids)
@@ -128,12 +128,12 @@ def claims_of(views):
                   verdict_among(papers.SPEEDUP_0, last_0), why(last_0, "Ours is")),
             Claim(papers.SPA, "Fig. 9", "With p = 16 the speed-up is above that with p = 0.",
                   verdict(all(g.low > 0 for g in gains), any(g.high <= 0 for g in gains)),
-                  f"In the same view p = 16 gains over p = 0, all intervals together with 95 %: {gain_texts}. On 16 "
-                  "PEs and fewer, powers of two, both are the same mapping."),
-            Claim(papers.SPA, "beside Fig. 9", "256 PEs of CAP are 3.86 times faster than 64, by its makers.",
+                  f"Gain in speed-up of p = 16 over p = 0 in the same view, all intervals together with 95 %: {gain_texts}. On powers "
+                  "of two up to 16 PEs both are the same mapping."),
+            Claim(papers.SPA, "text next to Fig. 9", "256 PEs of CAP are 3.86 times faster than 64, according to its makers.",
                   verdict_among(papers.CAP_RATIO, ratios), why(ratios, "CAP's mapping on our scene gives")),
-            Claim(papers.SPA, "beside Fig. 9",
-                  "64 nodes of the Pixel Machine are 60 times faster than one or more, by its makers.",
+            Claim(papers.SPA, "text next to Fig. 9",
+                  "64 nodes of the Pixel Machine are 60 or more times faster than one, according to its makers.",
                   verdict(few.low >= papers.PIXEL_MACHINE_SPEEDUP, few.high < papers.PIXEL_MACHINE_SPEEDUP),
                   why(grids, "The Pixel Machine's mapping on our scene gives"))]
 
@@ -151,13 +151,13 @@ def findings_of(rows, grids, sides, in_paper):
     sized = (f"With a PE for each column and p = round(sqrt(P)) images of "
              f"{', '.join(map(str, sides['side (pixels)'].unique()))} pixels a side gain "
              + ", ".join(f"{s:.0f} times on {p} PEs" for s, p in zip(columns["p = round(sqrt(P))"], columns["P"])) +
-             ": the array of Kohata & Ito's conclusions can grow to one PE for each column. The lowest efficiency of "
-             f"the powers of two up to there is {worst['its efficiency']:.2f}, on {worst['P']:.0f} PEs at "
+             ": the array can grow to one PE for each column, as Kohata & Ito conclude. The lowest efficiency of "
+             f"powers of two up to there is {worst['its efficiency']:.2f}, on {worst['P']:.0f} PEs at "
              f"{worst['side (pixels)']:.0f} x {worst['side (pixels)']:.0f}.")
     best = p16[half:w - 1].max()
     gain = 100 * (best / p16[half - 1] - 1)
     a = max(a for a in grids if a * a < w)
-    stairs = (f"Whole columns make stairs: with {half + 1} to {w - 1} PEs some PE still has two of the {w}, and p = 16 "
+    stairs = (f"Whole columns cause steps: with {half + 1} to {w - 1} PEs some PE still has two of the {w} columns, and p = 16 "
               f"gains {f'at most {gain:.1f} %' if gain > 0.5 else 'nothing'} over {half} PEs; on {a * a} PEs it gives "
               f"{p16[a * a - 1]:.1f} times, {a} x {a} PEs in two dimensions {grids[a]:.1f} times.")
     mean = {c: (rows[c] / rows["P"]).mean() for c in rows.columns[1:]}

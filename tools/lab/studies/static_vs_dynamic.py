@@ -1,19 +1,17 @@
 """Static against dynamic distribution
 
-Are static strategies inadequate from 128 PEs on, and static plus dynamic ones nearly optimal, as Heirich and Arvo
-(1998) found?
+Are static strategies inadequate from 128 PEs on, and static plus dynamic ones nearly optimal, as Heirich and Arvo (1998) found?
 
-- Images of {size} x {size} on 128 and more PEs of the SPA; efficiency = the pixels' modelled cycles / (P x the time at
-  which the last PE has finished).
-- Static: column split, cyclic mapping with p = 16 and p = sqrt(P), blocks of contiguous scan lines, tiles of 8 x 8
-  pixels in turn, the grid nearest to a square (every A-th line, every B-th pixel), random.
-- dynamic:C: a PE that is free takes the next C pixels. hybrid:C: each PE first does a share of its own pixels (of the
-  grid, row by row from the top) and then takes C at a time of what is left. Both are simulated exactly on the cost
-  image.
-- A request costs its PE {request_cycles} budget cycles: one word to the root and two back at 6 Mword/s, each way with
-  a rotation's synchronisation, 0.18 ms by the clock: that of all PEs, the most that the request of one can take; "free
-  requests" shows the least. The SPA never did this. Requests do not wait for each other.
-- Nothing can end sooner than the larger of the mean load and the largest pixel: the lower bound.
+- Images of {size} x {size} on 128 and more PEs of the SPA; efficiency = the pixels' modelled cycles / (P x the time at which the last PE
+  has finished).
+- Static: column split, cyclic mapping with p = 16 and p = sqrt(P), blocks of contiguous scan lines, tiles of 8 x 8 pixels in turn, the
+  grid nearest to a square (every A-th line, every B-th pixel), random.
+- dynamic:C: an idle PE takes the next C pixels. hybrid:C: each PE first processes a share of its own pixels (those of the grid, row by
+  row from the top), then takes C pixels at a time of the remainder. Both are simulated exactly on the cost image.
+- A request costs its PE {request_cycles} budget cycles: one word to the root and two words back at 6 Mword/s, each with the 0.18 ms that
+  a rotation takes to synchronise all PEs. This is the maximum for the request of one PE; "free requests" shows the minimum. The SPA had
+  no dynamic distribution. Requests do not wait for each other.
+- Lower bound of the makespan: the larger of the mean load and the largest pixel.
 """
 import math
 
@@ -31,7 +29,7 @@ ROOT = "cyclic, p = sqrt(P)"
 
 
 def request_cycles(factor):
-    """Budget cycles from a request until its answer is there: a word to the root, two back."""
+    """Budget cycles from a request to its answer: one word to the root, two words back."""
     ms = 2 * SPA["rotation_sync_ms"] + 1e3 * 3 / SPA["link_words_per_s"]
     return math.floor(1e6 * ms / (factor * SPA["cycle_ns"]) + 0.5)
 
@@ -46,7 +44,7 @@ def static_mappings(size, pes):
 
 
 def plans(overhead):
-    """Name, kind, whether it pays for requests, plan; what a hybrid begins with is the grid."""
+    """(name, kind, whether requests cost time, plan of raya.schedule()) of each strategy; a hybrid starts with the grid mapping."""
     for chunk, share in ((1, 0), (16, 0), (64, 0), (16, 0.5), (16, 0.9), (1, 0.9)):
         kind = "hybrid" if share else "dynamic"
         name = f"{kind}:{chunk}" + (f", share {share}" if share else "")
@@ -78,14 +76,13 @@ def outcomes_of(label, image, sizes, overhead):
 
 
 def best_of(rows, kind):
-    """Of each P the row of the best strategy of a kind; of those that ask, of those that pay for requests."""
+    """For each P, the row of the best strategy of a kind; strategies with free requests are excluded."""
     some = rows[(rows["kind"] == kind) & (rows["pays"] | (kind == "static"))]
     return some.loc[some.groupby("P", sort=True)["makespan (cycles)"].idxmin()].reset_index(drop=True)
 
 
 def counts_of(scenes):
-    """Of the cases, scene and P: in how many no static one is near the bound, a hybrid is, a hybrid beats all
-    static."""
+    """Numbers of cases (scene and P) in which no static strategy is near the bound, a hybrid is, and a hybrid beats all static ones."""
     fixed, hybrid = (pd.concat([best_of(rows, kind) for rows in scenes]) for kind in ("static", "hybrid"))
     return {"cases": len(fixed), "no static one near the bound": (fixed["makespan / lower bound"] > NEAR).sum(),
             "hybrid near the bound": (hybrid["makespan / lower bound"] <= NEAR).sum(),
@@ -108,7 +105,7 @@ def static_vs_dynamic(lab, scenes):
     tables, plots = [], []
     for number, rows in enumerate(all_of, 1):
         percent = 100 * rows.pivot_table("efficiency", "strategy", "P", sort=False)
-        percent.loc["most that is possible"] = 100 * rows.groupby("P")["bound"].first()
+        percent.loc["upper bound"] = 100 * rows.groupby("P")["bound"].first()
         tables.append(Table(f"{NAME}-{number}", f"Efficiency (%) by P, {rows['scene'][0]}",
                             percent.rename(columns=str).reset_index()))
         plots += plots_of(rows, percent, number)
@@ -123,11 +120,11 @@ def static_vs_dynamic(lab, scenes):
                 tables=tables + [Table(f"{NAME}-limits", "The first P at which the efficiency is under 90 % and under "
                                        "50 %", limits),
                                  Table(NAME, "Every strategy, scene and number of PEs", shown, on_page=False),
-                                 Table(f"{NAME}-factors", "The verdicts by the clock's factor, cases of scene and P",
+                                 Table(f"{NAME}-factors", "Numbers of cases (scene and P) by the clock's factor",
                                        factors)],
-                plots=plots, news=["Heirich & Arvo measured on other machines and scenes. Here static, dynamic and "
-                                   "hybrid distribution meet the same cost images, next to the bound that nothing "
-                                   "passes."], clock=CLOCK, beside=papers.DYNAMIC)
+                plots=plots, news=["Heirich & Arvo measured on other machines and scenes. This study compares static, dynamic and "
+                                   "hybrid distribution on the same cost images, and with the upper bound of any distribution."],
+                clock=CLOCK, beside=papers.DYNAMIC)
 
 
 def first_below(rows, limit):
@@ -142,7 +139,7 @@ def from_text(pes):
 
 def claims_of(factors):
     def counts(column):
-        return ", ".join(f"{row[column]:.0f} of {row['cases']:.0f} by the factor {row['factor']:.2f}"
+        return ", ".join(f"{row[column]:.0f} of {row['cases']:.0f} cases at factor {row['factor']:.2f}"
                          for _, row in factors.iterrows())
 
     def judged(column):
@@ -150,9 +147,9 @@ def claims_of(factors):
 
     fixed, hybrid = "no static one near the bound", "hybrid near the bound"
     return [Claim(papers.DYNAMIC, "conclusions", "Static strategies are inadequate on 128 computers or more.",
-                  judged(fixed), f"No static one ends within 10 % of the lower bound in {counts(fixed)}."),
+                  judged(fixed), f"No static strategy ends within 10 % of the lower bound in {counts(fixed)}."),
             Claim(papers.DYNAMIC, "conclusions", "Static plus dynamic distribution is nearly optimal.", judged(hybrid),
-                  f"A hybrid, requests paid for, ends within 10 % of it in {counts(hybrid)}.")]
+                  f"A hybrid, including the cost of requests, ends within 10 % of the lower bound in {counts(hybrid)}.")]
 
 
 def findings_of(scenes, counts, overhead, size):
@@ -160,15 +157,15 @@ def findings_of(scenes, counts, overhead, size):
     how = "holds" if inadequate == cases else "holds in part" if inadequate else "does not hold"
     findings = [f"That static strategies are inadequate from {scenes[0]['P'].min()} PEs on {how} here: in {inadequate} "
                 f"of {cases} cases (scene and P) no static one ends within 10 % of the lower bound. Static plus "
-                f"dynamic, requests paid for, does in {counts['hybrid near the bound']} of them and beats every static "
+                f"dynamic, including the cost of requests, does in {counts['hybrid near the bound']} of them and beats every static "
                 f"strategy in {counts['hybrid beats all static ones']}."]
     for rows in scenes:
         findings += [static_finding(rows), hybrid_finding(rows)]
     collapse = collapse_finding(scenes[0], size)
     queues = "; ".join(f"{rows['scene'][0]} ({queue_of(rows, overhead)})" for rows in scenes)
     return findings + ([collapse] if collapse else []) + [
-        f"A request takes {overhead} budget cycles ({FACTOR * spa_ms(overhead):.2f} ms). If the root answered them one "
-        f"at a time, as one bus would make it, they alone would take longer than the run that is shown: {queues}."]
+        f"A request takes {overhead} budget cycles ({FACTOR * spa_ms(overhead):.2f} ms). If the root answered one request at a time, "
+        f"as over a single bus, the requests alone would take longer than the modelled makespan: {queues}."]
 
 
 def static_finding(rows):
@@ -181,8 +178,8 @@ def static_finding(rows):
 
     return (f"{rows['scene'][0]}, static: at P = {first['P']} {first['strategy']} is best, "
             f"{100 * first['efficiency']:.0f} % efficient, at P = {last['P']} {last['strategy']}, "
-            f"{100 * last['efficiency']:.0f} % (of {100 * last['bound']:.0f} % possible). The best of them falls under "
-            f"90 % {from_text(first_below(best, 0.9))} and under 50 % {from_text(first_below(best, 0.5))}; the column "
+            f"{100 * last['efficiency']:.0f} % (upper bound {100 * last['bound']:.0f} %). The best of them falls below "
+            f"90 % {from_text(first_below(best, 0.9))} and below 50 % {from_text(first_below(best, 0.5))}; the column "
             f"split {limits('column split')}, cyclic with p = sqrt(P) {limits(ROOT)}.")
 
 
@@ -193,8 +190,8 @@ def hybrid_finding(rows):
     up_to = (f"at P = {sizes[0]}" if near == 0 else "for every P" if near == len(sizes) else
              f"up to P = {sizes[near - 1]}")
     return (f"{rows['scene'][0]}, static plus dynamic: {'' if near else 'not '}within 10 % of the lower bound {up_to}; "
-            f"at worst the best of them ends {max(1, paid.max()):.2f} times the lower bound with requests paid for, "
-            f"{max(1, free.max()):.2f} times with free ones.")
+            f"the best of them takes at most {max(1, paid.max()):.2f} times the lower bound, {max(1, free.max()):.2f} times with "
+            "free requests.")
 
 
 def queue_of(rows, overhead):
@@ -206,8 +203,7 @@ def queue_of(rows, overhead):
 
 
 def collapse_finding(rows, size):
-    """Where the cyclic mapping falls back to single columns: p and the turns in which P / W PEs share a slot's rows
-    meet."""
+    """Cyclic mappings in which every PE's pixels lie in one column, as the offset repeats with the period of the shared rows."""
     texts = []
     for name in ("cyclic, p = 16", ROOT):
         for pes in sorted(rows["P"].unique()):
@@ -217,8 +213,8 @@ def collapse_finding(rows, size):
                 texts.append(f"{name} at P = {pes}")
     if not texts:
         return ""
-    return (f"No better than the column split can be: {'; '.join(texts)}. Each PE's pixels lie in one column there, as "
-            "the offset comes round within the rows after which a slot's PEs do.")
+    return (f"No better than a column split: {'; '.join(texts)}. Each PE's pixels lie in one column there, as the offset returns to "
+            "the same column after as many rows as there are PEs in a slot.")
 
 
 def plots_of(rows, percent, number):
@@ -226,5 +222,5 @@ def plots_of(rows, percent, number):
     for label, what, names in (("static", "static mappings", kinds.index[kinds["kind"] == "static"]),
                                ("dynamic", "dynamic and hybrid distribution", kinds.index[kinds["pays"]])):
         yield Plot(f"{NAME}-{number}-{label}", f"{rows['scene'][0]}: {what}", "PEs", "efficiency (%)",
-                   [Series(name, percent.columns, percent.loc[name]) for name in [*names, "most that is possible"]],
+                   [Series(name, percent.columns, percent.loc[name]) for name in [*names, "upper bound"]],
                    "x")

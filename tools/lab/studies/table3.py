@@ -1,13 +1,13 @@
 """Table 3: ray tracing with the 3 x 3 filter
 
-What does the filter cost, when a larger offset balances better and makes neighbours distant?
+What does the filter cost, as a larger offset balances better but puts neighbours farther apart?
 
-- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; rendered and filtered over the ring for
-  three offsets, rotations and their words counted.
-- Filtering is its arithmetic, the rotations, each its words at the links' rate and a synchronisation (0.3125 ms
-  together, from Tables 3 and 4), and the exchange's set-up of 1.375 ms, which Table 4 leaves [D]. All three are made
-  from the printed times of p = 0 and 16, so filtering is no test of the clock there; p = 8 is a prediction.
-- Ours is not the scene of Kohata & Ito (see Table 2): ratios and the filter's times can be compared.
+- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; rendered and filtered over the ring for three offsets.
+  Rotations and their words are counted.
+- The time of filtering has three parts: its arithmetic; the rotations, each with its words at the links' rate and a synchronisation
+  (0.3125 ms together, from Tables 3 and 4); and the exchange's set-up of 1.375 ms, which follows from Table 4 [D]. All three are derived
+  from the printed times of p = 0 and 16, so filtering at these offsets does not test the clock; p = 8 is a prediction.
+- Our scene is not that of Kohata & Ito (see Table 2): only ratios and the filter's times can be compared.
 - The plots' other offsets follow from the cost image and the shortest routes, which the three renders confirm.
 """
 import pandas as pd
@@ -17,7 +17,7 @@ from raya.lab.spa import CLOCK, FACTOR, FACTORS, smoothing_runs
 
 
 def at_factor(runs, factor):
-    """What one factor of the clock makes of the conclusions."""
+    """The figures of the conclusions at one factor of the clock."""
     rows, near = runs.rows(factor), runs.times(factor)[:17]
     first, last = rows.iloc[0], rows.iloc[-1]
     saved, lost = first["trace"] - last["trace"], last["filtering"] - first["filtering"]
@@ -45,12 +45,12 @@ def table3(lab, scenes):
                  Table("table3-factors", "The conclusions by the clock's factor", factors),
                  Table("table3-offsets", "Every offset", offsets, on_page=False)],
                 [plot_of(runs, False, in_paper), plot_of(runs, True, in_paper)],
-                ["Kohata & Ito have two offsets. Here stands every offset, and what the clock's uncertainty means for "
-                 "each conclusion."], clock=CLOCK, beside=papers.SPA)
+                ["Kohata & Ito have two offsets. This study has every offset, and the effect of the clock's uncertainty on each "
+                 "conclusion."], clock=CLOCK, beside=papers.SPA)
 
 
 def comparisons_of(rows):
-    made, predicted = "the clock is made from it", "predicted from Table 3"
+    made, predicted = "the clock is derived from it", "predicted from Table 3"
     figures = [("ray tracing", "trace", (papers.TRACE_0_MS, None, papers.TRACE_16_MS), ("", "", "")),
                ("filtering", "filtering", (papers.FILTER_0_MS, papers.FILTER_8_MS, papers.FILTER_16_MS),
                 (made, predicted, made)),
@@ -60,11 +60,11 @@ def comparisons_of(rows):
     first, last = rows.iloc[0], rows.iloc[-1]
     return all_of + [
         Comparison("filter's arithmetic", "ms", papers.FILTER_ARITHMETIC_MS, first["filter"],
-                   "the clock's factor is taken from it", derived=True),
+                   "the clock's factor is derived from it", derived=True),
         Comparison("exchange's set-up", "ms", None, papers.EXCHANGE_SETUP_MS,
-                   "of Table 4, 2 - 2 x 0.3125 ms; within the filtering"),
+                   "from Table 4, 2 - 2 x 0.3125 ms; included in the filtering"),
         Comparison("total, p = 0 over p = 16", "", papers.FILTERED_0_MS / papers.FILTERED_16_MS,
-                   first["filtered"] / last["filtered"], "needs the clock little", derived=True)]
+                   first["filtered"] / last["filtered"], "depends little on the clock", derived=True)]
 
 
 def claims_of(rows, near, factors):
@@ -74,15 +74,15 @@ def claims_of(rows, near, factors):
     counted = ", ".join(f"{r} for p = {p}" for r, p in zip(rows["rotations"], rows["p"]))
     return [Claim(papers.SPA, "Table 3", "Filter included, p = 16 is more than twice as fast in total as p = 0.",
                   verdict(gains.min() > 2, gains.max() <= 2),
-                  f"Printed are 662 and 302 ms, {papers.FILTERED_0_MS / papers.FILTERED_16_MS:.2f} times. Ours is "
+                  f"The paper prints 662 and 302 ms, {papers.FILTERED_0_MS / papers.FILTERED_16_MS:.2f} times. Ours is "
                   f"{gains.min():.2f} to {gains.max():.2f} times for factors of 1 to 8."),
             Claim(papers.SPA, "section on anti-aliasing",
                   "The filter takes p + 1 rotations to the left and p + 1 to the right.", verdict(same, not same),
                   f"Rotations counted: {counted}."),
             Claim(papers.SPA, "section on the cyclic mapping", "For communication with neighbours a small p is better.",
                   verdict(rises, not rises),
-                  f"Over the offsets 0..{near['offset'].iloc[-1]} an exchange takes {near['ring_ms'].iloc[0]:.2f} ms "
-                  f"at first and {near['ring_ms'].iloc[-1]:.2f} ms at last, never less for a larger offset.")]
+                  f"Over the offsets 0..{near['offset'].iloc[-1]} the time of an exchange goes from {near['ring_ms'].iloc[0]:.2f} to "
+                  f"{near['ring_ms'].iloc[-1]:.2f} ms and {'never falls' if rises else 'falls at some offset'}.")]
 
 
 def findings_of(runs, rows, near, factors):
@@ -93,11 +93,11 @@ def findings_of(runs, rows, near, factors):
     return [f"p = {last} instead of p = {first} costs {lost:.1f} ms more in rotations and "
             f"{'saves' if saved >= 0 else 'loses'} {abs(saved):.0f} ms of ray tracing: the offset "
             f"{'pays' if saved > lost else 'does not pay'} with the filter; it pays {how} of 1 to 8.",
-            f"Of the offsets 0..{len(near) - 1} p = {best['offset']:.0f} takes least in all: {best['total_ms']:.1f} "
-            f"ms; by ray tracing alone it would be p = {near['trace_ms'].idxmin()}. For factors of 1 to 8 the best are "
+            f"Of the offsets 0..{len(near) - 1} p = {best['offset']:.0f} has the shortest total, {best['total_ms']:.1f} ms; by ray "
+            f"tracing alone the best is p = {near['trace_ms'].idxmin()}. For factors of 1 to 8 the best are "
             f"p = {', '.join(map(str, factors['best of 0..16'].unique()))}.",
-            "The filter's arithmetic is 1.08 ms by the budget and 7 ms in Tables 3 and 4 [D]: how its program was "
-            "written is not printed, so the factor between them holds what the budget does not see, too."]
+            "The filter's arithmetic is 1.08 ms by the budget and 7 ms in Tables 3 and 4 [D]. The paper does not print the filter's "
+            "program, so the factor between the two also contains costs that are not in the budget."]
 
 
 def plot_of(runs, with_tracing, in_paper):

@@ -1,13 +1,13 @@
 """Table 4: supersampling
 
-What does supersampling cost, and what do the computation figures of Kohata & Ito hold?
+What does supersampling cost, and what do the computation times of Kohata & Ito include?
 
-- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; rendered and supersampled for three
-  offsets: threshold 0.125, four points half a pixel along the axes.
-- Computation is the busiest PE's comparisons and new rays; the second reading adds the busiest PE of the first pass,
-  as PEs wait for each other between the two.
-- Communication is made as in Table 3, two figures from four printed ones: it is no test of the model.
-- Ours is not the scene of Kohata & Ito (see Table 2): ratios can be compared, computation's milliseconds cannot.
+- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; rendered and supersampled for three offsets: threshold 0.125,
+  four points half a pixel along the axes.
+- First reading of the paper: computation is the busiest PE's comparisons and new rays. Second reading: the busiest PE of the first pass
+  is added, as PEs wait for each other between the passes.
+- The model of communication is derived as in Table 3, two figures from four printed ones, so these times do not test it.
+- Our scene is not that of Kohata & Ito (see Table 2): only ratios of computation can be compared, not its milliseconds.
 """
 import numpy as np
 from raya.lab import Claim, Comparison, Page, Plot, Series, Table, papers, study, verdict, with_paper
@@ -37,8 +37,8 @@ def table4(lab, scenes):
                 with_paper(in_paper, comparisons_of(rows, runs.recomputed)), claims_of(runs, rows, filtered),
                 [Table("table4", "Supersampling", shown),
                  Table("table4-offsets", "Every offset", offsets, on_page=False)], [plot_of(runs, in_paper)],
-                ["Kohata & Ito do not say what their computation holds. Both readings stand here, and what speaks for "
-                 "one without any clock."], clock=CLOCK, beside=papers.SPA)
+                ["Kohata & Ito do not say what their computation includes. This study has both readings, and the evidence for one of "
+                 "them that needs no clock."], clock=CLOCK, beside=papers.SPA)
 
 
 def comparisons_of(rows, share):
@@ -47,7 +47,7 @@ def comparisons_of(rows, share):
                                        (rows.iloc[-1], papers.EXCHANGE_16_MS, papers.SUPERSAMPLE_16_MS)):
         all_of += [Comparison(f"p = {row['p']:.0f}: {what}", "ms", paper, row[column], remark)
                    for what, paper, column, remark in (
-                       ("communication", exchange, "communication", "the clock is made from it"),
+                       ("communication", exchange, "communication", "the clock is derived from it"),
                        ("phase alone", computation, "alone", "computation, comparisons included"),
                        ("with first pass", computation, "with_first", "computation of both passes"))]
     first, middle, last = (rows.iloc[i] for i in range(3))
@@ -74,12 +74,12 @@ def claims_of(runs, rows, filtered):
                   f"Rotations counted: {counted}; {how} the filter's on the same scene."),
             Claim(papers.SPA, "Table 4", "p = 16 shortens the computation of supersampling.",
                   verdict(alone > 1 and both > 1, alone <= 1 and both <= 1),
-                  f"Printed are 739 and 407 ms, {PRINTED_RATIO:.2f} times. Ours gain {alone:.2f} times in the phase "
+                  f"The paper prints 739 and 407 ms, {PRINTED_RATIO:.2f} times. Our gain is {alone:.2f} times for the phase "
                   f"alone and {both:.2f} times with the first pass.")]
 
 
 def mean_factor(*times):
-    """How far two times are from the printed ones: the factor, up or down, in the geometric mean of both."""
+    """Geometric mean of the factors, up or down, by which two times differ from the printed ones."""
     return np.exp(np.abs(np.log(np.divide(times, (papers.SUPERSAMPLE_0_MS, papers.SUPERSAMPLE_16_MS)))).mean())
 
 
@@ -87,14 +87,13 @@ def findings_of_readings(first, last):
     alone = mean_factor(first["alone"], last["alone"])
     both = mean_factor(first["with_first"], last["with_first"])
     ratio = first["supersample"] / last["supersample"]
-    tail = ("Ours is {:.2f} times as long at p = 0, on any clock, which speaks for the phase alone." if ratio > 1 else
-            "So does ours, {:.2f} times as long at p = 0, on any clock, which speaks against the phase alone.")
+    tail = ("Our supersampling takes {:.2f} times as long at p = 0, on any clock, which is evidence for the phase alone." if ratio > 1
+            else "Ours is also longer, {:.2f} times as long at p = 0, on any clock, which is evidence against the phase alone.")
     return [f"Table 4 prints {papers.SUPERSAMPLE_0_MS} and {papers.SUPERSAMPLE_16_MS} ms of computation at p = 0 and "
             f"16. Ours are {first['alone']:.0f} and {last['alone']:.0f} ms alone, {first['with_first']:.0f} and "
-            f"{last['with_first']:.0f} with the first pass, where {'the first' if alone < both else 'the second'} is "
-            f"nearer: they are {alone:.2f} and {both:.2f} times off, up or down, in the geometric mean of both "
-            "offsets.",
-            f"With the first pass in them, Tables 3 and 4 would leave {papers.SUPERSAMPLE_0_MS - papers.TRACE_0_MS} ms "
+            f"{last['with_first']:.0f} ms with the first pass. {'The first' if alone < both else 'The second'} reading is nearer: "
+            f"the two differ from the paper by factors of {alone:.2f} and {both:.2f}, up or down, in the geometric mean of both offsets.",
+            f"If they included the first pass, Tables 3 and 4 would leave {papers.SUPERSAMPLE_0_MS - papers.TRACE_0_MS} ms "
             f"for supersampling at p = 0 and {papers.SUPERSAMPLE_16_MS - papers.TRACE_16_MS} ms at p = 16 [D]: the "
             f"offset that balances the first pass would make supersampling longer. {tail.format(ratio)}"]
 

@@ -1,15 +1,15 @@
 """A turn round the scene
 
-Does the balance of one picture hold while the camera turns, and does the offset that was best for its first frame?
+Does the balance of one picture hold while the camera turns, and does the best offset of the first frame stay good?
 
-- {frames} frames, {step_degrees} degrees apart, about the axis through the point that the scene's view looks at, as
-  `raya render --frames 1:{frames} --turn 360` makes them; a PE for each column, first pass.
-- u = (max load - mean load) / mean load of every offset, from one cost image of each frame. No clock is needed.
-- Offsets are chosen twice, by frame 1 alone and by the mean of the odd frames, and judged in the even frames, next to
-  p = sqrt(P) and each frame's own best offset, which no choice ahead can reach.
-- Frames of one turn resemble each other, so intervals are over turns that start from random views of the scene: the
-  camera at the same distance, between {lowest_view_degrees} and {highest_view_degrees} degrees above what it looks at.
-- That p = n balances better than p = 0 is reproduced where it does so in every frame of every turn.
+- {frames} frames, {step_degrees} degrees apart, about the axis through the point that the camera looks at, as in `raya render --frames
+  1:{frames} --turn 360`; a PE for each column, first pass.
+- u = (max load - mean load) / mean load of every offset, from one cost image of each frame. It needs no clock.
+- An offset is chosen in two ways, by frame 1 alone and by the mean of the odd frames. Both are judged in the even frames and compared
+  with p = sqrt(P), and with each frame's own best offset, a bound that no choice in advance can beat.
+- Frames of one turn resemble each other, so intervals are over turns that start from random views of the scene: the camera at the same
+  distance, between {lowest_view_degrees} and {highest_view_degrees} degrees above the point that it looks at.
+- "p = n balances better than p = 0" is reproduced if it holds in every frame of every turn.
 """
 import numpy as np
 import pandas as pd
@@ -28,7 +28,7 @@ def turn_of(lab, scene, size):
 
 
 def choices_of(u, root):
-    """Offsets chosen by frame 1 and by the odd frames, and the mean u of the even frames by each of them."""
+    """Offsets chosen by frame 1 and by the odd frames, and the mean u of the even frames with each of them."""
     odd, even = u[0::2], u[1::2]
     first, half = int(u[0].argmin()), int(odd.mean(0).argmin())
     return {"best p of frame 1": first, "its u": even[:, first].mean(), "best p of odd frames": half,
@@ -58,8 +58,8 @@ def turn(lab, scenes):
         plots.append(plot_of(number, scene.name, own, root))
     return Page({"scenes": settings, "frames": FRAMES, "step_degrees": DEGREES[1], "lowest_view_degrees": 5,
                  "highest_view_degrees": 75}, findings, claims=claims, tables=tables, plots=plots,
-                news=["Kohata & Ito balanced single pictures. Over a turn the imbalance of one mapping moves from "
-                      "frame to frame, and figures show how far an offset that was fitted to the first frame carries."])
+                news=["Kohata & Ito balance single pictures. Over a turn the imbalance of a mapping changes from frame to frame; this "
+                      "study shows how well an offset chosen for the first frame suits the others."])
 
 
 def findings_of(scene, u, rows, root):
@@ -67,10 +67,10 @@ def findings_of(scene, u, rows, root):
     return [f"{scene}: over the {FRAMES} frames of its turn u at p = {root} is {u[:, root].mean():.3f} in the mean and "
             f"{range_text(u[:, root])} in single frames, {u[0, root]:.3f} in the first; at p = 0 it is "
             f"{u[:, 0].mean():.3f}, {range_text(u[:, 0])}.",
-            f"{scene}, {len(rows)} turns from random views, in the frames by which nothing was chosen: u is "
-            f"{estimate(half).text()} by the offset of the odd frames, {estimate(first).text()} by that of frame 1 (a "
-            f"difference of {estimate(first - half).text()}) and {estimate(at_root).text()} at p = {root} "
-            f"({estimate(at_root - half).text()}); with an offset of its own for every frame it would be "
+            f"{scene}, {len(rows)} turns from random views, in the even frames: u is "
+            f"{estimate(half).text()} with the offset of the odd frames, {estimate(first).text()} with that of frame 1 (a "
+            f"difference of {estimate(first - half).text()}) and {estimate(at_root).text()} at p = {root} (a difference of "
+            f"{estimate(at_root - half).text()}); with each frame's own best offset it is "
             f"{estimate(rows[rows.columns[-1]]).text()}."]
 
 
@@ -86,7 +86,7 @@ def tables_of(number, scene, u, rows, root):
     frames = pd.DataFrame({"frame": range(1, FRAMES + 1), "turned by (degrees)": DEGREES,
                            **{f"u, {name}": u[:, p] for name, p in columns_of(u, root).items()},
                            "best p of the frame": u.argmin(1), "its u": u.min(1)})
-    return [Table(stem, f"u of every frame of {scene}, from where the scene looks", frames),
+    return [Table(stem, f"u of every frame of {scene}, from the scene's own view", frames),
             Table(f"{stem}-starts", f"Turns of {scene} from random views: mean u of the even frames", rows)]
 
 

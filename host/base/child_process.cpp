@@ -1,4 +1,4 @@
-#include "host/base/own_process.hpp"
+#include "host/base/child_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -15,7 +15,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 
 namespace raya {
 namespace {
@@ -27,12 +27,12 @@ std::runtime_error system_error(const char* what) {
     return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
-// Between fork and exec: calls nothing that takes locks.
+// Runs between fork and exec: calls no function that takes locks.
 [[noreturn]] void become(char* const* arguments, int pipe, pid_t parent) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // kept by exec
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // inherited through exec
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() == parent) {
-        ::fcntl(pipe, F_SETFD, 0);  // kept open by exec
+        ::fcntl(pipe, F_SETFD, 0);  // stays open through exec
         ::execv(kOwnProgram, arguments);
     }
     ::_exit(kNotStarted);
@@ -46,31 +46,31 @@ std::string ending_text(int status) {
     return fmt::format("signal {}{}", WTERMSIG(status), name != nullptr ? fmt::format(" (SIG{})", name) : "");
 }
 
-OwnProcess::OwnProcess(const char* task, const Json& settings) {
+ChildProcess::ChildProcess(const char* task, const Json& settings) {
     std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw system_error("no pipe to a process of its own");
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw system_error("cannot create a pipe to a child process");
     const Json order = {
-        {"task", task}, {"lines", ends[1]}, {"verbosity", verbosity() - kSilent}, {"settings", settings}};
-    std::array<std::string, 3> words = {"raya", kWorker, order.dump()};
-    const std::array<char*, 4> pointers = {words[0].data(), words[1].data(), words[2].data(), nullptr};
+        {"task", task}, {"lines", ends[1]}, {"verbosity", verbosity() - kErrorsOnly}, {"settings", settings}};
+    std::array<std::string, 3> arguments = {"raya", kWorker, order.dump()};
+    const std::array<char*, 4> argv = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
     const pid_t parent = ::getpid();
     child_ = ::fork();
-    if (child_ == 0) become(pointers.data(), ends[1], parent);
+    if (child_ == 0) become(argv.data(), ends[1], parent);
     ::close(ends[1]);
     pipe_ = ends[0];
     if (child_ > 0) return;
     ::close(pipe_);
-    throw system_error("no process of its own");
+    throw system_error("cannot start a child process");
 }
 
-OwnProcess::~OwnProcess() {
+ChildProcess::~ChildProcess() {
     ::close(pipe_);
     if (ended_) return;
     ::kill(child_, SIGKILL);
     wait();
 }
 
-bool OwnProcess::has_line(std::string& line) {
+bool ChildProcess::has_line(std::string& line) {
     const std::size_t end = text_.find('\n');
     if (end == std::string::npos) return false;
     line = text_.substr(0, end);
@@ -78,16 +78,16 @@ bool OwnProcess::has_line(std::string& line) {
     return true;
 }
 
-bool OwnProcess::has_ended() {
+bool ChildProcess::has_ended() {
     if (!ended_) ended_ = ::waitpid(child_, &status_, WNOHANG) == child_;
     return ended_;
 }
 
-OwnProcess::Read OwnProcess::read(std::string& line, std::chrono::milliseconds wait) {
+ChildProcess::Read ChildProcess::read(std::string& line, std::chrono::milliseconds wait) {
     while (!has_line(line)) {
         pollfd in{pipe_, POLLIN, 0};
         const int ready = ::poll(&in, 1, static_cast<int>(wait.count()));
-        // A process that the driver has started may hold the pipe open.
+        // A process that the driver started may still hold the pipe open.
         if (ready == 0) return has_ended() ? Read::kEnd : Read::kNothing;
         std::array<char, 4096> block{};
         const ssize_t count = ready > 0 ? ::read(pipe_, block.data(), block.size()) : -1;
@@ -99,7 +99,7 @@ OwnProcess::Read OwnProcess::read(std::string& line, std::chrono::milliseconds w
     return Read::kLine;
 }
 
-int OwnProcess::wait() {
+int ChildProcess::wait() {
     while (!ended_) ended_ = ::waitpid(child_, &status_, 0) == child_ || errno != EINTR;
     return status_;
 }
@@ -107,7 +107,7 @@ int OwnProcess::wait() {
 std::optional<WorkerOrder> worker_order(int argc, const char* const* argv) {
     if (argc != 3 || std::string_view(argv[1]) != kWorker) return {};
     WorkerOrder order = read_json(argv[2], {kWorker}, [](const Json& json) {
-        set_verbosity(kSilent + static_cast<int>(json.at("verbosity").whole(kDetailed - kSilent)));
+        set_verbosity(kErrorsOnly + static_cast<int>(json.at("verbosity").whole(kDetailed - kErrorsOnly)));
         return WorkerOrder{json.at("task").text(), static_cast<int>(json.at("lines").whole(INT_MAX)),
                            json.at("settings")};
     });

@@ -1,4 +1,4 @@
-// Renders that are stopped between two bands, anywhere, and go on from what they kept: the same image and counts.
+// Renders that stop between two bands and resume from a checkpoint: the same image and counts.
 #include <catch2/catch.hpp>
 #include <functional>
 #include <random>
@@ -13,29 +13,29 @@ namespace {
 
 struct Stopped {};
 
-/// Keeps every band's state as bytes, and stops the render after `bands` of them.
-class Keeper {
+/// Saves a checkpoint as bytes after every band, and stops the render after `bands` of them.
+class TestCheckpoint {
   public:
-    explicit Keeper(int bands = 1 << 30, std::string from = "") : left_(bands), kept_(std::move(from)) {
-        keeping_.band_s = 0;  // as few pixels as can be
-        keeping_.due = [] { return true; };
-        keeping_.keep = [this](const RingState& state, const StateSettings& settings) {
-            kept_ = state_bytes(state, settings);
+    explicit TestCheckpoint(int bands = 1 << 30, std::string from = "") : left_(bands), saved_(std::move(from)) {
+        checkpointing_.band_s = 0;  // the shortest bands
+        checkpointing_.due = [] { return true; };
+        checkpointing_.keep = [this](const RingState& state, const StateSettings& settings) {
+            saved_ = state_bytes(state, settings);
             ++count_;
             if (--left_ == 0) throw Stopped();
         };
-        keeping_.resume = [this](const StateSettings& settings, const RingState& like) {
-            return kept_.empty() ? std::optional<RingState>() : read_state(kept_, settings, like);
+        checkpointing_.resume = [this](const StateSettings& settings, const RingState& like) {
+            return saved_.empty() ? std::optional<RingState>() : read_state(saved_, settings, like);
         };
     }
-    const RingKeeping* keeping() const { return &keeping_; }
-    const std::string& kept() const { return kept_; }
+    const RingCheckpointing* checkpointing() const { return &checkpointing_; }
+    const std::string& saved() const { return saved_; }
     int count() const { return count_; }
 
   private:
     int left_, count_ = 0;
-    std::string kept_;
-    RingKeeping keeping_;
+    std::string saved_;
+    RingCheckpointing checkpointing_;
 };
 
 void check_same(const RingResult& a, const RingResult& b) {
@@ -68,7 +68,7 @@ RingSettings settings_for(AntialiasMethod method, std::uint64_t device_pixels) {
     return settings;
 }
 
-TEST_CASE("a render that is stopped anywhere and goes on makes the same image and counts", "[ring][keep]") {
+TEST_CASE("a render that is stopped at any band and resumed gives the same image and counts", "[ring][checkpoint]") {
     const std::uint32_t seed = 20;
     CAPTURE(seed);
     std::mt19937 random(seed);
@@ -82,58 +82,58 @@ TEST_CASE("a render that is stopped anywhere and goes on makes the same image an
         CAPTURE(antialias_name(method), device_pixels);
         const RingSettings settings = settings_for(method, device_pixels);
         const RingResult whole = RingRenderer(session, scene, settings).render();
-        Keeper to_end;
-        const RingResult kept = RingRenderer(session, scene, settings).render({}, to_end.keeping());
-        check_same(kept, whole);
-        CHECK(kept.earlier_s == 0);
+        TestCheckpoint to_end;
+        const RingResult saved = RingRenderer(session, scene, settings).render({}, to_end.checkpointing());
+        check_same(saved, whole);
+        CHECK(saved.earlier_s == 0);
         REQUIRE(to_end.count() > 3);
         for (int stop = 1; stop <= to_end.count(); stop += 1 + static_cast<int>(random() % quick_cases(9, 3))) {
             CAPTURE(stop, to_end.count());
-            Keeper first(stop);
-            CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.keeping()), Stopped);
-            Keeper second(1 + static_cast<int>(random() % 2), first.kept());  // and once more, where bands are left
-            std::string state = first.kept();
+            TestCheckpoint first(stop);
+            CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.checkpointing()), Stopped);
+            TestCheckpoint second(1 + static_cast<int>(random() % 2), first.saved());  // stops again if bands remain
+            std::string state = first.saved();
             try {
-                RingRenderer(session, scene, settings).render({}, second.keeping());
+                RingRenderer(session, scene, settings).render({}, second.checkpointing());
             } catch (const Stopped&) {
-                state = second.kept();
+                state = second.saved();
             }
-            Keeper last(1 << 30, state);
-            const RingResult resumed = RingRenderer(session, scene, settings).render({}, last.keeping());
+            TestCheckpoint last(1 << 30, state);
+            const RingResult resumed = RingRenderer(session, scene, settings).render({}, last.checkpointing());
             check_same(resumed, whole);
             CHECK(resumed.earlier_s > 0);
             CHECK(resumed.render_s > resumed.earlier_s);
-            REQUIRE(last.count() < to_end.count());  // what was done is not done again
+            REQUIRE(last.count() < to_end.count());  // finished bands are not repeated
         }
     }
 }
 
-TEST_CASE("one renderer renders with and without a state, in any order", "[ring][keep]") {
+TEST_CASE("one renderer renders with and without a checkpoint, in any order", "[ring][checkpoint]") {
     Session session(choose_device(""));
     const RingSettings settings = settings_for(AntialiasMethod::kSupersample, 1 << 22);
     RingRenderer renderer(session, project_scene("planes"), settings);
     const RingResult whole = renderer.render();
-    Keeper first(3);
-    CHECK_THROWS_AS(renderer.render({}, first.keeping()), Stopped);
+    TestCheckpoint first(3);
+    CHECK_THROWS_AS(renderer.render({}, first.checkpointing()), Stopped);
     check_same(renderer.render(), whole);
-    Keeper last(1 << 30, first.kept());
-    check_same(renderer.render({}, last.keeping()), whole);
+    TestCheckpoint last(1 << 30, first.saved());
+    check_same(renderer.render({}, last.checkpointing()), whole);
     const RingResult again = renderer.render();
     check_same(again, whole);
     CHECK(again.earlier_s == 0);
 }
 
-TEST_CASE("a state of another render is refused by what is different", "[ring][keep]") {
+TEST_CASE("a checkpoint of another render is refused, naming the difference", "[ring][checkpoint]") {
     Session session(choose_device(""));
     const Scene scene = project_scene("planes");
     const RingSettings settings = settings_for(AntialiasMethod::kNone, 1 << 22);
-    Keeper first(2);
-    CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.keeping()), Stopped);
+    TestCheckpoint first(2);
+    CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.checkpointing()), Stopped);
     const auto refused = [&](const Scene& other, const RingSettings& changed, const char* why) {
         CAPTURE(why);
-        Keeper second(1 << 30, first.kept());
+        TestCheckpoint second(1 << 30, first.saved());
         RingRenderer renderer(session, other, changed);
-        CHECK_THROWS_WITH(renderer.render({}, second.keeping()), Catch::Contains(why));
+        CHECK_THROWS_WITH(renderer.render({}, second.checkpointing()), Catch::Contains(why));
     };
     Scene moved = scene;
     moved.view.from.x += 1e-3;
@@ -155,24 +155,25 @@ TEST_CASE("a state of another render is refused by what is different", "[ring][k
     refused(scene, settings_for(AntialiasMethod::kNone, 100), "was rendered with a device window of ");
 }
 
-TEST_CASE("a checkpoint whose vectors have other sizes than the render's is refused, its hash right", "[ring][keep]") {
+TEST_CASE("a checkpoint with the right hash but other vector sizes than the render's is refused",
+          "[ring][checkpoint]") {
     Session session(choose_device(""));
     const Scene scene = project_scene("planes");
     for (const AntialiasMethod method : {AntialiasMethod::kNone, AntialiasMethod::kSupersample}) {
         CAPTURE(antialias_name(method));
         const RingSettings settings = settings_for(method, 1 << 22);
-        RingState kept;
+        RingState saved;
         StateSettings of;
-        RingKeeping keeping;
-        keeping.band_s = 0;
-        keeping.due = [] { return true; };
-        keeping.keep = [&](const RingState& state, const StateSettings& its) {
-            kept = state;
+        RingCheckpointing checkpointing;
+        checkpointing.band_s = 0;
+        checkpointing.due = [] { return true; };
+        checkpointing.keep = [&](const RingState& state, const StateSettings& its) {
+            saved = state;
             of = its;
             throw Stopped();
         };
         RingRenderer renderer(session, scene, settings);
-        CHECK_THROWS_AS(renderer.render({}, &keeping), Stopped);
+        CHECK_THROWS_AS(renderer.render({}, &checkpointing), Stopped);
         const std::pair<const char*, std::function<void(RingState&)>> damages[] = {
             {"no pass", [](RingState& s) { s.passes.clear(); }},
             {"a pass too many", [](RingState& s) { s.passes.emplace_back(); }},
@@ -187,15 +188,15 @@ TEST_CASE("a checkpoint whose vectors have other sizes than the render's is refu
             {"other costs of all", [](RingState& s) { s.all_costs.resize(s.all_costs.size() + 1); }}};
         for (const auto& [what, damage] : damages) {
             CAPTURE(what);
-            RingState damaged = kept;
+            RingState damaged = saved;
             damage(damaged);
-            Keeper last(1 << 30, state_bytes(damaged, of));
-            CHECK_THROWS_WITH(renderer.render({}, last.keeping()), "damaged");
+            TestCheckpoint last(1 << 30, state_bytes(damaged, of));
+            CHECK_THROWS_WITH(renderer.render({}, last.checkpointing()), "damaged");
         }
     }
 }
 
-TEST_CASE("a state that is damaged anywhere is refused", "[ring][keep]") {
+TEST_CASE("a checkpoint with damage anywhere is refused", "[ring][checkpoint]") {
     const std::uint32_t seed = 21;
     CAPTURE(seed);
     std::mt19937 random(seed);

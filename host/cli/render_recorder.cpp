@@ -1,10 +1,10 @@
-#include "host/cli/render_watch.hpp"
+#include "host/cli/render_recorder.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 
-#include "host/base/say.hpp"
+#include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/measure.hpp"
@@ -17,23 +17,23 @@
 namespace raya {
 namespace {
 
-// How Session names the steps that are builds.
+// Session's prefix of build steps.
 constexpr std::string_view kBuild = "build ";
 
 }  // namespace
 
 void add_trace_options(CLI::App& command, TraceOptions& trace) {
-    const OptionGroup group(command, kCloserLook);
+    const OptionGroup group(command, kDiagnostics);
     add_file(command, FileUse::kWritten, "--trace", trace.file, "FILE.json[.gz]",
-             "Write a trace that ui.perfetto.dev opens: the host's steps, the device's commands, and the modelled "
-             "machine in modelled time; -: stdout");
+             "Write a trace for ui.perfetto.dev: the host's steps, the device's commands, and the modelled machine in "
+             "modelled time; -: stdout");
     add_value(command, "--trace-events", trace.events,
-              "Events in the trace at most, 1 or more; how many were left out is said at the end")
+              "Maximum number of events in the trace, 1 or more; a warning gives the number of omitted events")
         ->type_name("N")
         ->capture_default_str();
     add_value(command, "--trace-pes", trace.pes,
-              "PEs or nodes of the modelled machine with tracks of their own: a quarter of them the busiest, a "
-              "quarter the idlest, the others spread evenly; 0: no modelled machine")
+              "PEs or nodes of the modelled machine that get a track: a quarter of them the busiest, a quarter the "
+              "idlest, the others evenly spaced; 0: no modelled machine")
         ->type_name("N")
         ->capture_default_str();
 }
@@ -41,38 +41,37 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
 void check_trace(const CLI::App& command, const TraceOptions& trace) {
     if (trace.file.empty()) {
         for (const char* option : {"--trace-events", "--trace-pes"})
-            if (command.count(option) > 0)
-                throw UserError(fmt::format("{} says how to trace: give --trace FILE.json as well", option));
+            if (command.count(option) > 0) throw UserError(fmt::format("{} requires --trace FILE.json", option));
         return;
     }
     if (trace.events == 0) throw UserError("--trace-events 0: must be 1 or more");
     const bool named = trace.file.ends_with(".json") || trace.file.ends_with(".json.gz");
     if (!named && !trace.file.starts_with("/dev/") && !is_standard_stream(trace.file))
         throw UserError(
-            fmt::format("--trace {}: let the name end in .json, or in .json.gz to be compressed", trace.file));
+            fmt::format("--trace {}: choose a name that ends in .json, or in .json.gz for compression", trace.file));
 }
 
-RenderWatch::RenderWatch(const TraceOptions& trace, bool profile) : trace_(trace), profile_(profile) {}
+RenderRecorder::RenderRecorder(const TraceOptions& trace, bool profile) : trace_(trace), profile_(profile) {}
 
-void RenderWatch::observe(Session& session, Ranks& ranks) {
+void RenderRecorder::observe(Session& session, Ranks& ranks) {
     if (!traces() && !profile_) return;
     session.observe(steps_, traces() ? trace_.events : 0);
     if (traces() && session.profile().timed()) anchor_ = clock_anchor(session);
     if (traces() && ranks.many()) compare_clocks(ranks);
 }
 
-// The trace begins where the first of all ranks began.
-void RenderWatch::compare_clocks(Ranks& ranks) {
+// The trace begins at the earliest start of all ranks.
+void RenderRecorder::compare_clocks(Ranks& ranks) {
     many_ = true;
     clock_ = rank_clock(ranks, host_clock_ns);
-    const auto offset = static_cast<std::uint64_t>(clock_.offset_ns);  // of what is added modulo 2^64
+    const auto offset = static_cast<std::uint64_t>(clock_.offset_ns);  // additions wrap modulo 2^64
     const std::vector<std::uint64_t> begins = ranks.all_gather(begin_ + offset);
     begin_ = *std::min_element(begins.begin(), begins.end()) - offset;
     for (const RankClock& c : ranks.all_gather(clock_))
         clocks_.push_back({{"offset_ns", c.offset_ns}, {"uncertainty_ns", c.uncertainty_ns}});
 }
 
-void RenderWatch::gather(Session& session, Ranks& ranks) {
+void RenderRecorder::gather(Session& session, Ranks& ranks) {
     if (!traces() || !ranks.many()) return;
     TraceFile own(trace_.events / ranks.count());
     if (!ranks.first()) add_measured(own, session, ranks.rank());
@@ -83,12 +82,12 @@ void RenderWatch::gather(Session& session, Ranks& ranks) {
         others_.push_back({names[rank], texts[rank], events[rank], left_out[rank]});
 }
 
-void RenderWatch::add_measured(TraceFile& file, Session& session, std::uint32_t rank) {
+void RenderRecorder::add_measured(TraceFile& file, Session& session, std::uint32_t rank) {
     add_host_steps(file, steps_.steps(), begin_, {rank, many_});
     add_device_commands(file, session.device().name, session.profile(), anchor_, begin_, {rank, many_});
 }
 
-std::vector<ProgramBuild> RenderWatch::builds() const {
+std::vector<ProgramBuild> RenderRecorder::builds() const {
     std::vector<ProgramBuild> builds;
     for (const HostStep& s : steps_.steps())
         if (s.name.starts_with(kBuild))
@@ -96,7 +95,7 @@ std::vector<ProgramBuild> RenderWatch::builds() const {
     return builds;
 }
 
-void RenderWatch::write(Session& session, const std::function<void(TraceFile&)>& add_machine) {
+void RenderRecorder::write(Session& session, const std::function<void(TraceFile&)>& add_machine) {
     if (!traces()) return;
     TraceFile file(trace_.events / (1 + others_.size()));
     file.metadata()["program"] = name_and_version();
@@ -106,9 +105,8 @@ void RenderWatch::write(Session& session, const std::function<void(TraceFile&)>&
     for (const TraceFile::Part& part : others_) file.add(part);
     write_whole_file(trace_.file, file.finish(trace_.file.ends_with(".gz")));
     if (file.left_out() > 0)
-        warn(fmt::format("{}: {} events are left out of {}; remedy: --trace-events {}, or fewer --trace-pes",
-                         trace_.file, file.left_out(), file.events() + file.left_out(),
-                         file.events() + file.left_out()));
+        warn(fmt::format("{}: {} of {} events omitted; remedy: --trace-events {}, or fewer --trace-pes", trace_.file,
+                         file.left_out(), file.events() + file.left_out(), file.events() + file.left_out()));
 }
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// How a render on a ring machine is cut into bands, keeps what is done between them, and goes on with it.
+// Checkpoints of a ring render: traces the image in bands, saves the state between them, and resumes it.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 namespace raya {
 namespace {
 
-constexpr std::uint32_t kFirstBands = 64;    // into which a share is cut at first
-constexpr std::uint32_t kFewestOfLane = 16;  // pixels: fewer leave lanes empty at every band's end
+constexpr std::uint32_t kFirstBands = 64;    // the first band is this fraction of a share
+constexpr std::uint32_t kFewestOfLane = 16;  // minimum pixels of a lane: with fewer, many lanes idle at a band's end
 
 std::string words_hash(const std::vector<std::uint32_t>& words) {
     return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
 }
 
-// As many more pixels as the last band had, or half or four times as many: what takes about the time that is aimed at.
+// Length of the next band, scaled to take `aim` seconds, but at least half and at most four times the last length.
 std::uint32_t next_band(std::uint32_t band, double seconds, double aim) {
     const double factor = std::clamp(aim / std::max(seconds, 1e-6), 0.5, 4.0);
     return static_cast<std::uint32_t>(std::clamp(band * factor, 1.0, 1e9));
@@ -29,9 +29,9 @@ std::uint32_t next_band(std::uint32_t band, double seconds, double aim) {
 
 }  // namespace
 
-void RingRenderer::in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
-                            const std::function<void(PixelRange)>& trace) {
-    if (keeping_ == nullptr) return trace(range);
+void RingRenderer::trace_in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
+                                  const std::function<void(PixelRange)>& trace) {
+    if (checkpointing_ == nullptr) return trace(range);
     if (resumed_ && resumed_->pass > pass) return;
     if (resumed_ && resumed_->pass == pass) range.begin = std::max(range.begin, resumed_->next);
     while (range.begin < range.end) {
@@ -39,9 +39,9 @@ void RingRenderer::in_bands(std::uint32_t pass, PixelRange range, RingResult& re
         PixelRange band = range;
         band.end = range.begin + std::min(band_, range.end - range.begin);
         trace(band);
-        band_ = next_band(band_, seconds_since(start), keeping_->band_s);
+        band_ = next_band(band_, seconds_since(start), checkpointing_->band_s);
         range.begin = band.end;
-        if (keeping_->due()) keep(pass, range, result);
+        if (checkpointing_->due()) save_checkpoint(pass, range, result);
     }
 }
 
@@ -61,13 +61,13 @@ StateSettings RingRenderer::state_settings() const {
             {"--bounces", std::to_string(settings_.bounces)},
             {"--sampling", settings_.sampling == Sampling::kCorners ? "corners" : "centres"},
             {"--accel", accel_text(settings_.accel)},
-            {"--cost or --mapping dynamic", keeps_costs() ? "yes" : "no"},
+            {"--cost or --mapping dynamic", records_costs() ? "yes" : "no"},
             {"--group", std::to_string(settings_.kernels.group_size)},
             {"a device window of", fmt::format("{} pixels", window_)},
             {"another scene, camera or light", words_hash(job_.job.words())}};
 }
 
-// What is on the host as it is; what is on the device by its size alone.
+// The state on the host, with vectors of the right size for the state on the device.
 RingState RingRenderer::host_state(const RingResult& result) const {
     RingState s;
     s.seconds = earlier_s_ + seconds_since(started_);
@@ -85,7 +85,7 @@ RingState RingRenderer::host_state(const RingResult& result) const {
     return s;
 }
 
-RingState RingRenderer::state(const RingResult& result) {
+RingState RingRenderer::checkpoint_state(const RingResult& result) {
     RingState s = host_state(result);
     session_.read("keep pixels", pixels_, s.pixels);
     if (contrast_) session_.read("keep marks", contrast_->marks(), s.marks);
@@ -96,27 +96,27 @@ RingState RingRenderer::state(const RingResult& result) {
     return s;
 }
 
-void RingRenderer::keep(std::uint32_t pass, PixelRange range, RingResult& result) {
+void RingRenderer::save_checkpoint(std::uint32_t pass, PixelRange range, RingResult& result) {
     const StepLog::Step step = session_.step("keep state");
-    make_room(result);  // and place what is on its way
-    RingState s = state(result);
+    prepare_memory(result);  // also places the gathered pixels
+    RingState s = checkpoint_state(result);
     s.pass = pass;
     s.window = range.block;
     s.next = range.begin;
     s.share = (pass + 1.0 * range.begin / share_) / static_cast<double>(counters_.size());
-    keeping_->keep(s, state_settings());
+    checkpointing_->keep(s, state_settings());
 }
 
 void RingRenderer::resume(RingResult& result) {
     resumed_.reset();
     earlier_s_ = 0;
-    if (keeping_ == nullptr) return;
-    if (ranks_.many()) throw UserError("a render of several ranks does not keep its state; start it without mpirun");
+    if (checkpointing_ == nullptr) return;
+    if (ranks_.many()) throw UserError("a render on several ranks cannot save checkpoints; start raya without mpirun");
     const std::uint32_t at_once = settings_.kernels.lanes * settings_.kernels.group_size;
     band_ = std::max(share_ / kFirstBands, kFewestOfLane * at_once);
-    if (!keeping_->resume) return;
-    make_room(result);
-    resumed_ = keeping_->resume(state_settings(), host_state(result));
+    if (!checkpointing_->resume) return;
+    prepare_memory(result);
+    resumed_ = checkpointing_->resume(state_settings(), host_state(result));
     if (!resumed_) return;
     const StepLog::Step step = session_.step("resume");
     RingState& s = *resumed_;

@@ -1,4 +1,4 @@
-// Watches a render for --profile and --trace: the host's steps, the clocks, and what is made of them.
+// Records the host's steps and the clocks of a render for --profile and --trace, and writes the trace.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,39 +17,38 @@ class App;
 
 namespace raya {
 
-/// As given on the command line; no trace where `file` is empty.
+/// As given on the command line; no trace if `file` is empty.
 struct TraceOptions {
     std::string file;
     std::size_t events = 1'000'000, pes = 16;
 };
 
-/// Adds --trace and what goes with it, with their help texts.
+/// Adds --trace, --trace-events and --trace-pes.
 void add_trace_options(CLI::App& command, TraceOptions& trace);
 
-/// Refuses a file that cannot be written or has another ending than .json and .json.gz, and what says how to trace
-/// where nothing is traced. UserError.
+/// Refuses a file whose name does not end in .json or .json.gz, and options of a trace without --trace. UserError.
 void check_trace(const CLI::App& command, const TraceOptions& trace);
 
-class RenderWatch {
+class RenderRecorder {
   public:
-    /// `profile`: builds are timed one by one. With neither it notes nothing but the steps asked for here.
-    RenderWatch(const TraceOptions& trace, bool profile);
+    /// `profile`: times each build. With neither trace nor profile it records only the steps of steps().
+    RenderRecorder(const TraceOptions& trace, bool profile);
 
     bool traces() const { return !trace_.file.empty(); }
     StepLog& steps() { return steps_; }
 
-    /// What the session does from now on is noted, and its device's clock compared with the host's; this rank's clock
-    /// with rank 0's.
+    /// Records the session's steps from now on. Compares its device's clock with the host's, and this rank's clock with
+    /// rank 0's.
     void observe(Session& session, Ranks& ranks);
 
-    /// Brings what other ranks have noted so far to rank 0.
+    /// Sends the records of the other ranks to rank 0.
     void gather(Session& session, Ranks& ranks);
 
-    /// Seconds of each program's build, in their order.
+    /// Seconds of each program's build, in order.
     std::vector<ProgramBuild> builds() const;
 
-    /// Writes the trace, if there is to be one: steps, the commands in the session's profile, and what `add_machine`
-    /// adds. Says on stderr how many events were left out.
+    /// With --trace: writes the steps, the commands of the session's profile, and the events of `add_machine`. Warns of
+    /// events beyond --trace-events.
     void write(Session& session, const std::function<void(TraceFile&)>& add_machine);
 
   private:

@@ -6,8 +6,8 @@
 #include <limits>
 #include <span>
 
+#include "host/accel/bvh.hpp"
 #include "host/accel/hit_regions.hpp"
-#include "host/accel/tree.hpp"
 #include "host/error.hpp"
 #include "host/scene/packer.hpp"
 
@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::uint32_t kWidth = RAYA_BVH_WIDTH;
 
-// How far from a side of its box a ray can be by the walk's rounding. t of a side is side / D - O / D in two
-// operations, with 1 / D rounded: off by 4 2^-24 (|side| + |O|) / |D|.
+// The maximum distance of a ray from a side of its box due to rounding in the traversal. The t of a side is
+// side / D - O / D in two operations, with 1 / D rounded: its error is 4 2^-24 (|side| + |O|) / |D|.
 double walk_error(double side, double reach) { return 8 * 0x1p-24 * (std::abs(side) + reach); }
 
 float below(double x) {
@@ -36,20 +36,20 @@ Bounds bounds_of(const Box& box, double reach) {
     return bounds;
 }
 
-// How far rays may come from: with infinite planes, on which rays start anywhere, farther as long as boxes of usual
-// size grow by little.
+// The reach of rays, in extents of the scene. Rays start anywhere on infinite planes, so a scene with planes gets a
+// larger reach as long as boxes of average size grow little.
 double reach_for(const PackedJob& job, const NumberFormat& format) {
-    constexpr double kLeast = 2, kMost = 1024, kShareOfBox = 1.0 / 64;
-    const HitRegions regions(job, format, kLeast);
-    if (!regions.known() || regions.size() == 0 || job.header().objects.planes == 0) return kLeast;
+    constexpr double kMin = 2, kMax = 1024, kShareOfBox = 1.0 / 64;
+    const HitRegions regions(job, format, kMin);
+    if (!regions.known() || regions.size() == 0 || job.header().objects.planes == 0) return kMin;
     double sides = 0;
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const Vec3 size = regions.region(i).box.size();
         sides += std::max({size.x, size.y, size.z});
     }
-    const double usual = sides / static_cast<double>(regions.size());
-    double reach = kLeast;
-    while (reach < kMost && regions.slack(2 * reach) <= kShareOfBox * usual &&
+    const double mean_side = sides / static_cast<double>(regions.size());
+    double reach = kMin;
+    while (reach < kMax && regions.slack(2 * reach) <= kShareOfBox * mean_side &&
            HitRegions(job, format, 2 * reach).known())
         reach *= 2;
     return reach;
@@ -61,7 +61,7 @@ const std::uint32_t* polygon_words(const PackedJob& job, std::uint32_t number) {
     return job.words().data() + objects.polygons_at + polygon * RAYA_POLYGON_WORDS;
 }
 
-// What kind of leaf an object goes to.
+// The kind of leaf for an object.
 std::uint32_t kind_of(const PackedJob& job, const NumberFormat& format, std::uint32_t number) {
     constexpr std::uint32_t kManyCorners = 16;
     const raya_objects& objects = job.header().objects;
@@ -72,12 +72,12 @@ std::uint32_t kind_of(const PackedJob& job, const NumberFormat& format, std::uin
     return number < objects.spheres ? RAYA_LINK_SPHERES : RAYA_LINK_CONES;
 }
 
-// Lays a tree out row by row: a node, what its children hold, and so on.
-class TreeWriter {
+// Writes a BVH row by row in depth-first order: a node, then the contents of its children.
+class BvhWriter {
   public:
-    TreeWriter(const Tree& tree, const PackedJob& job) : tree_(tree), job_(job) {}
+    BvhWriter(const Bvh& tree, const PackedJob& job) : tree_(tree), job_(job) {}
 
-    std::uint32_t put(const TreeChild& child) {
+    std::uint32_t put(const BvhChild& child) {
         if (child.kind == RAYA_LINK_NODE) return put_node(tree_.nodes[child.first]);
         ++leaves_;
         const std::span items(tree_.items.data() + child.first, child.items);
@@ -107,7 +107,7 @@ class TreeWriter {
 
     std::uint32_t& word(std::uint32_t row, std::uint32_t column) { return words_[std::size_t{row} * kWidth + column]; }
 
-    std::uint32_t put_node(const TreeNode& node) {
+    std::uint32_t put_node(const BvhNode& node) {
         const std::uint32_t row = take_rows(RAYA_BVH_NODE);
         for (std::uint32_t column = 0; column < kWidth; ++column) {
             const bool used = column < node.count;
@@ -125,19 +125,19 @@ class TreeWriter {
         return raya_link(RAYA_LINK_NODE, 1, row);
     }
 
-    // `put` is given each column and the number of its item.
+    // Calls `put` with each column and the number of its item; unused columns repeat the first item.
     template <class Put>
-    static void for_columns(std::span<const TreeItem> items, const Put& put) {
+    static void for_columns(std::span<const BvhItem> items, const Put& put) {
         for (std::uint32_t column = 0; column < kWidth; ++column)
             put(column, items[column < items.size() ? column : 0].number);
     }
 
-    // Words of the job from one on, down the column from a row on.
+    // Copies `count` words of the job into a column, downwards from a row.
     void put_column(std::uint32_t row, std::uint32_t column, const std::uint32_t* words, std::uint32_t count) {
         for (std::uint32_t w = 0; w < count; ++w) word(row + w, column) = words[w];
     }
 
-    std::uint32_t put_spheres(std::span<const TreeItem> items) {
+    std::uint32_t put_spheres(std::span<const BvhItem> items) {
         const std::uint32_t row = take_rows(RAYA_BVH_SPHERES);
         for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
             const std::size_t sphere = job_.header().objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
@@ -147,8 +147,8 @@ class TreeWriter {
         return raya_link(RAYA_LINK_SPHERES, static_cast<std::uint32_t>(items.size()), row);
     }
 
-    std::uint32_t put_faces(std::span<const TreeItem> items) {
-        const bool triangles = std::all_of(items.begin(), items.end(), [&](const TreeItem& item) {
+    std::uint32_t put_faces(std::span<const BvhItem> items) {
+        const bool triangles = std::all_of(items.begin(), items.end(), [&](const BvhItem& item) {
             return polygon_words(job_, item.number)[RAYA_POLYGON_CORNERS] < RAYA_BVH_MOST_CORNERS;
         });
         const std::uint32_t row = take_rows(triangles ? RAYA_BVH_TRIANGLES : RAYA_BVH_FACES);
@@ -186,7 +186,7 @@ class TreeWriter {
         return raya_link(RAYA_LINK_POLYGON, 1, row);
     }
 
-    std::uint32_t put_cones(std::span<const TreeItem> items) {
+    std::uint32_t put_cones(std::span<const BvhItem> items) {
         const std::uint32_t row = take_rows(RAYA_BVH_CONES);
         const raya_objects& objects = job_.header().objects;
         const std::uint32_t first = objects.spheres + objects.planes + objects.polygons;
@@ -208,36 +208,36 @@ class TreeWriter {
         return job_.words().data() + polygon[RAYA_POLYGON_CORNERS_AT] + std::size_t{i} * RAYA_CORNER_WORDS;
     }
 
-    const Tree& tree_;
+    const Bvh& tree_;
     const PackedJob& job_;
     std::vector<std::uint32_t> words_;
     std::uint64_t leaves_ = 0;
 };
 
-struct TreeItems {
-    std::vector<TreeItem> items;       // none where no boxes are known that hold all hits
-    std::vector<std::uint32_t> apart;  // objects that are no items, ascending
-    double reach = -1;                 // largest coordinate of the origins of rays that they are good for
+struct BvhItems {
+    std::vector<BvhItem> items;        // empty if no bounds of the hits are known
+    std::vector<std::uint32_t> apart;  // large objects, listed separately, ascending
+    double reach = -1;                 // the boxes are valid for ray origins with coordinates up to this
 };
 
-// Objects so large that nearly every ray comes to them (the ground under a scene, walls around it): a leaf costs a ray
-// more than a test that V rays make at once. None where there are too many.
-constexpr std::size_t kMostApart = 8;
-constexpr float kLargeArea = 1.0F / 8;  // of the surface of what is around all
+// Objects that nearly every ray reaches (the ground under a scene, walls around it) are listed separately: a leaf costs
+// a ray more than a test of V rays at once. If there are too many of them, none is.
+constexpr std::size_t kMaxApart = 8;
+constexpr float kLargeArea = 1.0F / 8;  // relative to the surface area of the whole box
 
-void hold_large_apart(TreeItems& all) {
-    Bounds whole = kNowhere;
-    for (const TreeItem& item : all.items) extend(whole, item.box);
-    const auto is_large = [&](const TreeItem& item) { return area(item.box) > kLargeArea * area(whole); };
+void separate_large_items(BvhItems& all) {
+    Bounds whole = kEmptyBounds;
+    for (const BvhItem& item : all.items) extend(whole, item.box);
+    const auto is_large = [&](const BvhItem& item) { return area(item.box) > kLargeArea * area(whole); };
     const auto large = static_cast<std::size_t>(std::count_if(all.items.begin(), all.items.end(), is_large));
-    if (large > kMostApart) return;
-    for (const TreeItem& item : all.items)
+    if (large > kMaxApart) return;
+    for (const BvhItem& item : all.items)
         if (is_large(item)) all.apart.push_back(item.number);
     std::erase_if(all.items, is_large);
 }
 
-TreeItems tree_items(const PackedJob& job, const NumberFormat& format) {
-    TreeItems all;
+BvhItems bvh_items(const PackedJob& job, const NumberFormat& format) {
+    BvhItems all;
     const HitRegions regions(job, format, reach_for(job, format));
     if (!regions.known()) return all;
     all.reach = regions.reach();
@@ -246,13 +246,13 @@ TreeItems tree_items(const PackedJob& job, const NumberFormat& format) {
         const std::uint32_t number = regions.number(i);
         all.items.push_back({bounds_of(regions.region(i).box, all.reach), number, kind_of(job, format, number)});
     }
-    hold_large_apart(all);
+    separate_large_items(all);
     return all;
 }
 
 }  // namespace
 
-bool tree_pays(const Scene& scene, const NumberFormat& format) {
+bool bvh_pays(const Scene& scene, const NumberFormat& format) {
     constexpr double kFew = 160;
     double corners = 0;
     for (const Polygon& polygon : scene.polygons) corners += static_cast<double>(polygon.vertices.size());
@@ -260,17 +260,17 @@ bool tree_pays(const Scene& scene, const NumberFormat& format) {
     return kFew < (format.is_fp32() ? spheres + 1.25 * corners + 8 * cones : spheres + 3 * corners + 32 * cones);
 }
 
-AccelSummary append_tree(PackedJob& job, const NumberFormat& format) {
-    TreeItems all = tree_items(job, format);
-    const Tree tree = build_tree(std::move(all.items));
-    TreeWriter writer(tree, job);
+AccelSummary append_bvh(PackedJob& job, const NumberFormat& format) {
+    BvhItems all = bvh_items(job, format);
+    const Bvh tree = build_bvh(std::move(all.items));
+    BvhWriter writer(tree, job);
     raya_bvh header{};
     header.reach = static_cast<float>(all.reach);
     header.root = tree.items.empty() ? RAYA_NO_TREE : writer.put(tree.root);
     const std::size_t at = job.words().size(), end = at + kWordsOf<raya_bvh> + all.apart.size();
     const std::size_t rows_at = (end + kWidth - 1) / kWidth * kWidth;
     if (writer.words().size() / kWidth > RAYA_LINK_ROW)
-        throw UserError(fmt::format("--accel bvh packs to {} rows of 64 bytes, more than its links reach",
+        throw UserError(fmt::format("--accel bvh packs to {} rows of 64 bytes, more than its links can address",
                                     writer.words().size() / kWidth));
     header.apart = static_cast<std::uint32_t>(all.apart.size());
     header.apart_at = static_cast<std::uint32_t>(at + kWordsOf<raya_bvh>);

@@ -1,4 +1,4 @@
-#include "host/accel/tree.hpp"
+#include "host/accel/bvh.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -7,38 +7,38 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kBins = 32;        // along each axis
-constexpr std::uint32_t kEvenFrom = 24;  // depth from which on halves are taken, so that no tree is much deeper
+constexpr std::size_t kBins = 32;           // along each axis
+constexpr std::uint32_t kMedianDepth = 24;  // nodes at this depth are split in halves, which bounds the depth
 
-// Twice the middle.
-float middle(const TreeItem& item, std::size_t axis) { return item.box.low[axis] + item.box.high[axis]; }
+// Twice the centre.
+float middle(const BvhItem& item, std::size_t axis) { return item.box.low[axis] + item.box.high[axis]; }
 
-// Leaves that so many items fill.
+// The number of leaves for `items` items.
 float leaves(std::size_t items) { return static_cast<float>((items + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH); }
 
-// Items that are to become one child of a node.
+// Items that become one child of a node.
 struct Part {
-    std::span<TreeItem> items;
+    std::span<BvhItem> items;
     Bounds box;
 
     bool is_of_one_kind() const {
-        return std::all_of(items.begin(), items.end(), [&](const TreeItem& i) { return i.kind == items[0].kind; });
+        return std::all_of(items.begin(), items.end(), [&](const BvhItem& i) { return i.kind == items[0].kind; });
     }
-    bool is_leaf() const { return items.size() <= most_in_leaf(items[0].kind) && is_of_one_kind(); }
+    bool is_leaf() const { return items.size() <= max_leaf_items(items[0].kind) && is_of_one_kind(); }
 };
 
-Part part_of(std::span<TreeItem> items) {
-    Part part{items, kNowhere};
-    for (const TreeItem& item : items) extend(part.box, item.box);
+Part part_of(std::span<BvhItem> items) {
+    Part part{items, kEmptyBounds};
+    for (const BvhItem& item : items) extend(part.box, item.box);
     return part;
 }
 
 struct Bin {
-    Bounds box = kNowhere;
+    Bounds box = kEmptyBounds;
     std::size_t items = 0;
 };
 
-// Where middles lie along an axis, and in which bin.
+// The range of centres along an axis, and its division into bins.
 struct Scale {
     float low = kInfinity, high = -kInfinity;
     float bins_per_unit = 0;
@@ -50,29 +50,29 @@ struct Scale {
 
 using Bins = std::array<Bin, kBins>;  // along an axis
 
-std::array<Scale, 3> scales_of(std::span<const TreeItem> items) {
+std::array<Scale, 3> scales_of(std::span<const BvhItem> items) {
     std::array<Scale, 3> scales;
-    for (const TreeItem& item : items)
+    for (const BvhItem& item : items)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             scales[axis].low = std::min(scales[axis].low, middle(item, axis));
             scales[axis].high = std::max(scales[axis].high, middle(item, axis));
         }
     for (Scale& scale : scales) {
         const float wide = scale.high - scale.low;
-        const float most = static_cast<float>(kBins) / wide;
-        scale.bins_per_unit = wide > 0 && most < kInfinity ? most : 0;
+        const float bins_per_unit = static_cast<float>(kBins) / wide;
+        scale.bins_per_unit = wide > 0 && bins_per_unit < kInfinity ? bins_per_unit : 0;
     }
     return scales;
 }
 
-// The best cut between bins: items in the bins up to `last` along the axis lie on one side.
+// A cut between bins: items in the bins up to `last` along the axis are on one side.
 struct Cut {
     float cost = kInfinity;
     std::size_t axis = 0, last = 0;
 };
 
 void find_cut(Cut& best, std::size_t axis, const Bins& bins) {
-    std::array<float, kBins> above{};  // cost of the bins behind each
+    std::array<float, kBins> above{};  // cost of the bins above each
     Bin sum;
     for (std::size_t b = kBins - 1; b > 0; --b) {
         extend(sum.box, bins[b].box);
@@ -95,38 +95,38 @@ Parts halves_at(const Part& part, std::size_t items) {
     return {part_of(part.items.first(items)), part_of(part.items.subspan(items))};
 }
 
-// By number: of items that all lie in the same place, or where a tree would grow too deep.
+// Splits by number: for items with equal centres, or if the tree would become too deep.
 Parts even_halves(const Part& part) {
     std::sort(part.items.begin(), part.items.end(),
-              [](const TreeItem& a, const TreeItem& b) { return a.number < b.number; });
+              [](const BvhItem& a, const BvhItem& b) { return a.number < b.number; });
     return halves_at(part, part.items.size() / 2);
 }
 
 Parts cut_by_kind(const Part& part) {
     std::uint32_t kind = RAYA_LINK_OBJECT;  // the lowest
-    for (const TreeItem& item : part.items) kind = std::min(kind, item.kind);
+    for (const BvhItem& item : part.items) kind = std::min(kind, item.kind);
     const auto others =
-        std::partition(part.items.begin(), part.items.end(), [&](const TreeItem& item) { return item.kind == kind; });
+        std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) { return item.kind == kind; });
     return halves_at(part, static_cast<std::size_t>(others - part.items.begin()));
 }
 
-// Items in the bins up to `last`, and the others; their boxes are those of the bins.
+// Splits into the items in the bins up to `last` and the others; the boxes are the unions of the bins' boxes.
 Parts cut_at(const Part& part, const Cut& at, const Bins& bins, const Scale& scale) {
-    const auto others = std::partition(part.items.begin(), part.items.end(), [&](const TreeItem& item) {
+    const auto others = std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) {
         return scale.bin(middle(item, at.axis)) <= at.last;
     });
     const auto items = static_cast<std::size_t>(others - part.items.begin());
-    Parts parts{{{part.items.first(items), kNowhere}, {part.items.subspan(items), kNowhere}}};
+    Parts parts{{{part.items.first(items), kEmptyBounds}, {part.items.subspan(items), kEmptyBounds}}};
     for (std::size_t b = 0; b < kBins; ++b) extend(parts[b <= at.last ? 0 : 1].box, bins[b].box);
     return parts;
 }
 
 Parts cut(const Part& part, std::uint32_t depth) {
     if (part.items.size() <= RAYA_BVH_WIDTH && !part.is_of_one_kind()) return cut_by_kind(part);
-    if (depth >= kEvenFrom) return even_halves(part);
+    if (depth >= kMedianDepth) return even_halves(part);
     const std::array<Scale, 3> scales = scales_of(part.items);
     std::array<Bins, 3> bins;
-    for (const TreeItem& item : part.items)
+    for (const BvhItem& item : part.items)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             Bin& bin = bins[axis][scales[axis].bin(middle(item, axis))];
             extend(bin.box, item.box);
@@ -138,20 +138,21 @@ Parts cut(const Part& part, std::uint32_t depth) {
     return cut_at(part, best, bins[best.axis], scales[best.axis]);
 }
 
-class TreeBuilder {
+class BvhBuilder {
   public:
-    explicit TreeBuilder(Tree& tree) : tree_(tree), first_(tree.items.data()) {}
+    explicit BvhBuilder(Bvh& tree) : tree_(tree), first_(tree.items.data()) {}
 
-    TreeChild child(const Part& part, std::uint32_t depth) {
+    BvhChild child(const Part& part, std::uint32_t depth) {
         if (!part.is_leaf()) return {part.box, RAYA_LINK_NODE, node(part, depth), 0};
         std::sort(part.items.begin(), part.items.end(),
-                  [](const TreeItem& a, const TreeItem& b) { return a.number < b.number; });
+                  [](const BvhItem& a, const BvhItem& b) { return a.number < b.number; });
         return {part.box, part.items[0].kind, static_cast<std::uint32_t>(part.items.data() - first_),
                 static_cast<std::uint32_t>(part.items.size())};
     }
 
   private:
-    // The children of a node: its part, of which the largest that is no leaf is cut until there are enough.
+    // The children of a node: starting with its part, splits the part of largest area that is not a leaf until there
+    // are RAYA_BVH_WIDTH parts.
     std::vector<Part> children_of(const Part& part, std::uint32_t depth) const {
         std::vector<Part> parts = {part};
         while (parts.size() < RAYA_BVH_WIDTH) {
@@ -171,14 +172,14 @@ class TreeBuilder {
         tree_.nodes.emplace_back();
         tree_.depth = std::max(tree_.depth, depth + 1);
         const std::vector<Part> parts = children_of(part, depth);
-        TreeNode made{};
+        BvhNode made{};
         for (const Part& p : parts) made.children[made.count++] = child(p, depth + 1);
         tree_.nodes[number] = made;
         return number;
     }
 
-    Tree& tree_;
-    const TreeItem* first_;
+    Bvh& tree_;
+    const BvhItem* first_;
 };
 
 }  // namespace
@@ -196,14 +197,14 @@ float area(const Bounds& box) {
     return x * y + y * z + z * x;
 }
 
-std::uint32_t most_in_leaf(std::uint32_t kind) {
+std::uint32_t max_leaf_items(std::uint32_t kind) {
     return kind == RAYA_LINK_POLYGON || kind == RAYA_LINK_OBJECT ? 1 : RAYA_BVH_WIDTH;
 }
 
-Tree build_tree(std::vector<TreeItem> items) {
-    Tree tree;
+Bvh build_bvh(std::vector<BvhItem> items) {
+    Bvh tree;
     tree.items = std::move(items);
-    if (!tree.items.empty()) tree.root = TreeBuilder(tree).child(part_of(tree.items), 0);
+    if (!tree.items.empty()) tree.root = BvhBuilder(tree).child(part_of(tree.items), 0);
     return tree;
 }
 

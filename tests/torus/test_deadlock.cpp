@@ -1,5 +1,5 @@
-// Short queues: the shortest works where nodes need not wait for each other, one packet less is refused, and a machine
-// that stands still ends with the queue that is found for it.
+// Short queues: the shortest suffices if nodes need not wait for each other, one packet less is refused, and a machine
+// that deadlocks ends with the queue that the search finds.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -13,11 +13,11 @@ namespace raya {
 namespace {
 
 std::uint32_t shortest_of(const Scene& scene, const TorusCase& c) {
-    return raya_shortest_queue(lights_of(scene), c.bounces);
+    return raya_min_queue(lights_of(scene), c.bounces);
 }
 
-// Mirrors and glass in a hollow mirror ball that also holds eye and lights, and a pebble in each of two corners far
-// away: of 4 x 4 x 4 voxels one has all rays.
+// Mirrors and glass in a hollow mirror ball that also contains eye and lights, and a small sphere in each of two
+// distant corners: one of the 4 x 4 x 4 voxels has all rays.
 Scene scene_in_one_voxel(std::uint64_t seed) {
     SplitMix random(seed);
     Scene scene = empty_scene();
@@ -36,29 +36,31 @@ Scene scene_in_one_voxel(std::uint64_t seed) {
     return scene;
 }
 
-// A render, and how the machine stood still, if it did.
+// The image of a render, or the figures of its deadlock.
 struct Ending {
     std::string image;
-    std::optional<StandstillFigures> stand;
+    std::optional<DeadlockFigures> deadlock;
 };
 
 Ending outcome_of(TorusRenderer& renderer) {
     try {
         return {one_image(renderer.render()), {}};
-    } catch (const Standstill& still) {
-        return {{}, still.figures};
+    } catch (const TorusDeadlock& error) {
+        return {{}, error.figures};
     }
 }
 
-QueueFound search(TorusRenderer& renderer, std::uint32_t queue) { return longer_queue(queue, renderer.queue_trial()); }
+QueueFound search(TorusRenderer& renderer, std::uint32_t queue) {
+    return find_longer_queue(queue, renderer.queue_trial());
+}
 
-bool same(const StandstillFigures& a, const StandstillFigures& b) {
+bool same(const DeadlockFigures& a, const DeadlockFigures& b) {
     return a.superstep == b.superstep && a.live == b.live && a.full == b.full && a.queue == b.queue;
 }
 
 }  // namespace
 
-TEST_CASE("one node works with the shortest queue", "[torus]") {
+TEST_CASE("a single node renders with the shortest queue", "[torus]") {
     Session session(choose_device(""));
     for (std::size_t i = 0; i < 6; ++i) {
         const Scene scene = random_view_scene(kRichScenes[i]);
@@ -73,7 +75,7 @@ TEST_CASE("one node works with the shortest queue", "[torus]") {
     }
 }
 
-TEST_CASE("the shortest queue holds all that one node's rays can turn into", "[torus]") {
+TEST_CASE("the shortest queue suffices for a node that has all rays", "[torus]") {
     Session session(choose_device(""));
     for (std::uint64_t seed = 1; seed <= 2; ++seed)
         for (const Links links : {Links::kTorus3d, Links::kTorus2d})
@@ -92,7 +94,7 @@ TEST_CASE("the shortest queue holds all that one node's rays can turn into", "[t
             }
 }
 
-TEST_CASE("a queue of one packet less is refused with the number that it needs", "[torus]") {
+TEST_CASE("a queue shorter than the shortest is refused, with the shortest length", "[torus]") {
     Session session(choose_device(""));
     SplitMix random(1);
     for (int i = 0; i < 20; ++i) {
@@ -108,7 +110,7 @@ TEST_CASE("a queue of one packet less is refused with the number that it needs",
     }
 }
 
-TEST_CASE("a machine that stands still ends with the queue that is found", "[torus]") {
+TEST_CASE("a machine that deadlocks ends with the queue that the search finds", "[torus]") {
     const char* const name = GENERATE("centre", "mirrors");
     const Scene scene = project_scene(name);
     Session session(choose_device(""));
@@ -116,7 +118,7 @@ TEST_CASE("a machine that stands still ends with the queue that is found", "[tor
     c.format = "spa22";
     c.queue = shortest_of(scene, c);
     const std::string expected = ring_image(scene, c);
-    int stood = 0;
+    int deadlocks = 0;
     for (const Injection inject : {Injection::kAll, Injection::kRoot}) {
         TorusCase short_one = c;
         short_one.queue += inject == Injection::kRoot ? 3 : 0;
@@ -124,14 +126,14 @@ TEST_CASE("a machine that stands still ends with the queue that is found", "[tor
         CAPTURE(name, case_text(short_one));
         TorusRenderer renderer(session, scene, settings_of(short_one));
         const Ending first = outcome_of(renderer);
-        if (!first.stand) CHECK(first.image == expected);
-        if (!first.stand) continue;
-        ++stood;
-        CHECK(first.stand->queue == short_one.queue);
-        CHECK(first.stand->nodes == 64);
-        CHECK(first.stand->full <= 64);
-        CHECK(first.stand->live > first.stand->full * short_one.queue);
-        CHECK(first.stand->superstep > 0);
+        if (!first.deadlock) CHECK(first.image == expected);
+        if (!first.deadlock) continue;
+        ++deadlocks;
+        CHECK(first.deadlock->queue == short_one.queue);
+        CHECK(first.deadlock->nodes == 64);
+        CHECK(first.deadlock->full <= 64);
+        CHECK(first.deadlock->live > first.deadlock->full * short_one.queue);
+        CHECK(first.deadlock->superstep > 0);
         const QueueFound found = search(renderer, short_one.queue);
         CHECK((found.ends && found.fits));
         CHECK(found.queue > short_one.queue);
@@ -139,16 +141,16 @@ TEST_CASE("a machine that stands still ends with the queue that is found", "[tor
         CHECK(one_image(r) == expected);
         CHECK(r.queue_max <= found.queue);
         CHECK(r.made == r.ended);
-        // The same again: nothing is left over from the first time, nor from looking for a longer queue.
+        // A repeated deadlock is the same: no state remains of the first render or of the search.
         renderer.set_queue(short_one.queue);
         const Ending again = outcome_of(renderer);
-        REQUIRE(again.stand);
-        CHECK(same(*again.stand, *first.stand));
+        REQUIRE(again.deadlock);
+        CHECK(same(*again.deadlock, *first.deadlock));
     }
-    CHECK(stood >= 2);  // else this test says nothing
+    CHECK(deadlocks >= 2);  // else this test is void
 }
 
-TEST_CASE("the queue that is found fits the memory that a node has", "[torus]") {
+TEST_CASE("the queue that the search finds fits a node's memory", "[torus]") {
     const Scene scene = project_scene("mirrors");
     Session session(choose_device(""));
     TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
@@ -159,17 +161,17 @@ TEST_CASE("the queue that is found fits the memory that a node has", "[torus]") 
     TorusSettings settings = settings_of(c);
     settings.memory_bytes = 16384;  // less than twice the shortest queue needs
     TorusRenderer renderer(session, scene, settings);
-    REQUIRE(outcome_of(renderer).stand);
+    REQUIRE(outcome_of(renderer).deadlock);
     const QueueFound found = search(renderer, shortest);
     CHECK((found.ends && found.fits));
     CHECK(found.bytes <= 16384);
     REQUIRE(found.queue > shortest);
     CHECK(found.queue < 2 * shortest);
-    settings.queue = found.queue;  // as a user would ask for it
+    settings.queue = found.queue;  // as a user would set it
     CHECK(one_image(TorusRenderer(session, scene, settings).render()) == ring_image(scene, c));
 }
 
-TEST_CASE("one packet less than just enough stands still", "[torus]") {
+TEST_CASE("with one packet less than just enough the machine deadlocks", "[torus]") {
     const Scene scene = project_scene("mirrors");
     Session session(choose_device(""));
     TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
@@ -187,15 +189,15 @@ TEST_CASE("one packet less than just enough stands still", "[torus]") {
     for (; here != expected && queue < 4 * shortest; here = outcome(++queue)) last = here;
     CAPTURE(shortest, queue, last);
     CHECK(here == expected);
-    REQUIRE(queue > shortest);  // else this test says nothing
-    CHECK_THAT(last, Catch::Contains("stands still") && Catch::Contains("are full at " + std::to_string(queue - 1)));
+    REQUIRE(queue > shortest);  // else this test is void
+    CHECK_THAT(last, Catch::Contains("deadlock") && Catch::Contains("are full at " + std::to_string(queue - 1)));
 }
 
-TEST_CASE("queues of any length lead to the image, or to one that does", "[torus]") {
+TEST_CASE("queues of any length give the ring's image, or a deadlock that a found queue resolves", "[torus]") {
     const std::uint64_t seed = 616;
     SplitMix random(seed);
     Session session(choose_device(""));
-    int stood = 0;
+    int deadlocks = 0;
     for (std::uint32_t i = 0; i < 10; ++i) {
         const Scene scene = random_view_scene(kRichScenes[i % 4]);
         TorusCase c{.width = 24, .height = 20, .lanes = 4, .group = 1};
@@ -206,15 +208,15 @@ TEST_CASE("queues of any length lead to the image, or to one that does", "[torus
         CAPTURE(seed, i, case_text(c));
         TorusRenderer renderer(session, scene, settings_of(c));
         Ending outcome = outcome_of(renderer);
-        if (outcome.stand) {
-            ++stood;
+        if (outcome.deadlock) {
+            ++deadlocks;
             REQUIRE(search(renderer, c.queue).ends);
             outcome = outcome_of(renderer);
         }
         CHECK(outcome.image == ring_image(scene, c));
     }
-    CAPTURE(stood);
-    CHECK(stood < 10);
+    CAPTURE(deadlocks);
+    CHECK(deadlocks < 10);
 }
 
 }  // namespace raya

@@ -1,0 +1,81 @@
+#include "host/base/log.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <string>
+
+namespace raya {
+namespace {
+
+std::mutex output_mutex;  // the progress bar has a thread of its own
+bool status_shown = false;
+
+void write_stderr(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+}
+
+std::atomic<int> current_level = kDefaultVerbosity;
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+    std::string all;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const auto c = static_cast<unsigned char>(text[at]);
+        // The control characters U+0080..U+009F, which some terminals interpret too, are C2 80..C2 9F in UTF-8.
+        const bool c1_control = c == 0xC2 && at + 1 < text.size() && static_cast<unsigned char>(text[at + 1]) < 0xA0;
+        if ((c < ' ' && c != '\n' && c != '\t') || c == 0x7F || c1_control)
+            all += fmt::format("\\x{:02x}", c1_control ? static_cast<unsigned char>(text[++at]) : c);
+        else
+            all += text[at];
+    }
+    return all;
+}
+
+void print_log(std::string_view text) {
+    const std::lock_guard lock(output_mutex);
+    write_stderr((status_shown ? "\r\033[K" : "") + printable(text));
+    status_shown = false;
+}
+
+void show_status(std::string_view line) {
+    const std::lock_guard lock(output_mutex);
+    write_stderr("\r\033[K" + printable(line));
+    status_shown = true;
+}
+
+void clear_status() {
+    const std::lock_guard lock(output_mutex);
+    if (status_shown) write_stderr("\r\033[K");
+    status_shown = false;
+}
+
+void set_verbosity(int level) { current_level = std::clamp(level, kErrorsOnly, kDetailed); }
+
+int verbosity() { return current_level; }
+
+bool shows_progress() { return !is_quiet() && ::isatty(STDERR_FILENO) != 0; }
+
+void log_message(int level, std::string_view text) {
+    if (verbosity() < level) return;
+    std::string lines;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        lines += fmt::format("raya: {}\n", text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    print_log(lines);
+}
+
+void warn(std::string_view text) {
+    if (verbosity() > kErrorsOnly) print_log(fmt::format("raya: {}\n", text));
+}
+
+}  // namespace raya

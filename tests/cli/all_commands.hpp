@@ -1,0 +1,15 @@
+// The parser and the texts of all commands, in this process.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "host/cli/command_tree.hpp"
+#include "host/cli/commands.hpp"
+#include "host/ranks/ranks.hpp"
+
+namespace raya {
+
+inline std::shared_ptr<CLI::App> make_full_parser() { return make_program(Ranks::alone(), "test"); }
+inline CommandText text_of_all_commands() { return command_text(*make_full_parser()); }
+
+}  // namespace raya

@@ -1,0 +1,95 @@
+// render --checkpoint and --resume: resumed renders, and files that they must not overwrite.
+#include <filesystem>
+
+#include "host/base/whole_file.hpp"
+#include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
+
+namespace raya {
+namespace {
+
+namespace fs = std::filesystem;
+
+Arguments render_of(const ScratchFolder& folder, const Arguments& more = {}) {
+    Arguments arguments = {"render",         scene_file("centre"), "--size",         "256", "--lanes", "1", "-o",
+                           folder / "x.pfm", "--report",           folder / "x.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][checkpoint]") {
+    const ScratchFolder folder;
+    REQUIRE(run_raya(render_of(folder)).code == 0);
+    const std::string picture = file_contents(folder / "x.pfm");
+    const Arguments checkpoint = {"--checkpoint", folder / "s.rst", "--checkpoint-every", "0"};
+    // Interrupted later at each try, until a checkpoint exists.
+    bool interrupted = false;
+    for (int ms = 40; ms <= 2000 && !interrupted; ms += ms / 2) {
+        fs::remove(folder / "x.pfm");
+        fs::remove(folder / "s.rst");
+        RunOptions run_options;
+        run_options.signal = SIGINT;
+        run_options.signal_after_ms = ms;
+        const RunOutcome run = run_raya(render_of(folder, checkpoint), run_options);
+        INFO(run.describe());
+        REQUIRE((run.code == 0 || run.code == 128 + SIGINT));
+        if (run.code == 0) {
+            CHECK_FALSE(fs::exists(folder / "s.rst"));
+            CHECK((file_contents(folder / "x.pfm") == picture));
+        }
+        interrupted = run.code != 0 && fs::exists(folder / "s.rst");
+    }
+    REQUIRE(interrupted);
+    Arguments resume = checkpoint;
+    resume.emplace_back("--resume");
+    const RunOutcome run = run_raya(render_of(folder, resume));
+    INFO(run.describe());
+    REQUIRE(run.code == 0);
+    CHECK((file_contents(folder / "x.pfm") == picture));
+    CHECK_FALSE(fs::exists(folder / "s.rst"));
+    const Document report = Document::parse(file_contents(folder / "x.json"));
+    CHECK_THAT(run.err, Catch::Contains("continuing at "));
+    CHECK(report["measured"]["earlier_s"] < report["measured"]["render_s"]);
+}
+
+TEST_CASE("render --checkpoint: refuses options that do not fit it", "[cli][checkpoint]") {
+    const ScratchFolder folder;
+    const auto refused = [&](const Arguments& more, const Arguments& message) {
+        check_refused(folder, render_of(folder, more), 2, message);
+    };
+    refused({"--resume"}, {"--resume", "--checkpoint FILE.rst"});
+    refused({"--checkpoint-every", "5"}, {"--checkpoint-every", "--checkpoint FILE.rst"});
+    refused({"--checkpoint", "-"}, {"--checkpoint -"});
+    refused({"--checkpoint", folder / "s.rst", "--checkpoint-every", "-1"}, {"--checkpoint-every -1", "0..86400"});
+    refused({"--checkpoint", folder / "none/s.rst"}, {"none"});
+    refused({"--checkpoint", folder / "x.pfm"}, {"--checkpoint", "the same file as --output"});
+    refused({"--checkpoint", folder / "s.rst", "--machine", "torus"}, {"--checkpoint", "--machine torus", "grande"});
+    refused({"--checkpoint", folder / "s.rst", "--frames", "1:2", "--turn", "90"}, {"--checkpoint", "single image"});
+}
+
+TEST_CASE("render --checkpoint: refuses a file that is not a checkpoint, and leaves it unchanged",
+          "[cli][checkpoint]") {
+    const ScratchFolder folder;
+    const std::string file = folder / "s.rst";
+    const auto refused = [&](const Arguments& more, const std::string& message) {
+        const std::string before = file_contents(file);
+        const RunOutcome run = run_raya(render_of(folder, more));
+        INFO(run.describe());
+        CHECK(run.code == 2);
+        CHECK_THAT(run.err, Catch::Contains("--checkpoint " + file) && Catch::Contains(message));
+        CHECK_THAT(run.err, !Catch::Contains("remove"));  // the file may be a scene
+        CHECK(file_contents(file) == before);
+        CHECK(folder.entries() == 1);
+    };
+    for (const std::string& content :
+         {std::string("hours of work"), file_contents(scene_file("planes")), std::string()}) {
+        write_whole_file(file, content);
+        refused({"--checkpoint", file}, "is not a checkpoint; name another file");
+        refused({"--checkpoint", file, "--resume"}, "is not a checkpoint; name another file");
+    }
+    write_whole_file(file, "raya state 2\nhours of work");
+    refused({"--checkpoint", file}, "add --resume");
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Documents: links lead somewhere, paragraphs are short, and what README prints is what raya prints.
+
+  test_documents.py RAYA    RAYA: the program; its examples in README.md are run in the project's folder
+"""
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+GENERATED = {"report.md", "gpu_resources.md", "portability.md", "performance.md", "sweep.md"}  # tools write these
+MOST_WORDS, MOST_CELL_WORDS, MOST_COLUMNS = 80, 30, 170
+# What differs between machines and runs: times, rates, shares of a peak, sizes of binaries, the device's name.
+MEASURED = re.compile(r"\d+(\.\d+)?(?= ?(s|Mrays/s|ms)\b)|pthread-[^(:]*?(?= \(|:|$)|(?<=\s)\d+\.\d+|\b\d+ lanes?\b|(?<=\s)\d{2,3}$")
+
+
+def documents():
+    names = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"], cwd=ROOT, capture_output=True, text=True, check=True)
+    return [ROOT / name for name in names.stdout.split("\n") if name and (ROOT / name).is_file()]
+
+
+def anchors(text):
+    """The anchors of a page's headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", text, re.M)
+    return {re.sub(r"[^\w\- ]", "", re.sub(r"[`*]", "", heading).lower()).replace(" ", "-") for heading in headings}
+
+
+def broken_links(page, text):
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if re.match(r"[a-z]+://|mailto:", target):
+            continue
+        file, _, anchor = target.partition("#")
+        other = page if not file else page.parent / file
+        if not other.exists():
+            yield f"{page.relative_to(ROOT)}: {target} does not exist"
+        elif anchor and other.suffix == ".md" and anchor not in anchors(other.read_text()):
+            yield f"{page.relative_to(ROOT)}: {target} has no such heading"
+
+
+def long_texts(page, text):
+    name = page.relative_to(ROOT)
+    prose = re.sub(r"^( {4,}|\t).*$", "", text, flags=re.M)  # without code
+    items = re.split(r"\n\s*\n|\n(?=\s*(?:[-*]|\d+\.) )", prose)
+    for item in items:
+        rows = [line for line in item.splitlines() if line.startswith("|")]
+        words = " ".join(line for line in item.splitlines() if not line.startswith(("|", "#"))).split()
+        if len(words) > MOST_WORDS:
+            yield f"{name}: {len(words)} words in one paragraph: {' '.join(words[:8])} ..."
+        for cell in (cell for row in rows for cell in re.split(r"(?<!\\)\|", row)):
+            if len(cell.split()) > MOST_CELL_WORDS:
+                yield f"{name}: {len(cell.split())} words in one cell: {' '.join(cell.split()[:8])} ..."
+    for number, line in enumerate(text.splitlines(), 1):
+        if len(line) > MOST_COLUMNS and not line.startswith("|") and "](" not in line:
+            yield f"{name}:{number}: {len(line)} columns"
+
+
+def masked(line):
+    return re.sub(r"\s+", " ", MEASURED.sub("#", line)).strip()
+
+
+def examples(text):
+    """(command, printed lines) of each block that starts with "    $ "."""
+    for block in re.findall(r"(?:^    .*\n)+", text, re.M):
+        lines = [line[4:] for line in block.splitlines()]
+        if lines[0].startswith("$ build/raya"):
+            yield lines[0][2:], lines[1:]
+
+
+def wrong_examples(raya, text):
+    with tempfile.TemporaryDirectory() as folder:
+        for command, printed in examples(text):
+            arguments = command.replace("-o centre.png", f"-o {folder}/centre.png").split()[1:]
+            run = subprocess.run([raya, *arguments], cwd=ROOT, capture_output=True, text=True)
+            if run.returncode:
+                yield f"README.md: {command}: exit code {run.returncode}: {run.stderr}"
+                continue
+            lines = {masked(line.replace(folder + "/", "")) for line in run.stdout.splitlines()}
+            yield from (f"README.md: {command} does not print: {line}" for line in printed if masked(line) not in lines)
+
+
+def main():
+    raya = str(Path(sys.argv[1]).resolve())
+    faults = []
+    for page in documents():
+        text = page.read_text()
+        faults += broken_links(page, text)
+        if page.name not in GENERATED:
+            faults += long_texts(page, text)
+    readme = (ROOT / "README.md").read_text()
+    if not list(broken_links(ROOT / "README.md", "[a](docs/none.md)")) or not list(long_texts(ROOT / "README.md", "word " * 81)):
+        faults.append("test_documents.py: finds no fault where there is one")
+    faults += wrong_examples(raya, readme)
+    wrong = "    $ build/raya devices\n    a device that nobody has\n"
+    if not list(wrong_examples(raya, wrong)):
+        faults.append("test_documents.py: an example with another output passes")
+    print("\n".join(faults) or f"{len(documents())} pages, {len(list(examples(readme)))} examples: no fault")
+    return bool(faults)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Messages of raya: prints the texts of all errors and warnings of host/ in one list, and refuses private words and loose ends in them.
+
+  test_messages.py           checks, and prints what is wrong
+  test_messages.py --list    prints every message with its file and line
+"""
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+CALLS = re.compile(r"\b(?:throw\s+)?(UserError|DeviceError|NffError|JsonError|CheckFailure|runtime_error|warn|add_warning|complain|refuse)\s*[({]")
+# Words with a standard term (docs/glossary.md), and ends that a message does not have.
+PRIVATE = re.compile(r"\b(told|tells|beside|standstill|stands still|in place of|of use|thrown away|put aside|held against|wants to|no longer goes)\b", re.I)
+
+
+def literals(text, start):
+    """(string literals in the parentheses that open at `start`, joined; end)."""
+    depth, at, found = 0, start, []
+    while at < len(text):
+        character = text[at]
+        if character == '"':
+            end = at + 1
+            while text[end] != '"':
+                end += 2 if text[end] == "\\" else 1
+            found.append(text[at + 1:end])
+            at = end
+        elif text.startswith("//", at):
+            at = text.index("\n", at)
+        elif character == "'":
+            at = text.index("'", at + (3 if text[at + 1] == "\\" else 1))
+        elif character in "({":
+            depth += 1
+        elif character in ")}":
+            depth -= 1
+            if depth == 0:
+                break
+        at += 1
+    return "".join(found), at
+
+
+def messages():
+    for path in sorted((ROOT / "host").rglob("*.?pp")):
+        text = path.read_text()
+        for call in CALLS.finditer(text):
+            message, _ = literals(text, call.end() - 1)
+            if len(message.split()) > 2:
+                yield f"{path.relative_to(ROOT)}:{text.count(chr(10), 0, call.start()) + 1}", message.replace("\\n", "\n").replace('\\"', '"')
+
+
+def faults_of(message):
+    if PRIVATE.search(message):
+        yield f"says '{PRIVATE.search(message)[0]}'"
+    if message.endswith((".", "!")) and not message.endswith("..."):
+        yield "ends with a full stop"
+
+
+def main():
+    all_messages = list(messages())
+    if "--list" in sys.argv[1:]:
+        print("\n".join(f"{where}: {message}" for where, message in all_messages))
+        return 0
+    faults = [f"{where}: {fault}: {message}" for where, message in all_messages for fault in faults_of(message)]
+    if not list(faults_of("the queue is told to wait.")):
+        faults.append("test_messages.py: finds no fault where there are two")
+    print("\n".join(faults) or f"{len(all_messages)} messages: no fault")
+    return 1 if faults or len(all_messages) < 200 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,39 @@
+"""Caches the figures of builds: compilers for GPUs take minutes, and most changes touch few kernels.
+
+The key is all that the figures depend on: the preprocessed source, which has no comments and no code of other variants, the options, the
+versions of the compilers, and these modules. A build with a fault is not cached.
+"""
+import dataclasses, hashlib, json, os
+from pathlib import Path
+
+from gpu.figures import Figures
+
+CODE = b"".join(path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py")))
+
+
+class Cache:
+    def __init__(self, folder, vendors):
+        """A cache in `folder`; None: no cache."""
+        self.folder, self.hits = folder, []
+        self.versions = {vendor: vendor.version() for vendor in vendors}
+        if folder:
+            folder.mkdir(parents=True, exist_ok=True)
+
+    def compile(self, vendor, folder, build, targets):
+        """(figures, faults) as by the vendor's compile(). Called from several threads."""
+        source = self.folder and vendor.compiler_input(folder, build, targets)
+        if not source:
+            return vendor.compile(folder, build, targets)
+        settings = json.dumps([self.versions[vendor], targets, {**build, "source": ""}]).encode()
+        file = self.folder / (hashlib.sha256(b"\0".join([CODE, settings, source])).hexdigest() + ".json")
+        hit = file.exists()
+        self.hits.append(hit)
+        if hit:
+            return [Figures(**figures) for figures in json.loads(file.read_text())], []
+        figures, faults = vendor.compile(folder, build, targets)
+        figures = list(figures)
+        if not faults:
+            whole = file.with_suffix(f".{os.getpid()}")
+            whole.write_text(json.dumps([dataclasses.asdict(f) for f in figures]))
+            whole.replace(file)
+        return figures, faults
