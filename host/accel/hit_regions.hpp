@@ -67,7 +67,7 @@ class HitRegions {
     const std::vector<std::uint32_t>* words_;
     raya_objects objects_{};
     std::vector<std::uint32_t> numbers_;
-    double unit_, smallest_, stretch_;           // u, f and s in hit_regions.cpp
+    double unit_, smallest_, stretch_;            // u, f and s in hit_regions.cpp
     double extent_, reach_, far_, square_limit_;  // square_limit_: squares of smaller numbers do not overflow
     bool known_;
 };

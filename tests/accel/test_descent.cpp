@@ -106,8 +106,7 @@ TEST_CASE("BVH traversal finds the hits of testing all objects, in every format"
         }
 }
 
-TEST_CASE("boxes without a margin, a missing edge and filters without a bound are detected",
-          "[descent]") {
+TEST_CASE("boxes without a margin, a missing edge and filters without a bound are detected", "[descent]") {
     struct Mutant {
         const char* format;
         SourcePatch patch;

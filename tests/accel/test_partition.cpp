@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
-#include "host/error.hpp"
 #include "host/accel/hit_regions.hpp"
 #include "host/accel/partition.hpp"
+#include "host/error.hpp"
 #include "tests/accel/partition_lists.hpp"
 
 namespace raya {

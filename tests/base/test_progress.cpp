@@ -46,8 +46,8 @@ TEST_CASE("slow compiling prints its time and a remedy", "[progress]") {
     std::string text(1000, ' ');
     std::rewind(file.get());
     text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-    CHECK_THAT(
-        text, Catch::StartsWith("raya: compiling kernels for toy (first run only) ...\nraya: still compiling after "));
+    CHECK_THAT(text,
+               Catch::StartsWith("raya: compiling kernels for toy (first run only) ...\nraya: still compiling after "));
     CHECK_THAT(text,
                Catch::Contains("POCL_WORK_GROUP_METHOD=loops") && Catch::Contains("raya: compiling kernels took "));
 }

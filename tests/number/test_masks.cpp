@@ -50,16 +50,15 @@ TEST_CASE("masks choose, count and reduce correctly for every combination of lan
             const auto any = [&](bool value) {
                 return std::find(group, group + variant.lanes, value) != group + variant.lanes;
             };
-            const Words expected = {
-                std::bit_cast<std::uint32_t>(operands[2 * i]),  // a, which equals b if m is false
-                truth[i] ? i : 12345u,
-                i + truth[i],
-                truth[i] ? i + 5 : i,
-                any(true),
-                any(false),
-                truth[i],
-                2,
-                std::bit_cast<std::uint32_t>(static_cast<float>(i))};
+            const Words expected = {std::bit_cast<std::uint32_t>(operands[2 * i]),  // a, which equals b if m is false
+                                    truth[i] ? i : 12345u,
+                                    i + truth[i],
+                                    truth[i] ? i + 5 : i,
+                                    any(true),
+                                    any(false),
+                                    truth[i],
+                                    2,
+                                    std::bit_cast<std::uint32_t>(static_cast<float>(i))};
             const Words row(results.begin() + i * kColumns, results.begin() + (i + 1) * kColumns);
             CAPTURE(variant.name(), kSeed, i);
             CHECK(row == expected);

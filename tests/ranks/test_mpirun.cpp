@@ -54,10 +54,11 @@ void check_all_counts(const ScratchFolder& folder, const Arguments& render) {
 TEST_CASE("mpirun: images, counts and loads of the ring are those of one process", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     const Arguments common = {"render",   scene_file("centre"), "-o",      folder / "x.pfm", "--cost", folder / "c.pfm",
-                          "--report", folder / "x.json",    "--quiet", "--lanes",        "4",      "--size",
-                          "40x24"};
-    for (const Arguments& options : {Arguments{"--pes", "8", "--accel", "bvh", "--from", "3,-6,4", "--light", "5,5,9"},
-                                 Arguments{"--pes", "13", "--antialias", "supersample", "--mask", folder / "m.pfm"}}) {
+                              "--report", folder / "x.json",    "--quiet", "--lanes",        "4",      "--size",
+                              "40x24"};
+    for (const Arguments& options :
+         {Arguments{"--pes", "8", "--accel", "bvh", "--from", "3,-6,4", "--light", "5,5,9"},
+          Arguments{"--pes", "13", "--antialias", "supersample", "--mask", folder / "m.pfm"}}) {
         Arguments render = common;
         render.insert(render.end(), options.begin(), options.end());
         check_all_counts(folder, render);
@@ -74,12 +75,12 @@ TEST_CASE("mpirun: image, counts, loads and packets of the torus are those of on
 TEST_CASE("mpirun: frames are those of one process, and existing frames are not rendered again", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     const Arguments render = {"render",   scene_file("centre"),
-                          "-o",       folder / "x.ppm",
-                          "--frames", "1:3",
-                          "--turn",   "360",
-                          "--lanes",  "4",
-                          "--size",   "24x16",
-                          "--pes",    "8"};
+                              "-o",       folder / "x.ppm",
+                              "--frames", "1:3",
+                              "--turn",   "360",
+                              "--lanes",  "4",
+                              "--size",   "24x16",
+                              "--pes",    "8"};
     REQUIRE(run_raya(render).code == 0);
     const Files one = files_in(folder);
     REQUIRE(one.size() == 4);

@@ -54,7 +54,7 @@ class OneRank {
     }
 
     Arguments words(const Mpi& mpi, std::uint32_t ranks, std::uint32_t rank, const std::string& command,
-                const Arguments& arguments) const {
+                    const Arguments& arguments) const {
         Arguments all = {"-n", std::to_string(ranks), script_, std::to_string(rank), command, mpi.program};
         all.insert(all.end(), arguments.begin(), arguments.end());
         return all;
@@ -129,7 +129,7 @@ TEST_CASE("mpirun of another MPI is refused with one message", "[ranks][.mpirun]
         for (const Mpi& other : mpis)
             if (mpi.launcher != other.launcher)
                 check_message(outputs, run_ranks(mpi, on(other, 2, render(outputs))), 2,
-                           {"raya: started as one of 2 processes, but ", "remedy: use the mpirun of that MPI"});
+                              {"raya: started as one of 2 processes, but ", "remedy: use the mpirun of that MPI"});
 }
 
 TEST_CASE("mpirun: a failing device or driver on one rank ends all ranks", "[ranks][.mpirun]") {
@@ -178,11 +178,11 @@ TEST_CASE("mpirun: a full disk on rank 0 ends all ranks", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     const std::string folder = std::filesystem::canonical(outputs.path()).string();
     const RunOptions full{.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
-                                          {"RAYA_FULL_DISK", "100000 " + folder},
-                                          {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
+                                        {"RAYA_FULL_DISK", "100000 " + folder},
+                                        {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
     for (const Mpi& mpi : mpis_here())
         check_message(outputs, run_ranks(mpi, on(mpi, 3, render(outputs, {"--size", "512"})), 0, {}, full), 2,
-                   {"raya: rank 0 on ", "x.pfm", "No space left on device"});
+                      {"raya: rank 0 on ", "x.pfm", "No space left on device"});
 }
 
 // mpirun need not forward the output of an interrupted rank, so rank 0 writes to a file here. Open MPI kills a rank one
@@ -214,8 +214,7 @@ TEST_CASE("mpirun: a rank that hangs ends the run after RAYA_RANK_TIMEOUT", "[ra
     }
 }
 
-TEST_CASE("mpirun: a process that ends before MPI_Init ends the others",
-          "[ranks][.mpirun]") {
+TEST_CASE("mpirun: a process that ends before MPI_Init ends the others", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     const OneRank one;
     const RunOptions hasty{.variables = {{"RAYA_RANK_TIMEOUT", "2"}}};

@@ -59,8 +59,7 @@ TEST_CASE("the light between two mirrors is a geometric series with one term per
     }
 }
 
-TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre and half way to its rim",
-          "[ring]") {
+TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre and half way to its rim", "[ring]") {
     Scene scene = dark_scene();
     scene.lights = {{{0, 0, 0}, Colour(1, 1, 1)}};
     scene.surfaces = {{.colour = {1, 0.5, 0}, .diffuse = 0.4, .specular = 0.3, .shine = 20}};

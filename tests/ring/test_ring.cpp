@@ -227,8 +227,7 @@ TEST_CASE("an exchange brings every band from every distance once, with the pred
         }
         CHECK(wrong == 0);
         const std::uint64_t bands = (capacity + band - 1) / band, moves = sum_of(exchange_moves(m, method, false));
-        const std::uint64_t whole =
-            3ull * capacity * moves;  // words: a short last band moves fewer
+        const std::uint64_t whole = 3ull * capacity * moves;  // words: a short last band moves fewer
         const bool ring = method == ExchangeMethod::kRing, bus = method == ExchangeMethod::kBus;
         CHECK(counted.rotations == (ring ? moves * bands : 0));
         CHECK(counted.rotation_words == counted.rotations * m.pes * band * 3);

@@ -39,7 +39,7 @@ TEST_CASE("a scene in plain NFF has no remarks", "[dialects]") {
 TEST_CASE("polygons without area are skipped and counted", "[dialects]") {
     const Parsed parsed =
         parse_lenient(kView + "p 3\n0 0 0\n1 0 0\n2 0 0\n" + kSphere + "p 3\n0 0 0\n0 0 0\n2 0 0\n" +
-             "pp 3\n1 1 1 0 0 1\n1 1 1 0 0 1\n1 1 1 0 0 1\np 2\n0 0 0\n1 0 0\np 3\n0 0 0\n1 0 0\n0 1 0\n");
+                      "pp 3\n1 1 1 0 0 1\n1 1 1 0 0 1\n1 1 1 0 0 1\np 2\n0 0 0\n1 0 0\np 3\n0 0 0\n1 0 0\n0 1 0\n");
     CHECK(parsed.remarks == Remarks{"t.nff:8: polygon without area, left out (4 in all)"});
     CHECK(parsed.scene.polygons.size() == 1);
     CHECK(parsed.scene.spheres.size() == 1);
@@ -116,10 +116,10 @@ TEST_CASE("non-planar polygons are cut into triangles, patches with their normal
 
 TEST_CASE("objects without size and normals without length are ignored", "[dialects]") {
     const Parsed parsed = parse_lenient(kView + kSphere + "s 1 1 1 0\nc 0 0 0 0 0 0 1 0\nc 0 0 0 1 0 0 0 1\n" +
-                               "pp 3\n0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n");
+                                        "pp 3\n0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n");
     CHECK(parsed.remarks == Remarks{"t.nff:9: sphere of radius 0, left out", "t.nff:10: cone without radius, left out",
-                              "t.nff:11: cone without height, left out",
-                              "t.nff:12: patch with a normal of 0, taken as a flat polygon"});
+                                    "t.nff:11: cone without height, left out",
+                                    "t.nff:12: patch with a normal of 0, taken as a flat polygon"});
     CHECK(parsed.scene.object_count() == 2);
     CHECK(parsed.scene.polygons[0].normals.empty());
 }
@@ -127,14 +127,14 @@ TEST_CASE("objects without size and normals without length are ignored", "[diale
 TEST_CASE("entities of other dialects are skipped with the numbers that follow them", "[dialects]") {
     const Parsed parsed =
         parse_lenient("number 3\n" + kView + "la 0.2 0.2 0.2\n" + kSphere +
-             "lf 0 0 0\n1 1 1\n 0.5\ntt wood.ppm 1 2 3\n0 0 0 0 0\n1 0 0 1 0\nQ\nla 0.1 0.1 0.1  # again\n" +
-             "texture marble.tga\n" + kSphere);
+                      "lf 0 0 0\n1 1 1\n 0.5\ntt wood.ppm 1 2 3\n0 0 0 0 0\n1 0 0 1 0\nQ\nla 0.1 0.1 0.1  # again\n" +
+                      "texture marble.tga\n" + kSphere);
     CHECK(parsed.remarks == Remarks{"t.nff:1: entity 'number' of another dialect, skipped",
-                              "t.nff:9: entity 'la' of another dialect, skipped (2 in all)",
-                              "t.nff:11: entity 'lf' of another dialect, skipped",
-                              "t.nff:14: entity 'tt' of another dialect, skipped",
-                              "t.nff:17: entity 'Q' of another dialect, skipped",
-                              "t.nff:19: entity 'texture' of another dialect, skipped"});
+                                    "t.nff:9: entity 'la' of another dialect, skipped (2 in all)",
+                                    "t.nff:11: entity 'lf' of another dialect, skipped",
+                                    "t.nff:14: entity 'tt' of another dialect, skipped",
+                                    "t.nff:17: entity 'Q' of another dialect, skipped",
+                                    "t.nff:19: entity 'texture' of another dialect, skipped"});
     CHECK(parsed.scene.spheres.size() == 2);
 }
 

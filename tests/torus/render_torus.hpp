@@ -24,7 +24,7 @@ struct TorusCase {
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     PacketCharge packets{};
-    std::uint32_t queue = 0;                         // packets; 0: the default
+    std::uint32_t queue = 0;                                // packets; 0: the default
     std::uint32_t lanes = default_test_lanes(), group = 0;  // 0: the device's default
     std::uint32_t bounces = 4;
     std::string format = "fp32";

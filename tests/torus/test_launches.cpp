@@ -53,8 +53,7 @@ TorusCase random_case(SplitMix& random, const Scene& scene) {
     c.bounces = 3;
     c.lanes = widths[random_below(random, 3)];
     c.group = c.lanes == 1 ? 3 : 1;
-    if (random_below(random, 4))
-        c.queue = raya_min_queue(lights_of(scene), c.bounces) + 20 + random_below(random, 60);
+    if (random_below(random, 4)) c.queue = raya_min_queue(lights_of(scene), c.bounces) + 20 + random_below(random, 60);
     return c;
 }
 

@@ -76,8 +76,7 @@ class Mailboxes {
                 wrong_flags += sent[link * nodes_ + node] != goes;
                 const std::size_t to = at(link * nodes_ + node);
                 if (busy) touched += !std::equal(&in_[to], &in_[to] + (1 + capacity_) * words_, &before[to]);
-                if (!busy && !goes)
-                    touched += in_[to] != 0;  // an empty box stays empty, whatever follows its header
+                if (!busy && !goes) touched += in_[to] != 0;  // an empty box stays empty, whatever follows its header
                 if (!goes) continue;
                 expected[node * RAYA_LINKS + link] += std::uint64_t{packets} * words_;
                 arrive(link, node, end);

@@ -21,15 +21,15 @@ struct TriedMachine {
 
     QueueFound search(std::uint32_t queue) {
         return find_longer_queue(queue, {.bytes = [](const NodeBuffers& b) { return std::uint64_t{10} * b.queue; },
-                                    .limit = limit,
-                                    .most = most,
-                                    .fits_device = [this](const NodeBuffers& b) { return b.queue <= device; },
-                                    .ends =
-                                        [this](const NodeBuffers& b) {
-                                            tried.push_back(b.queue);
-                                            if (b.queue > driver) throw DeviceError("too long");
-                                            return b.queue >= enough;
-                                        }});
+                                         .limit = limit,
+                                         .most = most,
+                                         .fits_device = [this](const NodeBuffers& b) { return b.queue <= device; },
+                                         .ends =
+                                             [this](const NodeBuffers& b) {
+                                                 tried.push_back(b.queue);
+                                                 if (b.queue > driver) throw DeviceError("too long");
+                                                 return b.queue >= enough;
+                                             }});
     }
 };
 
