@@ -1,6 +1,6 @@
-// The kernel cache of a test program. Each program has a cache of its own, because a program may read an entry that
-// another is replacing (pocl issue 586). It starts with the kernels that earlier programs built, so that a kernel which
-// several programs need is built once.
+// The PoCL kernel cache of a test program. Each program has its own cache, because a program may read an entry that
+// another program is replacing (pocl issue 586). The cache starts with the kernels that earlier programs built, so that
+// a kernel that several programs need is built only once.
 #pragma once
 #include <unistd.h>
 
@@ -12,9 +12,9 @@
 
 namespace raya {
 
-/// Sets POCL_CACHE_DIR to a new folder. The environment variable RAYA_KERNEL_STORE may name a folder that the programs
-/// of this run and of later ones share (tools/test). PoCL names its entries after source, options, device and driver,
-/// and a failed build adds none (test_program.cpp). Without RAYA_KERNEL_STORE the cache starts empty.
+/// Sets POCL_CACHE_DIR to a new folder. The environment variable RAYA_KERNEL_STORE may name a folder that the test
+/// programs of this and later runs share (tools/test). PoCL derives an entry's name from source, options, device and
+/// driver, and a failed build adds no entry (test_program.cpp). Without RAYA_KERNEL_STORE the cache starts empty.
 class KernelCache {
   public:
     KernelCache() {
@@ -22,7 +22,7 @@ class KernelCache {
         if (!store_.empty() && std::filesystem::is_directory(store_)) add_missing(store_, folder_.path());
     }
 
-    /// Adds the kernels that were built to the store.
+    /// Adds the kernels that this program built to the store.
     ~KernelCache() {
         if (!store_.empty()) add_missing(folder_.path(), store_);
     }
@@ -36,16 +36,17 @@ class KernelCache {
         return named == nullptr ? "" : named;
     }
 
-    // Several programs may do this at once: a file appears complete or not at all, and existing files stay.
+    // Several programs may call this at once: each file appears complete or not at all, and existing files stay
+    // unchanged.
     static void add_missing(const std::filesystem::path& from, const std::filesystem::path& to) {
-        std::error_code none;  // ignored (file removed, disk full): a kernel is then built twice
+        std::error_code none;  // ignored (file removed, disk full): the kernel is then built again
         for (const auto& entry : std::filesystem::recursive_directory_iterator(from, none)) {
             const std::filesystem::path target = to / entry.path().lexically_relative(from);
             if (!entry.is_regular_file(none) || is_unfinished(entry.path()) || std::filesystem::exists(target, none))
                 continue;
             const std::filesystem::path part = target.string() + ".part" + std::to_string(getpid());
             std::filesystem::create_directories(target.parent_path(), none);
-            std::filesystem::create_hard_link(entry.path(), target, none);  // PoCL writes no file twice
+            std::filesystem::create_hard_link(entry.path(), target, none);  // PoCL never rewrites a file
             if (!none) continue;
             if (std::filesystem::copy_file(entry.path(), part, none)) std::filesystem::rename(part, target, none);
         }
@@ -56,7 +57,7 @@ class KernelCache {
         return name.find(".part") != std::string::npos || name.starts_with("tempfile");
     }
 
-    // On the store's file system, so that hard links work instead of copies.
+    // On the store's file system, because hard links do not work across file systems.
     std::filesystem::path store_ = store();
     TemporaryFolder folder_{store_.empty() ? "raya-test-kernels" : (store_.parent_path() / "kernels").string()};
 };

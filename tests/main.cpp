@@ -7,7 +7,8 @@
 #include "tests/kernel_cache.hpp"
 #include "tests/paths.h"
 
-// Tests ignore the values that raya tune has stored for a developer's devices, and kernel binaries next to the program.
+// Unless the environment says otherwise, tests ignore stored tuning results (raya tune) and the kernel binaries in the
+// program's folder.
 int main(int argc, char** argv) {
     setenv("RAYA_TUNED", "off", 0);
     setenv("RAYA_BINARIES", "off", 0);

@@ -1,1 +1,2 @@
-// Empty, for the test programs' precompiled header: CMake makes one only for a file that uses it; main.cpp does not.
+// An empty source file: CMake builds a precompiled header only for a target with a source that uses it, and main.cpp
+// does not.

@@ -1,4 +1,4 @@
-// How many cases a test runs: few by default (fast tests), all with RAYA_THOROUGH=1.
+// The number of cases that a test runs: few by default, all with RAYA_THOROUGH=1.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -10,15 +10,15 @@
 
 namespace raya {
 
-/// Returns true if RAYA_THOROUGH=1 is set, as in ctest's entries labelled `sweep`. A test then runs all formats, lanes,
-/// scenes and random cases, otherwise a few of each, chosen so that they still find every kind of fault.
+/// Returns true if RAYA_THOROUGH=1 is set, as in ctest's entries labelled `sweep`. Tests then run all formats, lanes,
+/// scenes and random cases. Otherwise they run a few of each, chosen so that they still detect every kind of fault.
 inline bool thorough() {
     const char* text = std::getenv("RAYA_THOROUGH");
     return text != nullptr && std::string_view(text) == "1";
 }
 
-/// Lanes for cases that hold for any number of them: 0, the device's default, if thorough() or RAYA_OWN_LANES is set;
-/// otherwise 4, whose kernels compile in a third of the time of 16 lanes.
+/// Returns the number of lanes for tests that hold for any number of lanes: 0 (the device's default) if thorough() or
+/// if RAYA_OWN_LANES is set; otherwise 4, because kernels for 4 lanes compile in a third of the time of 16 lanes.
 inline std::uint32_t default_test_lanes() { return thorough() || std::getenv("RAYA_OWN_LANES") != nullptr ? 0 : 4; }
 
 /// Returns the first `few` of `all`, or all of them if thorough(): `for (... : quick(2, {...}))`.
@@ -35,7 +35,8 @@ auto quick_of(std::size_t few, const Container& all) {
     return std::vector(begin(all), begin(all) + (thorough() ? size(all) : std::min(few, size(all))));
 }
 
-/// For products of many cases and many values: returns all values if thorough(), otherwise one, the next at each call.
+/// For tests of many combinations: returns all values if thorough(), otherwise a single value, a different one at each
+/// call.
 template <class Container>
 Container all_or_next(const Container& all) {
     static std::size_t turn = 0;

@@ -4,7 +4,7 @@ set(commit "")
 file(STRINGS ${ROOT}/tools/commit.txt packed REGEX "^[0-9a-f]+$")
 if(packed)
     string(SUBSTRING "${packed}" 0 12 commit)
-elseif(EXISTS ${ROOT}/.git)  # not a repository in a folder above ROOT
+elseif(EXISTS ${ROOT}/.git)  # ROOT must be the repository, not a folder inside another project's repository
     find_program(GIT git)
     if(GIT)
         execute_process(COMMAND ${GIT} -C ${ROOT} describe --always --exclude=* --abbrev=12 "--dirty= with changes" OUTPUT_VARIABLE described

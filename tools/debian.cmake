@@ -15,7 +15,7 @@ file(GLOB pages ${staged}/usr/share/man/man1/*.1)
 run(gzip -9n ${pages})
 file(RENAME ${staged}/usr/share/zsh/site-functions ${staged}/usr/share/zsh/vendor-completions)
 
-# Licences: raya's, and those of headers whose code is in the program.
+# Licences of raya, and of the headers whose code is in the program.
 file(READ ${CPACK_RAYA_SOURCES}/LICENSE licence)
 string(REGEX REPLACE "^MIT License\n\nCopyright \\(c\\) ([^\n]*)\n\n" "" licence "${licence}")
 set(copyright "${CMAKE_MATCH_1}")
@@ -60,7 +60,7 @@ file(WRITE ${doc}/changelog
 ")
 run(gzip -9n ${doc}/changelog)
 
-# The package depends on the program's libraries. The libraries of pictures and MPI are loaded on use; raya prints what is missing.
+# The package depends on the program's libraries. raya loads the libraries for images and MPI when it needs them, and reports missing ones.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, python3-scipy, python3-pandas, python3-matplotlib, python3-jinja2, python3-tqdm, openmpi-bin")
 set(modules -dRecommends -e${staged}/usr/lib/raya/raya_pictures.so)
@@ -79,5 +79,5 @@ foreach(field IN ITEMS Depends Recommends Suggests)
     endif()
 endforeach()
 
-# The date of the release for all files: the same files give the same bytes.
+# All files get the date of the release, so that the same files give the same bytes.
 run(find ${staged} -exec touch -h -d @${seconds} {} +)

@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 set(doc ${CMAKE_INSTALL_DATADIR}/doc/raya)
 
 install(TARGETS raya RUNTIME)
-# lib/raya: the folder in which host/base/module.cpp searches, without a multiarch folder.
+# lib/raya, without a multiarch folder: the folder in which host/base/module.cpp searches for modules.
 install(TARGETS raya_pictures LIBRARY DESTINATION lib/raya)
 if(TARGET raya_mpi)
     install(TARGETS raya_mpi LIBRARY DESTINATION lib/raya)

@@ -1,4 +1,4 @@
-"""The OpenCL implementations of tools/portability: how programs are started on each, and why some cannot run."""
+"""The OpenCL implementations of tools/portability: starts programs on an implementation, and explains why an implementation cannot run."""
 import os, resource, shutil, subprocess, tempfile
 from pathlib import Path
 
@@ -7,11 +7,11 @@ FETCHED = "implementations"  # folder in the build folder to which tools/portabi
 
 
 class Implementation:
-    """Starts programs on one implementation. `slow`: it gets fewer cases. `lacking`: why it cannot run, with the remedy. `of_device`: its
-    driver may be installed without its device. `budget`: maximum seconds to compile a kernel.
+    """Starts programs on one implementation. `slow`: run fewer cases on it. `lacking`: reason why it cannot run, with a remedy. `of_device`:
+    its driver may be installed without its device. `budget`: maximum seconds to compile a kernel.
 
-    `watches`: it detects faults and reports them on stderr only, with exit code 0. raya itself prints nothing on stderr unless something is
-    wrong, so every line there is a fault. (Oclgrind's --log is not used: each OpenCL context truncates that file.)
+    `watches`: the implementation detects faults in kernels and reports them only on stderr, with exit code 0. raya prints nothing on stderr
+    if all is well, so every line there is a fault. (Oclgrind's --log is not used, because each OpenCL context truncates that file.)
     """
 
     def __init__(self, name, variables=None, prefix=(), slow=False, lacking=None, watches=False, of_device=False, budget=60):
@@ -20,7 +20,7 @@ class Implementation:
 
     def run(self, command, scratch, limit, more=None):
         """(exit code, None after `limit` seconds; stdout and stderr; stdout; faults found by an implementation with `watches`)"""
-        # Ignores the caller's own settings, such as a CI job's choice of an implementation.
+        # Ignores OpenCL variables in the caller's environment, such as a CI job's choice of an implementation.
         chosen = ("RAYA_", "POCL_", "OCL_ICD_", "OCLGRIND_", "RUSTICL_", "CL_CONFIG_")
         inherited = {k: v for k, v in os.environ.items() if not k.startswith(chosen)}
         caches = {"POCL_CACHE_DIR": str(scratch), "MESA_SHADER_CACHE_DIR": str(scratch)}
@@ -33,13 +33,13 @@ class Implementation:
         return done.returncode, done.stdout + done.stderr, done.stdout, self.found_by_itself(done.stderr)
 
     def found_by_itself(self, stderr):
-        """The first line of stderr, and the number of others; empty without `watches`."""
+        """The first line of stderr, and the number of further lines; an empty text without `watches`."""
         lines = [line.strip() for line in stderr.splitlines() if line.strip()] if self.watches else []
         return "" if not lines else lines[0] + (f" (and {len(lines) - 1} more lines)" if len(lines) > 1 else "")
 
 
 def processor_seconds():
-    """Processor seconds of all programs run so far, with their children; independent of the machine's other load."""
+    """Processor seconds of all programs run so far, including their children. Unlike wall time, independent of other load on the machine."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -63,10 +63,10 @@ def known_implementations(build):
     for name, file, variants in [("PoCL 3.0 (PyPI)", "pocl-3.0", [("", {})]), ("Intel CPU", "intel-cpu", [("", {}), unoptimised])]:
         driver = (build / FETCHED / f"{file}.icd").absolute()
         found += variants_of(name, driver, None if driver.exists() else "not set up (tools/portability --setup fetches it)", variants)
-    # Unoptimised: Oclgrind 21.10 does not support all optimised code. Build options are an argument of Oclgrind.
+    # Kernels are compiled unoptimised, because Oclgrind 21.10 does not support all optimised code. Oclgrind takes build options as an argument.
     found.append(Implementation("Oclgrind", prefix=["oclgrind", "--build-options", "-cl-opt-disable"], slow=True, watches=True,
                                 lacking=None if shutil.which("oclgrind") else "not installed (Debian: oclgrind)"))
-    # One lane: its compiler takes a minute for a kernel with 16 lanes.
+    # One lane, because rusticl's compiler takes a minute for a kernel with 16 lanes.
     rusticl = {"OCL_ICD_VENDORS": str(icd("rusticl")), "RUSTICL_ENABLE": "llvmpipe", "RAYA_NUMBER_LANES": "1"}
     found.append(Implementation("rusticl llvmpipe", rusticl, slow=True, budget=300,
                                 lacking=None if icd("rusticl").exists() else "not installed (Debian: mesa-opencl-icd)"))

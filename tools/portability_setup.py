@@ -17,7 +17,7 @@ class SetupError(Exception):
 
 
 def fetch(packages, folder):
-    """Downloads the wheels of the file `packages` to the folder; pip verifies versions and hashes. Returns their paths."""
+    """Downloads the wheels that the file `packages` lists to the folder; pip verifies versions and hashes. Returns the wheels' paths."""
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--no-cache-dir", "--only-binary", ":all:", "--require-hashes",
                "--disable-pip-version-check", "-r", str(packages), "-d", str(folder)]
     done = subprocess.run(command, capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL)
@@ -31,7 +31,8 @@ def fetch(packages, folder):
 
 
 def unpack(wheel, folder):
-    """Unpacks a wheel's data (X.data/data/...) and packages. Equal members become hard links: wheels have no links and contain libraries twice."""
+    """Unpacks a wheel's data (X.data/data/...) and packages. Equal files become hard links, because wheels cannot contain links and have
+    libraries twice."""
     seen = {}
     with zipfile.ZipFile(wheel) as members:
         for member in members.infolist():
@@ -80,7 +81,7 @@ def size_text(folder):
 
 
 def set_up_one(packages, target, cpuinfo):
-    """Sets up one implementation in the folder `target`: atomically, with the .icd file last."""
+    """Sets up one implementation in the folder `target`. The .icd file is written last, so that an interrupted setup is not used."""
     name, driver_file = packages.stem, target.with_name(packages.stem + ".icd")
     asked = packages.read_text()
     stamp = target / "packages.txt"

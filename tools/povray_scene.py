@@ -19,7 +19,7 @@ import sys
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-LONG = 1e9  # length of a checker's cubes along the ignored axis: the largest number in NFF
+LONG = 1e9  # length of a checker's cubes along the axis that the checker ignores: the largest number allowed in NFF
 
 
 class SceneError(Exception):
@@ -42,7 +42,7 @@ class Surface:
 
 @dataclass
 class Scene:
-    """Objects by kind; the surface is the last item of each."""
+    """Objects by kind; the last item of each object is its surface."""
 
     view: dict = field(default_factory=dict)
     background: tuple = (0.0, 0.0, 0.0)
@@ -199,7 +199,7 @@ def triangles(vertices):
     rest, found = list(range(len(vertices))), []
     while len(rest) > 3:
         corners = [(rest[i - 1], rest[i], rest[(i + 1) % len(rest)]) for i in range(len(rest))]
-        ear = next((corner for corner in corners if is_ear(corner, rest)), corners[1])  # a polygon that is not simple may have no ear
+        ear = next((corner for corner in corners if is_ear(corner, rest)), corners[1])  # a self-intersecting polygon may have no ear
         found.append(ear)
         rest.remove(ear[1])
     return found + [tuple(rest)]
@@ -238,7 +238,7 @@ class Surfaces:
             yield f"#declare Surface{number} = texture {{ pigment {{ {self.pigment(surface)} }} finish {{ {self.finish(surface)} }} }}"
 
     def solid(self, shape, surface, inside_only=False):
-        """Texts of an object; a transmitting object has a second one, which casts its shadow."""
+        """Yields the text of an object; for a transmitting object, also the text of a second object, which casts its shadow."""
         texture = f"texture {{ Surface{self.number(surface)} }}"
         if inside_only:
             texture = "texture { Clear } interior_" + texture

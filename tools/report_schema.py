@@ -23,7 +23,7 @@ class Node:
     def members(self):
         """Returns [(name, node)] of an object's members."""
         nodes = [(name, self["properties"][name]) for name in self.get("properties", {})]
-        return [(name, node) for name, node in nodes if set(node.value) != {"required"}]  # only {"required": ...}: a condition, no definition
+        return [(name, node) for name, node in nodes if set(node.value) != {"required"}]  # a node with only "required" is a condition, not a definition
 
     def target(self):
         """Returns the node that $ref references; None without $ref."""

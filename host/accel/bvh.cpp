@@ -7,16 +7,16 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kBins = 32;           // along each axis
-constexpr std::uint32_t kMedianDepth = 24;  // nodes at this depth are split in halves, which bounds the depth
+constexpr std::size_t kBins = 32;           // number of bins along each axis
+constexpr std::uint32_t kMedianDepth = 24;  // from this depth on, parts are split into halves, which bounds the depth
 
-// Twice the centre.
+// Twice the centre of an item's box along an axis.
 float middle(const BvhItem& item, std::size_t axis) { return item.box.low[axis] + item.box.high[axis]; }
 
-// The number of leaves for `items` items.
+// Returns the number of leaves that `items` items need: their cost in the surface area heuristic.
 float leaves(std::size_t items) { return static_cast<float>((items + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH); }
 
-// Items that become one child of a node.
+// Items that will become one child of a node, and their bounding box.
 struct Part {
     std::span<BvhItem> items;
     Bounds box;
@@ -38,7 +38,7 @@ struct Bin {
     std::size_t items = 0;
 };
 
-// The range of centres along an axis, and its division into bins.
+// The range of the items' centres (doubled, see middle()) along an axis, and its division into kBins equal bins.
 struct Scale {
     float low = kInfinity, high = -kInfinity;
     float bins_per_unit = 0;
@@ -65,14 +65,14 @@ std::array<Scale, 3> scales_of(std::span<const BvhItem> items) {
     return scales;
 }
 
-// A cut between bins: items in the bins up to `last` along the axis are on one side.
+// A split plane between two bins: items in the bins up to `last` along the axis are on one side.
 struct Cut {
     float cost = kInfinity;
     std::size_t axis = 0, last = 0;
 };
 
 void find_cut(Cut& best, std::size_t axis, const Bins& bins) {
-    std::array<float, kBins> above{};  // cost of the bins above each
+    std::array<float, kBins> above{};  // above[b]: cost of all bins above bin b
     Bin sum;
     for (std::size_t b = kBins - 1; b > 0; --b) {
         extend(sum.box, bins[b].box);
@@ -95,7 +95,8 @@ Parts halves_at(const Part& part, std::size_t items) {
     return {part_of(part.items.first(items)), part_of(part.items.subspan(items))};
 }
 
-// Splits by number: for items with equal centres, or if the tree would become too deep.
+// Splits the items into two equal halves by object number: used if no bin boundary separates the items, or if the tree
+// would become too deep.
 Parts even_halves(const Part& part) {
     std::sort(part.items.begin(), part.items.end(),
               [](const BvhItem& a, const BvhItem& b) { return a.number < b.number; });
@@ -103,14 +104,14 @@ Parts even_halves(const Part& part) {
 }
 
 Parts cut_by_kind(const Part& part) {
-    std::uint32_t kind = RAYA_LINK_OBJECT;  // the lowest
+    std::uint32_t kind = RAYA_LINK_OBJECT;  // lowest kind of the items
     for (const BvhItem& item : part.items) kind = std::min(kind, item.kind);
     const auto others =
         std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) { return item.kind == kind; });
     return halves_at(part, static_cast<std::size_t>(others - part.items.begin()));
 }
 
-// Splits into the items in the bins up to `last` and the others; the boxes are the unions of the bins' boxes.
+// Splits the items into those in the bins up to `last` and the others. The boxes are the unions of the bins' boxes.
 Parts cut_at(const Part& part, const Cut& at, const Bins& bins, const Scale& scale) {
     const auto others = std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) {
         return scale.bin(middle(item, at.axis)) <= at.last;
@@ -151,8 +152,8 @@ class BvhBuilder {
     }
 
   private:
-    // The children of a node: starting with its part, splits the part of largest area that is not a leaf until there
-    // are RAYA_BVH_WIDTH parts.
+    // Returns the children of a node: starts with the node's part and repeatedly splits the part with the largest
+    // surface area that is not a leaf, until there are RAYA_BVH_WIDTH parts or only leaves.
     std::vector<Part> children_of(const Part& part, std::uint32_t depth) const {
         std::vector<Part> parts = {part};
         while (parts.size() < RAYA_BVH_WIDTH) {

@@ -21,48 +21,51 @@ struct Bounds {
 };
 constexpr Bounds kEmptyBounds = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
+/// Extends `box` so that it contains `by`.
 void extend(Bounds& box, const Bounds& by);
-/// Half the surface area; 0 for kEmptyBounds.
+/// Returns half the surface area; 0 for kEmptyBounds.
 float area(const Bounds& box);
 
 /// An object in a BVH.
 struct BvhItem {
     Bounds box;
-    std::uint32_t number;  // of the object
+    std::uint32_t number;  // object number
     std::uint32_t kind;    // RAYA_LINK_SPHERES, _FACES, _POLYGON, _CONES or _OBJECT: equal within a leaf
 };
 
 struct BvhChild {
     Bounds box;
     std::uint32_t kind;   // RAYA_LINK_*
-    std::uint32_t first;  // a node's number; a leaf's first item
-    std::uint32_t items;  // of a leaf: number of items, 1..max_leaf_items(kind)
+    std::uint32_t first;  // index in Bvh::nodes, or for a leaf, index of its first item in Bvh::items
+    std::uint32_t items;  // number of items of a leaf, 1..max_leaf_items(kind); 0 for a node
 };
 
 struct BvhNode {
     std::array<BvhChild, RAYA_BVH_WIDTH> children;
-    std::uint32_t count;  // of children
+    std::uint32_t count;  // number of children
 };
 
 struct Bvh {
-    std::vector<BvhItem> items;  // in the order of the leaves, within a leaf by number
+    std::vector<BvhItem> items;  // in the order of the leaves; within a leaf, by object number
     std::vector<BvhNode> nodes;  // parents before their children
-    BvhChild root{};             // meaningless if there are no items
-    std::uint32_t depth = 0;     // nodes on the longest path from the root
+    BvhChild root{};             // unused if there are no items
+    std::uint32_t depth = 0;     // maximum number of nodes on a path from the root to a leaf
 };
 
-/// The maximum number of items of a leaf of a kind: 16 or 1.
+/// Maximum number of items in a leaf of this kind (RAYA_LINK_*): 16 or 1.
 std::uint32_t max_leaf_items(std::uint32_t kind);
 
-/// Builds a BVH: the same one for the same items on every machine.
+/// Builds a BVH. The result depends only on the items, not on the machine.
 Bvh build_bvh(std::vector<BvhItem> items);
 
-/// Appends a BVH over the finite objects of a job to its words, in the layout of kernels/shared/bvh.h, and sets
-/// accel_at. A box contains every point at which the kernels can compute a hit of its objects (hit_regions.hpp), with a
-/// margin for the rounding of the traversal. UserError if it has too many rows.
+/// Builds a BVH over the finite objects of a job, appends it to the job's words in the layout of kernels/shared/bvh.h,
+/// and sets accel_at in the job's header. The box of an object contains every point at which a kernel can compute a hit
+/// of it (hit_regions.hpp), with a margin for rounding errors of the traversal. Throws UserError if the BVH has more
+/// rows than its links can address.
 AccelSummary append_bvh(PackedJob& job, const NumberFormat& format);
 
-/// Returns true if a BVH is faster than testing every ray against all objects, as measured on a CPU with sixteen lanes.
+/// Returns true if rendering this scene with a BVH is expected to be faster than testing every ray against all objects.
+/// The threshold was measured on a CPU with sixteen lanes.
 bool bvh_pays(const Scene& scene, const NumberFormat& format);
 
 }  // namespace raya

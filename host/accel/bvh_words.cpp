@@ -16,8 +16,9 @@ namespace {
 
 constexpr std::uint32_t kWidth = RAYA_BVH_WIDTH;
 
-// The maximum distance of a ray from a side of its box due to rounding in the traversal. The t of a side is
-// side / D - O / D in two operations, with 1 / D rounded: its error is 4 2^-24 (|side| + |O|) / |D|.
+// Upper bound of the traversal's rounding error in the position of a box side, for ray origins with coordinates up to
+// `reach`. Along each axis the kernel computes the distance t to a side as side * (1 / D) - O * (1 / D), with rounded
+// results, so t has an error of at most 4 2^-24 (|side| + |O|) / |D|. The bound has a margin of a factor of 2.
 double walk_error(double side, double reach) { return 8 * 0x1p-24 * (std::abs(side) + reach); }
 
 float below(double x) {
@@ -36,8 +37,9 @@ Bounds bounds_of(const Box& box, double reach) {
     return bounds;
 }
 
-// The reach of rays, in extents of the scene. Rays start anywhere on infinite planes, so a scene with planes gets a
-// larger reach as long as boxes of average size grow little.
+// Chooses the reach: the maximum coordinate of ray origins for which the boxes are valid, in multiples of the scene's
+// extent. Reflected rays can start anywhere on an infinite plane, so a scene with planes gets a larger reach: it is
+// doubled up to kMax as long as regions stay bounded and grow by at most kShareOfBox of their mean longest side.
 double reach_for(const PackedJob& job, const NumberFormat& format) {
     constexpr double kMin = 2, kMax = 1024, kShareOfBox = 1.0 / 64;
     const HitRegions regions(job, format, kMin);
@@ -61,7 +63,7 @@ const std::uint32_t* polygon_words(const PackedJob& job, std::uint32_t number) {
     return job.words().data() + objects.polygons_at + polygon * RAYA_POLYGON_WORDS;
 }
 
-// The kind of leaf for an object.
+// Returns the kind of leaf (RAYA_LINK_*) in which an object is stored.
 std::uint32_t kind_of(const PackedJob& job, const NumberFormat& format, std::uint32_t number) {
     constexpr std::uint32_t kManyCorners = 16;
     const raya_objects& objects = job.header().objects;
@@ -72,7 +74,7 @@ std::uint32_t kind_of(const PackedJob& job, const NumberFormat& format, std::uin
     return number < objects.spheres ? RAYA_LINK_SPHERES : RAYA_LINK_CONES;
 }
 
-// Writes a BVH row by row in depth-first order: a node, then the contents of its children.
+// Writes the rows of a BVH in depth-first order: a node is followed by the rows of its children.
 class BvhWriter {
   public:
     BvhWriter(const Bvh& tree, const PackedJob& job) : tree_(tree), job_(job) {}
@@ -125,14 +127,14 @@ class BvhWriter {
         return raya_link(RAYA_LINK_NODE, 1, row);
     }
 
-    // Calls `put` with each column and the number of its item; unused columns repeat the first item.
+    // Calls put(column, object number) for each column; unused columns repeat the first item.
     template <class Put>
     static void for_columns(std::span<const BvhItem> items, const Put& put) {
         for (std::uint32_t column = 0; column < kWidth; ++column)
             put(column, items[column < items.size() ? column : 0].number);
     }
 
-    // Copies `count` words of the job into a column, downwards from a row.
+    // Copies `count` words into a column, one word in each row from `row` on.
     void put_column(std::uint32_t row, std::uint32_t column, const std::uint32_t* words, std::uint32_t count) {
         for (std::uint32_t w = 0; w < count; ++w) word(row + w, column) = words[w];
     }
@@ -215,15 +217,16 @@ class BvhWriter {
 };
 
 struct BvhItems {
-    std::vector<BvhItem> items;        // empty if no bounds of the hits are known
+    std::vector<BvhItem> items;        // empty if the hit regions are unbounded
     std::vector<std::uint32_t> apart;  // large objects, listed separately, ascending
-    double reach = -1;                 // the boxes are valid for ray origins with coordinates up to this
+    double reach = -1;                 // the boxes are valid for ray origins with coordinates up to this; -1: none
 };
 
-// Objects that nearly every ray reaches (the ground under a scene, walls around it) are listed separately: a leaf costs
-// a ray more than a test of V rays at once. If there are too many of them, none is.
+// Objects that nearly every ray reaches (the ground below a scene, walls around it) are listed separately: testing such
+// an object for V rays at once costs a ray less than visiting a leaf. If there are more than kMaxApart of them, none is
+// listed separately.
 constexpr std::size_t kMaxApart = 8;
-constexpr float kLargeArea = 1.0F / 8;  // relative to the surface area of the whole box
+constexpr float kLargeArea = 1.0F / 8;  // an object is large if its box has a larger fraction of the whole box's area
 
 void separate_large_items(BvhItems& all) {
     Bounds whole = kEmptyBounds;

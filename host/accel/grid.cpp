@@ -12,13 +12,14 @@
 namespace raya {
 namespace {
 
-// Measured on SPD's balls, lattice and tetra and on 8,320 uniform spheres (fp32, 16 lanes): 2, 4 and 8 differ little,
-// with no clear best; 1 takes up to 1.5 times as long, 16 up to 1.4 times and twice the memory.
+// Measured on SPD's balls, lattice and tetra and on 8,320 uniform spheres (fp32, 16 lanes): 2, 4 and 8 voxels per
+// object are about equally fast. 1 takes up to 1.5 times as long; 16 takes up to 1.4 times as long and twice the
+// memory.
 constexpr double kVoxelsPerObject = 4;
 
-constexpr double kMinReach = 2;        // of rays, in extents of the scene; the sizes of regions hardly depend on it
-constexpr double kLargeSide = 0.75;    // relative to the longest side of the whole box
-constexpr std::size_t kMaxLarge = 16;  // if more objects are large, all of them go into the lists
+constexpr double kMinReach = 2;        // reach for choosing objects and voxels, in multiples of the scene's extent
+constexpr double kLargeSide = 0.75;    // large: longest side over this fraction of that of the whole box
+constexpr std::size_t kMaxLarge = 16;  // maximum number of large objects; see large_objects()
 
 double longest_side(const Box& box) {
     const Vec3 sides = box.max - box.min;
@@ -39,12 +40,13 @@ void put_sphere(GridLists& lists, const std::vector<std::uint32_t>& words, const
     lists.numbers.push_back(number);
 }
 
+// Appends a link row (kernels/shared/grid.h). `next`: voxel word of the rest of the list; `number`: the row's object.
 void put_link(GridLists& lists, std::uint32_t next, std::uint32_t number) {
     lists.rows.insert(lists.rows.end(), {next, 0, 0, 0});
     lists.numbers.push_back(number);
 }
 
-// The voxel word of a list that starts at `row`: `spheres` rows, followed by a link if `linked`.
+// Returns the voxel word of a list that starts at `row`: `spheres` rows of spheres, followed by a link row if `linked`.
 std::uint32_t voxel_word(std::size_t row, std::size_t spheres, bool linked) {
     return word_number(row) | word_number(spheres) * RAYA_ONE_ROW | (linked ? RAYA_LINKED : 0);
 }
@@ -71,7 +73,7 @@ std::uint32_t put_list(GridLists& lists, const std::vector<std::uint32_t>& words
 
 GridLists grid_lists(const std::vector<std::uint32_t>& words, const raya_objects& objects, const Partition& p) {
     GridLists lists;
-    put_link(lists, 0, RAYA_NO_OBJECT_HERE);  // row 0
+    put_link(lists, 0, RAYA_NO_OBJECT_HERE);  // row 0 belongs to no list: a voxel word of 0 means an empty list
     for (std::size_t v = 0; v + 1 < p.starts.size(); ++v) {
         const std::span list(p.objects.data() + p.starts[v], p.starts[v + 1] - p.starts[v]);
         lists.voxels.push_back(list.empty() ? 0 : put_list(lists, words, objects, list));
@@ -106,7 +108,7 @@ Partition accel_partition(const PackedJob& job, const NumberFormat& format, cons
     if (accel.divisions) return partition(job, format, *accel.divisions);
     const std::vector<std::uint32_t> apart = large_objects(job, format);
     const HitRegions rest(job, format, kMinReach, apart);
-    // If every object is in every list, more voxels do not help.
+    // If the hit regions are unbounded, every object is in every list, so one voxel is enough.
     const double voxels = rest.known() ? std::max(1.0, kVoxelsPerObject * static_cast<double>(rest.size())) : 1;
     return partition(job, format, divisions_for(job, format, static_cast<std::uint64_t>(voxels), apart), apart);
 }
@@ -121,7 +123,7 @@ AccelSummary append_grid(PackedJob& job, const Partition& p) {
     header.apart = word_number(p.apart.size());
     header.apart_at = place(p.apart.size());
     header.voxels_at = place(lists.voxels.size());
-    next = padded_to_rows(next);  // aligned rows need fewer memory accesses
+    next = padded_to_rows(next);  // a row of four words is one aligned memory access
     header.rows_at = place(lists.rows.size());
     header.numbers_at = place(lists.numbers.size());
     if (next > kMaxWords || lists.numbers.size() > RAYA_ROW_NUMBER)

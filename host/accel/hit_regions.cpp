@@ -1,29 +1,34 @@
-// Bounds of the kernels' rounding errors (kernels/geometry/), operation by operation, to first order in u. The
-// constants are rounded up enough to cover the higher orders for Y >= 10.
+// Error bounds. The regions follow from bounds of the rounding errors of the intersection tests in kernels/geometry/,
+// derived operation by operation, to first order in u. The constants in the code are rounded up enough to cover the
+// higher orders for Y >= 10.
 //
-//   u  relative error of one operation        f  smaller results are flushed to 0        s  | |D|^2 - 1 |
-//   n  largest distance from a ray's origin O within reach to the object                 a' computed value of a
+//   u  relative rounding error of one operation      f  flush-to-zero threshold: smaller results become 0
+//   s  maximum of | |D|^2 - 1 |                      n  maximum distance from a ray's origin O to the object
+//   a' computed value of a                           "a = b up to e" means |a - b| <= e
 //
-// A region contains the exact point X = O + t'D of every computed hit t'. "a = b up to e" means |a - b| <= e.
+// The region of an object contains the exact point X = O + t'D for every computed hit distance t'.
 //
-// Sphere (C, r), c = C - O. b' has an error of 4un, l' = c' - b'D of 6un, and a discriminant >= 0 implies
-// |l'|^2 <= r^2 (1 + 3u) + 3f. X - C = -l' +- root' D up to u (2n + r), and l'.D = b (1 - |D|^2) up to 6un, so
-// |X - C|^2 = r^2 up to 2r (s + 6u) n + r^2 (s + 5u) + 3f.
+// Sphere (centre C, radius r), c = C - O. b' has an error of 4un, l' = c' - b'D has an error of 6un, and a
+// discriminant >= 0 implies |l'|^2 <= r^2 (1 + 3u) + 3f. X - C = -l' +- root' D up to u (2n + r), and
+// l'.D = b (1 - |D|^2) up to 6un. Hence |X - C|^2 = r^2 up to 2r (s + 6u) n + r^2 (s + 5u) + 3f.
 //
-// Polygon N.x = d. The sheared coordinates of a corner (kernels/geometry/polygon.clh) have an error of 4un along each
-// of the two axes, an edge of un more, so the distance of the ray to some point Q of the polygon is at most 8un. If
-// O + t'D is in the box of corners, widened by the kernel's margin and the rounding of both, the region contains it;
-// otherwise t' is where the ray enters or leaves that box, between Q and the plane's t. The numerator and denominator
-// of the plane's t have errors of 3u (|d| + |O|) and 3u, so its point is off the plane by 4u (|d| + |O|) + 4ut, and
-// O + t'D by no more than that or Q.
+// Polygon in the plane N.x = d. The sheared coordinates of a corner (kernels/geometry/polygon.clh) have an error of 4un
+// along each of the two axes, and an edge one of un more, so the distance of the ray from some point Q of the polygon
+// is at most 8un. The kernel compares O + t'D with the bounding box of the corners, widened by a margin. If the point
+// is inside, the region contains it, because the region's box has that margin and the rounding errors of both.
+// Otherwise t' is the distance at which the ray enters or leaves the box; that point lies between Q and the point at
+// the plane's t. The numerator and the denominator of the plane's t have errors of 3u (|d| + |O|) and 3u, so the point
+// at that t is off the plane by at most 4u (|d| + |O|) + 4ut, and O + t'D is off the plane by no more than this point
+// or Q.
 //
 // Cone, p = O - base. The ray's point closest to the base, p' + m'D, has an error of 3un along the ray and of 2un
-// across it, which shifts X. All later quantities are of size S = |start| + |t|. Errors of the coefficients are errors
-// of the quadratic's value Q(t) = |side + t dside|^2 - (r0 + k z)^2, at most e = 32u (S^2 + (r0 + |k| S)^2) in total.
-// Flushing changes the discriminant by d <= 2f, and Q by d / a at q / a and by d c / q^2 at c / q, where
-// q = -(b +- root). As the discriminant is > 0, |q| >= root >= sqrt(f), so the change is at most 2 sqrt(f) S. Hence the
-// distance from the axis is at most sqrt((r0 + k z)^2 + e), with 0 <= z <= h up to 8uS. S follows from that, because
-// start and D are perpendicular up to (s + 6u) n. A steep cone in a coarse format has no finite S.
+// across it; these errors shift X. All later quantities have at most the size S = |start| + |t|. Errors of the
+// coefficients of the quadratic are equivalent to an error of its value Q(t) = |side + t dside|^2 - (r0 + k z)^2, of at
+// most e = 32u (S^2 + (r0 + |k| S)^2) in total. Flushing changes the discriminant by d <= 2f, and therefore Q by d / a
+// at the root q / a and by d c / q^2 at the root c / q, where q = -(b +- root). As the discriminant is > 0,
+// |q| >= root >= sqrt(f), so Q changes by at most 2 sqrt(f) S. Hence the distance of X from the axis is at most
+// sqrt((r0 + k z)^2 + e), with 0 <= z <= h up to 8uS. This bounds S in turn, because start and D are perpendicular up
+// to (s + 6u) n. For a steep cone in a format with few fraction bits, no finite S satisfies the bound.
 #include "host/accel/hit_regions.hpp"
 
 #include <algorithm>
@@ -40,7 +45,7 @@ void widen(Box& box, double by) {
     box.max += Vec3(by);
 }
 
-// Squared distances from a point to the nearest and to the farthest point of a box.
+// Squared distances from a point to the nearest and the farthest point of a box.
 double nearest_square(const Vec3& p, const Box& box) {
     Vec3 apart;
     for (int axis = 0; axis < 3; ++axis)
@@ -59,7 +64,7 @@ double segment_distance(const Vec3& p, const Vec3& from, const Vec3& along) {
     return (p - from - share * along).length();
 }
 
-constexpr int kMinFractionBits = 10;  // Y from which on the constants cover the higher orders
+constexpr int kMinFractionBits = 10;  // minimum Y for which the constants cover the higher orders
 
 }  // namespace
 
@@ -84,7 +89,7 @@ HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double 
     unit_ = std::ldexp(format.truncates ? 1.0 : 0.5, -format.fraction_bits) + 0x1p-24;
     smallest_ = smallest_number(format);
     stretch_ = std::ldexp(format.is_fp32() ? 32.0 : 16.0, -format.fraction_bits) +
-               0x1p-21;  // RAYA_STRETCH, and its own rounding
+               0x1p-21;  // RAYA_STRETCH, and the rounding of |D|^2 - 1 in is_wide()
     far_ = farthest_hit(format);
     square_limit_ = std::ldexp(1.0, quarter - 1);
     extent_ = job.header().extent;
@@ -126,7 +131,7 @@ HitRegion HitRegions::polygon(std::size_t at) const {
     HitRegion region;
     region.normal = vector(at + RAYA_PLANE_NORMAL);
     region.middle = real(at + RAYA_PLANE_DISTANCE);
-    double bent = 0, away = 0;  // of the corners: largest distance from the plane; from a ray's origin
+    double bent = 0, away = 0;  // maximum distance of a corner: from the plane; from a ray's origin
     std::size_t corner = (*words_)[at + RAYA_POLYGON_CORNERS_AT];
     for (std::size_t i = (*words_)[at + RAYA_POLYGON_CORNERS]; i > 0; --i, corner += RAYA_CORNER_WORDS) {
         const Vec3 place = vector(corner);
@@ -134,7 +139,7 @@ HitRegion HitRegions::polygon(std::size_t at) const {
         bent = std::max(bent, std::abs(region.normal.dot(place) - region.middle));
         away = std::max(away, farthest(place));
     }
-    const double margin = 32 * unit_ * away;  // of the kernel: RAYA_MARGIN is 16 or 8 units
+    const double margin = 32 * unit_ * away;  // covers the kernel's margin: RAYA_MARGIN is 16 or 8 times u
     const double aside = 16 * unit_ * away + 8 * std::sqrt(smallest_);
     const double to_plane = std::abs(region.middle) + std::sqrt(3.0) * reach_;
     widen(region.box, margin + aside);
@@ -142,7 +147,7 @@ HitRegion HitRegions::polygon(std::size_t at) const {
     return region;
 }
 
-// e above, for a cone with S = `size`.
+// The error e of Q(t) (see the top of this file), for a cone with S = `size`.
 double HitRegions::cone_error(std::size_t at, double size) const {
     const double radius = real(at + RAYA_CONE_RADIUS), slope = std::abs(real(at + RAYA_CONE_SLOPE));
     const double square = size * size, wide = radius + slope * size;
@@ -150,7 +155,7 @@ double HitRegions::cone_error(std::size_t at, double size) const {
            16 * smallest_ * (1 + square) * (1 + slope * slope);
 }
 
-// S above, by fixed-point iteration; infinite if that diverges.
+// The bound S (see the top of this file), by fixed-point iteration; infinite if the iteration diverges.
 double HitRegions::cone_size(std::size_t at) const {
     const double r0 = real(at + RAYA_CONE_RADIUS), height = real(at + RAYA_CONE_HEIGHT);
     const double slope = real(at + RAYA_CONE_SLOPE), r1 = std::abs(r0 + slope * height);
@@ -182,7 +187,7 @@ HitRegion HitRegions::cone(std::size_t at) const {
     const double height = real(at + RAYA_CONE_HEIGHT), slope = real(at + RAYA_CONE_SLOPE);
     const double r0 = real(at + RAYA_CONE_RADIUS), r1 = std::abs(r0 + slope * height);
     const double size = cone_size(at), error = cone_error(at, size);
-    const double beyond = 8 * unit_ * size;  // error of z at 0 and h
+    const double beyond = 8 * unit_ * size;  // error of the position z along the axis, at z = 0 and z = h
     const double shift = 6 * unit_ * farthest(vector(at + RAYA_CONE_BASE)) + 12 * unit_ * size + 8 * smallest_;
     const Vec3 axis = vector(at + RAYA_CONE_AXIS).normalized();
     region.centre = vector(at + RAYA_CONE_BASE);

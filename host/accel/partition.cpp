@@ -12,8 +12,8 @@
 namespace raya {
 namespace {
 
-constexpr double kMaxMeanEntries = 16;  // maximum entries per object or voxel with default divisions
-constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 30;  // of all lists: 4 GB of words
+constexpr double kMaxMeanEntries = 16;  // maximum mean length of lists, per object or voxel, with default divisions
+constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 30;  // entries of all lists: 4 GB
 
 double largest_coordinate(const Box& box) {
     double largest = 0;
@@ -22,12 +22,13 @@ double largest_coordinate(const Box& box) {
     return largest;
 }
 
-// The maximum distance of a ray from its voxel due to rounding in the walk. The t of a plane has a relative error of
-// 3 2^-24, so its point has an error of 3 2^-24 |plane - O|; the first voxel results from five operations on such
-// numbers.
+// Upper bound of the distance between a point of a ray and the voxel to which the traversal assigns the point, due to
+// rounding errors. The distance t to a plane has a relative error of 3 2^-24, so the point on the plane has an error of
+// 3 2^-24 |plane - O|; the first voxel is computed by five operations on numbers of that magnitude.
 double walk_error(const Box& box, double reach) { return 16 * 0x1p-24 * (reach + largest_coordinate(box)); }
 
-// The box of the partition: all regions, with a margin so that rays at their borders are found inside.
+// Returns the box of the partition: the bounding box of all regions, with a margin for the traversal's rounding errors,
+// so that the traversal finds points on the border of a region inside the box.
 Box box_around(const HitRegions& regions) {
     Box box;
     if (regions.size() == 0) return Box(Vec3(-0.5), Vec3(0.5));
@@ -37,7 +38,7 @@ Box box_around(const HitRegions& regions) {
     return Box(box.min - margin, box.max + margin);
 }
 
-// A grid whose outer planes, as the kernels compute them, enclose the box.
+// Returns a grid whose outer planes enclose the box, even with the kernels' rounding of the planes.
 raya_grid grid_over(const Box& box, const Divisions& divisions, double reach) {
     constexpr float kUp = std::numeric_limits<float>::infinity();
     raya_grid grid{};
@@ -58,7 +59,7 @@ struct VoxelRange {
     std::uint32_t first, last;
 };
 
-// The planes between the voxels, to find the voxels of a region.
+// Finds the voxels that a region overlaps, from the planes between voxels.
 class Voxels {
   public:
     Voxels(const raya_grid& grid, double slack) : grid_(grid), slack_(slack) {
@@ -67,7 +68,7 @@ class Voxels {
                 planes_[axis].push_back(raya_voxel_plane(grid, axis, k));
     }
 
-    /// Calls visit(voxel) for each voxel within the slack of the region.
+    /// Calls visit(voxel) for each voxel that, enlarged by the slack on all sides, touches the region.
     template <class Visit>
     void visit(const HitRegion& region, const Visit& visit) const {
         const VoxelRange x = range(region.box, 0), y = range(region.box, 1), z = range(region.box, 2);
@@ -100,7 +101,7 @@ class Voxels {
                                      d[1], d[2], kMaxEntries));
 }
 
-// Counts the objects of each voxel, then fills the lists.
+// Counts the objects of each voxel, then fills the lists (counting sort).
 void fill_lists(Partition& p, const HitRegions& regions, const Voxels& voxels, const Divisions& divisions) {
     std::uint64_t entries = 0;
     for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -137,9 +138,10 @@ void check_divisions(const Divisions& d) {
                                         d[0], d[1], d[2], kMaxPartitionVoxels));
 }
 
-// The reach of rays, in extents of the scene. Rays start anywhere on infinite planes, so a scene with planes gets a
-// larger reach as long as regions grow little compared with a voxel. A ray from farther away is tested against all
-// objects.
+// Chooses the reach: the maximum coordinate of ray origins for which the lists are valid, in multiples of the scene's
+// extent. Reflected rays can start anywhere on an infinite plane, so a scene with planes gets a larger reach: it is
+// doubled up to kMax as long as regions stay bounded and grow by at most kShareOfVoxel of a voxel's shortest side. A
+// ray from farther away is tested against all objects.
 double reach_for(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
                  const std::vector<std::uint32_t>& apart) {
     constexpr double kMin = 2, kMax = 1024, kShareOfVoxel = 1.0 / 16;
@@ -156,7 +158,7 @@ double reach_for(const PackedJob& job, const NumberFormat& format, const Divisio
     return reach;
 }
 
-// Sums over the boxes of all regions, from which the number of voxels that they overlap follows for any voxel size.
+// Estimates the total number of list entries for any voxel size, from sums over the boxes of all regions.
 class RegionSizes {
   public:
     explicit RegionSizes(const HitRegions& regions) {
@@ -167,7 +169,8 @@ class RegionSizes {
         }
     }
     double objects() const { return sums_[0]; }
-    /// A box of sides e overlaps about (e_x / c_x + 1) (e_y / c_y + 1) (e_z / c_z + 1) voxels of sides c.
+    /// Returns the estimated number of entries: a box with sides e overlaps about (e_x / c_x + 1) (e_y / c_y + 1) (e_z
+    /// / c_z + 1) voxels with sides c. sums_ has the coefficients of the expanded product.
     double entries(const Box& box, const Divisions& d) const {
         double sum = 0;
         for (std::size_t axes = 0; axes < sums_.size(); ++axes)
@@ -177,7 +180,7 @@ class RegionSizes {
     }
 
   private:
-    // Product over the axes whose bits are set.
+    // Returns the product of factor(axis) over the axes whose bits are set in `axes`.
     template <class Factor>
     static double product(std::size_t axes, const Factor& factor) {
         double all = 1;
@@ -185,11 +188,11 @@ class RegionSizes {
             if (axes >> a & 1) all *= factor(a);
         return all;
     }
-    std::array<double, 8> sums_{};  // over all boxes, of the product of the sides, for each set of axes
+    std::array<double, 8> sums_{};  // [set of axes]: sum over all boxes of the product of their sides
 };
 
-// Divides a box of the given sides into about `voxels` approximate cubes. Starts with the shortest side: if it is
-// shorter than a cube's, the other two share the remaining factor.
+// Divides a box with the given sides into about `voxels` voxels that are nearly cubes. Starts with the shortest side:
+// if it is shorter than a voxel's ideal side, it is not divided, and the other two axes get all divisions.
 Divisions cubes(const Vec3& sides, double voxels) {
     std::array<int, 3> axes = {0, 1, 2};
     std::sort(axes.begin(), axes.end(), [&](int a, int b) { return sides[a] < sides[b]; });

@@ -1,5 +1,5 @@
-// Voxel partition: cuts a scene's bounding box into voxels and registers each object in every voxel in which a kernel
-// could find a hit of it.
+// Voxel partition: divides a scene's bounding box into voxels, and registers each object in every voxel in which a
+// kernel can compute a hit of it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,53 +15,59 @@ namespace raya {
 
 inline constexpr std::uint64_t kMaxPartitionVoxels = std::uint64_t{1} << 24;
 
-/// The lists would have more than 2^30 entries, 4 GB of words.
+/// Thrown if the voxels' lists would have more than 2^30 entries in total (4 GB).
 struct TooManyEntries : UserError {
     using UserError::UserError;
 };
 
-/// Voxels and their lists of objects, which are numbered as in the job (kernels/shared/job.h). Infinite planes are in
-/// no list: every ray is tested against them.
+/// A uniform grid of voxels, each with a list of object numbers (the numbers of kernels/shared/job.h). Infinite planes
+/// are in no list, because every ray is tested against them.
 struct Partition {
     raya_grid grid{};
-    std::vector<std::uint32_t> starts;   // [voxels + 1]: starts of the voxels' lists in `objects`
+    std::vector<std::uint32_t> starts;   // [voxels + 1]: voxel v lists objects[starts[v]] .. objects[starts[v + 1] - 1]
     std::vector<std::uint32_t> objects;  // concatenated lists, each ascending
-    std::vector<std::uint32_t> apart;    // finite objects in no list, ascending; every ray is tested against them
-    std::uint64_t distinct = 0;          // objects in at least one list: all finite ones except `apart`
+    std::vector<std::uint32_t> apart;    // separate objects: finite, in no list, ascending; tested for every ray
+    std::uint64_t distinct = 0;          // number of objects in the lists: all finite ones except `apart`
+    /// Number of list entries beyond the first one of each object.
     std::uint64_t copies() const { return objects.size() - distinct; }
 };
 
-/// Partitions the bounding box of all finite objects except `apart` (numbers, ascending), which are in no list; the box
-/// of a scene without finite objects is around the origin. Uses the numbers of the job's words, as the kernels do.
+/// Divides the bounding box of all finite objects except the separate ones (`apart`: object numbers, ascending) into
+/// voxels. If there are no such objects, the box is the unit cube around the origin. Uses the rounded numbers in the
+/// job's words, as the kernels do.
 ///
-/// Registration is conservative, so that hits do not depend on the route of a ray through the voxels. Consider a ray
-/// with an origin within `grid.reach` and a direction of length 1 (not is_wide() in kernels/grid/walk.clh). If a kernel
-/// with that format computes a hit at distance t, the point O + t D is in a voxel with the object in its list, even
-/// with the rounding of the walk. If no bound is known (Y < 10, scenes whose squares overflow the format, cones too
-/// steep for it), every object is in every list, the box contains all points within RAYA_FAR, and the reach is
-/// RAYA_FAR.
+/// Registration is conservative, so that hits do not depend on the voxels through which the traversal passes. Consider
+/// a ray whose origin O has coordinates up to `grid.reach` in magnitude and whose direction D has length 1 up to
+/// rounding (is_wide() in kernels/grid/walk.clh is false). If a kernel with that format computes a hit of an object at
+/// distance t, then the voxel in which the traversal is at distance t lists the object, in spite of the traversal's
+/// rounding errors. If the hit regions are unbounded (HitRegions::known() is false: Y < 10, squares of lengths that
+/// overflow the format, or cones too steep for it), every object is in every list, the box contains all points within
+/// RAYA_FAR, and the reach is RAYA_FAR.
 ///
-/// UserError if a division is 0 or there are more than kMaxPartitionVoxels voxels; TooManyEntries.
+/// Throws UserError if a division is 0 or there are more than kMaxPartitionVoxels voxels, and TooManyEntries if the
+/// lists are too long.
 Partition partition(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
                     const std::vector<std::uint32_t>& apart = {});
 
-/// Divisions of an acceleration grid: about `voxels` voxels, 1 to 2^24, as close to cubes as possible. Fewer if the
-/// format's rounding would register each object in many voxels; 1x1x1 if no bound is known.
+/// Returns divisions of an acceleration grid into about `voxels` (1..2^24) voxels that are nearly cubes. Returns fewer
+/// voxels if the lists would otherwise have more than 16 entries per voxel and more than 16 per object on average, and
+/// 1x1x1 if the hit regions are unbounded.
 Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::uint64_t voxels,
                         const std::vector<std::uint32_t>& apart = {});
 
-/// The partition of `--accel grid`. With given divisions it covers the whole scene. Otherwise large objects (the ground
-/// below everything else, the walls of a room), which would leave all others in few voxels, are listed separately, and
-/// the box of the others is cut into kVoxelsPerObject voxels per object.
+/// The partition of `--accel grid`. With given divisions it covers the whole scene. Otherwise large_objects() are
+/// listed separately, and the box of the other objects is divided into kVoxelsPerObject voxels per object: a ground
+/// plane or the walls of a room would enlarge the box so much that all other objects lie in few voxels.
 Partition accel_partition(const PackedJob& job, const NumberFormat& format, const Accel& accel);
 
-/// Numbers of the large objects, ascending: those whose box is longer than kLargeSide of the box of all finite objects,
-/// if there are few of them; then repeatedly those of the remaining objects, until there are none. Every ray is tested
-/// against all of them.
+/// Returns the numbers of the large objects, ascending. In each pass, an object is large if its longest side exceeds
+/// kLargeSide times the longest side of the box around all remaining objects; the pass removes the large objects. The
+/// passes end when none is large or when more than kMaxLarge objects would be removed in total; the objects of that
+/// last pass are not returned.
 std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberFormat& format);
 
-/// Appends the partition to the job's words in the layout of kernels/shared/grid.h, and sets accel_at. UserError if it
-/// exceeds 32-bit indices.
+/// Appends the partition to the job's words in the layout of kernels/shared/grid.h, and sets accel_at in the job's
+/// header. Throws UserError if 32-bit indices cannot address it.
 AccelSummary append_grid(PackedJob& job, const Partition& partition);
 
 }  // namespace raya

@@ -27,7 +27,8 @@ std::runtime_error system_error(const char* what) {
     return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
-// Runs between fork and exec: calls no function that takes locks.
+// Turns the forked child into the program. It runs between fork and exec, so it calls only functions that take no
+// locks.
 [[noreturn]] void become(char* const* arguments, int pipe, pid_t parent) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // inherited through exec
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -87,7 +88,7 @@ ChildProcess::Read ChildProcess::read(std::string& line, std::chrono::millisecon
     while (!has_line(line)) {
         pollfd in{pipe_, POLLIN, 0};
         const int ready = ::poll(&in, 1, static_cast<int>(wait.count()));
-        // A process that the driver started may still hold the pipe open.
+        // The child may have ended without an end of file: a process that its driver started may hold the pipe open.
         if (ready == 0) return has_ended() ? Read::kEnd : Read::kNothing;
         std::array<char, 4096> block{};
         const ssize_t count = ready > 0 ? ::read(pipe_, block.data(), block.size()) : -1;

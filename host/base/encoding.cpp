@@ -12,9 +12,9 @@
 namespace raya {
 namespace {
 
-constexpr int kLevel = 4;              // a packet trace takes half the time of zlib's default, 6; 8 % more bytes
-constexpr int kGzip = 16 + MAX_WBITS;  // with gzip's header and trailer
-constexpr int kMemory = 8;             // zlib's default
+constexpr int kLevel = 4;              // for packet traces half the time and 8 % more bytes than zlib's default, 6
+constexpr int kGzip = 16 + MAX_WBITS;  // windowBits: the maximum; 16 selects gzip's header and trailer
+constexpr int kMemory = 8;             // memLevel: zlib's default
 
 }  // namespace
 
@@ -68,7 +68,7 @@ GzipText::GzipText() : stream_(std::make_unique<Stream>()) {}
 GzipText::~GzipText() = default;
 
 void GzipText::append(std::string_view text) {
-    constexpr std::size_t kMaxInput = std::numeric_limits<uInt>::max();  // bytes of one call of zlib
+    constexpr std::size_t kMaxInput = std::numeric_limits<uInt>::max();  // bytes that one call of zlib accepts
     for (; text.size() > kMaxInput; text.remove_prefix(kMaxInput)) deflate_all(text.substr(0, kMaxInput), false);
     deflate_all(text, false);
 }
@@ -84,7 +84,7 @@ void GzipText::deflate_all(std::string_view text, bool last) {
     z_stream& z = stream_->z;
     std::array<Bytef, 1 << 16> block{};
     const void* const in = text.data();
-    z.next_in = const_cast<Bytef*>(static_cast<const Bytef*>(in));  // zlib reads it only
+    z.next_in = const_cast<Bytef*>(static_cast<const Bytef*>(in));  // zlib does not write to it
     z.avail_in = static_cast<uInt>(text.size());
     do {
         z.next_out = block.data();

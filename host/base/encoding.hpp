@@ -12,10 +12,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 std::string base64(std::string_view bytes);
 
-/// Two lower-case hexadecimal digits per byte.
+/// The bytes as lower-case hexadecimal digits, two per byte.
 std::string hex_digits(std::span<const unsigned char> bytes);
 
-/// The 128-bit XXH3 hash as 32 lower-case hexadecimal digits.
+/// The 128-bit XXH3 hash of `bytes` as 32 lower-case hexadecimal digits.
 std::string bytes_hash(std::string_view bytes);
 
 /// Incremental gzip compression. The same text always gives the same bytes: the gzip header contains no date and no
@@ -29,7 +29,7 @@ class GzipText {
 
     void append(std::string_view text);
 
-    /// Returns the whole file. Later calls of append() or finish() throw std::logic_error.
+    /// Ends the compression and returns the gzip file. Later calls of append() or finish() throw std::logic_error.
     std::string finish();
 
   private:

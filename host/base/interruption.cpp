@@ -14,7 +14,8 @@
 namespace raya {
 namespace {
 
-// A signal handler may neither allocate nor lock, so the names are in a fixed table. An empty name means no file.
+// The paths of the registered files are in a table of fixed size, because a signal handler may neither allocate nor
+// lock. An empty name means no file.
 struct Slot {
     std::atomic<bool> taken{false};
     std::array<char, PATH_MAX> name{};
@@ -24,19 +25,19 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 std::atomic<bool> message_suppressed{false};
 
 using Handler = void (*)(int, siginfo_t*, void*);
-std::array<std::atomic<bool>, 32> is_protected;  // by signal
-std::array<std::atomic<Handler>, 32> displaced;  // the handler that a library tried to install over a protected one
+std::array<std::atomic<bool>, 32> is_protected;  // by signal number
+std::array<std::atomic<Handler>, 32> displaced;  // by signal number: handler that a library tried to install, or null
 static_assert(std::atomic<Handler>::is_always_lock_free);
 
-/// Runs in any thread; calls only async-signal-safe functions.
+/// The signal handler. It may run in any thread and calls only async-signal-safe functions.
 extern "C" void remove_and_end(int signal, siginfo_t* info, void* context) {
     static std::atomic<bool> ending{false};
-    if (ending.exchange(true)) return;  // timeout(1), for example, sends its signal twice; the first call must finish
+    if (ending.exchange(true)) return;  // a second signal, as timeout(1) sends, must not end the first call early
     remove_files_in_progress();
     static constexpr char kMessage[] = "\r\033[Kraya: interrupted\n";
     constexpr std::size_t kClear = 4;  // length of "\r\033[K", which erases a progress bar from a terminal
     const std::size_t skipped = ::isatty(STDERR_FILENO) != 0 ? 0 : kClear;
-    pollfd out{STDERR_FILENO, POLLOUT, 0};  // a full pipe would block write()
+    pollfd out{STDERR_FILENO, POLLOUT, 0};  // write() to a full pipe would block
     if (!message_suppressed && ::poll(&out, 1, 0) == 1 && out.revents == POLLOUT)
         if (::write(STDERR_FILENO, kMessage + skipped, sizeof kMessage - 1 - skipped) < 0) message_suppressed = true;
     if (const Handler driver = displaced[static_cast<std::size_t>(signal)]) driver(signal, info, context);
@@ -71,14 +72,14 @@ void protect_handler(int signal, bool on) { is_protected.at(static_cast<std::siz
 void suppress_interrupt_message() { message_suppressed = true; }
 
 FileInProgress::FileInProgress(const std::filesystem::path& path) {
-    // A relative path stays valid in the handler: raya never changes its working directory.
+    // A relative path is still valid in the handler, because raya never changes its working directory.
     if (path.native().size() >= PATH_MAX) return;
     for (Slot& slot : slots) {
         if (slot.taken.exchange(true)) continue;
         name_ = slot.name.data();  // empty in a free slot
         std::strcpy(name_ + 1, path.c_str() + 1);
         std::atomic_signal_fence(std::memory_order_release);
-        name_[0] = path.c_str()[0];  // written last: the handler sees the whole name or an empty one
+        name_[0] = path.c_str()[0];  // written last, so that the handler sees either the whole name or an empty one
         return;
     }
 }
@@ -95,8 +96,8 @@ FileInProgress::~FileInProgress() {
 
 // Replaces the C library's sigaction() in the program and, because the program exports it, in all libraries. LLVM,
 // which PoCL uses, installs handlers for HUP, INT, TERM, QUIT and all crash signals (lib/Support/Unix/Signals.inc).
-// They remove LLVM's temporary files and reinstall the previous handlers. But after SIGQUIT they only return, and
-// abort() does not call a second handler.
+// They delete LLVM's temporary files and reinstall the previous handlers, which is not enough: after SIGQUIT they
+// return without ending the process, and abort() does not call the reinstalled handler.
 extern "C" __attribute__((visibility("default"))) int sigaction(int signal, const struct sigaction* action,
                                                                 struct sigaction* before) noexcept {
     using namespace raya;

@@ -1,27 +1,28 @@
-// Interruption by a signal (Ctrl-C): the program ends at once, prints a message and leaves no half-written file.
+// Interruption by a signal (Ctrl-C): the program prints a message, deletes unfinished files and ends at once.
 #pragma once
 #include <filesystem>
 
 namespace raya {
 
-/// Removes all files in progress. Async-signal-safe.
+/// Deletes all files that are registered by FileInProgress. Async-signal-safe.
 void remove_files_in_progress();
 
-/// From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT remove the files in progress, print "raya: interrupted" on stderr
-/// and end the process by the same signal, which a shell reports as exit code 130, 143, 129 or 131. Ignored signals
-/// (nohup) stay ignored. Libraries cannot replace the handlers; a handler that a library tried to install is called
-/// before the process ends.
+/// Installs handlers of SIGINT, SIGTERM, SIGHUP and SIGQUIT. They delete the files in progress, print
+/// "raya: interrupted" on stderr and end the process by the same signal, which a shell reports as exit code 130, 143,
+/// 129 or 131. Ignored signals (nohup) stay ignored. Libraries cannot replace these handlers. If a library has tried
+/// to install its own handler, that one is called before the process ends.
 void install_interrupt_handlers();
 
 /// Prevents libraries from replacing the installed handler of `signal`, or allows it again (`on` = false).
 void protect_handler(int signal, bool on = true);
 
-/// From now on an interruption prints nothing, because another process reports it or this one already reported why it
-/// ends.
+/// From now on an interruption prints no message, because another process prints it or this process has already printed
+/// why it ends.
 void suppress_interrupt_message();
 
-/// Registers an unfinished file, which the signal handler removes while this object exists. The destructor does not
-/// remove the file. A process has at most 16 of them at a time; further ones are not registered.
+/// Registers an unfinished file: while this object exists, an interruption deletes the file. The destructor does not
+/// delete it. At most 16 files are registered at a time; the constructor ignores further files, and paths of PATH_MAX
+/// bytes or more.
 class FileInProgress {
   public:
     explicit FileInProgress(const std::filesystem::path& path);
@@ -30,7 +31,7 @@ class FileInProgress {
     ~FileInProgress();
 
   private:
-    char* name_ = nullptr;  // its slot
+    char* name_ = nullptr;  // entry in the table of registered files; null: not registered
 };
 
 }  // namespace raya

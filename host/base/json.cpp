@@ -10,8 +10,9 @@ namespace raya {
 
 using Library = nlohmann::ordered_json;
 
-// SAX handler that builds a Json document while nlohmann's parser reads, so that only one document is in memory. The
-// text is the buffer of a stream because the library does not report the positions of values.
+// SAX handler that builds a Json document while nlohmann's parser reads, so that only one document is in memory. It is
+// also the stream buffer from which the parser reads the text: the library does not report the positions of values, but
+// the buffer's read position gives them.
 class JsonText : public std::streambuf {
   public:
     JsonText(const std::string& text, Json& root) : root_(root) {
@@ -48,7 +49,7 @@ class JsonText : public std::streambuf {
     static std::string path_of(const Json* json, std::uint32_t position);
 
   private:
-    static constexpr std::size_t kMaxDepth = 100;  // readers recurse: bounds their stack
+    static constexpr std::size_t kMaxDepth = 100;  // levels; bounds the stack of functions that recurse into a document
 
     std::uint32_t position() const { return static_cast<std::uint32_t>(gptr() - eback()); }
     [[noreturn]] static void refuse_byte(std::size_t byte) {
@@ -105,7 +106,8 @@ Library JsonText::library_of(const Json& json) {
     return std::visit(each, json.value_);
 }
 
-// Returns "rows[3].ms: " for the value at that position, or an empty string. Positions ascend.
+// Returns the path of the value at that position, such as "rows[3].ms: "; empty if there is none. Uses that the
+// positions of values ascend in the order of the text.
 std::string JsonText::path_of(const Json* json, std::uint32_t position) {
     std::string path;
     while (json->position_ != position) {

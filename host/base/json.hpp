@@ -1,7 +1,7 @@
-// A JSON document as a value. Reports, traces and studies are written with it; baselines and checks are read with it.
+// JSON documents as values. Used to write reports, traces and studies, and to read baselines and checks.
 //
-// nlohmann's library writes and parses the text. This header does not include it: its templates would add two to three
-// seconds of compilation to each of fifty files.
+// nlohmann's library writes and parses the text. This header does not include that library, because its templates would
+// add two to three seconds of compilation to each of fifty files.
 #pragma once
 #include <array>
 #include <concepts>
@@ -25,7 +25,7 @@ namespace raya {
 /// A member is missing or has another type than requested. read_json() adds the file, the line and the member's path.
 struct JsonError : UserError {
     explicit JsonError(const std::string& reason, std::uint32_t at = 0) : UserError(reason), position(at) {}
-    std::uint32_t position;  // of the value in the text: offset of the end of its first token, in bytes; 0: unknown
+    std::uint32_t position;  // byte offset, in the text, of the end of the value's first token; 0: unknown
 };
 
 class Json;
@@ -36,7 +36,8 @@ struct JsonSource {
 
     /// Throws UserError "NAME: reason; remedy: REMEDY".
     [[noreturn]] void refuse(const std::string& reason) const;
-    /// Throws the same with the line and the member's path; `json` was parsed from `text`.
+    /// Throws UserError "NAME:LINE: PATH: reason; remedy: REMEDY" with the line and the path of the value at
+    /// `error.position`. `json` was parsed from `text`.
     [[noreturn]] void refuse(const JsonError& error, const Json& json, const std::string& text) const;
 };
 
@@ -46,7 +47,7 @@ class Json {
     struct Member;
 
     Json() = default;
-    Json(std::initializer_list<Member> members);                           // NOLINT: implicit, as all of these
+    Json(std::initializer_list<Member> members);                           // NOLINT: implicit conversions intended
     Json(std::nullptr_t) {}                                                // NOLINT
     Json(std::string text) : value_(Box<std::string>(std::move(text))) {}  // NOLINT
     Json(std::string_view text) : Json(std::string(text)) {}               // NOLINT
@@ -71,40 +72,45 @@ class Json {
     bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
     bool is_text() const { return std::holds_alternative<Box<std::string>>(value_); }
 
-    /// The member of an object, added if it is missing. A null value becomes an object first.
+    /// The member `key` of an object, added if it is missing. A null value becomes an object first. Throws JsonError
+    /// for other types.
     Json& operator[](std::string_view key);
     Json& operator[](int) = delete;  // 0 would convert to a null pointer
-    /// Appends to an array. A null value becomes an array first.
+    /// Appends to an array. A null value becomes an array first. Throws JsonError for other types.
     void push_back(Json element);
+    /// The last element of an array, which must not be empty.
     Json& back();
 
     /// The member of that name; a null pointer if it is missing or this is not an object.
     const Json* find(std::string_view key) const;
-    /// The member of that name. JsonError if it is missing.
+    /// The member of that name. Throws JsonError if it is missing.
     const Json& at(std::string_view key) const;
 
-    /// The value as the given type. JsonError if it has another type, or for whole() is not an integer in 0..`max`.
+    /// The value as the given type. Throw JsonError if it has another type; whole() also if it is not an integer in
+    /// 0..`max`.
     const std::string& text() const;
     double number() const;
     std::uint64_t whole(std::uint64_t max = UINT64_MAX) const;
     const std::vector<Json>& elements() const;
     /// The names of an object's members in the order in which they were added; empty for other types.
     const std::vector<std::string>& keys() const;
+    /// The elements of an array of strings. Throws JsonError for other values.
     std::vector<std::string> texts() const;
 
     /// Serialises the value, in one line or with `indent` blanks per level. Bytes that are not UTF-8, as a path or a
     /// driver's name may contain, become U+FFFD.
     std::string dump(int indent = -1) const;
 
-    /// Parses `text`. UserError for invalid JSON, a number outside double precision, a duplicate member in an object or
-    /// more than 100 levels of nesting.
+    /// Parses `text`. Throws UserError, as `from` formats it, for invalid JSON, a number outside double precision, a
+    /// duplicate member in an object or more than 100 levels of nesting.
     static Json parse(const std::string& text, const JsonSource& from);
 
   private:
     friend class JsonText;
     struct Tree;
 
-    // Strings and trees are on the heap, so that a number takes 24 bytes: a document may be an array of millions.
+    // Strings, arrays and objects are on the heap, so that a number takes only 24 bytes: a document may contain
+    // millions of numbers.
     template <class T>
     class Box {
       public:
@@ -120,16 +126,16 @@ class Json {
     };
 
     explicit Json(Tree tree);
-    Tree* tree(bool object) const;  // of an array or an object; a null pointer for other types
+    Tree* tree(bool object) const;  // content of an object (true) or an array (false); null if it has another type
     [[noreturn]] void refuse(const std::string& reason) const;
 
     std::variant<std::monostate, bool, std::uint64_t, std::int64_t, double, Box<std::string>, Box<Tree>> value_;
-    std::uint32_t position_ = 0;  // as in JsonError
+    std::uint32_t position_ = 0;  // as JsonError::position
 };
 
 struct Json::Tree {
     std::vector<Json> elements{};
-    std::vector<std::string> keys{};  // of an object, one for each element
+    std::vector<std::string> keys{};  // of an object: the names of its elements; of an array: empty
     bool is_object = false;
 };
 
@@ -154,7 +160,7 @@ auto read_json(const std::string& text, const JsonSource& from, Read&& read) {
 
 inline constexpr std::uint64_t kLargestJson = 64'000'000;  // bytes of a file
 
-/// Reads a JSON file into a string for read_json(). UserError if it cannot be read.
+/// Reads a JSON file into a string for read_json(). Throws UserError, as `from` formats it, if the file cannot be read.
 std::string json_text(const std::filesystem::path& file, const JsonSource& from, Pipes pipes = Pipes::kRefused,
                       std::uint64_t max_bytes = kLargestJson);
 

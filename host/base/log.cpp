@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-std::mutex output_mutex;  // the progress bar has a thread of its own
+std::mutex output_mutex;  // needed because the progress bar prints from its own thread
 bool status_shown = false;
 
 void write_stderr(const std::string& text) {

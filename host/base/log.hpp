@@ -1,4 +1,4 @@
-// Log messages on stderr and their verbosity. The state is global, like stderr.
+// Log messages and the status line on stderr, and the verbosity, which is global.
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,22 +7,22 @@
 namespace raya {
 
 /// Returns `text` with each control character except \n and \t escaped ("\x1b"), so that the name of a file cannot send
-/// commands to the terminal. For stdout; print_log() applies it itself.
+/// commands to the terminal. Use it for output to stdout; print_log() and show_status() use it themselves.
 std::string printable(std::string_view text);
 
-/// Prints `text`, whole lines, on stderr. Clears the status line first.
+/// Clears the status line and prints `text`, which consists of whole lines, on stderr.
 void print_log(std::string_view text);
 
-/// Shows a status line on a terminal, instead of the previous one, until something is printed or clear_status() is
-/// called.
+/// Prints a status line on stderr, which must be a terminal, instead of the previous one. print_log(), clear_status()
+/// or the next call erases it.
 void show_status(std::string_view line);
 void clear_status();
 
-inline constexpr int kErrorsOnly = -2;       // no warnings either
-inline constexpr int kQuiet = -1;            // no progress, no summary
-inline constexpr int kDefaultVerbosity = 0;  // warnings, progress, summary
-inline constexpr int kVerbose = 1;           // steps of the host too
-inline constexpr int kDetailed = 2;          // kernel builds and times of the device too
+inline constexpr int kErrorsOnly = -2;       // errors
+inline constexpr int kQuiet = -1;            // errors, warnings
+inline constexpr int kDefaultVerbosity = 0;  // errors, warnings, progress, summary
+inline constexpr int kVerbose = 1;           // also the steps of the host
+inline constexpr int kDetailed = 2;          // also kernel builds and times of commands on the device
 
 /// Sets the level, clamped to kErrorsOnly..kDetailed.
 void set_verbosity(int level);
@@ -36,7 +36,7 @@ bool shows_progress();
 /// Prints every line of `text` on stderr, each with the prefix "raya: ", if the verbosity is `level` or higher.
 void log_message(int level, std::string_view text);
 
-/// Prints "raya: TEXT" on stderr unless the verbosity is kErrorsOnly. For conditions that do not end the command.
+/// Prints "raya: TEXT" on stderr unless the verbosity is kErrorsOnly. For problems that do not end the command.
 void warn(std::string_view text);
 
 }  // namespace raya

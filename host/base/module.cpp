@@ -17,7 +17,7 @@ namespace raya {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path own_file;  // empty: /proc/self/exe
+fs::path own_file;  // of set_own_file(); empty: the program, /proc/self/exe
 
 std::string user_name(uid_t user) {
     const passwd* const entry = ::getpwuid(user);
@@ -42,12 +42,12 @@ std::string other_writers_of_one(const fs::path& path, const std::vector<uid_t>&
     }, root{};
     if (::lstat(path.c_str(), &is) != 0 || ::stat("/", &root) != 0)
         return fmt::format("'{}': {}", path.string(), std::generic_category().message(errno));
-    // In a user namespace root may have another uid; the owner of "/" owns everything.
+    // In a user namespace root may have another uid than 0, so the owner of "/" is also accepted as root.
     const bool by_root = is.st_uid == 0 || is.st_uid == root.st_uid;
     if (!by_root && std::find(owners.begin(), owners.end(), is.st_uid) == owners.end())
         return fmt::format("'{}' belongs to user {}", path.string(), user_name(is.st_uid));
     if (sticky == Sticky::kAllowed && (is.st_mode & S_ISVTX) != 0) return {};
-    // With an access control list the group bits are the mask of all its entries.
+    // If the file has an access control list, the group bits are the mask of all its entries, not the group's rights.
     const bool listed = ::lgetxattr(path.c_str(), "system.posix_acl_access", nullptr, 0) > 0;
     const bool by_group = (is.st_mode & S_IWGRP) != 0 && (listed || has_other_members(is.st_gid, is.st_uid));
     if (!by_group && (is.st_mode & S_IWOTH) == 0) return {};
@@ -72,7 +72,8 @@ OwnFile own_file_now() {
     return {folder, is.st_uid};
 }
 
-/// The path is safe to pass to the loader: no other user may change the file. Debuggers and messages show this path.
+/// Returns the path of the module file `name`. Throws ModuleError if there is no such file, and UserError if another
+/// user may change it: then loading it would not be safe.
 fs::path checked_module(const std::string& name) {
     const fs::path file = module_folder() / name;
     std::error_code failure;
@@ -92,7 +93,8 @@ std::string loader_error() {
 [[noreturn]] void refuse_to_load(const std::string& name) {
     const std::string reason = loader_error(), limit = memory_limit();
     const auto reason_has = [&](const char* part) { return reason.find(part) != reason.npos; };
-    // dlerror() gives no error code, and its text is the same for a file system that is mounted noexec.
+    // dlerror() returns only a text. This text also appears if the file system is mounted noexec, so raya takes it for
+    // a lack of memory only if there is a memory limit.
     if (!limit.empty() && reason_has("failed to map segment"))
         throw UserError(fmt::format("out of memory while loading {}.so: {}; remedy: raise {}", name, reason, limit));
     if (reason_has("failed to map segment")) throw ModuleError(reason);
@@ -117,7 +119,7 @@ fs::path module_folder() {
 
 std::string other_writers_reason(const fs::path& file) {
     const OwnFile own = own_file_now();
-    // Folders above the program are not checked: a user who may change them could replace the program itself.
+    // Folders above the program are not checked, because a user who may change them could replace the program itself.
     std::string why = other_writers(file.parent_path(), {::geteuid(), own.owner}, Sticky::kRefused, own.folder);
     if (why.empty()) why = other_writers_of_one(file, {::geteuid(), own.owner}, Sticky::kRefused);
     return why;
@@ -125,7 +127,7 @@ std::string other_writers_reason(const fs::path& file) {
 
 void* module_function(const std::string& name, const char* symbol) {
     const fs::path file = checked_module(name + ".so");
-    // RTLD_LAZY: a module's libraries have far more functions than are called.
+    // RTLD_LAZY, because most functions of a module's libraries are never called.
     void* const module = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (module == nullptr) refuse_to_load(name);
     void* const function = ::dlsym(module, symbol);

@@ -1,5 +1,5 @@
-// Modules: shared objects that are loaded on first use, so that other runs do not pay for their libraries. Also checks
-// that no other user may change files with code.
+// Modules: shared objects that are loaded on first use, so that runs without them do not load their libraries. Also
+// checks that no other user may change files that contain code.
 #pragma once
 #include <sys/types.h>
 
@@ -23,28 +23,30 @@ struct MissingLibrary : ModuleError {
 /// "the limit of 488 MB on memory (ulimit -v)", under which libraries may fail to load; empty if there is no limit.
 std::string memory_limit();
 
-/// Returns the function `symbol` of the module `name` (a file NAME.so), which stays loaded. The modules of a program in
-/// a folder `bin` are in ../lib/raya; those of any other program are in its own folder. Throws ModuleError, and
-/// UserError if users other than root, this user and the program's owner may change the file or its folder, or if a
-/// memory limit prevents loading.
+/// Returns the function `symbol` of the module `name` (the file NAME.so in module_folder()), which stays loaded. Throws
+/// ModuleError, and UserError if users other than root, this user and the program's owner may change the file or its
+/// folder, or if a memory limit prevents loading.
 void* module_function(const std::string& name, const char* symbol);
 
-/// The folder of the modules and of the other files installed with the program. ModuleError.
+/// The folder of the modules and of the other files installed with the program: ../lib/raya if the program's folder is
+/// named `bin`, else the program's folder. Throws ModuleError if the program's path cannot be read.
 std::filesystem::path module_folder();
 
-/// Returns why users other than root, this user and the program's owner may change this file or a folder between it and
-/// the program's; empty if they may not.
+/// Checks if users other than root, this user and the program's owner may change `file`, its folder, or a folder above
+/// that does not contain the program. Returns the reason if they may, as other_writers(), else an empty string.
 std::string other_writers_reason(const std::filesystem::path& file);
 
-/// Sets the file whose folder determines module_folder(), instead of the program: for the Python module and tests.
+/// Makes module_folder() use the path of `file` instead of the program's. For the Python module and tests.
 void set_own_file(const std::filesystem::path& file);
 
-/// Whether a world-writable folder is accepted if it is sticky: users cannot replace files of others there.
+/// Treatment of a folder that others may write but that has the sticky bit, so that they cannot replace files in it
+/// that belong to another user.
 enum class Sticky { kRefused, kAllowed };
 
-/// Returns why users other than root and `owners` may change or replace `path` (absolute, without links), with the file
-/// or folder and its owner or mode; empty if they may not. A writable group is accepted if the owner is its only
-/// member. Folders above `path` may be sticky. Folders that also contain `known` are not checked.
+/// Checks if users other than root and `owners` may change or replace `path` (absolute, without symbolic links).
+/// Returns the reason if they may: the file or folder, and its owner or mode; else an empty string. Accepts a group
+/// with write permission if the owner is its only member. `sticky` applies to `path`; folders above may be sticky. Does
+/// not check the folders above `path` that contain `known`.
 std::string other_writers(std::filesystem::path path, const std::vector<uid_t>& owners, Sticky sticky,
                           const std::filesystem::path& known = "/");
 

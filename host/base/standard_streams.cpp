@@ -16,9 +16,9 @@ namespace raya {
 namespace {
 
 constexpr int kNotReserved = -1;
-constexpr int kTaken = -2;  // by the writer of the file
+constexpr int kTaken = -2;  // take_stdout() has returned the descriptor
 
-int reserved_stdout = kNotReserved;  // a duplicate of stdout; descriptor 1 itself now refers to stderr
+int reserved_stdout = kNotReserved;  // a duplicate of stdout; while it exists, descriptor 1 refers to stderr
 
 }  // namespace
 

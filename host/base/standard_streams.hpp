@@ -6,8 +6,8 @@
 
 namespace raya {
 
-/// Returns true for "-", which means stdin for an input file and stdout for an output file. A file of that name is
-/// "./-".
+/// Returns true for "-", which means stdin for an input file and stdout for an output file. The path of a file with the
+/// name - is "./-".
 bool is_standard_stream(const std::filesystem::path& path);
 
 /// The name in messages and reports: "stdin" or "stdout" for "-", else the path.
@@ -19,12 +19,12 @@ std::string output_name(const std::filesystem::path& path);
 int take_stdin();
 
 /// Reserves stdout for a file: from now on everything that this process and its children print to stdout goes to
-/// stderr. Further calls do nothing. UserError if the system has no descriptor left.
+/// stderr. Further calls do nothing. Throws UserError if no file descriptor is free.
 void reserve_stdout();
 bool stdout_is_reserved();
 
-/// Returns the descriptor of the reserved stdout, which the caller closes. A second call throws UserError, because two
-/// files would be mixed.
+/// Reserves stdout if necessary and returns its descriptor, which the caller closes. A second call throws UserError,
+/// because the content of two files would be mixed.
 int take_stdout();
 
 /// Throws UserError if `path` is "-" and stdout is a terminal, which binary output would garble.

@@ -35,10 +35,10 @@ void check_kind(const struct stat& status, Pipes pipes) {
     if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) throw UnreadableFile("not a regular file");
 }
 
-// `expected_bytes` is a hint: a file may grow or shrink.
+// Reads to the end of the file. `expected_bytes` is only the initial buffer size: the file may grow or shrink.
 std::string read_all(int descriptor, std::uint64_t expected_bytes, std::uint64_t max_bytes) {
     constexpr std::size_t kBlock = 1 << 16;
-    // One byte more, to find the end.
+    // One byte more than expected, so that the read() that detects the end of the file needs no larger buffer.
     std::string bytes(static_cast<std::size_t>(std::min(expected_bytes, max_bytes)) + 1, '\0');
     for (std::size_t end = 0;;) {
         if (end > max_bytes) throw UnreadableFile(fmt::format("larger than {} bytes", max_bytes));
@@ -52,7 +52,7 @@ std::string read_all(int descriptor, std::uint64_t expected_bytes, std::uint64_t
     }
 }
 
-constexpr mode_t kFileMode = 0666;  // of a new file, before the user's umask
+constexpr mode_t kFileMode = 0666;  // of a new file, before the user's umask applies
 
 [[noreturn]] void refuse(const fs::path& path, std::string_view reason, std::string_view remedy) {
     throw UserError(fmt::format("cannot write '{}': {}; {}", output_name(path), reason, remedy));
@@ -99,10 +99,10 @@ void check_folder(const fs::path& path, const fs::path& folder) {
 /// The destination of a writable `path`.
 struct Target {
     fs::path file;        // symbolic links resolved
-    bool direct = false;  // a device, a pipe or stdout: written without a temporary file
+    bool direct = false;  // written without a temporary file, because it is a device, a pipe or stdout
 };
 
-/// Resolves `path` while it is a symbolic link.
+/// Follows `path` as long as it is a symbolic link; the last target need not exist.
 fs::path followed(const fs::path& path) {
     constexpr int kMaxLinks = 40;  // Linux's own limit
     fs::path file = path;
@@ -147,16 +147,16 @@ int write_and_close(int descriptor, const Next& next) {
             error = errno;
         if (bytes.empty()) bytes = next();
     }
-    // Network file systems report a full disk only here. On EINTR Linux has closed the descriptor anyway.
+    // Network file systems may report a full disk only in close(). After EINTR Linux has closed the descriptor.
     if (::close(descriptor) != 0 && error == 0 && errno != EINTR) error = errno;
     return error;
 }
 
-/// A new file in the folder of the target. Unless it is renamed, the destructor or an interruption removes it. Its name
-/// is short, so that it is valid wherever the target's own name is.
+/// A new file in the folder of the target. Unless it is renamed, the destructor or an interruption deletes it. Its name
+/// does not contain the target's name, so that it cannot exceed the maximum length of a file name.
 struct TemporaryFile {
     fs::path path;
-    FileInProgress in_progress;  // registered before the file exists: an interruption may come at any time
+    FileInProgress in_progress;  // constructed before the file is created: an interruption may come at any time
     int descriptor;
     bool renamed = false;
 
@@ -181,7 +181,7 @@ std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::
 
 void write_direct(const fs::path& path, const Next& next) {
     const int descriptor = is_standard_stream(path) ? take_stdout() : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor < 0 && errno == EINTR) return write_direct(path, next);  // a pipe was waiting for its reader
+    if (descriptor < 0 && errno == EINTR) return write_direct(path, next);  // open() waits for a pipe's reader
     if (descriptor < 0) refuse(path, errno);
     if (const int error = write_and_close(descriptor, next)) refuse(path, error);
 }

@@ -16,29 +16,30 @@ struct UnreadableFile : std::runtime_error {
 
 enum class Pipes { kRefused, kRead };
 
-/// Returns all bytes of a file, of a pipe (`<(command)` of a shell) with Pipes::kRead, or of stdin if the name is "-"
-/// (standard_streams.hpp). Throws UnreadableFile: no such file, a folder, a device, no permission, a read error, more
-/// than `max_bytes` bytes.
+/// Returns all bytes of a regular file, of stdin if the name is "-" (standard_streams.hpp), or, with Pipes::kRead, of a
+/// pipe (`<(command)` in a shell). Throws UnreadableFile if the file does not exist, is a folder or a device, may not
+/// be read, has more than `max_bytes` bytes, or if reading fails.
 std::string read_file(const std::filesystem::path& path, Pipes pipes = Pipes::kRefused,
                       std::uint64_t max_bytes = std::uint64_t{1} << 36);
 
 /// Throws UserError with file, reason and remedy if write_whole_file() could not write `path`: it is a folder, its
-/// folder is missing or not writable, or the existing file is not writable. Writes nothing. Lets a command fail before
-/// an hour of work instead of after it. "-" reserves stdout for the file (standard_streams.hpp).
+/// folder is missing or not writable, or the existing file is not writable. Writes nothing. Commands call it before
+/// long work, so that they fail early. For "-", reserves stdout for the file (standard_streams.hpp).
 void check_writable(const std::filesystem::path& path);
 
-/// Returns the same text for all names of a file, whether it exists or not: device and inode, or those of the folder in
-/// which it would be created. Empty for a device, a pipe or a folder. UserError for a loop of links.
+/// Returns a text that is the same for all paths of a file: its device and inode; if the file does not exist, device
+/// and inode of the folder in which it would be created, and its name. Empty for a device, a pipe or a folder. Throws
+/// UserError for a loop of symbolic links.
 std::string file_identity(const std::filesystem::path& path);
 
 /// Writes `bytes` to a temporary file in the folder of `path` and renames it, so that no reader sees a partial file and
-/// an old file stays unchanged until the new one is complete. Follows a symbolic link, also to a file that does not
-/// exist yet. Writes a device, a pipe (`/dev/stdout`) or stdout ("-") directly. Throws UserError with file, reason and
-/// remedy. Neither a failure nor an interruption (interruption.hpp) leaves a temporary file.
+/// an old file stays unchanged until the new one is complete. Follows symbolic links, also to a file that does not
+/// exist yet. Writes directly to a device, a pipe (`/dev/stdout`) or stdout ("-"). Throws UserError with file, reason
+/// and remedy. Failures and interruptions (interruption.hpp) leave no temporary file.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// Writes a file in pieces, so that it need not be in memory as a whole. `next` returns one piece per call, valid until
-/// the next call, and an empty one at the end.
+/// As above, but writes the file in pieces, so that it need not be in memory as a whole. `next` returns one piece per
+/// call, valid until the following call, and an empty piece at the end.
 void write_whole_file(const std::filesystem::path& path, const std::function<std::string_view()>& next);
 
 }  // namespace raya

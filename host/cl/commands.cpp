@@ -19,16 +19,18 @@
 namespace raya {
 namespace {
 
-// Events hold driver memory until their times are read, so a session waits for the device after this many commands.
+// Events occupy memory of the driver until their times are read, so a session waits for the device and reads the times
+// when this many commands are pending.
 constexpr std::size_t kMaxPending = 4096;
 
 HostMemory::Kind memory_kind(bool pinned) { return pinned ? HostMemory::Kind::kPinned : HostMemory::Kind::kPlain; }
 
-/// State shared by all sessions of a device. Never destroyed: the driver may be unloaded before static objects are.
+/// State shared by all sessions of a device. Never destroyed, because the driver may be unloaded before static objects
+/// are destroyed.
 struct SharedContext {
     cl::Context context;
     std::mutex building;
-    std::map<std::pair<std::vector<std::string>, std::string>, Program> programs;  // by options, source
+    std::map<std::pair<std::vector<std::string>, std::string>, Program> programs;  // by (options, source)
 };
 
 SharedContext& shared_context(const cl::Device& device) {
@@ -62,23 +64,23 @@ Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
 }
 
 Session::~Session() {
-    if (!queue_) return;  // moved from
+    if (!queue_) return;  // this session was moved from
     // The device must be idle when the program ends: PoCL's threads, which may still be compiling a kernel, crash with
-    // SIGSEGV if its library is unloaded under them. clFinish() does not throw.
+    // SIGSEGV if PoCL's library is unloaded while they run. clFinish() does not throw.
     clFinish((*queue_)());
     if (!profile_.timed() || verbosity() < kDetailed || std::uncaught_exceptions() > 0) return;
     try {
         for (const LabelSummary& label : profile().summary())
             log_message(kDetailed, fmt::format("on the device: {} ({}) x {}: {:.3f} ms", label.label, label.kind,
                                                label.launches, 1e-6 * static_cast<double>(label.total_ns)));
-    } catch (const std::exception&) {  // already reported by the render
+    } catch (const std::exception&) {  // the render has already reported the error
     }
 }
 
 Program Session::build(const std::string& name, const std::string& source,
                        const std::vector<std::string>& options) const {
     std::vector<std::string> all = options;
-    if (recorded_launches_ > 0) all.emplace_back("-cl-kernel-arg-info");  // keeps the names of arguments
+    if (recorded_launches_ > 0) all.emplace_back("-cl-kernel-arg-info");  // for argument_name()
     if (const std::string more = user_build_options(); !more.empty()) all.push_back(more);
     SharedContext& shared = shared_context(device_);
     const std::scoped_lock lock(shared.building);
@@ -145,8 +147,8 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
     if (groups == 0 || group_size == 0) throw std::invalid_argument(what + ": no work-items");
     if (local_bytes > info_.local_memory_bytes) {
         throw DeviceError(
-            fmt::format("{}: needs {} bytes of local memory, {} has {} per work-group; remedy: keep these words in "
-                        "global memory, or choose another device",
+            fmt::format("{}: needs {} bytes of local memory, {} has {} per work-group; remedy: a smaller scene, or "
+                        "another device",
                         what, local_bytes, info_.name, info_.local_memory_bytes));
     }
     const std::size_t max_size =
@@ -208,7 +210,7 @@ void Session::write_staged(const std::string& label, const cl::Buffer& to, const
 
 void Session::read_staged(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                           std::size_t bytes, std::byte* to) {
-    std::optional<Staging::Place> before;  // the place into which the part from `taken` on is being read
+    std::optional<Staging::Place> before;  // staging memory of the previous part, which starts at byte `taken`
     std::size_t taken = 0;
     const std::string what = fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name);
     const auto take = [&](std::size_t part) {
@@ -301,7 +303,7 @@ void Session::flush() {
 }
 
 void Session::finish() {
-    const std::vector<Pending> done = std::exchange(pending_, {});  // cleared even if one of them failed
+    const std::vector<Pending> done = std::exchange(pending_, {});  // cleared even if a command failed
     guarded("waiting for the device", [this] { queue_->finish(); });
     for (const Pending& command : done) profile_.add(finished(command));
 }

@@ -1,4 +1,5 @@
-// A session on one device creates all its buffers, programs and commands. Every command has a label and is profiled.
+// A session: creates buffers and programs for one device and enqueues its commands. Every command has a label and is
+// profiled.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -20,43 +21,46 @@
 
 namespace raya {
 
-/// Profiling of commands by the device. Ignored on a device that does not support it.
+/// kOn: the device records the times of commands, if it supports that. kOff: it does not.
 enum class Timing { kOn, kOff };
 
-/// kStaged: all transfers go through pinned memory (host/cl/memory.hpp). kDirect: only small writes are staged, through
-/// plain memory. kAutomatic: kStaged on a device with memory of its own, else kDirect.
+/// Transfers between host and device. kStaged: all go through a pinned staging buffer (host/cl/memory.hpp). kDirect:
+/// only small writes go through a staging buffer, in plain memory. kAutomatic: kStaged on a device whose memory is
+/// separate from the host's, else kDirect.
 enum class Transfers { kAutomatic, kDirect, kStaged };
 
 /// A context and an in-order queue: commands run one after another, in the order in which they were enqueued.
 ///
 /// All offsets and counts are in elements. A range beyond a buffer's end throws std::out_of_range, an empty launch or
-/// buffer std::invalid_argument: both are errors in the host program. An error of the driver throws DeviceError with
-/// call, label, buffers or kernel, error name and remedy. A transfer of no elements does nothing and is not recorded.
+/// buffer std::invalid_argument: both are errors in the host program. If a call of the driver fails, DeviceError is
+/// thrown with call, label, buffers or kernel, error name and remedy. A transfer of no elements does nothing and is not
+/// recorded.
 class Session {
   public:
     explicit Session(const cl::Device& device, Timing timing = Timing::kOn,
                      Transfers transfers = Transfers::kAutomatic);
     Session(Session&&) = default;  // not copyable: a copy would report the same commands twice
-    /// Waits for all commands, also during stack unwinding. Logs their times at kDetailed (host/base/log.hpp).
+    /// Waits for all commands, also during stack unwinding. Logs their times at level kDetailed (host/base/log.hpp).
     ~Session();
 
     const DeviceInfo& device() const { return info_; }
 
-    /// Total bytes of all buffers allocated so far, freed ones included.
+    /// Total bytes of all buffers allocated so far, including those that were freed.
     std::uint64_t bytes_taken() const { return bytes_taken_; }
 
-    /// Allocates `count` > 0 elements; `name` is for messages. DeviceError if the device does not allow such a size.
+    /// Allocates `count` > 0 elements; `name` is for messages. Throws DeviceError if they exceed the device's maximum
+    /// buffer size, or if the allocation fails.
     template <class T>
     Buffer<T> buffer(const std::string& name, std::size_t count) const {
         return Buffer<T>(allocate(name, count, sizeof(T)), name, count);
     }
 
-    /// Builds a program, see Program. All sessions of a device share their programs: the same source with the same
+    /// Builds a program, see Program. All sessions of a device share their programs: each combination of source and
     /// options is built once per process.
     Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
 
-    /// The maximum work of a launch with this label, in its kernel's units. UINT32_MAX until the device truncates
-    /// loops.
+    /// The maximum amount of work of a launch with this label, in units that the kernel defines (see LaunchGuard,
+    /// kernels.hpp). UINT32_MAX, no limit, until the device has ended loops of such a launch early.
     std::uint32_t& launch_limit(const std::string& label) {
         return launch_limits_.try_emplace(label, UINT32_MAX).first->second;
     }
@@ -95,14 +99,14 @@ class Session {
         read_bytes(label, from.memory(), from.name(), offset * sizeof(T), to.size_bytes(), to.data());
     }
 
-    /// Allocates host memory for asynchronous reads of `count` > 0 elements. DeviceError if that fails.
+    /// Allocates host memory for asynchronous reads of `count` > 0 elements. Throws DeviceError on failure.
     template <class T>
     Readback<T> readback(const std::string& name, std::size_t count) const {
         return {host_memory(name, count * sizeof(T)), count};
     }
 
-    /// Device to host: reads `count` elements of `from` from element `offset` on into `to` from element `to_offset` on.
-    /// Does not wait; the elements are valid after wait(). Later reads into `to` complete after this one.
+    /// Device to host: reads `count` elements of `from`, starting at element `offset`, into `to`, starting at element
+    /// `to_offset`. Does not wait; the elements are valid after wait(). Reads complete in the order of the calls.
     template <class T>
     void read(const std::string& label, const Buffer<T>& from, std::size_t offset, Readback<T>& to,
               std::size_t to_offset, std::size_t count) {
@@ -112,7 +116,7 @@ class Session {
                    to_offset * sizeof(T));
     }
 
-    /// Waits for all reads into `readback`. DeviceError with the label if one failed.
+    /// Waits for all reads into `readback`. Throws DeviceError, with the label, if one failed.
     template <class T>
     void wait(const std::string& label, Readback<T>& readback) {
         wait_for(label, readback.memory());
@@ -153,36 +157,38 @@ class Session {
         fill_bytes(label, to.memory(), to.name(), to.bytes(), &value, sizeof(T));
     }
 
-    /// For traces: from now on `steps`, which must outlive the session, records step()s and builds, and the profile
-    /// records the arguments of the next `launches` launches, with their names in programs built from now on.
+    /// For traces: from now on, step() and build() add entries to `steps`, which must outlive the session, and the
+    /// profile contains the arguments of the next `launches` kernel launches, with their names if the program is built
+    /// after this call.
     void observe(StepLog& steps, std::size_t launches) {
         steps_ = &steps;
         recorded_launches_ = launches;
     }
 
-    /// From now on compiling() prints messages.
+    /// Enables the messages of compiling().
     void announce_compiling() { announces_ = true; }
 
-    /// From now on each program that is built adds an entry to `builds`, with the first launches of its kernels. A null
-    /// pointer ends the recording.
+    /// From now on, adds an entry to `builds` for each program that is built, with the time of the first launches of
+    /// its kernels. A null pointer ends the recording.
     void record_builds(std::vector<KernelBuild>* builds) { builds_ = builds; }
 
     /// Saves the binaries of all programs that were built for the device, see Program::save_binary().
     void save_binaries() const;
 
-    /// Keep the returned thread while kernels are compiled and first launched: announce_compiling(), base/progress.hpp.
+    /// Returns the thread of announce_compiling() (base/progress.hpp), or an empty one if messages are not enabled.
+    /// Keep it while kernels are compiled and launched for the first time.
     [[nodiscard]] std::jthread compiling() const;
 
-    /// Starts a step of the host, which ends with the scope of the returned object. Recorded in the log of observe().
+    /// Starts a host step, which ends when the returned object is destroyed. Records it in the StepLog of observe().
     [[nodiscard]] StepLog::Step step(const std::string& name) const { return StepLog::Step(steps_, name); }
 
-    /// Submits all commands to the device, which a driver may otherwise defer. Does not wait.
+    /// Submits all enqueued commands to the device (clFlush): until then a driver may defer them. Does not wait.
     void flush();
 
-    /// Waits for all commands. DeviceError names the label of a command that failed on the device.
+    /// Waits for all commands. Throws DeviceError, with the label, if a command failed on the device.
     void finish();
 
-    /// All commands so far; waits for them.
+    /// Waits for all commands and returns the records of all commands since the last clear_profile().
     const Profile& profile();
 
     /// Waits for all commands and clears the profile, to start a new measurement.
@@ -234,14 +240,14 @@ class Session {
     mutable std::uint64_t bytes_taken_ = 0;
     cl::Context context_;
     std::unique_ptr<cl::CommandQueue> queue_;  // its address is stable when the session moves
-    bool pinned_ = false;                      // all transfers are staged in pinned memory; else only small writes
+    bool pinned_ = false;                      // Transfers::kStaged is in effect, else kDirect
     std::unique_ptr<Staging> staging_;
     std::vector<Pending> pending_;
     Profile profile_;
     std::map<std::string, std::uint32_t> launch_limits_;
     bool logs_builds_ = logs_kernel_builds();
     std::vector<KernelBuild>* builds_ = nullptr;
-    std::set<std::pair<cl_kernel, std::size_t>> launched_;  // kernel and group size, if builds are recorded or logged
+    std::set<std::pair<cl_kernel, std::size_t>> launched_;  // kernel, group size; if builds are recorded or logged
     bool announces_ = false;
     StepLog* steps_ = nullptr;
     std::size_t recorded_launches_ = 0;  // number of further launches whose arguments are recorded

@@ -27,9 +27,9 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-/// Mesa's llvmpipe ends all loops of a work-item after this many iterations in total
-/// (tests/portability/nested_loops.cl). No query reports it; on other devices the kernels' canaries detect it
-/// (kernels/shared/loop_canary.clh).
+/// DeviceInfo::max_loop_iterations for a device of this name. Mesa's llvmpipe has a limit
+/// (tests/portability/nested_loops.cl), which no query reports. On other devices the kernels detect loops that ended
+/// early (kernels/shared/loop_canary.clh).
 std::uint32_t loop_iterations_of(const std::string& device_name) {
     constexpr std::uint32_t kLlvmpipe = 65535;
     return device_name.find("llvmpipe") != std::string::npos ? kLlvmpipe : 0;
@@ -48,7 +48,7 @@ std::string list_of(const std::vector<DeviceInfo>& devices) {
     return list;
 }
 
-/// Parses `text` as a decimal number.
+/// Parses `text` as a decimal number; empty if it is not one.
 std::optional<std::size_t> as_index(const std::string& text) {
     std::size_t value = 0;
     const char* end = text.data() + text.size();
@@ -72,7 +72,7 @@ std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t tu
     throw DeviceError("no available OpenCL device has a compiler; see clinfo; devices:" + list_of(devices));
 }
 
-/// Entry `turn` modulo the length of a comma-separated list.
+/// Returns entry `turn` modulo the number of entries of a comma-separated list.
 std::string entry_of(const std::string& list, std::size_t turn) {
     const auto entries = static_cast<std::size_t>(1 + std::count(list.begin(), list.end(), ','));
     std::size_t begin = 0;
@@ -80,8 +80,8 @@ std::string entry_of(const std::string& list, std::size_t turn) {
     return list.substr(begin, list.find(',', begin) - begin);
 }
 
-/// The index of the device with that number, of the first usable one of that type, or of the first with that text in
-/// its platform, name, version or driver; devices.size() if there is none.
+/// Interprets `wanted` as a device number, else as a type, else as part of a platform, name, version or driver. Returns
+/// the index of the first device that matches (for a type: the first usable one), or devices.size() if none matches.
 std::size_t named_index(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
     const std::optional<std::size_t> number = as_index(wanted);
     if (number && *number < devices.size()) return *number;
@@ -124,7 +124,7 @@ std::vector<cl::Device> devices_of(const cl::Platform& platform) {
 std::vector<cl::Device> all_devices() {
     std::vector<cl::Device> all;
     for (const cl::Platform& platform : all_platforms()) {
-        for (const cl::Device& device : devices_of(platform))  // a driver with two ICD entries lists its devices twice
+        for (const cl::Device& device : devices_of(platform))  // a driver with two ICD files reports its devices twice
             if (std::none_of(all.begin(), all.end(), [&](const cl::Device& other) { return other() == device(); }))
                 all.push_back(device);
     }

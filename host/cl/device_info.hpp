@@ -1,4 +1,4 @@
-// Properties of a device, as a plain record.
+// Properties of a device, as a struct.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,14 +14,14 @@ struct DeviceInfo {
     std::uint64_t local_memory_bytes = 0;    // of one work-group
     bool local_memory_is_dedicated = false;  // false: part of global memory, as on CPUs
     std::uint64_t global_memory_bytes = 0;
-    bool own_memory = false;                 // global memory is separate from the host's
+    bool own_memory = false;                 // global memory is separate from the host's memory
     std::uint64_t max_allocation_bytes = 0;  // of one buffer
     std::size_t max_group_size = 0;          // work-items
-    // Iterations of all loops of a work-item, after which they end without an error; 0: no limit.
+    // Total loop iterations of a work-item after which the device silently ends its loops; 0: no known limit.
     std::uint32_t max_loop_iterations = 0;
     std::uint32_t native_float_width = 0, preferred_float_width = 0;
-    bool correctly_rounded_divide_sqrt = false;  // the build option for it is accepted
-    bool fused_multiply_add = false;             // CL_FP_FMA; only a kernel can see if it is fast (FP_FAST_FMAF)
+    bool correctly_rounded_divide_sqrt = false;  // supports -cl-fp32-correctly-rounded-divide-sqrt
+    bool fused_multiply_add = false;             // CL_FP_FMA; kernels see by the macro FP_FAST_FMAF if it is fast
     bool denormals = false, round_to_nearest = false, inf_nan = false;
     bool profiling = false;
     bool available = false, compiler_available = false;

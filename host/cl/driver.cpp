@@ -38,15 +38,16 @@ static_assert(std::atomic<const char*>::is_always_lock_free);
 std::array<char, 300> crash_prefix{};  // "rank 1 on node7: ", or empty
 unsigned int crash_delay_us = 0;
 
-// The largest measured stack frame of a work-group is 88 MB: 1,024 work-items of 16 lanes with a grid and 31 bounces.
+// Bytes of a thread's stack: more than the largest stack frame measured for a work-group, 88 MB (1,024 work-items of 16
+// lanes with a grid and 31 bounces).
 constexpr std::size_t kStack = std::size_t{128} << 20;
-using AlternateStack = std::array<std::byte, 80 << 10>;  // if it is smaller, LLVM allocates its own
+using AlternateStack = std::array<std::byte, 80 << 10>;  // LLVM replaces a smaller one
 
 constexpr std::array<int, 5> kCrashes = {SIGABRT, SIGSEGV, SIGBUS, SIGILL, SIGFPE};
 
-/// Async-signal-safe.
+/// Writes `text` to stderr. Async-signal-safe.
 void write_message(const char* text) {
-    if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // stderr is closed: nothing to do
+    if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // stderr is closed: the message is lost
 }
 
 extern "C" void report_driver_crash(int signal) {
@@ -54,10 +55,10 @@ extern "C" void report_driver_crash(int signal) {
     const pid_t thread = ::gettid();
     pid_t first = 0;
     if (!crashed.compare_exchange_strong(first, thread) && first != thread)
-        for (;;) ::pause();  // if several threads crash, the first one ends the process
+        for (;;) ::pause();  // another thread crashed first: it ends the process
     remove_files_in_progress();
     const char* what = current_call.load();
-    if (what == nullptr && thread != ::getpid()) what = "running a kernel";  // raya's own code runs in the main thread
+    if (what == nullptr && thread != ::getpid()) what = "running a kernel";  // other threads are the driver's
     if (what == nullptr || first != 0) {
         std::signal(signal, SIG_DFL);
         ::raise(signal);
@@ -77,7 +78,7 @@ extern "C" void report_driver_crash(int signal) {
     ::_exit(kExitDeviceError);
 }
 
-/// LLVM, which PoCL uses, calls exit() if the disk with the kernel cache is full.
+/// Runs at exit(), which LLVM, used by PoCL, calls if the disk with the kernel cache is full.
 void report_driver_exit() {
     const char* const what = current_call.load();
     if (what == nullptr) return;
@@ -97,8 +98,9 @@ void set_handler(int signal, void (*from)(int), void (*to)(int)) {
     ::sigaction(signal, &action, nullptr);
 }
 
-/// Bytes of a thread's stack; its guard has the same size. If address space is limited, the stacks and guards of one
-/// thread per core take an eighth of it.
+/// Bytes of the stack of a new thread; the guard has the same size. It is kStack, or less if RLIMIT_AS limits the
+/// address space: then the stacks and guards of one thread per core take an eighth of the limit, with at least kStack /
+/// 16 each.
 std::size_t thread_stack() {
     rlimit memory{RLIM_INFINITY, RLIM_INFINITY};
     ::getrlimit(RLIMIT_AS, &memory);
@@ -133,8 +135,8 @@ fs::path default_cache_folder() {
     return home.empty() ? "/tmp/pocl/kcache" : fs::path(home) / ".cache/pocl/kcache";
 }
 
-/// Returns why PoCL must not use this folder as its cache, or create it below the existing part of its path; empty if
-/// it may.
+/// Returns the reason why the folder, or if it does not exist the nearest existing folder above it, is not safe for
+/// PoCL's cache: it is not writable, or other users may change it. Empty if it is safe.
 std::string unsafe_reason(fs::path folder) {
     std::error_code error;
     while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
@@ -142,8 +144,8 @@ std::string unsafe_reason(fs::path folder) {
     return other_writers(folder, {::geteuid()}, Sticky::kRefused);
 }
 
-/// Creates a folder that only this user may access. Returns true if it was created or exists with these permissions:
-/// another user may have created it.
+/// Creates a folder that only this user may access. Returns true if the folder then belongs to this user and has these
+/// permissions; another user may have created it before.
 bool make_private_folder(const fs::path& folder) {
     struct stat is {};
     ::mkdir(folder.c_str(), S_IRWXU);
@@ -181,7 +183,7 @@ extern "C" __attribute__((visibility("default"))) int pthread_create(pthread_t* 
     ::pthread_attr_setstacksize(&large, thread_stack());
     ::pthread_attr_setguardsize(&large, thread_stack());
     int error = next(thread, &large, run_thread, start.get());
-    if (error != 0) error = next(thread, nullptr, run_thread, start.get());  // not enough address space
+    if (error != 0) error = next(thread, nullptr, run_thread, start.get());  // too little address space for `large`
     ::pthread_attr_destroy(&large);
     if (error == 0) start.release();
     return error;
@@ -205,7 +207,7 @@ void install_crash_handlers() {
     static AlternateStack memory;
     const stack_t own{memory.data(), 0, memory.size()};
     ::sigaltstack(&own, nullptr);
-    rlimit stack{};  // of this thread, which runs the kernels of PoCL's basic device
+    rlimit stack{};  // of this thread, in which PoCL's basic device runs kernels
     ::getrlimit(RLIMIT_STACK, &stack);
     stack.rlim_cur = std::min<rlim_t>(stack.rlim_max, thread_stack());
     ::setrlimit(RLIMIT_STACK, &stack);
@@ -225,7 +227,7 @@ void set_driver_cache_folder() {
     const fs::path preferred = fs::weakly_canonical(fs::absolute(default_cache_folder(), error), error);
     const std::string why =
         error ? fmt::format("'{}': {}", default_cache_folder().string(), error.message()) : unsafe_reason(preferred);
-    // PoCL gets the resolved path that was checked: the target of a link may change.
+    // PoCL gets the resolved path that was checked, because a symbolic link could be changed after the check.
     const fs::path chosen = why.empty() ? preferred : private_cache_folder(why);
     ::setenv(kVariable, chosen.c_str(), 1);
     if (!why.empty())
@@ -234,7 +236,7 @@ void set_driver_cache_folder() {
 }
 
 std::string driver_cache_problem() {
-    constexpr std::size_t kEnough = 1 << 20;  // bytes; a kernel takes fewer
+    constexpr std::size_t kEnough = 1 << 20;  // bytes; more than a compiled kernel takes
     const fs::path folder = variable(kVariable), probe = folder / fmt::format("raya-{}", ::getpid());
     try {
         std::error_code error;

@@ -4,8 +4,8 @@
 
 namespace raya {
 
-/// Marks the scope of a driver call; crash messages contain `what`, which must outlive this object. Threads of OpenCL
-/// run meanwhile, so a crash in any thread is attributed to the driver or a kernel.
+/// Marks a driver call as in progress while this object exists. If any thread crashes meanwhile, raya attributes the
+/// crash to the driver or a kernel and prints `what`, which must outlive this object.
 class DriverCall {
   public:
     explicit DriverCall(const char* what);
@@ -17,26 +17,28 @@ class DriverCall {
     const char* before_;
 };
 
-/// From now on, if a driver aborts or crashes in any thread, also by a stack overflow, raya prints the driver call and
-/// remedies on stderr, removes files in progress and exits with the code of a DeviceError. Crashes outside of drivers
-/// end the program by their signal, and so do all crashes if something else, such as a sanitizer, handles them. Threads
-/// created later get stacks for the largest work-groups.
+/// Installs handlers of crash signals and of exit(). If a driver then aborts, crashes (also by a stack overflow) or
+/// calls exit() in any thread, raya prints the driver call and remedies on stderr, deletes files in progress and exits
+/// with the code of a DeviceError. A crash outside of drivers ends the program by its signal. A signal that has another
+/// handler, such as a sanitizer's, keeps it. Threads created later with default attributes get stacks that suffice for
+/// the largest work-groups.
 void install_crash_handlers();
 
-/// For one of several processes: sets the prefix of a crash message ("rank 1 on node7: ") and the seconds to wait
-/// before printing it. If all processes crash, the first one that prints ends the others.
+/// For a rank of an MPI job: sets the prefix of its crash messages ("rank 1 on node7: ") and a delay in seconds before
+/// it prints one. The first rank that prints ends the others, so with different delays only one prints if all crash.
 void set_crash_prefix(const std::string& prefix, double delay_s);
 
-/// From now on crashes end the program by their signal again, so that the parent process sees the signal.
+/// Removes the crash handlers, so that crashes end the program by their signal and the parent process sees the signal.
 void restore_crash_signals();
 
-/// Sets POCL_CACHE_DIR, unless it is set, to a folder that only this user and root may write: PoCL's default, else one
-/// in the folder for temporary files, with a warning. PoCL executes the binaries that it finds there, and offers no
-/// device if it cannot write there. Call it before any OpenCL function. DeviceError if there is no such folder.
+/// Sets POCL_CACHE_DIR, unless it is set, to a folder that only this user and root may write: PoCL's default folder if
+/// it is safe, else, with a warning, one in the folder for temporary files. The folder matters because PoCL executes
+/// the binaries in it, and offers no device if it cannot write to it. Call this before any OpenCL function. Throws
+/// DeviceError if there is no safe folder.
 void set_driver_cache_folder();
 
-/// Returns why PoCL cannot store kernels in that folder, with the remedy; empty if it can. Writes and removes a file
-/// there.
+/// Checks if PoCL can store kernels in the folder POCL_CACHE_DIR, by writing and deleting a file in it. Returns the
+/// reason and the remedy if it cannot, else an empty string.
 std::string driver_cache_problem();
 
 }  // namespace raya

@@ -13,7 +13,8 @@ struct ErrorName {
     const char* name;
 };
 
-// Numbers instead of macros: a header for OpenCL 1.2 hides the codes of later versions, which drivers still return.
+// Numbers, not CL_ macros, because the OpenCL 1.2 headers do not define the codes of later versions, which drivers may
+// return.
 constexpr ErrorName kErrorNames[] = {
     {0, "CL_SUCCESS"},
     {-1, "CL_DEVICE_NOT_FOUND"},

@@ -12,13 +12,15 @@ namespace raya {
 /// Source of the codes: cl.h, cl_ext.h, and -9999 of NVIDIA's driver.
 std::string error_name(cl_int code);
 
-/// The remedy for an error code, one line; empty if there is no general one.
+/// The remedy for an error code, one line; empty if the code has no common remedy.
 std::string error_remedy(cl_int code);
 
-/// The DeviceError for an OpenCL `call` ("clEnqueueCopyBuffer") that failed during `what` ("'rotate': copying ...").
+/// Makes the DeviceError for an OpenCL `call` ("clEnqueueCopyBuffer") that failed with `code` during the operation
+/// `what` ("'rotate': copying ...").
 DeviceError device_error(const std::string& call, cl_int code, const std::string& what);
 
-/// Runs `action` and returns its result. Converts a cl::Error into a DeviceError with `what` in its message.
+/// Runs `action` and returns its result. Converts a cl::Error into a DeviceError; `what` names the operation in its
+/// message.
 template <class Action>
 decltype(auto) guarded(const std::string& what, Action&& action) {
     const DriverCall call(what.c_str());

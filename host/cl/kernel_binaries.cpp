@@ -46,7 +46,7 @@ std::optional<KernelBinary> read_kernel_binary(const fs::path& file) {
     try {
         const std::string bytes = read_file(file);
         return KernelBinary(bytes.begin(), bytes.end());
-    } catch (const UserError&) {  // unreadable: the kernel is compiled instead
+    } catch (const UnreadableFile&) {  // the kernel is compiled instead
         return {};
     }
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array<std::uint32_t, 4> kLanes = {1, 4, 8, 16};
 constexpr std::uint32_t kMaxGroup = 1024;
-constexpr std::uint32_t kMaxBounces = 31;  // pending rays are bits of a word
+constexpr std::uint32_t kMaxBounces = 31;  // the kernels store the pending rays of a tree as bits of one word
 
 void check_tuning(const KernelTuning& more) {
     const auto check = [](const char* what, std::uint32_t value, std::uint32_t min, std::uint32_t max) {
@@ -69,7 +69,7 @@ std::uint32_t default_group_size(const DeviceInfo& device, bool torus) {
 
 bool filters_are_valid(const NumberFormat& format, double extent) {
     constexpr int kMinFractionBits = 10;
-    // A quarter of the square root of the largest number.
+    // A quarter of the square root of the format's largest number.
     const double max_extent = std::ldexp(1.0, (1 << (format.exponent_bits - 2)) - 2);
     return !format.is_fp32() && format.fraction_bits >= kMinFractionBits && extent <= max_extent;
 }

@@ -1,4 +1,4 @@
-// Build options of the kernels for a device. All -D values are made here.
+// Build options of the kernels for a device. build_options() makes all -D options of the kernels.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,25 +11,25 @@
 
 namespace raya {
 
-/// Kernel parameters besides lanes and group size that change only the time of a render. 0: the default of the kernels
+/// Kernel parameters that, like lanes and group size, change only the time of a render. 0: the default of the kernels
 /// or of the compiler.
 struct KernelTuning {
     std::uint32_t sphere_batch = 0;  // RAYA_SPHERE_BATCH: spheres tested before their hits are examined, 1..32
-    std::uint32_t trees = 0;         // RAYA_TREES: ray trees that a lane traces at once, 1..8; only with a grid
-    std::uint32_t beams = 0;         // RAYA_BEAMS: shadow rays that a hit traces at once, 1..8; only with a grid
+    std::uint32_t trees = 0;         // RAYA_TREES: ray trees that a lane traces concurrently, 1..8; only with a grid
+    std::uint32_t beams = 0;         // RAYA_BEAMS: shadow rays of a hit traced concurrently, 1..8; only with a grid
     std::uint32_t registers = 0;     // register limit per work-item for NVIDIA's compiler, 16..255; others ignore it
     bool operator==(const KernelTuning&) const = default;
 };
 
 /// The parameters of kernels/ (each RAYA_* macro is documented where the kernels define its default).
 struct KernelOptions {
-    std::uint32_t lanes = 1;       // V
-    std::uint32_t group_size = 1;  // L
+    std::uint32_t lanes = 1;       // V: vector width of a work-item
+    std::uint32_t group_size = 1;  // L: work-items per work-group
     std::uint32_t bounces = 8;
     NumberFormat format{};
     bool exact_divide = true;  // use the device's division and square root if correctly rounded; false: refine them
     bool exact_fma = true;     // use the device's fused multiply-add; false: emulate it
-    bool words_local = true;   // PEs copy the broadcast words into local memory
+    bool words_local = true;   // work-groups copy the job's words (scene and settings) into local memory
     std::uint32_t accel = RAYA_ACCEL_NONE;  // acceleration structure of the job
     std::uint32_t stack = 0;                // RAYA_BVH_STACK: depth of the traversal stack
     bool filter = false;  // filter spheres and polygons in fp32 before the exact test, see filters_are_valid()
@@ -38,38 +38,38 @@ struct KernelOptions {
     KernelTuning more{};
 };
 
-/// How packets move over the links of a torus: kCopies by copies between buffers, kKernel by a kernel. kAutomatic: the
-/// kernel on a CPU, elsewhere the faster of the two as measured. The result is the same.
+/// The method that moves packets over the links of a torus. kCopies: copies between buffers. kKernel: a kernel.
+/// kAutomatic: the kernel on a CPU, else the method that is faster in a measurement. The result is the same.
 enum class LinkMove : std::uint32_t { kAutomatic, kCopies, kKernel };
 
-/// The choices of the user or of a check for the kernels of a device.
+/// Kernel settings that the user, a check or tuning chooses for a device.
 struct KernelChoice {
     std::uint32_t lanes = 0;       // V: 1, 4, 8 or 16; 0: chosen from the device
     std::uint32_t group_size = 0;  // L: 1..1024 work-items; 0: chosen from the device
-    bool filter = true;            // use the filters if valid: the same hits in less time
-    // False disables a feature of the device, so that the alternative code in the kernels can be tested on any device.
-    bool local_words = true;       // words in local memory if they fit
+    bool filter = true;            // use the fp32 filters if filters_are_valid(); they do not change the hits
+    // If false, the kernels do not use the feature, so that their alternative code can be tested on any device.
+    bool local_words = true;       // the job's words in local memory if they fit
     bool exact_arithmetic = true;  // the device's division, square root and fused multiply-add if correctly rounded
     KernelSources sources{};
     KernelTuning more{};
     LinkMove link_move = LinkMove::kAutomatic;
-    std::string origin{};       // source of lanes, group size and tuning, see chosen() in tuned.hpp
-    std::string link_origin{};  // source of link_move
+    std::string origin{};       // source of lanes, group size and tuning for reports, see chosen() in tuned.hpp
+    std::string link_origin{};  // source of link_move for reports
 };
 
 /// The default V: the width of the device's float vectors on a CPU, at least 4; 1 elsewhere and on llvmpipe, which
 /// vectorises over work-items itself and takes minutes and gigabytes to compile wider kernels.
 std::uint32_t default_lanes(const DeviceInfo& device);
 
-/// The default L: 1 on a CPU, where lanes are the vectors; 8 on llvmpipe, whose 256-bit vectors consist of the
-/// work-items of a group; 128 elsewhere: 132 multiprocessors hold about 256 PEs of four warps at the 150 registers per
-/// work-item of the kernel `trace` (docs/gpu_resources.md). A torus node on any CPU is one work-item, which keeps
-/// packets in order (docs/packets.md).
+/// The default L: 1 on a CPU, where the lanes of a work-item fill the vectors; 8 on llvmpipe, which vectorises over the
+/// work-items of a group and has 256-bit vectors; else 128: with the 150 registers per work-item of the kernel `trace`,
+/// a GPU with 132 multiprocessors runs about 256 PEs of four warps at once (docs/gpu_resources.md). For a torus it is 1
+/// on every CPU: a node of one work-item keeps packets in order (docs/packets.md).
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false);
 
-/// Returns true if the error bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh are valid: a reduced
-/// format of at least 10 fraction bits, and an `extent` of the scene (scene units) whose squares do not overflow. The
-/// filters change the time of a render, not its result.
+/// Returns true if the error bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh are valid: `format` is
+/// a reduced format with at least 10 fraction bits, and the scene's `extent` (scene units) is so small that squares do
+/// not overflow. The filters change the time of a render, not its result.
 bool filters_are_valid(const NumberFormat& format, double extent);
 
 /// The maximum group size of the kernels on this device.
@@ -81,12 +81,12 @@ bool supports_register_limit(const DeviceInfo& device);
 /// The value of RAYA_TREES in kernels built with these options.
 std::uint32_t trees_of(const KernelOptions& options);
 
-/// Throws UserError for lanes other than 1, 4, 8, 16, a group size outside 1..1024 or above the device's limit, more
-/// than 31 bounces, or a tuning outside its ranges.
+/// Throws UserError for lanes other than 1, 4, 8, 16, a group size outside 1..largest_group_size(), more than 31
+/// bounces, or tuning parameters outside their ranges.
 void check_kernel_options(const KernelOptions& options, const DeviceInfo& device);
 
-/// The build options of all kernels, including correctly rounded division and square root if the device has the option.
-/// Checks `options` by check_kernel_options().
+/// The build options of all kernels, including -cl-fp32-correctly-rounded-divide-sqrt if it is wanted and the device
+/// supports it. Throws as check_kernel_options().
 std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device);
 
 }  // namespace raya

@@ -29,8 +29,8 @@ std::string read_kernel_file(const std::string& file, const std::filesystem::pat
     }
 }
 
-// Returns the kernel file that a line of `file` includes, as a path below kernels/; empty for any other line. A name
-// without a folder is relative to the folder of `file`.
+// If `line`, a line of `file`, is an #include line, returns the included file as a path below kernels/, else an empty
+// string. A name without a folder is relative to the folder of `file`.
 std::string included_file(const std::string& line, const std::string& file) {
     constexpr std::string_view kInclude = "#include \"", kKernels = "kernels/";
     if (!line.starts_with(kInclude)) return {};

@@ -15,8 +15,8 @@
 
 namespace raya {
 
-/// A kernel: its file below kernels/, its name in that file, and its parameters as in Kernel. Adjacent parameters of
-/// the same type are named (Uint), so that they cannot be swapped.
+/// A kernel: its file below kernels/, its name in that file, and its parameter types as in Kernel. Adjacent parameters
+/// of the same type carry their names (Uint), so that a caller cannot swap them.
 template <FixedText File, FixedText Name, class... Params>
 struct DescribedKernel : Kernel<Params...> {
     static constexpr const char* kFile = File.text;
@@ -25,23 +25,23 @@ struct DescribedKernel : Kernel<Params...> {
         : Kernel<Params...>(program.kernel<Params...>(std::string(Name.text))) {}
 };
 
-/// Kernels with common build options: one program for each requested file.
+/// The kernels for one device with one set of build options. Each requested file is built as one program.
 class Kernels {
   public:
     /// Kernels for the device of `session`, which must outlive this object. UserError as in build_options().
     Kernels(Session& session, const KernelOptions& options, const KernelSources& sources = {});
 
-    /// Returns the kernel `K`, a DescribedKernel. Builds its file on the first request for one of its kernels. Throws
-    /// UserError (no such file), DeviceError (the build fails, or the number of parameters differs).
+    /// Returns the kernel `K`, a DescribedKernel. Builds its file when the first of the file's kernels is requested.
+    /// Throws UserError if there is no such file, DeviceError if the build fails or the number of parameters differs.
     template <class K>
     K get() {
         return K(program(K::kFile));
     }
 
-    /// The program of a file below kernels/.
+    /// The program built from a file below kernels/. Throws as get().
     const Program& program(const std::string& file);
 
-    /// Builds a text that is not a file of kernels/ but may include some; `name` is for messages.
+    /// Builds the source `text`, which is not a file of kernels/ but may include such files; `name` is for messages.
     Program build(const std::string& name, const std::string& text) const;
 
     Session& session() const { return session_; }
@@ -55,7 +55,8 @@ class Kernels {
     std::map<std::string, Program> programs_;
 };
 
-/// `label`: the step; `remedy`: how to shorten its loops.
+/// The error for a launch whose loops the device has ended early. `label`: of the launch; `remedy`: how to shorten the
+/// loops.
 inline DeviceError truncated_loops_error(const std::string& label, const std::string& device,
                                          const std::string& remedy) {
     return DeviceError("'" + label + "': " + device +
@@ -63,14 +64,15 @@ inline DeviceError truncated_loops_error(const std::string& label, const std::st
                        ", or another device");
 }
 
-/// For devices that end a kernel's loops early (kernels/shared/loop_canary.clh): halves the work of a launch whose
-/// loops were truncated, so that the caller can repeat it. The session keeps the limit. `T`: element types of the
-/// buffers that a launch changes, its state.
+/// For devices that end a kernel's loops early (kernels/shared/loop_canary.clh). After a launch whose loops were
+/// truncated, it restores the buffers that the launch changes (the state) and halves the limit of work per launch, so
+/// that the caller can repeat the launch. The session stores the limit (Session::launch_limit()). `T`: element types of
+/// the state's buffers.
 template <class... T>
 class LaunchGuard {
   public:
-    /// Call before a launch. Returns how much of `work` the launch may do. Saves the state if the device is known to
-    /// truncate loops.
+    /// Call before a launch. Returns the amount of work that the launch may do, at most `work`. Saves the state if the
+    /// device is known to truncate loops.
     std::uint32_t begin(Session& session, const std::string& label, std::uint32_t work, Buffer<T>&... state) {
         const std::uint32_t limit = session.launch_limit(label);
         if (session.device().max_loop_iterations > 0 || limit < UINT32_MAX) {
@@ -83,8 +85,8 @@ class LaunchGuard {
     /// Returns true if the state was saved, so that a launch can be repeated.
     bool has_copies() const { return copies_.has_value(); }
 
-    /// Call after a launch whose loops were truncated: restores the state before it and halves the limit. Throws
-    /// truncated_loops_error() if the state was not saved or the work cannot be halved.
+    /// Call after a launch whose loops were truncated. Restores the state to that before the launch and sets the limit
+    /// to half the launch's work. Throws truncated_loops_error() if the state was not saved or the work was 1.
     void restore_state(Session& session, const std::string& label, const std::string& remedy,
                        Buffer<T>&... state) const {
         if (!copies_ || work_ == 1) throw truncated_loops_error(label, session.device().name, remedy);

@@ -12,15 +12,16 @@
 namespace raya {
 namespace {
 
-// Two groups per compute unit on a CPU; enough to hide latencies elsewhere.
+// The number of work-items of a launch: two groups per compute unit on a CPU; elsewhere 2048 work-items per compute
+// unit, which is enough to hide latencies.
 std::size_t work_items(const DeviceInfo& device, std::uint32_t group) {
     return std::size_t{device.compute_units} * (device.type == "cpu" ? 2 * group : 2048);
 }
 
-constexpr int kReadings = 2;                                     // in each of three rounds
+constexpr int kReadings = 2;                                     // samples of each rate in a measurement
 constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kRoot = 4;  // indices of kOperations
 
-// Bytes of one of two buffers, which together take at most an eighth of the memory.
+// The size in bytes of each of the two buffers of a copy. Together they take at most an eighth of the device's memory.
 std::uint64_t copied_bytes(const DeviceInfo& device) {
     constexpr std::uint64_t kEnough = 256u << 20;
     return std::min({kEnough, device.max_allocation_bytes, device.global_memory_bytes / 16});
@@ -37,7 +38,7 @@ double copy_bytes_per_s(Session& session, std::uint64_t bytes) {
     return min_ns > 0 ? 2e9 * static_cast<double>(bytes) / static_cast<double>(min_ns) : 0;
 }
 
-// Measures all rates of a device; builds its programs once.
+// Measures all rates of a device repeatedly, and builds the programs only once.
 class Peak {
   public:
     Peak(Session& session, const NumberFormat& format, std::uint32_t lanes)
@@ -61,7 +62,7 @@ class Peak {
   private:
     Session& session_;
     OperationRates of_render_;
-    std::optional<OperationRates> widest_;  // fp32 with the default lanes, if of_render_ is not that
+    std::optional<OperationRates> widest_;  // fp32 with the default lanes; empty if of_render_ measures the same
 };
 
 }  // namespace

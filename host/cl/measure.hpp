@@ -1,5 +1,5 @@
-// Measurements of a device: rates of the number layer's operations, peak rates, and the offset of its clock from the
-// host's.
+// Measurements of a device: rates of arithmetic operations in a number format, peak rates, and the offset between the
+// device's clock and the host's.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,14 +14,14 @@ namespace raya {
 
 inline constexpr std::array<const char*, 5> kOperations = {"add", "multiply", "mul-acc", "divide", "sqrt"};
 
-/// Measures dependent chains of each operation of kOperations in one format, on all compute units. Builds the kernel
-/// once. Clears the session's profile. Throws DeviceError.
+/// Measures the rate of each operation of kOperations in one number format: all compute units run chains of operations,
+/// each of which depends on the previous one. Builds the kernel once. Clears the session's profile. Throws DeviceError.
 class OperationRates {
   public:
     OperationRates(Session& session, const NumberFormat& format, std::uint32_t lanes);
 
-    /// Operations per second of kOperations[kind]: the best of `samples` launches, each of at least 10 ms on the
-    /// device. 0 if the device does not time its commands.
+    /// Operations of kind kOperations[kind] per second, the maximum of `samples` launches of at least 10 ms each. 0 if
+    /// the device does not time its commands.
     double measure(std::size_t kind, int samples);
 
   private:
@@ -37,21 +37,23 @@ class OperationRates {
     Kernels kernels_;
     Chains chains_;
     Buffer<float> results_;
-    std::array<std::uint32_t, kOperations.size()> rounds_{};  // of a launch of at least 10 ms; 0: not measured yet
+    std::array<std::uint32_t, kOperations.size()> rounds_{};  // loop iterations of a launch; 0: not chosen yet
 };
 
 /// Measures operations in fp32 with the device's default lanes and in `format` with `lanes`, and copies between two
-/// buffers of up to 256 MB, which exceed the caches. Returns the best of three rounds; takes a few seconds. Uses a
-/// session of its own, so that other profiles do not contain it. All rates are 0 if the device does not time its
-/// commands. Throws DeviceError.
+/// buffers of up to 256 MB, which exceed the caches. Returns the highest rates of three measurements; takes a few
+/// seconds. Uses its own session, so that its commands do not appear in the caller's profile. All rates are 0 if the
+/// device does not time its commands. Throws DeviceError.
 DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes);
 
-/// Enqueues a few tiny commands and reads the host's clock before and after each: the time at which a command was
-/// queued is between the two. Uses the try that took the least time. Does not detect a later drift of the clocks.
-/// Clears the session's profile. std::logic_error if the session does not time its commands.
+/// Measures the offset of the device's clock. Enqueues 16 fills of one word and reads the host's clock before and after
+/// each: the time at which the command was queued lies between the two. Uses the command with the shortest interval.
+/// Later drift of the clocks is not detected. Clears the session's profile. Throws std::logic_error if the session does
+/// not time its commands.
 ClockAnchor clock_anchor(Session& session);
 
-/// The anchor from one command, queued at `queued` (device clock) between `before` and `after` (host clock).
+/// The clock offset that follows from one command, which was queued at `queued` (device clock) between `before` and
+/// `after` (host clock). Times in ns.
 ClockAnchor anchor_between(std::uint64_t before, std::uint64_t queued, std::uint64_t after);
 
 }  // namespace raya

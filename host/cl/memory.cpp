@@ -12,7 +12,7 @@ constexpr std::size_t kAlignment = 64;  // bytes: a cache line; drivers copy fas
 HostMemory::HostMemory(const cl::Context& context, const cl::CommandQueue& queue, Kind kind, std::size_t bytes)
     : queue_(queue), size_(bytes) {
     if (kind == Kind::kPlain) {
-        plain_.reset(new std::byte[bytes]);  // not cleared: pages are allocated when they are used
+        plain_.reset(new std::byte[bytes]);  // not cleared, so that the system allocates only pages that are used
         bytes_ = plain_.get();
         return;
     }
@@ -20,7 +20,7 @@ HostMemory::HostMemory(const cl::Context& context, const cl::CommandQueue& queue
     bytes_ = static_cast<std::byte*>(queue_.enqueueMapBuffer(pinned_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes));
 }
 
-// Uses the C functions, which do not throw.
+// Calls the C functions because, unlike the C++ bindings, they do not throw.
 HostMemory::~HostMemory() {
     if (last_() != nullptr) clWaitForEvents(1, &last_());
     if (plain_ || bytes_ == nullptr) return;

@@ -12,8 +12,8 @@
 
 namespace raya {
 
-/// `size()` elements of T in the device's global memory, allocated by Session::buffer; initially undefined. A handle:
-/// copies refer to the same memory, which is freed with the last one.
+/// `size()` elements of T in the device's global memory, allocated by Session::buffer(), initially undefined. It is a
+/// handle: copies refer to the same memory, which is freed with the last copy.
 template <class T>
 class Buffer {
     static_assert(std::is_trivially_copyable_v<T>, "buffers are copied byte by byte");
@@ -33,20 +33,21 @@ class Buffer {
     std::size_t size_;
 };
 
-/// A kernel argument `__local T*`: `count` elements for each work-group.
+/// A kernel argument `__local T*`: `count` elements in local memory for each work-group.
 template <class T>
 struct LocalMemory {
     std::size_t count = 0;
     std::size_t bytes() const { return count * sizeof(T); }
 };
 
-/// Plain memory, or pinned memory allocated by the driver, which a device with memory of its own copies to and from
-/// asynchronously at full bus speed. The destructor waits for the last command that uses it.
+/// Host memory for transfers: plain, or pinned (page-locked) memory allocated by the driver. A device with separate
+/// memory copies to and from pinned memory asynchronously at full bus speed. The destructor waits for the last command
+/// that uses the memory.
 class HostMemory {
   public:
     enum class Kind { kPlain, kPinned };
 
-    /// `bytes` > 0. cl::Error.
+    /// Allocates `bytes` > 0 bytes. Throws cl::Error.
     HostMemory(const cl::Context& context, const cl::CommandQueue& queue, Kind kind, std::size_t bytes);
     ~HostMemory();
     HostMemory(const HostMemory&) = delete;
@@ -55,10 +56,10 @@ class HostMemory {
     std::byte* bytes() const { return bytes_; }
     std::size_t size() const { return size_; }
 
-    /// Registers a command that uses this memory, later than all commands registered before.
+    /// Registers a command that uses this memory. The queue must run it after all commands registered before.
     void used_by(const cl::Event& command) { last_ = command; }
 
-    /// Waits for the last registered command. cl::Error if it failed.
+    /// Waits for the last registered command. Throws cl::Error if that command failed.
     void wait();
 
   private:
@@ -89,13 +90,13 @@ class Readback {
     std::size_t size_;
 };
 
-/// Bytes of one half of a Staging. On a device that shares the host's memory a transfer is a copy by another thread.
-/// For a small transfer, waking that thread and waiting for it takes longer than copying twice, hence the small plain
-/// half.
+/// Bytes of one half of a Staging, in pinned and in plain memory. Plain halves are for devices that share the host's
+/// memory, where a thread of the driver copies the bytes of a transfer. For a small transfer, waking that thread and
+/// waiting for it takes longer than copying the bytes twice, by way of the staging buffer.
 inline constexpr std::size_t kPinnedHalf = 4u << 20, kPlainHalf = 64u << 10;
 
-/// Double buffering for transfers. Consecutive transfers fill one half; while the device copies it, the host fills or
-/// reads the other.
+/// Double buffering for transfers. Consecutive transfers fill one half; while the device copies that half, the host
+/// fills or reads the other.
 class Staging {
   public:
     /// Allocates both halves. Throws cl::Error.
@@ -108,13 +109,13 @@ class Staging {
         std::byte* bytes;
     };
 
-    /// Reserves `bytes` bytes, at most half_bytes(). If that switches to the other half, waits for the commands that
-    /// use it. cl::Error if one failed.
+    /// Reserves `bytes` bytes, at most half_bytes(). If they do not fit into the current half, switches to the other
+    /// half and waits for the commands that use it. Throws cl::Error if one of these failed.
     Place take(std::size_t bytes);
 
   private:
     std::array<HostMemory, 2> halves_;
-    std::size_t turn_ = 0, used_ = 0;  // index of the current half; its reserved bytes
+    std::size_t turn_ = 0, used_ = 0;  // index of the current half; bytes reserved in it
 };
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// Plain records of the device's commands and the host's steps with their times, and of a device's peak rates.
+// Structs for timed device commands, timed host steps, and a device's peak rates.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -18,21 +18,22 @@ struct CommandRecord {
     std::string label;
     std::string kind;  // "kernel", "write", "read", "copy" or "fill"
     std::uint64_t queued = 0, submitted = 0, started = 0, ended = 0;
-    std::uint64_t bytes = 0;                   // moved or filled; 0 for a kernel
-    std::string object{};                      // the kernel, the buffer of a transfer, or both buffers of a copy
-    std::uint64_t groups = 0, group_size = 0;  // of a kernel
-    std::vector<ArgumentText> arguments{};     // of a kernel, only if Session::observe() asks for them
+    std::uint64_t bytes = 0;                   // transferred, copied or filled; 0 for a kernel
+    std::string object{};                      // name of the kernel, of the buffer, or of both buffers of a copy
+    std::uint64_t groups = 0, group_size = 0;  // of a kernel launch; group_size in work-items
+    std::vector<ArgumentText> arguments{};     // of a kernel launch; only if Session::observe() requested them
 };
 
-/// All commands of one label and kind. Times are from start to end on the device, nanoseconds.
+/// Summary of all commands of one label and kind. total_ns, min_ns, mean_ns and max_ns are nanoseconds from start to
+/// end on the device.
 struct LabelSummary {
     std::string label, kind;
     std::size_t launches = 0;
     std::uint64_t total_ns = 0, min_ns = 0;
     double mean_ns = 0;
     std::uint64_t max_ns = 0;
-    std::uint64_t submit_ns = 0, start_ns = 0;  // totals from queued to submitted, from submitted to started
-    std::uint64_t bytes = 0;                    // moved or filled, total
+    std::uint64_t submit_ns = 0, start_ns = 0;  // total delay from queued to submitted; from submitted to started
+    std::uint64_t bytes = 0;                    // total; as CommandRecord::bytes
 };
 
 /// The commands of a session in the order in which they were enqueued.
@@ -58,24 +59,26 @@ class Profile {
 /// Nanoseconds of CLOCK_MONOTONIC_RAW, the clock of PoCL's event times.
 std::uint64_t host_clock_ns();
 
-/// The offset of a device's clock: a time of the device plus `offset_ns` is a time of host_clock_ns().
+/// The offset of a device's clock: a device time plus `offset_ns` is the same time on the host's clock,
+/// host_clock_ns().
 struct ClockAnchor {
-    bool same_clock = true;  // device times lie between the host times around them: the offset is 0
+    bool same_clock = true;  // the device uses the host's clock, so offset_ns is 0
     std::int64_t offset_ns = 0;
-    std::uint64_t uncertainty_ns = 0;  // plus or minus; 0 if the clock is the same
+    std::uint64_t uncertainty_ns = 0;  // offset_ns is correct within +- uncertainty_ns; 0 for the same clock
 };
 
-/// One step of the host. Steps are nested or consecutive.
+/// A timed part of the host program's work (a span, in tracing terms). Two steps are either nested or disjoint.
 struct HostStep {
     std::string name;
     std::uint64_t started = 0, ended = 0;  // host_clock_ns()
     std::size_t depth = 0;                 // number of enclosing steps
 };
 
+/// Records the steps of the host.
 class StepLog {
   public:
-    /// A step, which lasts as long as this object. Logged at its end at kVerbose (host/base/log.hpp), and recorded in
-    /// the StepLog unless that is a null pointer.
+    /// A step, which lasts as long as this object. When it ends, it is logged at level kVerbose (host/base/log.hpp). It
+    /// is recorded in `log`, unless that is a null pointer.
     class Step {
       public:
         Step(StepLog* log, const std::string& name);
@@ -97,7 +100,7 @@ class StepLog {
         return std::forward<Action>(action)();
     }
 
-    /// All steps in the order in which they began; running ones end now.
+    /// All steps in the order in which they began. A step that is still running gets the current time as its end.
     std::vector<HostStep> steps() const;
 
   private:
@@ -111,8 +114,8 @@ struct DevicePeak {
     std::string format;         // of the render
     double multiply_per_s = 0;  // multiply-adds in that format, with the lanes of the render
     double divide_per_s = 0, root_per_s = 0;
-    double copy_bytes_per_s = 0;   // read and written by copies from buffer to buffer
-    std::uint64_t copy_bytes = 0;  // of each of these buffers
+    double copy_bytes_per_s = 0;   // bytes read plus bytes written by a copy from buffer to buffer
+    std::uint64_t copy_bytes = 0;  // size of each of the two buffers
     double scatter = 0;            // (best - worst) / best of three measurements of fp32_per_s
 };
 

@@ -20,7 +20,7 @@ std::string joined(const std::vector<std::string>& options) { return fmt::format
 std::string log_of(const cl::Program& program, const cl::Device& device) {
     try {
         return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
-    } catch (const cl::Error& error) {  // the caller reports the build's own error
+    } catch (const cl::Error& error) {  // not thrown: the caller reports the error of the build
         return fmt::format("(no log from the driver: {})", error_name(error.err()));
     }
 }
@@ -44,7 +44,7 @@ std::string argument_name(const cl::Kernel& kernel, cl_uint index) {
     try {
         const std::string name = kernel.getArgInfo<CL_KERNEL_ARG_NAME>(index);
         if (!name.empty()) return name;
-    } catch (const cl::Error&) {  // names are kept for programs built with -cl-kernel-arg-info; some drivers always do
+    } catch (const cl::Error&) {  // without -cl-kernel-arg-info, drivers need not know the names
     }
     return std::to_string(index);
 }
@@ -90,7 +90,7 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
         throw DeviceError(fmt::format("{}\n  device: {}\n  options: {}\n  build log:\n{}",
                                       failure_text(error, what, log), device_name, options_, log));
     } catch (...) {            // out of memory inside the driver
-        program_() = nullptr;  // the program is still locked: releasing it would deadlock
+        program_() = nullptr;  // leaked: the driver has not unlocked the program, so releasing it would deadlock
         throw;
     }
     log_ = log_of(program_, device);
@@ -111,7 +111,7 @@ bool Program::load_binary(const cl::Context& context, const cl::Device& device, 
         log_message(kDetailed,
                     fmt::format("binary of {}: refused by the driver: {}\n", name_, error_name(error.err())));
         return false;
-    } catch (...) {  // see the constructor
+    } catch (...) {  // as in the constructor
         program_() = nullptr;
         throw;
     }

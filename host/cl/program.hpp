@@ -1,5 +1,5 @@
-// Programs built for one device, and kernels with typed arguments: a call with other types does not compile, and
-// Program::kernel() throws if the number of parameters differs.
+// Programs built for one device, and kernels with typed arguments: a launch with arguments of other types does not
+// compile, and Program::kernel() throws if the number of parameters differs.
 #pragma once
 #include <fmt/core.h>
 
@@ -19,7 +19,7 @@
 
 namespace raya {
 
-/// A string as a template argument.
+/// A string that can be a template argument.
 template <std::size_t Size>
 struct FixedText {
     // NOLINTNEXTLINE(google-explicit-constructor): converts a literal, as in Uint<"begin">
@@ -27,17 +27,18 @@ struct FixedText {
     char text[Size]{};
 };
 
-/// A kernel's `const uint` parameter with its name, such as Uint<"begin">: passing another one does not compile.
+/// The argument for a kernel's `const uint` parameter. Its type contains the parameter's name (Uint<"begin">), so that
+/// passing the argument of another parameter does not compile.
 template <FixedText Name>
 struct Uint {
     static constexpr const char* kName = Name.text;
     cl_uint value;
 };
 
-/// The parameter's name in the kernel's source, or its number from 0 if the driver keeps no names.
+/// The name of the parameter `index` in the kernel's source; `index` as text if the driver does not report names.
 std::string argument_name(const cl::Kernel& kernel, cl_uint index);
 
-/// A kernel's argument as text: a buffer's name and size, bytes of local memory, or a number.
+/// A kernel argument as text: name and size of a buffer, bytes of local memory, a number, or the size of a struct.
 template <class T>
 std::string argument_text(const Buffer<T>& buffer) {
     return fmt::format("{}, {} x {} bytes", buffer.name(), buffer.size(), sizeof(T));
@@ -75,13 +76,14 @@ class Kernel {
     const std::string& name() const { return name_; }
     const cl::Kernel& handle() const { return kernel_; }
 
-    /// The arguments of a launch as text: names, if the driver keeps them, and values.
+    /// The arguments of a launch as text: argument_name() and value of each.
     std::vector<ArgumentText> argument_texts(const Args&... args) const {
         cl_uint index = 0;
         return {ArgumentText{argument_name(kernel_, index++), argument_text(args)}...};
     }
 
-    /// Sets all arguments for the following launches. DeviceError with the kernel and the argument's number from 0.
+    /// Sets all arguments for the following launches. Throws DeviceError, with the kernel's name and the argument's
+    /// index from 0, if the driver rejects an argument.
     void set_arguments(Args... args) {
         cl_uint index = 0;
         (set_argument(index++, args), ...);
@@ -114,7 +116,7 @@ class Kernel {
     std::string name_;
 };
 
-/// The bytes of __local memory that a kernel argument requires: 0 unless it is a LocalMemory.
+/// The bytes of local memory that a kernel argument requires: 0 unless it is a LocalMemory.
 template <class T>
 std::size_t local_bytes_of(const T&) {
     return 0;
@@ -128,42 +130,44 @@ std::size_t local_bytes_of(const LocalMemory<T>& local) {
 /// The value of RAYA_BUILD_OPTIONS, which is appended to the options of every program.
 std::string user_build_options();
 
-/// Appends the time of a build or a first launch, from `start` to now, to the file that RAYA_KERNEL_LOG names: a line
-/// "seconds <tab> step <tab> name <tab> options". tools/kernel_builds sums them.
+/// Appends the time of a build or a first launch, from `start` to now, to the file that the environment variable
+/// RAYA_KERNEL_LOG names: a line "seconds <tab> step <tab> name <tab> options". tools/kernel_builds sums these times.
 void log_kernel_build(const char* step, const std::string& name, const std::string& options, Clock::time_point start);
 
 /// Returns true if RAYA_KERNEL_LOG is set.
 bool logs_kernel_builds();
 
-/// Build time of a program, and the time of the first launches of its kernels.
+/// A program with its build time and the time of the first launches of its kernels.
 struct KernelBuild {
     cl::Program program;
-    std::string name, options;  // file of the program; options as passed to the compiler
-    double build_s = 0, launch_s = 0;
+    std::string name, options;         // name as in Program; options as passed to the compiler
+    double build_s = 0, launch_s = 0;  // seconds
 
-    /// Size of the binary. PoCL compiles every kernel of the program once more for it. DeviceError.
+    /// The size of the program's binary in bytes. PoCL compiles every kernel of the program once more to make the
+    /// binary. Throws DeviceError.
     std::size_t binary_bytes() const;
 };
 
 /// A built program, made by Session::build().
 class Program {
   public:
-    /// Builds `source` for `device` with `options` as given, joined by blanks; `name` is for messages. DeviceError,
-    /// with options, device and the whole build log, if that fails.
+    /// Builds `source` for `device` with `options`, joined by blanks; `name` is for messages. Throws DeviceError, with
+    /// options, device and the whole build log, if the build fails.
     Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,
             const std::vector<std::string>& options);
 
     const std::string& name() const { return name_; }
     const std::string& options() const { return options_; }  // as passed to the compiler
-    const std::string& log() const { return log_; }          // warnings of a build that succeeded
+    const std::string& log() const { return log_; }          // build log, with the compiler's warnings
     const cl::Program& handle() const { return program_; }
 
-    /// Writes the binary, with the kernels that were launched, to the file where later runs find it
-    /// (kernel_binaries.hpp). Does nothing if the program was loaded from that file. UserError, DeviceError.
+    /// Writes the binary, which contains the kernels launched so far, to the file from which later runs load it
+    /// (kernel_binaries.hpp). Does nothing if the program was itself loaded from that file. Throws UserError,
+    /// DeviceError.
     void save_binary() const;
 
-    /// Returns the kernel `kernel_name` with parameters Args (see Kernel). DeviceError if there is no such kernel (with
-    /// a list of kernels) or the number of parameters differs (with both numbers).
+    /// Returns the kernel `kernel_name` with parameters Args (see Kernel). Throws DeviceError if there is no such
+    /// kernel (with a list of kernels) or if the number of parameters differs (with both numbers).
     template <class... Args>
     Kernel<Args...> kernel(const std::string& kernel_name) const {
         return Kernel<Args...>(checked_kernel(kernel_name, sizeof...(Args)), kernel_name);
@@ -172,11 +176,12 @@ class Program {
   private:
     cl::Kernel checked_kernel(const std::string& kernel_name, std::size_t argument_count) const;
 
+    /// Loads the program from its binary file. Returns false if there is no file or the driver rejects it.
     bool load_binary(const cl::Context& context, const cl::Device& device, const std::string& source);
 
     cl::Program program_;
     std::string name_, options_, log_;
-    std::filesystem::path binary_file_;  // empty: the program was loaded from it, or there is no folder for it
+    std::filesystem::path binary_file_;  // for save_binary(); empty: loaded from that file, or it has no folder
 };
 
 }  // namespace raya

@@ -1,5 +1,5 @@
-// Tuned values of a device: lanes, group size and the other parameters that change only the time of a render; and their
-// selection for a render.
+// Tuned values of a device (lanes, group size and the other parameters that change only the time of a render), and the
+// choice of values for a render.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,20 +13,20 @@
 
 namespace raya {
 
-/// The kernels that a set of values was tuned for.
+/// The kind of render that a set of values was tuned for.
 struct TunedFor {
-    bool torus = false;                     // else a ring
+    bool torus = false;                     // false: a ring
     std::uint32_t accel = RAYA_ACCEL_NONE;  // acceleration structure of a ring
-    bool fp32 = true;                       // else a reduced format
+    bool fp32 = true;                       // false: a reduced format
     bool operator==(const TunedFor&) const = default;
 };
 
 /// The tuned parameters. 0 means the default, except for lanes and group, which always have a value.
 struct TunedValues {
     std::uint32_t lanes = 1, group = 1;
-    std::uint32_t local_words = 1;  // 1: as KernelChoice::local_words, 0: words stay in global memory
-    std::uint32_t batch = 0, trees = 0, beams = 0, registers = 0;  // KernelTuning
-    std::uint32_t link_exchange = 0;                               // LinkMove
+    std::uint32_t local_words = 1;  // 1: as KernelChoice::local_words; 0: the job's words stay in global memory
+    std::uint32_t batch = 0, trees = 0, beams = 0, registers = 0;  // see KernelTuning
+    std::uint32_t link_exchange = 0;                               // a LinkMove
     bool operator==(const TunedValues&) const = default;
 };
 
@@ -41,11 +41,11 @@ inline constexpr std::array<std::pair<const char*, std::uint32_t TunedValues::*>
      {"registers", &TunedValues::registers},
      {"link_exchange", &TunedValues::link_exchange}}};
 
-/// The defaults of a device that was not tuned.
+/// The default values for a device that was not tuned.
 TunedValues default_values(const DeviceInfo& device, const TunedFor& what);
 
-/// Returns `kernels` with these values; `kernels.link_move` stays unless it is kAutomatic. UserError if link_exchange
-/// is out of range.
+/// Returns `kernels` with these values, but with its own link_move unless that is kAutomatic. Throws UserError if
+/// link_exchange is out of range.
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values);
 
 /// Tuned values and their source ("FILE, DATE").
@@ -53,10 +53,11 @@ struct TunedChoice {
     TunedValues values;
     std::string origin;
 };
+/// Returns the tuned values for a device and a kind of render; nothing if there are none.
 using TunedSource = std::function<std::optional<TunedChoice>(const DeviceInfo&, const TunedFor&)>;
 
-/// While this object exists, renders of this process that leave lanes and group open use the values from `source`.
-/// Without one, as in `verify`, they use the defaults.
+/// While this object exists, renders of this process for which the user sets neither lanes nor group size use the
+/// values from `source`. Without such an object, as in `raya verify`, they use the defaults.
 class ScopedTunedSource {
   public:
     explicit ScopedTunedSource(TunedSource source);
@@ -68,9 +69,10 @@ class ScopedTunedSource {
     TunedSource before_;
 };
 
-/// Returns `kernels` with lanes and group size chosen. If the user named either, the other one is the default and
-/// `origin` is "options". Otherwise the values are those of the tuned source, with its origin, or the defaults, with
-/// "defaults". `link_origin` is "options" if the user named a link move, and empty if it stays automatic.
+/// Returns `kernels` with lanes, group size and tuning chosen. If the user has set lanes or group size, the other one
+/// is the default, and `origin` is "options". Otherwise the values and `origin` are those of the tuned source; without
+/// tuned values they are the defaults, and `origin` is "defaults". `link_origin` is "options" if the user has set the
+/// link move, `origin` if the tuned values set it, and empty if it stays kAutomatic.
 KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TunedFor& what);
 
 }  // namespace raya

@@ -147,6 +147,26 @@ Scene scene_of(const BenchCommand& command) {
     return scene;
 }
 
+// --build.
+BenchReport time_builds(const BenchCommand& command, Session& session, const Scene& scene, const RingSettings& settings,
+                        const std::vector<NumberFormat>& formats) {
+    const std::vector<std::string> variants =
+        command.variants.empty() ? std::vector<std::string>{"none", "grid", "bvh", "torus"} : command.variants;
+    BenchReport report = bench_report({}, session.device());
+    report.builds = bench_builds(session, scene, settings, formats, variants);
+    return report;
+}
+
+void print_tables(const BenchCommand& command, Session& session, const std::vector<BenchRow>& rows,
+                  const std::vector<NumberFormat>& formats) {
+    print_rows(rows);
+    print_tuned(rows);
+    if (command.denormals) print_denormals(rows);
+    if (command.variants.empty())
+        print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
+                         command.samples);
+}
+
 void bench(const CLI::App& parsed, BenchCommand command) {
     Warnings warnings;
     warn_of_build_options(warnings);
@@ -164,15 +184,12 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     std::optional<ProgressBar> bar(std::in_place, true, command.build ? "compiling" : "preparing");
     const cl::Device device = choose_device(command.render.device);
     Session session(device);
-    if (!command.build) session.announce_compiling();
     if (command.build) {
-        const std::vector<std::string> variants =
-            command.variants.empty() ? std::vector<std::string>{"none", "grid", "bvh", "torus"} : command.variants;
-        BenchReport report = bench_report({}, session.device());
-        report.builds = bench_builds(session, scene, settings, formats, variants);
+        const BenchReport report = time_builds(command, session, scene, settings, formats);
         bar.reset();
         return finish_builds(command, report);
     }
+    session.announce_compiling();
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
     check_comparable(command, baseline, bench_report(rows, session.device()));
     bar->stage("taking samples");
@@ -182,12 +199,7 @@ void bench(const CLI::App& parsed, BenchCommand command) {
                session.device().name, settings.mapping.width, settings.mapping.height,
                counted(settings.mapping.pes, "PE"), counted(settings.bounces, "bounce"),
                counted(rows.front().result.rays, "ray"), counted(command.samples, "sample"));
-    print_rows(rows);
-    print_tuned(rows);
-    if (command.denormals) print_denormals(rows);
-    if (command.variants.empty())
-        print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
-                         command.samples);
+    print_tables(command, session, rows, formats);
     BenchReport now = bench_report(rows, session.device());
     if (!command.page.empty()) {
         const ProgressBar measuring(true, "measuring the device's peak");

@@ -16,7 +16,7 @@ std::string seconds(double s) { return fmt::format("{:.2f}", s); }
 std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingSettings settings,
                                      const std::vector<NumberFormat>& formats,
                                      const std::vector<std::string>& variants) {
-    // Drivers cache kernels by source and options: an option that no earlier build had.
+    // Drivers cache kernels by source and options, so an option that no earlier build had bypasses the cache.
     const std::string unique_option = fmt::format("-DRAYA_BUILT={}", Clock::now().time_since_epoch().count());
     settings.kernels.sources.more_options.push_back(unique_option);
     std::vector<KernelBuild> recorded;

@@ -1,4 +1,4 @@
-// `raya bench --build`: compile times of the kernels of each format and variant.
+// `raya bench --build`: measures the compile times of the kernels of each format and variant.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,8 +10,10 @@
 
 namespace raya {
 
-/// Builds and launches the kernels that renders in these formats and variants (none, grid, bvh, torus) need, bypassing
-/// the driver's cache. The first variant includes the anti-aliasing kernels. DeviceError; UserError: unknown variant.
+/// Renders the scene once for each of `formats` and `variants` (none, grid, bvh or torus), and returns the build time,
+/// the time of the first launch and the binary size of each kernel. A unique build option bypasses the driver's cache.
+/// If the first variant is a ring machine without dynamic mapping, it is also rendered with both anti-aliasing methods.
+/// Throws DeviceError; UserError for an unknown variant.
 std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingSettings settings,
                                      const std::vector<NumberFormat>& formats,
                                      const std::vector<std::string>& variants);

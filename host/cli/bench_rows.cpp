@@ -44,7 +44,8 @@ BenchMeasurement make_measurement(const std::string& kernel, const Scene& scene,
             .hash = {}};
 }
 
-// A row from a renderer's first image. `seconds(result)` is the measured time of an image.
+// Renders the first image and makes a row of it. `seconds(result)`: returns the measured time of an image. `work`:
+// returns the operations and bytes of the row's kernel.
 template <class Renderer, class Seconds>
 BenchRow row_of(BenchMeasurement measurement, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
                 const EventCounts& (*events)(const decltype(renderer->render())&), Seconds seconds,
@@ -81,14 +82,14 @@ TorusSettings torus_of(const RingSettings& s) {
     return t;
 }
 
-// The first row of the same kernel and lanes: the reference of a format's slow-down.
+// Returns the first row of the same kernel and lanes, the reference of the slow-down.
 const BenchRow& first_of_lanes(const std::vector<BenchRow>& rows, const BenchRow& row) {
     return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) {
         return r.result.kernel == row.result.kernel && r.result.lanes == row.result.lanes;
     });
 }
 
-// The first row of the same format: the reference of checks and speed-ups.
+// Returns the first row of the same format, the reference of checks and speed-ups.
 const BenchRow& first_of_format(const std::vector<BenchRow>& rows, const BenchRow& row) {
     return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) { return r.format == row.format; });
 }
@@ -224,7 +225,7 @@ void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const
                                     .kind = "kernel",
                                     .total_ns = static_cast<std::uint64_t>(measurement.best_s * 1e9)};
             measurement.roofline = roofline(peaks[key], {*rows[i].work}, {best});
-        } catch (const DeviceError& error) {  // the rates are valid
+        } catch (const DeviceError& error) {  // the row's times are valid without a roofline
             measurement.roofline.emplace().unavailable = error.what();
         }
     }

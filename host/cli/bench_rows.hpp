@@ -1,4 +1,4 @@
-// The rows of `raya bench`: prepared renderers, their checks, samples and tables.
+// The rows of `raya bench`: renderers, checks of their images, time samples and tables.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,51 +13,53 @@
 
 namespace raya {
 
-/// One row: a renderer that has rendered once, so that its kernels are built, and its measurement.
+/// One row: a renderer and its measurement. The renderer has rendered one image, so its kernels are built.
 struct BenchRow {
     NumberFormat format;
-    BenchMeasurement result{};  // without times before take_samples()
-    EventCounts events{};       // of the first image
-    double build_s = 0;
-    std::string tuned{};                // source of lanes and group (host/cl/tuned.hpp)
-    bool flushed = false;               // its kernel flushes denormal numbers to 0, which may change the image
-    std::function<double()> image_s{};  // renders one more image; returns its seconds
-    std::optional<KernelWork> work{};   // of one image, if the row measures a single kernel
+    BenchMeasurement result{};          // take_samples() adds the times
+    EventCounts events{};               // counts of the first image
+    double build_s = 0;                 // seconds of the kernel builds
+    std::string tuned{};                // source of the lanes and group size (host/cl/tuned.hpp)
+    bool flushed = false;               // built with -cl-denorms-are-zero, which may change the image
+    std::function<double()> image_s{};  // renders another image; returns its time in seconds
+    std::optional<KernelWork> work{};   // per image; empty unless the row measures a single kernel
 };
 
-/// Measures the trace kernel's time on the device.
+/// Prepares a row that measures the trace kernel's time on the device.
 BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, const NumberFormat& format,
                    std::uint32_t lanes);
 
-/// Measures the host's time of whole renders, from packed scene to image. `variant`: none, grid or bvh for the ring
-/// machine of `settings` with that --accel; torus for 4 x 4 x 4 nodes without a memory limit. UserError for another.
+/// Prepares a row that measures whole renders by the host's clock, from the packed scene to the image. `variant`: none,
+/// grid or bvh for the ring machine of `settings` with that --accel; torus for 4 x 4 x 4 nodes without a memory limit.
+/// Throws UserError for another variant.
 BenchRow render_row(Session& session, const Scene& scene, const RingSettings& settings, const NumberFormat& format,
                     const std::string& variant);
 
-/// Throws DeviceError if rows of a format differ in image or rays, or rows of a kernel in event counts.
+/// Throws DeviceError if rows of the same format differ in image or number of rays, or rows of the same format and
+/// kernel in event counts. Skips rows that flush denormal numbers.
 void check_rows(const std::vector<BenchRow>& rows);
 
-/// Takes `samples` samples of each row, of 20 ms or more each. The rows alternate, so that a disturbance of the machine
-/// affects all of them.
+/// Takes `samples` time samples of each row. A sample is the mean time of as many images as take 20 ms. The rows take
+/// turns, so that a disturbance of the computer affects all of them.
 void take_samples(std::vector<BenchRow>& rows, std::uint32_t samples);
 
-/// Prints each row's rates, times, speed-up and slow-down.
+/// Prints the rays per second, times, speed-up and slow-down of each row.
 void print_rows(const std::vector<BenchRow>& rows);
 
-/// Measures and prints the number layer's operations per second in each format. DeviceError.
+/// Measures and prints, for each format, how many operations of the number layer run per second. Throws DeviceError.
 void print_operations(Session& session, const std::vector<NumberFormat>& formats, std::uint32_t lanes, int samples);
 
-/// Prints the files of raya tune that the rows used.
+/// Prints the names of the files of tuned values (raya tune) that the rows used.
 void print_tuned(const std::vector<BenchRow>& rows);
 
-/// Prints each row next to the row that flushes denormal numbers to 0.
+/// Prints the times of each row next to those of the same row with denormal numbers flushed to 0.
 void print_denormals(const std::vector<BenchRow>& rows);
 
-/// Compares each kernel's best sample with the device's peak, which it measures for each format and number of lanes. A
-/// row whose peak cannot be measured gets the reason.
+/// Measures the device's peak for each format and number of lanes, and adds to `report` the roofline of each row that
+/// measures a single kernel, from its best sample. If a peak cannot be measured, the report contains the reason.
 void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const cl::Device& device);
 
-/// The rows as a report; without times before take_samples().
+/// Returns the rows as a report. It has times only after take_samples().
 BenchReport bench_report(const std::vector<BenchRow>& rows, const DeviceInfo& device);
 
 }  // namespace raya

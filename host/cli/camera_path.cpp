@@ -33,7 +33,7 @@ double angle_of(const std::string& text) {
     return angle;
 }
 
-// `words`: alternating names and values.
+// Parses the parameters of one line; `words`: alternating names and values.
 ViewOptions camera_of(std::istringstream& words) {
     std::map<std::string, std::string> values = {{"from", ""}, {"at", ""}, {"up", ""}, {"angle", ""}};
     for (std::string name, value; words >> name;) {

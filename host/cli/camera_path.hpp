@@ -1,4 +1,4 @@
-// Camera files of --camera-path: one camera for each frame.
+// Reader of the files of --camera-path, which contain one camera per frame.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace raya {
 
-/// Reads one camera per line: "from 1,2,3 at 0,0,0 up 0,0,1 angle 40" or some of these; the others are as in `view`.
-/// Ignores empty lines and comments after #. UserError with file, line and reason.
+/// Reads one camera per line, for example "from 1,2,3 at 0,0,0 up 0,0,1 angle 40". Parameters that a line does not set
+/// are those of `view`. Ignores empty lines and comments after #. Throws UserError with file, line and reason.
 std::vector<View> read_camera_path(const std::string& file, const View& view);
 
 }  // namespace raya

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxIntervalS = 86'400;
-constexpr double kMaxSavingShare = 0.05;  // of the render's time
+constexpr double kMaxSavingShare = 0.05;  // saving takes at most this share of the render's time
 constexpr double kMinBandS = 0.05, kMaxBandS = 2;
 
 bool is_checkpoint(const std::string& file) {
@@ -103,7 +103,7 @@ std::optional<RingState> CheckpointFile::load(const StateSettings& settings, con
 }
 
 void CheckpointFile::remove() const {
-    std::error_code error;  // ignored: the file may not exist
+    std::error_code error;  // ignored, because the file may not exist
     if (!options_.file.empty()) fs::remove(options_.file, error);
 }
 

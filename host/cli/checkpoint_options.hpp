@@ -11,17 +11,17 @@ class App;
 
 namespace raya {
 
-/// As given on the command line; no checkpoints if `file` is empty.
+/// The options as given on the command line. An empty `file` means no checkpoints.
 struct CheckpointOptions {
     std::string file;
     bool resume = false;
-    double every_s = 10;
+    double every_s = 10;  // minimum seconds between two checkpoints
 };
 
 void add_checkpoint_options(CLI::App& command, CheckpointOptions& options);
 
-/// Refuses incompatible options, a file that is not a checkpoint, and an existing checkpoint without --resume: it may
-/// hold hours of work. UserError.
+/// Throws UserError for incompatible options, for an existing file that is not a checkpoint, and for an existing
+/// checkpoint without --resume, which would be overwritten and may hold hours of work.
 void check_checkpoint_options(const CLI::App& command, const CheckpointOptions& options);
 
 /// Saves and loads the checkpoints of a render.
@@ -29,10 +29,10 @@ class CheckpointFile {
   public:
     explicit CheckpointFile(const CheckpointOptions& options);
 
-    /// The renderer's hooks; null without --checkpoint.
+    /// The functions by which the renderer saves and loads checkpoints; null without --checkpoint.
     const RingCheckpointing* checkpointing() const { return options_.file.empty() ? nullptr : &hooks_; }
 
-    /// Removes the file, after all outputs of the render are written.
+    /// Removes the file. Call it after all outputs of the render are written.
     void remove() const;
 
   private:
@@ -43,7 +43,7 @@ class CheckpointFile {
     const CheckpointOptions& options_;
     RingCheckpointing hooks_;
     Clock::time_point saved_ = Clock::now();
-    double save_s_ = 0;  // duration of the last save
+    double save_s_ = 0;  // seconds of the last save
 };
 
 }  // namespace raya

@@ -9,14 +9,15 @@
 namespace raya {
 namespace {
 
-// Lower-case letters, digits and hyphens.
+// Returns true for two or more lower-case letters, digits and hyphens.
 bool is_keyword(const std::string& text) {
     return text.size() > 1 && std::all_of(text.begin(), text.end(), [](unsigned char c) {
                return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '-';
            });
 }
 
-// "none|bvh|grid[:AxBxC]" as none, bvh, grid; empty if a part is not a keyword.
+// Splits "none|bvh|grid[:AxBxC]" into none, bvh, grid. Returns an empty vector if a part is not a keyword or
+// if there is only one part.
 std::vector<std::string> choices_between(const std::string& text, char separator) {
     std::vector<std::string> choices;
     for (std::size_t from = 0; from <= text.size();) {
@@ -33,18 +34,18 @@ bool starts_with_one_of(const std::string& text, const std::vector<std::string>&
     return std::any_of(starts.begin(), starts.end(), [&](const std::string& one) { return text.starts_with(one); });
 }
 
-constexpr std::size_t kIndent = 2;        // of names below a heading
-constexpr std::size_t kFarIndent = 6;     // of descriptions below the names
-constexpr std::size_t kLongestName = 24;  // a longer name has a line of its own
-constexpr std::size_t kTwoColumns = 60;   // minimum width for descriptions next to the names
+constexpr std::size_t kIndent = 2;        // blanks before names below a heading
+constexpr std::size_t kFarIndent = 6;     // blanks before descriptions below the names
+constexpr std::size_t kLongestName = 24;  // longer names have a separate line
+constexpr std::size_t kTwoColumns = 60;   // minimum line width for descriptions next to the names
 
 struct Entry {
     std::string name, description;
 };
 using Entries = std::vector<Entry>;
 
-/// Wraps a text whose first line already has `line` letters. Further lines begin with `indent` blanks; every line but
-/// the last ends with `end`.
+/// Wraps a text to lines of at most `width` characters. The first line already has `line` characters. Each further line
+/// begins with `indent` blanks. Each line except the last ends with `end`.
 std::string wrapped(const std::string& text, std::size_t line, std::size_t indent, std::size_t width,
                     const std::string& end = "") {
     std::string all;
@@ -91,7 +92,7 @@ class HelpPage {
 
     std::string examples(const std::vector<ExampleText>& all) const {
         std::string text;
-        for (const ExampleText& one : all)  // wrapped with backslashes, for a shell
+        for (const ExampleText& one : all)  // line ends with a backslash, as a shell needs
             text += std::string(kIndent, ' ') + wrapped(one.command, kIndent, kFarIndent, width_, " \\") +
                     std::string(kFarIndent, ' ') + wrapped(one.description, kFarIndent, kFarIndent, width_);
         return text;
@@ -123,7 +124,7 @@ class HelpPage {
         return all;
     }
 
-    /// The footer: paragraphs, some of them lists of names.
+    /// Returns the footer, formatted: paragraphs, and lines "  NAME   description" in columns.
     std::string closing(const std::string& footer) const {
         std::string text;
         for (const std::string& line : lines_of(footer))
@@ -132,7 +133,7 @@ class HelpPage {
     }
 
   private:
-    // "  NAME   description"
+    // Returns true for a line "  NAME   description".
     static bool is_entry(const std::string& line) {
         return line.starts_with("  ") && line.find("  ", kIndent) != std::string::npos;
     }

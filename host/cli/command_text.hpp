@@ -1,4 +1,4 @@
-// Commands and options as plain text, from which help and manual pages are made.
+// Commands and options as plain text, the source of help, manual pages and shell completions.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -8,20 +8,20 @@ namespace raya {
 
 /// An option or a positional argument.
 struct OptionText {
-    std::vector<std::string> names{};    // "-o", "--output"; of a positional argument its name: "SCENE"
+    std::vector<std::string> names{};    // "-o", "--output"; or "SCENE" for a positional argument
     std::string value{};                 // placeholder of the value: "FILE.json", "N|WxH"; empty: a flag
-    std::string default_value{};         // as text; empty: no default, or `help` gives it
+    std::string default_value{};         // empty: no default, or `help` contains it
     std::string help{};                  //
-    std::string group{};                 // its heading in help
+    std::string group{};                 // heading above the option in help
     bool required = false;               //
-    bool repeated = false;               // takes several values
-    std::vector<std::string> choices{};  // legal values, as far as they can be listed
+    bool repeated = false;               // may have several values
+    std::vector<std::string> choices{};  // legal values; empty if they are not a finite list
 
     bool is_flag() const { return value.empty(); }
     bool is_argument() const { return !names.front().starts_with('-'); }
 };
 
-/// A shell command, and what it does.
+/// A shell command and its description.
 struct ExampleText {
     std::string command{};  // "raya render scenes/centre.nff -o centre.png"
     std::string description{};
@@ -30,42 +30,43 @@ struct ExampleText {
 /// An option in the short help of a command.
 struct ShortHelp {
     std::string name{};   // "--size"
-    std::string group{};  // its heading there
-    std::string help{};   // empty: as in the full help
+    std::string group{};  // heading above the option in the short help
+    std::string help{};   // replaces the full help text unless empty
 };
 
 struct CommandText {
-    std::string name{};  // "render", of the first "raya"
+    std::string name{};  // "render"; "raya" for the program itself
     std::string summary{};
     std::vector<ExampleText> examples{};
-    std::string footer{};  // paragraphs; one that begins with "Title: " or with the line "Title:" has that title
-    std::vector<OptionText> arguments{};  // positional, in their order
+    std::string footer{};                 // paragraphs; "Title: " or a line "Title:" at the start of one is its title
+    std::vector<OptionText> arguments{};  // positional arguments, in order
     std::vector<OptionText> options{};
     std::vector<CommandText> commands{};
-    std::vector<ShortHelp> short_help{};  // the options that --help shows; empty: all
+    std::vector<ShortHelp> short_help{};  // options that --help shows; empty: all
 };
 
-/// Shell completion of a value.
+/// How shells complete an option's value.
 struct ValueText {
     enum class Kind { kOther, kChoice, kList, kFile, kFolder } kind = Kind::kOther;
-    std::vector<std::string> choices{};  // of kChoice, and of kList: a comma-separated list of choices
-    std::string extension{};             // of kFile: ".json", or empty for any
+    std::vector<std::string> choices{};  // of kChoice, and of kList (a comma-separated list)
+    std::string extension{};             // of kFile: ".json"; empty: any
 };
 
-/// From the option's choices, else from its placeholder: "ring|bus" is a choice, "none,grid" a list, FILE.json,
-/// SCENE.nff and IMAGE are files, DIR is a folder.
+/// Uses the option's choices. Without choices it uses the placeholder: "ring|bus" is a choice, "none,grid" a list,
+/// FILE.json, SCENE.nff and IMAGE are files, DIR is a folder.
 ValueText value_of(const OptionText& option);
 
-/// The option's help with its default; without help its placeholder.
+/// Returns the option's help and default; if the help is empty, the placeholder of its value.
 std::string description_of(const OptionText& option);
 
-/// The headings of a command's options, in their order.
+/// Returns the headings of a command's options, in order of first use.
 std::vector<std::string> groups_of(const CommandText& command);
 
-/// The first sentence or clause of a help text, at most `max_letters` long.
+/// Returns the text before the first "; ", ". " or line break, cut to `max_letters` characters.
 std::string brief(const std::string& help, std::size_t max_letters = 72);
 
-/// Calls `each` with every command and its path, "raya generate balls", parents first.
+/// Calls `each(command, path)` for the command and all commands below it, parents first. A path is, for example,
+/// "raya generate balls".
 template <class Each>
 void for_each_command(const CommandText& command, const Each& each, const std::string& before = "") {
     const std::string path = before.empty() ? command.name : before + ' ' + command.name;
@@ -73,21 +74,21 @@ void for_each_command(const CommandText& command, const Each& each, const std::s
     for (const CommandText& one : command.commands) for_each_command(one, each, path);
 }
 
-/// Help of the command with path `path`, "raya generate balls": usage, summary, examples, commands, options by group,
-/// footer. No line is longer than `width` letters, unless a single word is.
+/// Returns the help of a command: usage, summary, examples, commands, options by group, footer. `path`: the command
+/// with its parents, "raya generate balls". Lines have at most `width` characters, except for a longer single word.
 std::string help_text(const CommandText& command, const std::string& path, std::size_t width);
 
-/// `command` with the options of its short help only, and a footer that names --help-all. Unchanged without a short
-/// help. Throws std::logic_error if the short help names an option that does not exist.
+/// Returns `command` with only the options of its short help, and with a footer that mentions --help-all. Returns it
+/// unchanged if it has no short help. Throws std::logic_error if the short help names an option that does not exist.
 CommandText short_form(CommandText command, const std::string& path);
 
-/// A page of section 1: "raya", or "raya-render" of one of its commands, with the commands below it.
+/// A manual page of section 1, of the program or of one of its commands with all subcommands.
 struct ManPage {
-    std::string name{};  // "raya-render"
-    std::string text{};  // man macros
+    std::string name{};  // "raya", "raya-render"
+    std::string text{};  // troff source with man macros
 };
 
-/// The pages of the program and of each of its commands. They list all options.
+/// Returns the pages of the program and of each of its commands. They list all options.
 std::vector<ManPage> man_pages(const CommandText& program, const std::string& name_and_version);
 
 }  // namespace raya

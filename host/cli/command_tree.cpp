@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kDefaultWidth = 80, kMinWidth = 40, kMaxWidth = 120, kMaxColumns = 10'000;
 
-/// The environment variable COLUMNS; 0 if it is not a number up to kMaxColumns.
+/// Returns the environment variable COLUMNS; 0 if it is not a number up to kMaxColumns.
 std::size_t columns_variable() {
     const char* const columns = std::getenv("COLUMNS");
     if (columns == nullptr) return 0;
@@ -35,14 +35,14 @@ std::size_t terminal_width() {
     return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
-/// Letters of a line on stdout, 40..120: COLUMNS, else the terminal's width, else 80.
+/// Returns the line width in characters, limited to 40..120: COLUMNS, else the terminal's width, else 80.
 std::size_t text_width() {
     std::size_t width = columns_variable();
     if (width == 0) width = terminal_width();
     return width == 0 ? kDefaultWidth : std::clamp(width, kMinWidth, kMaxWidth);
 }
 
-// CLI::IsMember appends "{1,4,8,16}" to the placeholder of a value.
+// Returns the choices that CLI::IsMember appends to the placeholder of a value: "{1,4,8,16}".
 std::vector<std::string> is_member_choices(const std::string& type) {
     const std::size_t open = type.find('{'), close = type.rfind('}');
     std::vector<std::string> choices;
@@ -103,7 +103,7 @@ CommandText text_of(const CLI::App& command) {
     text.footer = command.get_footer();
     for (const CLI::Option* option : command.get_options()) {
         if (option->get_group().empty()) continue;
-        // CLI11 returns validators, which hold the choices, only of an option that is not const.
+        // The choices are stored in validators, which CLI11 returns only for a non-const option.
         auto& readable = *const_cast<CLI::Option*>(option);
         (option->get_positional() ? text.arguments : text.options).push_back(option_text(readable));
     }

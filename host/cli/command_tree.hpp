@@ -1,4 +1,4 @@
-// Commands and options of the parser as plain text, and the parser's help formatter.
+// Conversion of CLI11's commands and options to CommandText, and the help formatter of the parser.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <map>
@@ -9,12 +9,12 @@
 
 namespace raya {
 
-/// Formats help from CommandText, as wide as the terminal. Stores what CLI11 has no field for: the examples and the
-/// short help of each command.
+/// Formats help with help_text(), as wide as the terminal. Stores the examples and the short help of each command,
+/// because CLI11 has no field for them.
 class HelpFormatter : public CLI::FormatterBase {
   public:
-    /// `path`: the command with its parents, "raya generate balls". The short help, if the command has one and `mode`
-    /// is not All.
+    /// `path`: the command with its parents, "raya generate balls". Returns the short help if the command has one and
+    /// `mode` is not All, otherwise the full help.
     std::string make_help(const CLI::App* command, std::string path, CLI::AppFormatMode mode) const override;
 
     struct Texts {
@@ -22,26 +22,26 @@ class HelpFormatter : public CLI::FormatterBase {
         std::vector<ShortHelp> short_help{};
     };
     Texts& texts_of(const CLI::App& command) { return texts_[&command]; }
-    /// Empty texts for an unknown command.
+    /// Returns empty texts if none were stored for the command.
     Texts texts_of(const CLI::App& command) const;
 
   private:
     std::map<const CLI::App*, Texts> texts_;
 };
 
-/// Sets the command's examples: shell commands that run in the folder that contains scenes/. The command's program has
-/// a HelpFormatter.
+/// Sets the command's examples: shell commands for a user in the folder that contains scenes/. Requires that the
+/// program's formatter is a HelpFormatter.
 void add_examples(CLI::App& command, std::vector<ExampleText> examples);
 
-/// Adds --help-all, and lets --help show these options only, in this order, followed by the general ones. The command's
-/// program has a HelpFormatter.
+/// Adds --help-all, and makes --help show only these options, in this order, followed by the general options. Requires
+/// that the program's formatter is a HelpFormatter.
 void add_short_help(CLI::App& command, std::vector<ShortHelp> options);
 
-/// An option of the parser as text.
+/// Converts an option of the parser.
 OptionText option_text(CLI::Option& option);
 
-/// The program with all its commands, without hidden options and commands. The choices of an argument COMMAND are the
-/// names of the commands.
+/// Converts the program with all its commands, except hidden options and commands. The choices of a positional argument
+/// COMMAND are the names of the program's commands.
 CommandText command_text(const CLI::App& program);
 
 }  // namespace raya

@@ -55,7 +55,7 @@ constexpr const char* kEnvironment =
     "  RAYA_RANK_TIMEOUT   seconds that a rank waits for the others; default: 600\n"
     "  XDG_CACHE_HOME      raya tune stores its values in raya/ in this folder; default: ~/.cache";
 
-/// The handler of std::terminate(). std::bad_alloc may be uncaught: in a destructor, in a thread or before main().
+/// The handler of std::terminate(). A std::bad_alloc is uncaught in a destructor, in a thread or before main().
 [[noreturn]] void end_uncaught() {
     const std::type_info* const thrown = abi::__cxa_current_exception_type();
     if (thrown == nullptr || *thrown != typeid(std::bad_alloc)) __gnu_cxx::__verbose_terminate_handler();
@@ -65,17 +65,17 @@ constexpr const char* kEnvironment =
     ::_exit(kExitUserError);
 }
 
-// Runs before the constructors of CLI11's global objects, which allocate.
+// Priority 101 runs it before the constructors of CLI11's global objects, which allocate memory.
 [[gnu::constructor(101)]] void handle_uncaught() { std::set_terminate(end_uncaught); }
 
-/// Opens closed standard descriptors, which the next open() would return otherwise. Read-only, so that writing to a
-/// closed stdout still fails.
+/// Opens /dev/null for closed standard descriptors, because the next open() would otherwise return them. Opens it
+/// read-only, so that writing to a closed stdout still fails.
 void open_standard_files() {
     for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(descriptor, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) < 0) return;
 }
 
-// An error becomes the last line of the worker's output.
+// Runs raya as a worker process. An error is the last line of its output.
 int run_worker(const WorkerOrder& order) {
     restore_crash_signals();  // the parent process reports crashes
     const auto stop = [&](const char* kind, const std::exception& error) {
@@ -100,7 +100,7 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
         parse_arguments(program, {argv + 1, argv + argc});
         return kExitOk;
     } catch (const CLI::ParseError& error) {
-        return ranks.first() ? program.exit(error) : kExitOk;  // help, version
+        return ranks.first() ? program.exit(error) : kExitOk;  // --help, --version
     } catch (const RankFailure& failure) {
         return ranks.fail(failure);
     } catch (const UserError& error) {
@@ -112,29 +112,29 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return ranks.fail(kOutOfMemory, kExitUserError);
     } catch (const std::exception& error) {
-        if (std::ferror(stdout) != 0) return kExitOk;  // flush_stdout() reports it
+        if (std::ferror(stdout) != 0) return kExitOk;  // flush_stdout() reports the error
         return ranks.fail(std::string("internal error: ") + error.what(), kExitInternalError);
     }
 }
 
-/// Flushes stdout. Returns `code`, or kExitUserError if output was lost.
+/// Flushes stdout. Returns `code`; reports lost output and returns kExitUserError.
 int flush_stdout(Ranks& ranks, int code) {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-    if (stdout_is_reserved()) return code;  // the text goes to stderr, where it may be lost
+    if (stdout_is_reserved()) return code;  // text goes to stderr, where losing it is no error
     const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
     ranks.fail(fmt::format("cannot write to stdout{}; redirect it to a file system with free space", reason),
                kExitUserError);
     return code == kExitOk ? kExitUserError : code;
 }
 
-// Only rank 0 reports a signal. Called before MPI starts, which takes a while.
+// Lets only rank 0 report a signal. Called before the start of MPI, which takes long enough for a signal to arrive.
 void silence_signals_of_other_ranks() {
     const std::optional<Launch> launch = launched();
     if (launch && launch->rank != 0) suppress_interrupt_message();
 }
 
-// Only render and ping distribute their work; other commands would run once in every process.
+// Refuses several ranks for all commands except render and ping: the others would run once in every process.
 void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
     if (!ranks.many()) return;
     for (CLI::App* command : program.get_subcommands({}))
@@ -155,7 +155,7 @@ int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
     }
 }
 
-// An error before ranks exist happens in every process; the first one reports it.
+// Reports an error that happens in every process before ranks exist. Only the first process prints it.
 int fail_at_start(const std::string& text, int code) {
     const std::optional<Launch> launch = launched();
     return !launch || launch->rank == 0 ? Ranks::alone().fail(text, code) : code;
@@ -191,9 +191,9 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     add_manual_command(program);
     add_completion_command(program);
     add_help_command(program);
-    program.footer(std::string(kExitCodes) + kEnvironment);  // the commands have inherited the shorter one
+    program.footer(std::string(kExitCodes) + kEnvironment);  // the commands have inherited a shorter footer
     add_verbosity_options(program, ranks);
-    // Runs before the command's callback. Only rank 0 writes files; on other hosts the folders need not exist.
+    // Runs before the command's callback. Only rank 0 checks files, because only rank 0 writes them.
     program.parse_complete_callback([&program, &ranks] {
         const CLI::App* command = &program;
         while (!command->get_subcommands().empty()) command = command->get_subcommands().front();

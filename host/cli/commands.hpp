@@ -1,4 +1,4 @@
-// The commands of raya: each add_*_command() adds one to the parser, with a callback that runs it.
+// The commands of raya. Each add_*_command() adds a command to the parser, with a callback that runs the command.
 #pragma once
 #include <functional>
 #include <memory>
@@ -12,16 +12,16 @@ namespace raya {
 
 class Ranks;
 
-/// Thrown by a command that completed and whose check failed. The command has printed the findings.
+/// Thrown by a command that ran to its end and found a failed check. The command has already printed the findings.
 struct CheckFailure {
     std::string summary{};  // printed on stderr unless empty
 };
 
-/// Parses the command line, runs the command and returns the exit code: 0 done, 2 bad option or input, 3 device or
-/// driver failure, 4 a failed check, 1 an internal error. Messages go to stderr. `build`: for --version.
+/// Parses the command line, runs the command and returns the exit code: 0 success, 1 internal error, 2 bad option or
+/// input, 3 device or driver failure, 4 failed check. Prints errors on stderr. `build`: build text for --version.
 int run_program(int argc, char** argv, const std::string& build);
 
-/// The parser of all commands; `ranks` must outlive it.
+/// Makes the parser of all commands; `ranks` must outlive it.
 std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build);
 
 void add_render_command(CLI::App& program, Ranks& ranks);
@@ -31,7 +31,7 @@ void add_generate_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
 void add_tune_command(CLI::App& program);
-/// `run` is called with the settings as JSON; default: replaces this process by Python with the module raya.lab.
+/// The command calls `run` with its settings as JSON. Default: exec of Python with the module raya.lab.
 void add_study_command(CLI::App& program, const std::function<void(const std::string&)>& run = {});
 void add_page_command(CLI::App& program);
 void add_verify_command(CLI::App& program);

@@ -9,7 +9,7 @@
 namespace raya {
 namespace {
 
-// The tree of a command's subcommands, each with `options` only.
+// Returns the tree of a command's subcommands, each with `options` instead of its own options.
 std::vector<CommandText> subcommand_names(const CommandText& command, const std::vector<OptionText>& options) {
     std::vector<CommandText> all;
     for (const CommandText& one : command.commands) {
@@ -23,7 +23,7 @@ std::vector<CommandText> subcommand_names(const CommandText& command, const std:
     return all;
 }
 
-// The arguments of `help generate balls` are completed like commands.
+// Returns the program with the command tree below `help`, so that `help generate balls` is completed like commands.
 CommandText with_commands_as_arguments(const CommandText& program) {
     CommandText all = program;
     for (CommandText& command : all.commands) {
@@ -35,7 +35,7 @@ CommandText with_commands_as_arguments(const CommandText& program) {
     return all;
 }
 
-// The arguments of _raya_offer for a value.
+// Returns the arguments with which the bash function _raya_offer completes the option's value.
 std::string bash_offer_of(const OptionText& option) {
     const ValueText value = value_of(option);
     switch (value.kind) {
@@ -53,7 +53,8 @@ std::string bash_offer_of(const OptionText& option) {
     return "nothing";
 }
 
-// Sets a command's subcommands and options, the kind of its positional argument, and of each option's value.
+// Returns bash code that sets `commands`, `options`, `word` (for _raya_offer: the command's positional argument) and
+// `value` (for _raya_offer: the value of option $1).
 std::string bash_body_of(const CommandText& command) {
     std::vector<std::string> commands, options;
     std::string values;
@@ -144,7 +145,7 @@ std::string shell_quoted(const std::string& text) {
 }
 
 std::string shell_cases(const std::vector<std::pair<std::string, std::string>>& paths_and_bodies) {
-    std::vector<std::pair<std::string, std::string>> cases;  // patterns, body
+    std::vector<std::pair<std::string, std::string>> cases;  // [patterns, body]
     for (const auto& [path, body] : paths_and_bodies) {
         const auto same =
             std::find_if(cases.begin(), cases.end(), [&, &its = body](const auto& one) { return one.second == its; });

@@ -7,22 +7,22 @@
 
 namespace raya {
 
-/// "bash", "zsh", "fish".
+/// Returns the supported shells: "bash", "zsh", "fish".
 const std::vector<std::string>& completed_shells();
 
-/// The completion script of a shell: all commands and options; it needs only the shell. Throws std::logic_error for an
-/// unknown shell.
+/// Returns the completion script of a shell. The script contains all commands and options and does not run raya. Throws
+/// std::logic_error for an unknown shell.
 std::string completion_script(const CommandText& program, const std::string& shell);
 
 std::string bash_completion(const CommandText& program);
 std::string zsh_completion(const CommandText& program);
 std::string fish_completion(const CommandText& program);
 
-/// The text in single quotes, for bash and zsh: it's becomes 'it'\''s'.
+/// Returns the text in single quotes, for bash and zsh: it's becomes 'it'\''s'.
 std::string shell_quoted(const std::string& text);
 
-/// The cases of a shell's `case` over command paths; paths with equal bodies share a case: "'raya generate
-/// balls'|'raya generate gears')".
+/// Returns the clauses of a shell's `case` statement that selects a body by command path. Paths with equal bodies share
+/// a clause: "'raya generate balls'|'raya generate gears')".
 std::string shell_cases(const std::vector<std::pair<std::string, std::string>>& paths_and_bodies);
 
 }  // namespace raya

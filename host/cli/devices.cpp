@@ -1,4 +1,4 @@
-// raya devices: the OpenCL devices of all platforms.
+// raya devices: lists the OpenCL devices of all platforms.
 #include <fmt/core.h>
 
 #include "host/cl/device.hpp"
@@ -28,7 +28,7 @@ void list_devices() {
              yes(info.fused_multiply_add), yes(info.profiling), yes(info.available && info.compiler_available)});
         versions.push_back(fmt::format("{}: {}, driver {}", versions.size(), info.version, info.driver));
     }
-    if (versions.empty()) choose_device("");  // throws, with the remedy
+    if (versions.empty()) choose_device("");  // throws the error for a computer without devices
     fmt::print("{}\n", text_table(rows));
     for (const std::string& version : versions) fmt::print("{}\n", version);
     fmt::print(

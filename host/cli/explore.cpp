@@ -1,4 +1,4 @@
-// raya explore SCENE -o FILE.html: the costs of a render as a page with sliders for mapping, offset and PEs.
+// raya explore SCENE -o FILE.html: writes a page with the cost of each pixel and sliders for mapping, offset and PEs.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -51,12 +51,12 @@ RingSettings settings_of(const ExploreCommand& command, const Scene& scene) {
     return settings;
 }
 
-// Without its folder, because pages are sent to others.
+// Returns the scene's file name without its folder, because users send pages to others.
 std::string scene_name(const ExploreCommand& command) {
     return std::filesystem::path(input_name(command.render.scene)).filename().string();
 }
 
-// The command that renders the same image; the page appends mapping and PEs.
+// Returns the raya command that renders the same image. The page appends --mapping and --pes.
 std::string command_of(const ExploreCommand& command, const RingSettings& settings) {
     const RenderOptions& o = command.render;
     std::string text = "raya render " + quoted(scene_name(command)) + " -o image.png";
@@ -96,7 +96,7 @@ Json machine_json(const RingSettings& settings) {
             {"rates", rates_of(settings.machine)}};
 }
 
-// The explorer's data; without measured times, so that equal images give equal pages.
+// Returns the page's data. It contains no measured times, so that equal renders give equal pages.
 Json exploration(const ExploreCommand& command, const RingSettings& settings, const DeviceInfo& device,
                  const RingResult& result) {
     return {
@@ -111,9 +111,9 @@ Json exploration(const ExploreCommand& command, const RingSettings& settings, co
         {"cost", cost_json(result.cost().cycles)}};
 }
 
-// Refuses, before the render, an image that is too large for a page.
+// Refuses an image that is too large for a page. Called before the render.
 void check_pixels(const ImageSize& size) {
-    constexpr std::uint64_t kMaxPixels = 2'000'000;  // the project's scenes take a byte a pixel
+    constexpr std::uint64_t kMaxPixels = 2'000'000;  // the scenes in scenes/ take about one byte per pixel
     if (std::uint64_t{size.width} * size.height <= kMaxPixels) return;
     throw UserError(fmt::format("--size {}x{}: too many pixels for a page, maximum {}; remedy: a smaller --size",
                                 size.width, size.height, kMaxPixels));
@@ -128,7 +128,7 @@ void check_cycles(const std::string& scene, const CostImage& cost) {
 }
 
 void check_bytes(const std::string& scene, const CostImage& cost, std::size_t bytes) {
-    constexpr std::size_t kMaxBytes = 1'000'000;  // small enough for e-mail
+    constexpr std::size_t kMaxBytes = 1'000'000;  // maximum size of a page, small enough for e-mail
     if (bytes <= kMaxBytes) return;
     const double less = 0.9 * std::sqrt(static_cast<double>(kMaxBytes) / static_cast<double>(bytes));
     const auto side = [less](std::uint32_t pixels) { return std::max(1, static_cast<int>(less * pixels)); };

@@ -43,7 +43,7 @@ class FileCheck {
         if (!is_new) refuse_output(output, other->second);
     }
 
-    // Refuses a folder that contains an input other than a scene: the command may overwrite it.
+    // Refuses an output folder that contains an input other than a scene, which the command might overwrite.
     void write_folder(const NamedFile& folder) const {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder.file, error))
@@ -51,7 +51,7 @@ class FileCheck {
                 refuse_input({folder.option, entry.path().string()}, file_identity(entry.path()));
     }
 
-    /// Call it after all comparisons: it redirects stdout.
+    /// Call it after all comparisons, because it redirects stdout.
     void check_all_writable() const {
         for (const std::string& file : written_) check_writable(file);
     }
@@ -59,7 +59,7 @@ class FileCheck {
   private:
     static std::string identity_of(const NamedFile& output) {
         if (!is_standard_stream(output.file)) return file_identity(output.file);
-        // An earlier check may have reserved stdout for a file: then /dev/stdout is stderr.
+        // If an earlier check has reserved stdout for a file, /dev/stdout is stderr.
         const std::string stdout_file = stdout_is_reserved() ? "" : file_identity("/dev/stdout");
         return stdout_file.empty() ? output.file : stdout_file;
     }
@@ -79,7 +79,7 @@ class FileCheck {
                                     other.option, other.file));
     }
 
-    std::map<std::string, NamedFile> inputs_, outputs_;  // by file_identity()
+    std::map<std::string, NamedFile> inputs_, outputs_;  // key: file_identity()
     std::vector<std::string> written_;
 };
 

@@ -1,4 +1,4 @@
-// Options that name files and folders; the check that no output overwrites an input or another output.
+// Options whose values are files or folders, and a check that no output overwrites an input or another output.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,28 +7,28 @@
 
 namespace raya {
 
-/// How a command uses the file or folder that an option names.
+/// How a command uses the file or folder that an option names. kNone: the value is not a file.
 enum class FileUse { kNone, kRead, kWritten, kKernelFolder, kWrittenFolder };
 
-/// Sets the use of an option's value.
+/// Sets how the command uses the option's file.
 CLI::Option* set_file_use(CLI::Option* option, FileUse use);
 FileUse file_use_of(CLI::Option& option);
 
-/// add_value() for a file or folder; `type`: the placeholder in help.
+/// Adds an option for a file or folder, as add_value() does. `type`: the placeholder of the value in help.
 template <class Value>
 CLI::Option* add_file(CLI::App& command, FileUse use, const std::string& name, Value& value, const std::string& type,
                       const std::string& help) {
     return set_file_use(add_value(command, name, value, help)->type_name(type), use);
 }
 
-/// A file that an option names, directly or derived from its value.
+/// A file, and the option that names it or from whose value its name is derived.
 struct NamedFile {
     std::string option, file;
 };
 
-/// Checks the files of the command's options and `more_outputs`: no output is the same file as an input or another
-/// output, under any name, and each output is writable. Runs before the callback of every command; a command with
-/// derived output files calls it again with those before it writes. UserError.
+/// Throws UserError if an output is the same file as an input or another output, also under another name (links), or if
+/// an output is not writable. Checks the files of the command's options and `more_outputs`. Called before the callback
+/// of every command; a command whose output names are derived passes them as `more_outputs` before it writes.
 void check_files(const CLI::App& command, const std::vector<NamedFile>& more_outputs = {});
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// Completion for fish: a line for each command and option, conditional on the command entered so far.
+// Completion for fish: a `complete` line for each command and option, with a condition on the commands typed so far.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -13,7 +13,7 @@ std::string fish_quoted(const std::string& text) {
     return all + "'";
 }
 
-// The argument of fish's -a: candidates, or a command in parentheses.
+// Returns the argument of fish's -a for the option's value: candidates, or a command in parentheses that lists them.
 std::string fish_offer_of(const OptionText& option) {
     const ValueText value = value_of(option);
     switch (value.kind) {

@@ -13,15 +13,15 @@ class App;
 
 namespace raya {
 
-/// As given on the command line; empty: one image.
+/// The options as given on the command line. If none is given, the command renders one image.
 struct FrameOptions {
     std::string frames, camera_path;
-    std::optional<double> turn;  // degrees
+    std::optional<double> turn;  // degrees by which the camera turns during the sequence
 
     bool given() const { return !frames.empty() || !camera_path.empty() || turn.has_value(); }
 };
 
-/// Frames `first` to `last` of a sequence from `begin` to `end`.
+/// The frames to render, `first` to `last`, of a sequence with the numbers `begin` to `end`.
 struct FrameRange {
     std::uint32_t first = 1, last = 1, begin = 1, end = 1;
     bool operator==(const FrameRange&) const = default;
@@ -35,13 +35,14 @@ struct Frame {
 /// Adds --frames, --turn and --camera-path.
 void add_frame_options(CLI::App& command, FrameOptions& options);
 
-/// "A:B": the sequence of frames A to B; "A:B/N": frames A to B of a sequence from 1 to N. UserError.
+/// Parses "A:B" (frames A to B are the whole sequence) or "A:B/N" (frames A to B of the sequence 1 to N). UserError.
 FrameRange parse_frames(const std::string& text);
 
-/// The frames with their cameras, derived from `view`. UserError for incompatible options or an invalid camera.
+/// Returns the frames to render with their cameras: `view` rotated about the scene (--turn), or with the changes of a
+/// camera path. Throws UserError for incompatible options or an invalid camera.
 std::vector<Frame> frames_of(const FrameOptions& options, const View& view);
 
-/// Inserts the frame's number: "turn.png" for frame 7 is "turn-0007.png". "" stays "".
+/// Inserts the frame's number before the extension: "turn.png" for frame 7 becomes "turn-0007.png". Returns "" for "".
 std::string numbered(const std::string& file, std::uint32_t frame);
 
 }  // namespace raya

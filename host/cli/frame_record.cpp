@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kKind = "raya frames";  // identifies a record
+constexpr const char* kKind = "raya frames";  // member "kind" of a record
 
 std::optional<std::string> hash_of_file(const fs::path& file) try {
     return bytes_hash(read_file(file));
@@ -57,7 +57,7 @@ std::map<std::uint32_t, FrameEntry> entries_of(const Json& record) {
     return entries;
 }
 
-/// Locks the folder of a file, if the file system supports locks. Leaves no lock file.
+/// Locks the folder of a file for the object's lifetime, if the file system supports locks. Creates no lock file.
 class FolderLock {
   public:
     explicit FolderLock(const fs::path& file)

@@ -1,5 +1,5 @@
-// The record of a sequence's rendered frames: an interrupted sequence continues, and frames with changed settings are
-// rendered again.
+// The record of a sequence's rendered frames. With it an interrupted sequence resumes, and a changed one renders only
+// the frames whose settings or files have changed.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -13,29 +13,31 @@
 
 namespace raya {
 
-/// A rendered frame.
+/// The record's entry of a rendered frame.
 struct FrameEntry {
     std::uint32_t number = 0;
-    std::string settings;                                    // a hash of everything that determines the frame
+    std::string settings;                                    // hash of everything that determines the frame
     std::string pixels;                                      // pixel_hash() of the image
-    double imbalance = 0, speed_up = 0;                      // of the modelled loads
-    std::vector<std::pair<std::string, std::string>> files;  // path relative to the record's folder; bytes_hash()
+    double imbalance = 0, speed_up = 0;                      // load figures of the modelled machine
+    std::vector<std::pair<std::string, std::string>> files;  // [path, bytes_hash()]; relative to the record
 };
 
 class FrameRecord {
   public:
-    /// Reads `file` if it exists. UserError if it is not a record.
+    /// Reads `file` if it exists. Throws UserError if it is not a record.
     explicit FrameRecord(std::filesystem::path file);
 
-    /// The entry of a frame that was rendered with these settings and whose `files` are unchanged; else null.
+    /// Returns the entry of frame `number` if it was rendered with these settings and its `files` still have the
+    /// recorded hashes; otherwise null.
     const FrameEntry* find(std::uint32_t number, const std::string& settings,
                            const std::vector<std::string>& files) const;
 
-    /// Adds or replaces a frame whose `files` have been written; fills in entry.files. Writes the record, unless that
-    /// would take over a twentieth of the time; then a later call or write() does.
+    /// Adds or replaces the entry of a frame whose `files` have been written, and fills in entry.files. Writes the
+    /// record if 20 times the duration of the last write has passed, so that writes take at most 5 % of the time.
     const FrameEntry& add(FrameEntry entry, const std::vector<std::string>& files);
 
-    /// Merges the frames added here with those that other processes have written, and writes the record under a lock.
+    /// Merges the frames that this object added with those that other processes have written to the file, and writes
+    /// the file. Holds a lock meanwhile.
     void write();
 
   private:
@@ -43,13 +45,13 @@ class FrameRecord {
     std::string name_of(const std::string& file) const;
 
     std::filesystem::path file_;
-    std::map<std::uint32_t, FrameEntry> entries_;  // by their numbers
-    std::set<std::uint32_t> added_;                // by this process; newer than the file's entries
+    std::map<std::uint32_t, FrameEntry> entries_;  // by frame number
+    std::set<std::uint32_t> added_;                // numbers of the frames that this object added
     Clock::time_point written_{};
     Clock::duration writing_{};  // duration of the last write
 };
 
-/// The path of the record for `image`: "turn-frames.json" for turn.png.
+/// Returns the path of the record for `image`: "turn-frames.json" for "turn.png".
 std::string frame_record_file(const std::string& image);
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// raya generate: procedural scenes.
+// raya generate: writes procedural scenes.
 #include "host/scene/generate.hpp"
 
 #include <fmt/core.h>

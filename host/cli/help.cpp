@@ -1,4 +1,4 @@
-// raya help COMMAND: what raya COMMAND --help prints.
+// raya help COMMAND: prints the same as raya COMMAND --help.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 

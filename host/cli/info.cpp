@@ -1,4 +1,4 @@
-// raya info: the contents of a scene and the machines that can hold it. Opens no device.
+// raya info: prints the contents of a scene and its memory needs on each machine. Opens no device.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct InfoCommand {
     bool json = false;
 };
 
-// Options of a render that do not affect the memory of a PE.
+// Options of a render that do not affect the memory needs of a PE. raya info does not have them.
 constexpr std::array<const char*, 16> kExecutionOptions = {
     "--device", "--lanes",   "--group",     "--no-tuned",     "--kernel-dir",    "--exchange", "--sampling", "--points",
     "--inject", "--returns", "--threshold", "--packet-words", "--link-exchange", "--packets",  "--replay",   "--async"};
@@ -45,7 +45,8 @@ void add_options(CLI::App& command, InfoCommand& options) {
         ->description("Only this machine, as in raya render; default: all machines");
 }
 
-// UserError if the machine of --machine does not support the options; without --machine its row gives the reason.
+// Returns the needs of all machines, or of --machine. If a machine does not support the options: UserError with
+// --machine, otherwise the machine's row contains the reason.
 std::vector<MachineNeeds> needs_of_machines(const CLI::App& parsed, const InfoCommand& command, SceneNeeds& needs) {
     if (parsed.count("--machine") > 0) {
         refuse_options_of_other_machines(parsed, machine_named(command.render.machine));

@@ -9,7 +9,7 @@
 namespace raya {
 namespace {
 
-// Escapes the letters that man interprets.
+// Escapes the characters that man interprets.
 std::string plain(const std::string& text) {
     std::string page;
     for (const char c : text) switch (c) {
@@ -40,7 +40,7 @@ std::string plain(const std::string& text) {
     return page;
 }
 
-// A line of text; a leading dot would begin a macro.
+// Returns a line of text. Escapes a leading dot, which would begin a macro.
 std::string line(const std::string& text) { return (text.starts_with('.') ? "\\&" : "") + plain(text) + '\n'; }
 
 std::string bold(const std::string& text) { return "\\fB" + plain(text) + "\\fR"; }
@@ -82,7 +82,7 @@ std::string entries(const std::vector<OptionText>& options) {
     return text;
 }
 
-// Arguments and options by group; `make_heading` makes the heading of a group from its name.
+// Returns the command's arguments and options by group. `make_heading`: returns the heading for a group's name.
 template <class Heading>
 std::string grouped(const CommandText& command, Heading&& make_heading) {
     std::string text;
@@ -111,7 +111,7 @@ std::string examples(const CommandText& command) {
     return text;
 }
 
-// Without the options `all`, which the page lists itself.
+// Returns the command without the options `all`, which the page of the parent command already lists.
 CommandText without(CommandText command, const std::vector<OptionText>& all) {
     std::erase_if(command.options, [&](const OptionText& o) {
         return std::any_of(all.begin(), all.end(), [&](const OptionText& one) { return one.names == o.names; });
@@ -119,7 +119,7 @@ CommandText without(CommandText command, const std::vector<OptionText>& all) {
     return command;
 }
 
-// The subcommands with their options; those with equal options are grouped.
+// Returns the subcommands with their options. Subcommands with equal options share one list.
 std::string commands_below(const CommandText& command, const std::string& path) {
     std::string text = heading("Commands");
     std::vector<const CommandText*> left;
@@ -145,7 +145,7 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-// Indented lines: "  NAME   description" as an entry, others verbatim.
+// Formats an indented line: "  NAME   description" as a list entry, any other line verbatim.
 std::string indented(const std::string& one) {
     const std::string text = one.substr(std::min(one.find_first_not_of(' '), one.size()));
     const std::size_t gap = text.find("  ");
@@ -153,7 +153,7 @@ std::string indented(const std::string& one) {
     return ".TP\n" + bold(text.substr(0, gap)) + '\n' + line(text.substr(text.find_first_not_of(' ', gap)));
 }
 
-// The footer of help as sections.
+// Returns the footer of the command's help as sections of the page.
 std::string closing(const std::string& footer) {
     std::string text;
     bool begins = true;

@@ -1,4 +1,4 @@
-// raya manual and raya completion: the help texts as manual pages and as shell completions.
+// raya manual and raya completion: write the help texts as manual pages and as shell completions.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 

@@ -5,7 +5,7 @@
 namespace raya {
 namespace {
 
-/// Damerau's edit distance from `a` to `b`; no letter is edited twice.
+/// Returns Damerau's edit distance from `a` to `b` without repeated edits of a character (optimal string alignment).
 std::size_t edits(const std::string& a, const std::string& b) {
     std::vector<std::vector<std::size_t>> of(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
     for (std::size_t i = 0; i <= a.size(); ++i) {

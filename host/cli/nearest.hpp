@@ -5,11 +5,12 @@
 
 namespace raya {
 
-/// The name nearest to `word`: one that begins with it, else the one with the smallest edit distance (insertions,
-/// deletions, substitutions, swaps of neighbours; F. J. Damerau 1964) up to a third of the word's length. Else "".
+/// Returns the name in `names` that is most similar to `word`: one that begins with `word` (3 or more characters), or
+/// the one with the smallest edit distance (insertions, deletions, substitutions, transpositions of neighbours; F. J.
+/// Damerau 1964). Returns "" if the smallest distance exceeds a third of the word's length.
 std::string nearest_name(const std::string& word, const std::vector<std::string>& names);
 
-/// " (did you mean NAME?)", or nothing.
+/// Returns " (did you mean NAME?)" with nearest_name(), or "" if there is none.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& names);
 
 }  // namespace raya

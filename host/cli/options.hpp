@@ -1,4 +1,4 @@
-// Options of a command, with values checked against their types.
+// Options of a command, whose values are checked for the types of their variables.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -10,7 +10,7 @@
 
 namespace raya {
 
-/// The type of one value of an option: without std::optional and std::vector.
+/// The type of one value of an option: `Value` without std::optional or std::vector around it.
 template <class Value>
 struct OptionValue {
     using Type = Value;
@@ -20,12 +20,12 @@ struct OptionValue<std::optional<Value>> : OptionValue<Value> {};
 template <class Value>
 struct OptionValue<std::vector<Value>> : OptionValue<Value> {};
 
-/// Throws UserError: option, value, reason, and the option's help text.
+/// Throws UserError with the option, the value, the reason, and the option's help text.
 [[noreturn]] void refuse_value(const std::string& option, const std::string& value, const char* reason,
                                const std::string& help);
 
-/// Refuses empty values, and numbers that are malformed or out of the type's range. CLI11 takes an empty value for a
-/// missing one, wraps negative numbers and truncates large ones.
+/// Throws UserError for an empty value, and for a number that is malformed or out of the type's range. CLI11 alone
+/// would treat an empty value as missing, wrap negative numbers and truncate large ones.
 template <class Value>
 void check_value(const std::string& option, const std::string& text, const std::string& help) {
     if (text.empty()) refuse_value(option, text, "must not be empty", help);
@@ -41,7 +41,7 @@ void check_value(const std::string& option, const std::string& text, const std::
     }
 }
 
-// Headings of options in help.
+// Headings above groups of options in help.
 inline constexpr const char* kFiles = "Files";
 inline constexpr const char* kImageGroup = "Image";
 inline constexpr const char* kCamera = "Camera and light";
@@ -49,9 +49,9 @@ inline constexpr const char* kMachine = "Machine and mapping";
 inline constexpr const char* kTorusMachine = "Torus machine";
 inline constexpr const char* kKernels = "Kernels and device";
 inline constexpr const char* kDiagnostics = "Diagnostics";
-inline constexpr const char* kGeneralOptions = "General options";  // of all commands; listed last
+inline constexpr const char* kGeneralOptions = "General options";  // options that every command has; listed last
 
-/// Sets the heading of all options that are added to a command during its lifetime.
+/// Sets the heading of all options that are added to the command during this object's lifetime.
 class OptionGroup {
   public:
     OptionGroup(CLI::App& command, const std::string& heading)
@@ -62,7 +62,7 @@ class OptionGroup {
     OptionGroup& operator=(const OptionGroup&) = delete;
     ~OptionGroup() { defaults_.group(before_); }
 
-    /// Sets another heading.
+    /// Sets the heading of the options that are added from now on.
     void next(const std::string& heading) { defaults_.group(heading); }
 
   private:
@@ -70,7 +70,7 @@ class OptionGroup {
     std::string before_;
 };
 
-/// Adds an option that stores into `value`, checked by check_value().
+/// Adds an option that check_value() checks and that is stored in `value`.
 template <class Value>
 CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& help = "") {
     CLI::Option* option = command.add_option(name, value, help);
@@ -80,15 +80,15 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value,
     });
 }
 
-/// Attaches a named text to an option; help does not show it. note_of() returns "" if there is none.
+/// Attaches a text with a name to an option. Help does not show it. note_of() returns the text, or "" if there is none.
 CLI::Option* attach_note(CLI::Option* option, const char* name, const std::string& text);
 std::string note_of(CLI::Option& option, const char* name);
 
-/// Sets the values that shells complete. They are not checked and not shown in help. Not needed if the placeholder
-/// lists them: "ring|bus".
+/// Sets the values that shell completion offers. They neither restrict the option's value nor appear in help. Not
+/// needed if the placeholder lists the values: "ring|bus".
 CLI::Option* offer_choices(CLI::Option* option, const std::vector<std::string>& choices);
 
-/// Those values, or none.
+/// Returns the values that offer_choices() set; empty if it was not called.
 std::vector<std::string> offered_choices(CLI::Option& option);
 
 }  // namespace raya

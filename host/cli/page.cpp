@@ -1,4 +1,4 @@
-// raya page REPORT.json -o FILE.html: makes an HTML page from a report.
+// raya page REPORT.json -o FILE.html: writes a report as an HTML page.
 #include "host/cli/page.hpp"
 
 #include <fmt/core.h>
@@ -26,7 +26,7 @@ struct PageCommand {
     std::string report, page;
 };
 
-// Pages are sent to others: removes the folders of file names.
+// Removes the folders of file names, because users send pages to others.
 Json without_folders(Json report) {
     const auto shorten = [](Json& object, const char* key) {
         const Json* const path = object.find(key);

@@ -6,18 +6,18 @@
 
 namespace raya {
 
-/// Refuses a page whose name does not end in .html or .htm. UserError with `option`.
+/// Throws UserError, which names `option`, if the page's file name does not end in .html or .htm.
 void check_page_name(const std::string& option, const std::string& file);
 
-/// The page of a report of render, bench or verify. `name`: the report's file, for messages. UserError for other text;
-/// the page lists members that the report is missing.
+/// Returns the HTML page of a report of render, bench or verify. `text`: the report; `name`: its file, for messages.
+/// Throws UserError if `text` is not such a report. The page lists members that are missing in the report.
 std::string page_of_report(const std::string& text, const std::string& name);
 
 struct ReportFiles {
     std::string report, page;  // empty: not requested
 };
 
-/// Writes a report and its page. page_of_report() makes the same page from the report's file.
+/// Writes the requested files. `raya page` makes the same page from the report's file.
 void write_report_and_page(const ReportFiles& files, const Json& report);
 
 }  // namespace raya

@@ -18,23 +18,23 @@ class App;
 
 namespace raya {
 
-/// "512x256" as {512, 256}: integers from 1 to 10^6 separated by x; empty for anything else.
+/// Parses integers from 1 to 10^6 separated by x: {512, 256} for "512x256". Returns an empty vector for other texts.
 std::vector<std::uint32_t> parse_sizes(const std::string& text);
 
-/// An image size: "512" (square) or "512x256", whose range image_size() checks. UserError with the legal values.
+/// Parses an image size: "512" (square) or "512x256". UserError with the legal values. image_size() checks the range.
 ImageSize parse_image_size(const std::string& text);
 
-/// Three numbers, along x, y and z: "4x4x4". UserError with the option and `legal`, such as "1..256 each".
+/// Parses three numbers, along x, y and z: "4x4x4". Throws UserError with the option and `legal`: "1..256 each".
 std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
                                                const std::string& legal);
 
-/// --accel: "none", "grid" or "grid:AxBxC". UserError as above.
+/// Parses --accel: "none", "bvh", "grid" or "grid:AxBxC". Throws UserError with the option and its legal values.
 Accel parse_accel(const std::string& text);
 
-/// A comma-separated list of formats, each as in --format.
+/// Parses a comma-separated list of formats, each as in --format.
 std::vector<NumberFormat> parse_formats(const std::string& list);
 
-// Keywords. UserError with the option and its legal values.
+// Parsers of keywords. They throw UserError with the option and its legal values.
 
 /// --antialias: "none", "filter", "supersample".
 AntialiasMethod parse_antialias(const std::string& text);

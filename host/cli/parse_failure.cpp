@@ -14,7 +14,7 @@
 namespace raya {
 namespace {
 
-/// The innermost command that was selected; appends its path without the program's name to `name`.
+/// Returns the innermost selected command. Appends its path, without the program's name, to `name`.
 const CLI::App& selected_command(const CLI::App& program, std::string& name) {
     const CLI::App* command = &program;
     while (!command->get_subcommands().empty()) {
@@ -31,7 +31,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-/// The first argument that no option or command takes.
+/// The first argument that belongs to no option or command.
 struct UnparsedArgument {
     std::string text;
     bool after_separator = false;  // after "--"
@@ -46,7 +46,7 @@ UnparsedArgument first_unparsed(const CLI::App& program, const std::vector<std::
     return first == arguments.end() ? UnparsedArgument{} : UnparsedArgument{*first, first > separator};
 }
 
-/// CLI11's message about too many or too few values, reworded.
+/// Rewords CLI11's message about too many or too few values.
 std::string value_error_text(std::string text) {
     const auto replace = [&](const std::string& what, const std::string& by) {
         const std::size_t at = text.find(what);
@@ -57,7 +57,7 @@ std::string value_error_text(std::string text) {
     return text;
 }
 
-/// Our name of an option that earlier versions or other programs name differently.
+/// Returns raya's present name of an option that earlier versions or other programs name differently.
 std::string current_option_name(const std::string& option) {
     if (option == "--ways") return "--variants";
     return option == "--width" || option == "--height" || option == "--resolution" ? "--size" : option;
@@ -96,8 +96,9 @@ std::string failure_text(const CLI::App& program, const CLI::ParseError& error,
                        reason(command, left, error), name);
 }
 
-/// The option whose value is the argument after this one, or null. Refuses forms that CLI11 misreads: it takes the
-/// value of a flag for a number, parses "-q=x" as -q and "-=x", and gives "--size=" the next argument as value.
+/// If `argument` is an option whose value is the next argument, returns the option, otherwise null. Refuses forms that
+/// CLI11 misreads: CLI11 reads the value of a flag as a number, parses "-q=x" as -q and "-=x", and uses the next
+/// argument as the value of "--size=".
 const CLI::Option* check_option(const CLI::App& command, const std::string& argument) {
     const bool is_long = argument.starts_with("--");
     const std::size_t equals = std::min(argument.find('='), argument.size());
@@ -118,9 +119,9 @@ const CLI::Option* check_option(const CLI::App& command, const std::string& argu
 }
 
 void check_argument_values(const CLI::App& program, const std::vector<std::string>& arguments) {
-    constexpr std::size_t kMaxBytes = 4096;  // Linux's PATH_MAX
+    constexpr std::size_t kMaxBytes = 4096;  // of an argument; Linux's PATH_MAX
     const CLI::App* command = &program;
-    const CLI::Option* value_of_option = nullptr;  // the option whose value this argument is
+    const CLI::Option* value_of_option = nullptr;  // set if this argument is its value
     bool after_separator = false;
     for (const std::string& argument : arguments) {
         if (argument.size() > kMaxBytes)
@@ -137,7 +138,7 @@ void check_argument_values(const CLI::App& program, const std::vector<std::strin
     }
 }
 
-/// Adds the option's choice nearest to the value to a message such as "--fold blok: ...".
+/// Adds to a message such as "--fold blok: ..." the option's choice that is most similar to the value.
 std::string with_suggestion(const CLI::App& program, std::string text) {
     std::string name;
     for (const CLI::Option* option : selected_command(program, name).get_options()) {
@@ -145,9 +146,9 @@ std::string with_suggestion(const CLI::App& program, std::string text) {
         const std::size_t end = text.find(": ");
         if (!text.starts_with(start) || end == std::string::npos || end < start.size()) continue;
         const std::string value = text.substr(start.size(), end - start.size());
-        // CLI11 returns validators, which hold the choices, only of an option that is not const.
+        // The choices are stored in validators, which CLI11 returns only for a non-const option.
         const ValueText offered = value_of(option_text(*const_cast<CLI::Option*>(option)));
-        if (!value.starts_with(nearest_name(value, offered.choices)))  // "grid:4" names a grid
+        if (!value.starts_with(nearest_name(value, offered.choices)))  // "grid:4" is not misspelt
             text.insert(end, did_you_mean(value, offered.choices));
         break;
     }
@@ -168,7 +169,7 @@ void parse_arguments(CLI::App& program, const std::vector<std::string>& argument
         check_argument_values(program, arguments);
         program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) throw;  // help, version
+        if (error.get_exit_code() == 0) throw;  // --help, --version
         throw UserError(failure_text(program, error, arguments));
     } catch (const UserError& error) {
         const std::string text = with_suggestion(program, error.what());

@@ -13,21 +13,21 @@
 namespace raya {
 namespace {
 
-/// Parses the whole field, independently of the locale.
+/// Parses a number, independently of the locale. Returns false unless the number is the whole field.
 template <typename Number>
 bool read_number(std::string_view field, Number& number) {
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
     return error == std::errc{} && end == field.data() + field.size();
 }
 
-// An integer from min to max, digits only.
+// Parses an integer from `min` to `max`; empty for other texts.
 std::optional<std::uint32_t> parse_number(std::string_view text, std::uint32_t min, std::uint32_t max) {
     std::uint32_t number = 0;
     if (!read_number(text, number) || number < min || number > max) return {};
     return number;
 }
 
-// "4x8", each 1..kLargestSide, as raya_pair.
+// Parses "4x8", with both numbers in 1..kLargestSide, into a raya_pair(); empty for other texts.
 std::optional<std::uint32_t> parse_pair(std::string_view text) {
     const std::size_t cross = text.find('x');
     if (cross == std::string_view::npos) return {};
@@ -40,7 +40,7 @@ std::optional<std::uint32_t> parse_pair(std::string_view text) {
 constexpr std::uint32_t kDefaultSeed = 1;
 constexpr std::uint32_t kLargestSeed = std::numeric_limits<std::uint32_t>::max();
 
-// The parameter after the colon. UserError with the legal form.
+// Parses `rest`, the text after the colon, into the mapping's parameter. Throws UserError with the legal form.
 std::uint32_t parse_parameter(const MappingText& mapping, std::string_view rest) {
     std::optional<std::uint32_t> parameter;
     std::string legal = mapping.name() + ", without a parameter";
@@ -90,7 +90,7 @@ const std::vector<std::string>& mapping_forms() {
 MappingText parse_mapping(const std::string& text) {
     struct Name {
         const char* name;
-        MappingRule rule;  // of the name without a parameter
+        MappingRule rule;  // the rule if there is no parameter
         bool needs_parameter = false, leaves_offset = false;
     };
     static const Name names[] = {{"cyclic", cyclic_mapping(0), false, true},

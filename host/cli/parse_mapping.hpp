@@ -9,37 +9,39 @@
 
 namespace raya {
 
-/// A static mapping:
+/// A static mapping of pixels to PEs, as given on the command line:
 ///
-///     cyclic, cyclic:p   the cyclic mapping, p slots a row; "cyclic" alone leaves p to the machine or --offset
-///     column             offset 0, Kohata & Ito's column split
-///     rows, blocks       scan lines round robin; contiguous scan lines
-///     grid:AxB           A rows of B PEs: every A-th line, every B-th pixel of it
+///     cyclic, cyclic:p   the cyclic mapping with offset p; "cyclic" alone: p from --offset or the machine
+///     column             the cyclic mapping with offset 0, Kohata & Ito's column split
+///     rows               scan lines round robin
+///     blocks             contiguous blocks of scan lines
+///     grid:AxB           A rows of B PEs; each PE has every A-th line, and of it every B-th pixel
 ///     tiles:WxH          tiles of W x H pixels round robin; W and H divide the image's sides
-///     random:seed        each pixel at random, shares even; "random" alone: seed 1
+///     random:seed        pixels at random, equally many for each PE; "random" alone: seed 1
 struct MappingText {
-    std::string text;           // as given
-    MappingRule rule{};         // of slots: with the cyclic fold
-    bool leaves_offset = true;  // "cyclic" alone
+    std::string text;           // as given on the command line
+    MappingRule rule{};         // mappings with slots: cyclic fold; --fold may change it
+    bool leaves_offset = true;  // "cyclic" without p
 
-    /// The text before the colon.
+    /// Returns the part of `text` before the colon.
     std::string name() const { return text.substr(0, text.find(':')); }
 };
 
-/// The forms above, for messages.
+/// Returns the forms listed above, for messages.
 const std::vector<std::string>& mapping_forms();
 
-/// UserError with the option and its legal forms.
+/// Parses a static mapping. Throws UserError with the option and its legal forms.
 MappingText parse_mapping(const std::string& text);
 
-/// "cyclic" or "block"; UserError as above.
+/// Parses "cyclic" or "block". Throws UserError with the option and its legal values.
 Fold parse_fold(const std::string& text);
 
-/// True for the texts that parse_dynamic() parses.
+/// Returns true if the text names a dynamic or hybrid mapping, which parse_dynamic() parses.
 bool is_dynamic(const std::string& text);
 
-/// "dynamic:chunk[,overhead]" or "hybrid:chunk[,overhead[,share]]"; default: overhead 0, share 0.5. UserError with the
-/// option and its legal forms.
+/// Parses "dynamic:chunk[,overhead]" or "hybrid:chunk[,overhead[,share]]". `chunk`: pixels per request; `overhead`:
+/// cycles per request, default 0; `share`: static share of a PE's pixels, default 0.5. Throws UserError with the option
+/// and its legal forms.
 DynamicPlan parse_dynamic(const std::string& text);
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// raya ping: measures message times between ranks, over the transport that renders use.
+// raya ping: measures message times between ranks, with the transport that renders use.
 #include "host/ranks/ping.hpp"
 
 #include <fmt/core.h>

@@ -4,7 +4,7 @@
 
 namespace raya {
 
-/// The word for a shell: in single quotes unless all its letters are safe.
+/// Returns the word in single quotes, or unchanged if no shell interprets any of its characters.
 std::string quoted(const std::string& word);
 
 }  // namespace raya

@@ -10,19 +10,20 @@
 
 namespace raya {
 
-/// The work of this rank.
+/// Figures of this rank's part of a render.
 struct RankWork {
     std::uint32_t parts = 0;  // PEs of the ring or nodes of the torus
     std::uint32_t lanes = 0, group_size = 0;
     double build_s = 0, render_s = 0;
-    RankTraffic traffic{};  // during the render
+    RankTraffic traffic{};  // messages during the render
     std::vector<LabelSummary> commands{};
 };
 
-/// On rank 0 one object for each rank; empty on other ranks and with a single rank. `parts`: "pes" or "nodes".
+/// Sends every rank's `work` to rank 0. Returns, on rank 0, one JSON object per rank; empty on other ranks, and with a
+/// single rank. `parts`: name of the member for RankWork::parts, "pes" or "nodes".
 std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts, const RankWork& work);
 
-/// From a machine's result.
+/// Same with the work from the result of a ring or torus render.
 template <class Result>
 std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts, const Result& r) {
     return rank_reports(ranks, session, parts,

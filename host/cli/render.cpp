@@ -13,7 +13,7 @@ namespace {
 
 void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) {
     refuse_options_of_other_machines(parsed, machine_named(command.render.machine));
-    if (ranks.first()) check_render(parsed, command);  // rank 0 writes; on other hosts the folders need not exist
+    if (ranks.first()) check_render(parsed, command);  // only rank 0 writes files
     RenderRun run(command, ranks);
     if (command.frames.given())
         render_frames(parsed, command, run);

@@ -36,7 +36,7 @@ void check_replay(const CLI::App& parsed, const TorusOptions& t) {
 
 void check_output_files(const CLI::App& parsed, const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
-    if (!launched())  // mpirun may insert a terminal between itself and raya
+    if (!launched())  // mpirun may connect raya to a pseudoterminal
         for (const std::string& file : {command.image, command.cost, command.mask, packets})
             refuse_bytes_on_terminal(file);
     tone_of(command.tone, command.image);
@@ -69,7 +69,7 @@ SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ran
 void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Device& device, const NumberFormat& format,
                  const std::vector<KernelWork>& works, Warnings& warnings) {
     report.measured.builds = recorder.builds();
-    if (!report.ranks.empty()) {  // the commands are per rank, the work is of all ranks
+    if (!report.ranks.empty()) {  // commands are those of one rank, work is that of all
         report.measured.roofline.emplace().unavailable = "the roofline is for one device; start one rank";
         return;
     }
@@ -77,13 +77,13 @@ void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Devic
         const DevicePeak peak =
             recorder.steps().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
         report.measured.roofline = roofline(peak, works, report.measured.commands);
-        constexpr double kMaxScatter = 0.15;  // of the best
+        constexpr double kMaxScatter = 0.15;  // relative to the best sample
         if (peak.scatter > kMaxScatter)
             warnings.add(
                 fmt::format("three measurements of the device's peak scatter by {:.0f} %: something else runs on it; "
                             "shares of the peak are unreliable",
                             100 * peak.scatter));
-    } catch (const DeviceError& error) {  // the render's own figures are valid
+    } catch (const DeviceError& error) {  // the render's figures are valid without a roofline
         report.measured.roofline.emplace().unavailable = error.what();
     }
 }

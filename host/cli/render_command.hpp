@@ -1,4 +1,4 @@
-// The options of `raya render`, and the steps that its machines share: checks before the render, output after it.
+// The options of `raya render`, and the steps that are the same for all machines: checks before a render, its output.
 #pragma once
 #include <string>
 
@@ -33,36 +33,36 @@ struct RenderCommand {
     CheckpointOptions checkpoint;
     TraceOptions trace;
     bool profile = false, cache_kernels = false, summary = true;
-    bool prints = true;                             // the table of --profile
-    ProgressCallback progress{};                    // empty: a progress bar on a terminal
-    PixelSubset pixels{};                           // torus: the pixels of the primary rays
-    bool keep_costs = false, keep_packets = false;  // store them in Render
+    bool prints = true;                             // print the table of --profile
+    ProgressCallback progress{};                    // empty: progress bar on a terminal
+    PixelSubset pixels{};                           // torus: pixels that get primary rays
+    bool keep_costs = false, keep_packets = false;  // store costs or packets in Render
 
-    /// Options whose files are numbered by --frames, with their values; empty: not given.
+    /// The options whose files get frame numbers with --frames, and their values (empty: not given).
     std::vector<std::pair<const char*, std::string>> files() const {
         return {{"--output", image}, {"--cost", cost}, {"--mask", mask}, {"--report", report}};
     }
 
-    /// Commands are timed only if the times are shown: timing slows a GPU's queue down.
+    /// Returns kOn if times of device commands are shown. Otherwise kOff, because timing slows down a GPU's queue.
     Timing timing() const {
         return profile || reports() || !trace.file.empty() || verbosity() >= kDetailed ? Timing::kOn : Timing::kOff;
     }
-    /// Returns true if a report is needed; a page is made from one.
+    /// Returns true if a report is needed: for --report, or for --page, which is made from a report.
     bool reports() const { return !report.empty() || !page.empty(); }
-    /// Returns true if kernels are compared with the device's peak.
+    /// Returns true if the report compares kernels with the device's peak.
     bool roofline() const { return profile || !page.empty(); }
 };
 
-/// One render: its report, image and arrays, of a ring machine or of the torus.
+/// The results of a render on a ring machine (`ring`) or on the torus (`torus`).
 struct Render {
     RenderReport report{};
     std::optional<RingResult> ring{};
     std::optional<TorusResult> torus{};
-    std::vector<PacketRecord> packets{};  // with RenderCommand::keep_packets
+    std::vector<PacketRecord> packets{};  // if RenderCommand::keep_packets
     std::optional<TorusSettings> torus_settings{};
-    std::uint32_t lights = 0;                           // of the scene
-    std::optional<History> history{};                   // torus with --async
-    std::vector<std::uint64_t> cycles{}, link_words{};  // with the packets: [superstep][node] and
+    std::uint32_t lights = 0;                           // number of the scene's lights
+    std::optional<History> history{};                   // for the torus with --async
+    std::vector<std::uint64_t> cycles{}, link_words{};  // with keep_packets: [superstep][node] and
                                                         // [superstep][node][RAYA_LINKS]
 
     const Image& image() const { return ring ? ring->image : torus->image; }
@@ -72,36 +72,37 @@ struct Render {
 std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& run);
 std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& run);
 
-/// Renders on the command's machine.
+/// Calls render_on_torus() or render_on_ring(), as the command's machine requires.
 std::optional<Render> render_image(const RenderCommand& command, RenderRun& run);
 
 /// Adds all options of `raya render` except SCENE.
 void describe_render(CLI::App& command, RenderCommand& options);
 
-/// Checks that the options are compatible and the files writable. UserError.
+/// Throws UserError if options are incompatible or a file is not writable.
 void check_render(const CLI::App& parsed, const RenderCommand& command);
 
-/// Refuses outputs that --frames does not support: stdout, and files of a single image. UserError.
+/// Throws UserError for outputs that --frames does not support: stdout, and files for a single image only.
 void check_frames(const RenderCommand& command);
 
-/// Renders the frames that the record (frame_record.hpp) does not list yet: writes their files and the record, prints a
-/// line for each frame. `parsed` holds the command's options as given. UserError.
+/// Renders the frames that the record (frame_record.hpp) does not contain with the same settings and files. Writes the
+/// files and the record, and prints a line for each frame. `parsed`: the command's parser, which knows the options that
+/// were given. Throws UserError.
 void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderRun& run);
 
-/// Rank 0 reads the scene and applies the view options. Other ranks get its name and resolution without objects, and
-/// --accel as rank 0 chose it from the scene.
+/// Rank 0 reads the scene and applies the view options. Other ranks get the scene's name and resolution, without
+/// objects. With several ranks and a ring machine, sets `options.accel` on all ranks to rank 0's choice.
 SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks);
 
-/// Checks the names of the output files, and options that depend on them. UserError.
+/// Throws UserError for an output file's unsupported name, and for options that do not apply to the output files.
 void check_output_files(const CLI::App& parsed, const RenderCommand& command);
 
-/// The tone mapping of an 8-bit image; empty for linear images.
+/// Returns the tone mapping of the command's image if that has 8-bit codes; empty for linear images.
 std::optional<ImageCodes> codes_of(const RenderCommand& command);
 
-/// Adds a small image for the report's page, in the tone of the image.
+/// Adds a small copy of the image, with the same tone mapping, for the report's page.
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image);
 
-/// The report's members that all machines share: scene, view, image, device, times. The caller adds the others.
+/// Returns a report with the members that all machines have: scene, view, image, device, measured times.
 template <class Result>
 RenderReport begin_report(const RenderCommand& command, const SceneInput& input, const DeviceInfo& device,
                           const Result& result) {
@@ -119,17 +120,17 @@ RenderReport begin_report(const RenderCommand& command, const SceneInput& input,
     return report;
 }
 
-/// For --profile: adds build times and the roofline of all kernels. Measures the peak of `device`.
+/// Adds the build times and the roofline of all kernels, for --profile and --page. Measures the peak of `device`.
 void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Device& device, const NumberFormat& format,
                  const std::vector<KernelWork>& works, Warnings& warnings);
 
-/// The metadata of a render's image files.
+/// Returns the metadata of a render's image files.
 ImageAttributes image_attributes(const RenderReport& report, const std::string& scene);
 
-/// Writes the image with these attributes and those of its tone mapping.
+/// Writes the image with `attributes` and with the attributes of its tone mapping.
 void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes);
 
-/// Writes the report and its page, prints the summary and the profile, as far as requested.
+/// Writes the report and its page, and prints the summary and the profile, each only if requested.
 void write_report(const RenderCommand& command, const RenderReport& report);
 
 }  // namespace raya

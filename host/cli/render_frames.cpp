@@ -1,4 +1,4 @@
-// raya render --frames: numbered images of one scene, each with its own camera.
+// raya render --frames: renders numbered images of one scene, each with its own camera.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -19,7 +19,7 @@
 namespace raya {
 namespace {
 
-// The command of one frame, with numbered file names.
+// Returns the command that renders one frame, with numbered file names.
 RenderCommand command_of(const RenderCommand& all, std::uint32_t frame) {
     RenderCommand one = all;
     for (std::string* file : {&one.image, &one.cost, &one.mask, &one.report}) *file = numbered(*file, frame);
@@ -42,7 +42,7 @@ void check_files_of(const CLI::App& parsed, const RenderCommand& command, const 
     check_files(parsed, outputs);
 }
 
-// Everything that determines a frame except its camera: the scene with its lights, the options, the program.
+// Returns a text with everything that determines a frame, except its camera: scene, lights, options, program.
 std::string settings_of(const CLI::App& parsed, const Scene& scene) {
     static const std::set<std::string> neutral = {"SCENE",  "--output", "--cost",        "--mask",  "--report",
                                                   "--turn", "--frames", "--camera-path", "--quiet", "--verbose"};
@@ -69,7 +69,7 @@ void print_frame(const RenderCommand& one, const FrameEntry& frame, bool unchang
     clear_status();
     fmt::print("frame {:4}  u {:.3f}  speed-up {:7.1f}  {}  {}{}\n", frame.number, frame.imbalance, frame.speed_up,
                frame.pixels, printable(one.image), unchanged ? ", unchanged" : "");
-    std::fflush(stdout);  // shows progress in log files
+    std::fflush(stdout);  // so that a log file shows the progress
 }
 
 struct Sums {
@@ -134,7 +134,7 @@ void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderR
         const RenderCommand one = command_of(command, frame.number);
         if (ranks.first()) run.input.scene.view = frame.view;
         const std::string hash = ranks.first() ? settings_hash(settings, run.input.scene) : "";
-        // Kernels from --kernel-dir may have changed.
+        // With --kernel-dir no frame is reused, because the kernels in that folder may have changed.
         const bool may_reuse = ranks.first() && command.render.kernel_dir.empty();
         const FrameEntry* entry = may_reuse ? record->find(frame.number, hash, files_of(one)) : nullptr;
         std::uint32_t renders = entry == nullptr;

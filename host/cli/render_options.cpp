@@ -15,7 +15,7 @@
 namespace raya {
 namespace {
 
-// The mappings' names without parameters.
+// Returns the names of the mappings without their parameters.
 std::vector<std::string> mapping_names() {
     std::vector<std::string> names;
     for (const std::string& form : mapping_forms()) {
@@ -26,7 +26,7 @@ std::vector<std::string> mapping_names() {
     return names;
 }
 
-// Shell completions of the values whose placeholder does not list them.
+// Sets the shell completion of values that the placeholder does not list.
 void offer_render_choices(CLI::App& command) {
     std::vector<std::string> rings;
     for (const Machine& machine : machines())
@@ -140,13 +140,14 @@ Antialias antialias_settings(const RenderOptions& o) {
     if (antialias.method == AntialiasMethod::kNone && !o.exchange.empty())
         throw UserError("--exchange requires anti-aliasing: add --antialias filter or supersample");
     antialias.exchange = parse_exchange(o.exchange.empty() ? "ring" : o.exchange);
-    antialias.threshold = o.threshold.value_or(antialias.threshold) + 0.0;  // -0 is 0
+    antialias.threshold = o.threshold.value_or(antialias.threshold) + 0.0;  // + 0.0 turns -0 into 0
     if (!(antialias.threshold >= 0 && antialias.threshold <= 1))
         throw UserError(fmt::format("--threshold {}: must be 0..1", antialias.threshold));
     return antialias;
 }
 
-// --offset and --fold place the slots of a mapping: refused for a mapping without slots or with another offset.
+// --offset and --fold apply only to mappings with slots. Refuses them for other mappings, and --offset for a mapping
+// that sets another offset itself.
 void check_slot_options(const RenderOptions& o, const MappingText& mapping, const ImageSize& image) {
     const bool has_slots = mapping.rule.has_slots();
     if (!has_slots && o.offset)
@@ -165,15 +166,15 @@ void check_slot_options(const RenderOptions& o, const MappingText& mapping, cons
             fmt::format("--offset {}: must be 0..{}, less than the image's width", *o.offset, image.width - 1));
 }
 
-// --mapping, else the machine's own. The static pixels of hybrid mappings, and the pixels that the device traces for
-// dynamic ones, follow the cyclic mapping.
+// Returns --mapping, or the machine's mapping without this option. For dynamic and hybrid mappings it returns the
+// cyclic mapping: it assigns the pixels for which the device traces rays, and the static pixels of hybrid mappings.
 MappingText requested_mapping(const RenderOptions& o, const Machine& machine) {
     if (!o.mapping.empty()) return parse_mapping(is_dynamic(o.mapping) ? "cyclic" : o.mapping);
     if (machine.mapping.has_slots()) return parse_mapping("cyclic");
     return {mapping_text(machine.mapping), machine.mapping, false};
 }
 
-// "cyclic" without offset takes --offset, else the machine's offset modulo the image width.
+// Returns the rule of the mapping. The offset of "cyclic" alone is --offset, or the machine's offset modulo the width.
 MappingRule rule_of(const MappingText& mapping, const RenderOptions& o, const Machine& machine, std::uint32_t width) {
     if (!mapping.rule.has_slots()) return mapping.rule;
     const std::uint32_t default_offset = machine.mapping.has_slots() ? machine.mapping.parameter % width : 0;
@@ -181,7 +182,7 @@ MappingRule rule_of(const MappingText& mapping, const RenderOptions& o, const Ma
     return cyclic_mapping(offset, o.fold.empty() ? Fold::kCyclic : parse_fold(o.fold));
 }
 
-// Sets the mapping and, for a dynamic one, its plan.
+// Sets the mapping and, if --mapping is dynamic or hybrid, its plan.
 void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize& image) {
     const Machine& machine = settings.machine;
     if (o.mapping.empty())
@@ -194,7 +195,7 @@ void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize
     settings.mapping = make_mapping(rule_of(mapping, o, machine, image.width), image, pes);
 }
 
-// --accel, else the machine's default; with few objects a BVH costs more time than it saves.
+// Returns --accel, or the machine's default without this option. With few objects a BVH costs more time than it saves.
 Accel accel_of(const RenderOptions& o, const RingSettings& settings, const Scene& scene) {
     if (!o.accel.empty()) return parse_accel(o.accel);
     const bool pays = settings.machine.accel.kind != AccelKind::kBvh || bvh_pays(scene, settings.format);

@@ -1,4 +1,4 @@
-// Options shared by the commands that render; those of the torus machine are in torus_options.hpp.
+// Options that all commands with renders share. torus_options.hpp has the options of the torus machine.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -15,7 +15,7 @@ class App;
 
 namespace raya {
 
-/// As given on the command line; an empty value means the default of the machine, the scene or the device.
+/// The options as given on the command line. An empty value means the default of the machine, scene or device.
 struct RenderOptions {
     std::string scene, machine = "spa", size, mapping, fold, format, sampling = "centres", device, antialias = "none",
                        points, exchange, kernel_dir, accel;
@@ -26,19 +26,19 @@ struct RenderOptions {
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };
 
-/// Adds the options. `antialiasing`: includes those of anti-aliasing.
+/// Adds the options. `antialiasing`: adds the options of anti-aliasing too.
 void add_render_options(CLI::App& command, RenderOptions& options, bool antialiasing = true);
 
-// The values of --size, --format, --lanes and --group, for any machine. UserError names the option.
+// Values of options that every machine has. UserError names the option.
 
-/// Width and height, each 1..16384; default: the scene's.
+/// Returns --size, with width and height in 1..16384; without it the scene's resolution.
 ImageSize image_size(const RenderOptions& options, const Scene& scene);
 NumberFormat format_of(const RenderOptions& options, const Machine& machine);
 KernelChoice kernel_choice(const RenderOptions& options);
-/// Bytes of a PE's memory: --pe-memory, else the machine's; empty: no limit.
+/// Returns the bytes of a PE's memory: --pe-memory, or the machine's memory without this option. Empty: no limit.
 std::optional<std::uint64_t> pe_memory_of(const RenderOptions& options, const Machine& machine);
 
-/// The settings of the ring renderer. UserError for an option out of range, and for a machine that is not a ring.
+/// Returns the settings of the ring renderer. UserError for an option out of range, or a machine that is not a ring.
 RingSettings ring_settings(const RenderOptions& options, const Scene& scene);
 
 }  // namespace raya

@@ -17,7 +17,7 @@
 namespace raya {
 namespace {
 
-// Session's prefix of build steps.
+// Prefix of the names of Session's build steps.
 constexpr std::string_view kBuild = "build ";
 
 }  // namespace
@@ -60,7 +60,7 @@ void RenderRecorder::observe(Session& session, Ranks& ranks) {
     if (traces() && ranks.many()) compare_clocks(ranks);
 }
 
-// The trace begins at the earliest start of all ranks.
+// Measures the offsets of the ranks' clocks. Sets the beginning of the trace to the earliest start of all ranks.
 void RenderRecorder::compare_clocks(Ranks& ranks) {
     many_ = true;
     clock_ = rank_clock(ranks, host_clock_ns);

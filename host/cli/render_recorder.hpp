@@ -1,4 +1,4 @@
-// Records the host's steps and the clocks of a render for --profile and --trace, and writes the trace.
+// Records the host's steps and clock offsets of a render for --profile and --trace, and writes the trace.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,38 +17,38 @@ class App;
 
 namespace raya {
 
-/// As given on the command line; no trace if `file` is empty.
+/// The options as given on the command line. An empty `file` means no trace.
 struct TraceOptions {
     std::string file;
-    std::size_t events = 1'000'000, pes = 16;
+    std::size_t events = 1'000'000, pes = 16;  // maximum number of events; number of PEs with a track
 };
 
 /// Adds --trace, --trace-events and --trace-pes.
 void add_trace_options(CLI::App& command, TraceOptions& trace);
 
-/// Refuses a file whose name does not end in .json or .json.gz, and options of a trace without --trace. UserError.
+/// Throws UserError if the file's name does not end in .json or .json.gz, or for other trace options without --trace.
 void check_trace(const CLI::App& command, const TraceOptions& trace);
 
 class RenderRecorder {
   public:
-    /// `profile`: times each build. With neither trace nor profile it records only the steps of steps().
+    /// `profile`: records the time of each build. Without trace and profile only the steps run by steps() are recorded.
     RenderRecorder(const TraceOptions& trace, bool profile);
 
     bool traces() const { return !trace_.file.empty(); }
     StepLog& steps() { return steps_; }
 
-    /// Records the session's steps from now on. Compares its device's clock with the host's, and this rank's clock with
-    /// rank 0's.
+    /// Records the session's steps from now on. For a trace, measures the offset of the device's clock to the host's,
+    /// and of this rank's clock to rank 0's.
     void observe(Session& session, Ranks& ranks);
 
-    /// Sends the records of the other ranks to rank 0.
+    /// Sends what the other ranks recorded to rank 0. Every rank calls it.
     void gather(Session& session, Ranks& ranks);
 
-    /// Seconds of each program's build, in order.
+    /// Returns the seconds of each program's build, in order.
     std::vector<ProgramBuild> builds() const;
 
-    /// With --trace: writes the steps, the commands of the session's profile, and the events of `add_machine`. Warns of
-    /// events beyond --trace-events.
+    /// With --trace: writes the host's steps, the commands in the session's profile, and the events that `add_machine`
+    /// adds. Warns if events beyond --trace-events are omitted.
     void write(Session& session, const std::function<void(TraceFile&)>& add_machine);
 
   private:
@@ -57,13 +57,13 @@ class RenderRecorder {
 
     const TraceOptions& trace_;
     bool profile_;
-    std::uint64_t begin_ = host_clock_ns();
+    std::uint64_t begin_ = host_clock_ns();  // time 0 of the trace
     StepLog steps_;
-    ClockAnchor anchor_;
-    RankClock clock_;
-    bool many_ = false;
-    std::vector<TraceFile::Part> others_;
-    Json clocks_ = Json::list();
+    ClockAnchor anchor_;                   // offset of the device's clock
+    RankClock clock_;                      // offset of this rank's clock to rank 0's
+    bool many_ = false;                    // several ranks
+    std::vector<TraceFile::Part> others_;  // on rank 0: the events of the other ranks
+    Json clocks_ = Json::list();           // offset and uncertainty of each rank's clock
 };
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// raya render on a ring machine: the PEs share the pixels.
+// raya render on a ring machine, whose PEs divide the pixels among them.
 #include <optional>
 
 #include "host/base/progress.hpp"
@@ -68,7 +68,7 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
     return report;
 }
 
-// Floats represent integers exactly up to 2^24; larger cycle counts are rounded.
+// Converts cycle counts to floats. Counts above 2^24 are rounded.
 GreyImage grey(const CostImage& cost) {
     return {static_cast<int>(cost.width), static_cast<int>(cost.height), {cost.cycles.begin(), cost.cycles.end()}};
 }

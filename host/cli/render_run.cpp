@@ -63,8 +63,8 @@ Session& RenderRun::session() {
     if (ranks.first()) warn_of_build_options(input.warnings);
     progress.stage("preparing");
     device_ = recorder.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
-    // After the OpenCL drivers: a process has only the first TBB that it loads, and Intel's runtime needs a newer TBB
-    // than OpenImageIO.
+    // Loads OpenImageIO after the OpenCL drivers. Both use TBB, a process keeps the first TBB that it loads, and
+    // Intel's OpenCL runtime needs a newer version than OpenImageIO.
     for (const std::string& image : images_)
         if (ranks.first() && !image.empty()) load_encoder(image);
     own_session_.emplace(recorder.steps().during("open device", [&] { return Session(device_, timing_); }));

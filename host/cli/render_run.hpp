@@ -1,4 +1,4 @@
-// State shared by the images of one command: the scene, the device, the progress bar and the recorder.
+// State that all images of one command share: the scene, the device, the progress bar and the recorder.
 #pragma once
 #include <memory>
 #include <optional>
@@ -21,50 +21,50 @@ struct RenderCommand;
 class RenderProgress {
   public:
     RenderProgress(bool wanted, const std::string& what) : bar_(std::in_place, wanted, what) {}
-    /// Reports to the caller's callback instead of a bar.
+    /// Calls `callback` with the progress instead of showing a bar.
     explicit RenderProgress(ProgressCallback callback) : callback_(std::move(callback)) {}
 
-    /// Sets the label of the current stage; a sequence keeps the number of its images as label.
+    /// Sets the bar's label to the current stage of a single image. In a sequence the label is the number of images.
     void stage(const std::string& what);
 
-    /// Makes the bar show finished images of `count`.
+    /// Starts a sequence: from now on the bar shows how many of `count` images are finished.
     void begin_images(std::size_t count);
     void next_image();
 
-    /// Progress of the current image; empty if it is not shown.
+    /// Returns the callback that shows the progress of the current image; empty if the progress is not shown.
     ProgressCallback callback();
 
-    /// Erases the bar of a single image before its summary; a sequence keeps the bar below its lines.
+    /// Erases the bar of a single image, before its summary is printed. The bar of a sequence remains, below its lines.
     void end();
 
   private:
     std::optional<ProgressBar> bar_;
     ProgressCallback callback_;
-    std::size_t images_ = 0, done_ = 0;  // 0: a single image, shown by stages
+    std::size_t images_ = 0, done_ = 0;  // images of the sequence (0: a single image), finished ones
 };
 
 class RenderRun {
   public:
-    /// Reads the scene on rank 0. UserError.
+    /// Reads the scene on rank 0. Throws UserError.
     RenderRun(const RenderCommand& command, Ranks& ranks);
 
-    /// One rank, with a scene that was read and a device that is open; device and session must outlive this.
+    /// For one rank, with an existing scene, device and session. Device and session must outlive this object.
     RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session);
 
-    /// The session on the device. The first call opens it, applies tuned values, and loads the image encoders. The
-    /// images of a sequence share its programs.
+    /// Returns the session on the device. The first call loads tuned values and image encoders, and opens the device.
+    /// All images of a sequence share the session and its programs.
     Session& session();
-    const cl::Device& device() const { return device_; }  // valid once the session is open
+    const cl::Device& device() const { return device_; }  // valid after the first session()
 
     Ranks& ranks;
     RenderRecorder recorder;
     RenderProgress progress;
-    RenderOptions options;  // with the defaults that rank 0 chose from the scene
-    SceneInput input;       // with the view of the current image
+    RenderOptions options;  // with the default of --accel that rank 0 chose for the scene
+    SceneInput input;       // its view is that of the current image
 
   private:
     Timing timing_;
-    std::vector<std::string> images_;
+    std::vector<std::string> images_;  // image files of the command, for their encoders
     std::unique_ptr<ScopedTunedSource> tuned_;
     cl::Device device_;
     std::optional<Session> own_session_;

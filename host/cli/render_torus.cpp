@@ -1,4 +1,4 @@
-// raya render on the torus machine: the nodes share the scene, and rays travel between them.
+// raya render on the torus machine, whose nodes divide the scene among them and exchange rays.
 #include <algorithm>
 #include <numeric>
 #include <optional>
@@ -18,7 +18,7 @@
 namespace raya {
 namespace {
 
-// The optional outputs of a render besides the image.
+// The optional outputs of a render, without the image.
 struct TorusOutputs {
     TorusOutputs(const RenderCommand& command, const RenderRecorder& recorder, const TorusSettings& settings) {
         if (!command.torus.packets.empty()) packets.emplace();
@@ -56,7 +56,7 @@ TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progre
     return renderer.render(progress.callback(), observers);
 }
 
-// Renders. After a deadlock it searches a sufficient queue length, which the exception then contains.
+// Renders the image. After a deadlock, searches for a sufficient queue length and throws an exception with this length.
 TorusResult render_or_find_queue(TorusRenderer& renderer, RenderProgress& progress, TorusOutputs& outputs) {
     try {
         return render_with_progress(renderer, progress, outputs);

@@ -16,7 +16,7 @@
 namespace raya {
 
 void Warnings::add(const std::string& text) {
-    if (std::ranges::find(texts_, text) != texts_.end()) return;  // repeated by another frame
+    if (std::ranges::find(texts_, text) != texts_.end()) return;  // an earlier frame printed it
     warn("warning: " + text);
     texts_.push_back(text);
 }
@@ -37,7 +37,7 @@ SceneInput read_scene(const std::string& file, bool strict) {
     try {
         input.scene = read_nff(file, strict ? nullptr : &input.remarks);
     } catch (const UserError&) {
-        warn_of_remarks();  // they may explain the error
+        warn_of_remarks();  // the remarks may explain the error
         throw;
     }
     warn_of_remarks();

@@ -1,4 +1,4 @@
-// Reading scenes from the command line, with warnings.
+// Reading of the scene that the command line names, and warnings.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ class App;
 
 namespace raya {
 
-/// Warnings: printed on stderr at once, and stored for the report.
+/// Prints each new warning on stderr and stores it for the report. Ignores repeated warnings.
 class Warnings {
   public:
     void add(const std::string& text);
@@ -24,7 +24,7 @@ class Warnings {
     std::vector<std::string> texts_;
 };
 
-/// Adds --strict: refuses, instead of skipping or changing, contents that are not NFF or cannot be traced.
+/// Adds --strict, which refuses contents that are not NFF or cannot be traced, instead of skipping or changing them.
 void add_strict_option(CLI::App& command, bool& strict);
 
 struct SceneInput {
@@ -33,16 +33,17 @@ struct SceneInput {
     Warnings warnings;
 };
 
-/// Reads a scene from a file or stdin ("-"). Warns of skipped and changed contents. UserError as read_nff().
+/// Reads a scene from a file or stdin ("-"). Warns of skipped and changed contents. Throws the UserErrors of
+/// read_nff().
 SceneInput read_scene(const std::string& file, bool strict);
 
-/// Warns of options in RAYA_BUILD_OPTIONS that may change results.
+/// Warns of options in the environment variable RAYA_BUILD_OPTIONS that may change pixels and counts.
 void warn_of_build_options(Warnings& warnings);
 
-/// Warns if every ray is tested against 100,000 objects or more.
+/// Warns if every ray is tested against 100,000 objects or more, because no accelerator is used.
 void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warnings);
 
-/// Warns of objects that are too small for the format, given the scene's largest length.
+/// Warns if objects are too small to be visible in this format. The limit depends on the scene's largest length.
 void warn_of_lost_objects(const Scene& scene, const LengthScale& scale, const NumberFormat& format, Warnings& warnings);
 
 }  // namespace raya

@@ -51,7 +51,7 @@ const SceneNeeds::Words& SceneNeeds::words_of(const RingSettings& settings, cons
         PackedJob job = plain_->second;
         words.made = append_accel(job, settings);
         words.words = job.words().size();
-    } catch (const UserError& error) {  // more words than 32-bit addresses
+    } catch (const UserError& error) {  // more words than 32-bit addresses can reach
         words.refusal = error.what();
     }
     return words;

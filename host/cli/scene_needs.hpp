@@ -1,4 +1,4 @@
-// Memory that machines need for a scene, computed without a device by the preparation steps of a render.
+// The memory that machines need for a scene. Uses the preparation steps of a render, which need no device.
 #pragma once
 #include <map>
 #include <optional>
@@ -11,24 +11,25 @@
 
 namespace raya {
 
-/// Packs a scene for several machines. Machines with the same format and accelerator share the packed words.
+/// Packs a scene for several machines. Machines with the same format and accelerator share one packed scene.
 class SceneNeeds {
   public:
-    /// All three must outlive this.
+    /// All arguments must outlive this object.
     SceneNeeds(const RenderOptions& render, const TorusOptions& torus, const Scene& scene);
 
-    /// The needs with accelerators none, bvh and grid, or with that of --accel only. UserError if the machine does not
-    /// support the options' values; a scene that does not fit is not an error.
+    /// Returns the machine's memory needs with accelerators none, bvh and grid, or only with the accelerator of
+    /// --accel. Throws UserError if the machine does not support the options' values. It is no error if the scene
+    /// does not fit.
     MachineNeeds of(const std::string& machine);
 
-    /// The formats of the machines passed to of() so far.
+    /// Returns the formats of the machines for which of() was called.
     std::vector<FormatFit> formats() const { return formats_; }
 
   private:
     struct Words {
-        std::uint64_t words = 0;
-        AccelSummary made;
-        std::string refusal;
+        std::uint64_t words = 0;  // of the packed scene with its accelerator
+        AccelSummary made;        // the accelerator
+        std::string refusal;      // why the scene could not be packed; else empty
     };
 
     const FormatFit& fit_of(const NumberFormat& format);
@@ -42,7 +43,7 @@ class SceneNeeds {
     const Scene& scene_;
     std::vector<FormatFit> formats_;
     std::map<std::string, Words> words_;                      // key: format and accelerator
-    std::optional<std::pair<std::string, PackedJob>> plain_;  // for the latest format, without accelerator
+    std::optional<std::pair<std::string, PackedJob>> plain_;  // [format, scene]: last one packed without accelerator
 };
 
 }  // namespace raya

@@ -42,7 +42,7 @@ struct StudyCommand {
     bool strict = false, no_tuned = false;
 };
 
-// [name, summary] of the studies in tools/lab/studies.txt.
+// Returns [name, summary] of each study in tools/lab/studies.txt.
 std::vector<std::array<std::string, 2>> listed_studies() {
     std::istringstream lines(embedded_files().at("tools/lab/studies.txt"));
     std::vector<std::array<std::string, 2>> all;
@@ -60,7 +60,7 @@ std::vector<std::string> study_names() {
     return names;
 }
 
-// The footer of the command's help.
+// Returns the footer of the command's help: the list of studies.
 std::string studies_text() {
     std::string text = "Studies:\n";
     for (const auto& [name, summary] : listed_studies()) text += fmt::format("  {}   {}\n", name, summary);
@@ -81,7 +81,7 @@ void check_study(const StudyCommand& command) {
         if (is_study(scene) && !fs::exists(scene, error))
             throw UserError(fmt::format(
                 "{} is a study, not a scene; run one study at a time, or all of them with raya study all", scene));
-    constexpr std::uint32_t kSmallest = 17, kLargest = 4096;  // the paper's offset 16 must be below the width
+    constexpr std::uint32_t kSmallest = 17, kLargest = 4096;  // the width must exceed the paper's offset, 16
     if (command.size && (*command.size < kSmallest || *command.size > kLargest))
         throw UserError(fmt::format("--size {}: must be {}..{} pixels a side", *command.size, kSmallest, kLargest));
     const std::vector<double>& n = command.network;
@@ -96,7 +96,7 @@ void check_study(const StudyCommand& command) {
     if (command.folder == "-") throw UserError("-o -: a study writes several files, not stdout; name a folder");
 }
 
-// The settings that tools/lab/__main__.py reads.
+// Returns the settings that tools/lab/__main__.py reads.
 Json settings_of(const StudyCommand& command) {
     Json settings = {{"study", command.study},   {"scenes", command.scenes},     {"output", command.folder},
                      {"size", nullptr},          {"network", nullptr},           {"device", command.device},
@@ -127,14 +127,14 @@ void describe_study(CLI::App& command, StudyCommand& options) {
               "Study ranks: adds a network with this latency in microseconds per message and time in nanoseconds per "
               "byte, such as 30,0.8")
         ->delimiter(',')
-        ->allow_extra_args(false)  // the next argument is a scene
+        ->allow_extra_args(false)  // so that a scene may follow
         ->type_name("ALPHA,BETA");
     add_strict_option(command, options.strict);
     add_device_option(command, options.device);
     add_tuned_option(command, options.no_tuned);
 }
 
-// The folder of the Python module: of the build, or of an installation under a prefix.
+// Returns the folder of the Python module, in the build folder or in an installation under a prefix.
 fs::path package_folder(const fs::path& program) {
     std::error_code error;
     for (const fs::path& folder :
@@ -143,7 +143,7 @@ fs::path package_folder(const fs::path& program) {
     return {};
 }
 
-// Refuses a module that other users can change.
+// Refuses a module folder in which other users can change files.
 void check_folder(const fs::path& folder) {
     struct stat is {};
     ::stat(folder.c_str(), &is);
@@ -165,7 +165,7 @@ void check_folder(const fs::path& folder) {
         const std::string more = path != nullptr && *path != '\0' ? fmt::format(":{}", path) : "";
         ::setenv("PYTHONPATH", (folder.string() + more).c_str(), 1);
     }
-    ::setenv("PYTHONSAFEPATH", "1", 1);  // imports no modules from the working folder
+    ::setenv("PYTHONSAFEPATH", "1", 1);  // Python imports no modules from the working folder
     ::setenv("RAYA_PROGRAM", program.c_str(), 1);
     ::execlp(python.c_str(), python.c_str(), "-m", "raya.lab", "--settings", settings.c_str(), nullptr);
     throw UserError(

@@ -9,7 +9,7 @@
 namespace raya {
 namespace {
 
-constexpr double kMaxStops = 64;                     // a factor of 2^64 or 2^-64
+constexpr double kMaxStops = 64;                     // factors of 2^-64 to 2^64
 constexpr double kMinGamma = 0.1, kMaxGamma = 10.0;  // the range of PNG's gAMA chunk
 
 void refuse_linear_image(const std::string& file, const char* option) {

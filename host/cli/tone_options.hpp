@@ -11,16 +11,16 @@ class App;
 
 namespace raya {
 
-/// As given on the command line; empty: the default.
+/// The options as given on the command line. Empty: the default.
 struct ToneOptions {
-    std::optional<double> exposure, gamma;  // stops; exponent
+    std::optional<double> exposure, gamma;  // in stops (factors of 2); as an exponent
     std::string curve;
 };
 
 /// Adds --exposure, --gamma and --tone.
 void add_tone_options(CLI::App& command, ToneOptions& tone);
 
-/// The tone mapping for the image `file`. UserError for a value out of range, and for options with a linear format.
+/// Returns the tone mapping for the image `file`. UserError for a value out of range, or options with a linear format.
 Tone tone_of(const ToneOptions& options, const std::string& file);
 
 }  // namespace raya

@@ -166,7 +166,7 @@ PacketCharge parse_charge(const TorusOptions& t) {
 Sides voxels_of(const TorusOptions& t, const Sides& nodes) {
     if (t.voxels.empty()) return nodes;
     const Sides voxels = parse_three_sides("--voxels", t.voxels, "at most 2^24 in total");
-    // The sides are at most 10^6: the product does not overflow.
+    // Each side is at most 10^6, so the 64-bit product does not overflow.
     if (std::uint64_t{voxels[0]} * voxels[1] * voxels[2] > kMaxPartitionVoxels)
         throw UserError(fmt::format("--voxels {}: must be at most 2^24 in total", t.voxels));
     return voxels;

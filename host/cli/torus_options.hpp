@@ -9,27 +9,27 @@
 
 namespace raya {
 
-/// As given on the command line; empty: the default.
+/// The options as given on the command line. Empty: the default.
 struct TorusOptions {
     std::string nodes, voxels, links, inject, returns, packets, replay, link_exchange;
     std::optional<std::uint32_t> packet_words;
-    std::optional<std::uint32_t> queue;  // packets
+    std::optional<std::uint32_t> queue;  // queue length in packets
     bool async = false;
 };
 
-/// Adds the options, and the torus to those of --machine. Call it after add_render_options().
+/// Adds the options, and adds the torus to the machines in the help of --machine. Call it after add_render_options().
 void add_torus_options(CLI::App& command, TorusOptions& torus);
 
-/// The files of --replay simgrid for the packet trace FILE.csv.gz: FILE.xml (the platform) and FILE.replay.
+/// The files that --replay simgrid writes for packet trace FILE.csv.gz: FILE.xml (SimGrid's platform), FILE.replay.
 struct ReplayFiles {
     explicit ReplayFiles(const std::string& packets);
     std::string platform, replay;
 };
 
-/// Refuses options that do not apply to the machine. UserError with option, reason and remedy.
+/// Throws UserError with option, reason and remedy if an option that was given does not apply to the machine.
 void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine);
 
-/// The settings of the torus renderer. UserError for an option out of range.
+/// Returns the settings of the torus renderer. Throws UserError for an option out of range.
 TorusSettings torus_settings(const RenderOptions& options, const TorusOptions& torus, const Scene& scene);
 
 }  // namespace raya

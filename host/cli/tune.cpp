@@ -1,4 +1,4 @@
-// raya tune: searches the fastest launch values of a device, checks them and stores them.
+// raya tune: searches for the fastest launch parameters of a device, checks them and stores them.
 #include "host/tune/tune.hpp"
 
 #include <fmt/core.h>
@@ -30,7 +30,7 @@ namespace {
 
 struct TuneCommand {
     TrialSetup render;
-    RenderOptions image;  // only --size is used
+    RenderOptions image;  // of these options tune has only --size
     std::string report;
     std::vector<std::string> variants, formats;
     double seconds = 60, candidate_seconds = 20;
@@ -50,7 +50,7 @@ std::vector<Workload> workloads_of(const TuneCommand& command) {
         for (const std::string& variant :
              command.variants.empty() ? Names{"none", "grid", "bvh", "torus"} : command.variants) {
             all.push_back({variant, parse_format(format)});
-            all.back().what();  // refuses unknown variants
+            all.back().what();  // throws for an unknown variant
         }
     return all;
 }
@@ -125,7 +125,7 @@ void tune_device(const CLI::App& parsed, TuneCommand& command) {
     if (!command.image.size.empty()) render.size = image_size(command.image, {});
     const std::vector<Workload> workloads = workloads_of(command);
     if (!render.scene.empty())
-        read_scene(render.scene, render.strict);  // reports errors of the scene before the first trial
+        read_scene(render.scene, render.strict);  // so that errors in the scene are reported before the first trial
     const DeviceInfo device = device_info(choose_device(render.device));
     const std::filesystem::path file = tuned_path(device);
     check_files(parsed, {{"tune", file}});
@@ -161,7 +161,7 @@ void add_rendered_options(CLI::App& command, TuneCommand& options) {
               "Kernels to tune, comma-separated: none, grid, bvh: the ring machine with that --accel; torus: 4x4x4 "
               "nodes; default: none in fp32 and e6m15, grid, bvh and torus in fp32")
         ->delimiter(',')
-        ->allow_extra_args(false)  // the next argument is the scene
+        ->allow_extra_args(false)  // so that the scene may follow
         ->type_name("none,grid,bvh,torus");
     add_value(
         command, "--format", options.formats,

@@ -1,4 +1,4 @@
-// --quiet and --verbose of all commands.
+// The options --quiet and --verbose of all commands.
 #pragma once
 
 namespace CLI {
@@ -9,8 +9,9 @@ namespace raya {
 
 class Ranks;
 
-/// Adds both to `program` and to all its commands, which exist already, and puts them, --help and --help-all under one
-/// heading. Only rank 0 is verbose. Each may be given twice; both together are a UserError.
+/// Adds both options to `program` and to all its commands, and lists them with --help and --help-all under one heading.
+/// Call it after all commands are added. Only rank 0 is verbose. Each option may be given twice; giving both options is
+/// a UserError.
 void add_verbosity_options(CLI::App& program, const Ranks& ranks);
 
 }  // namespace raya

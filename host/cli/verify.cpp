@@ -1,4 +1,4 @@
-// raya verify: checks a device with its driver and compiler.
+// raya verify: checks a device, its driver and its compiler.
 #include "host/verify/verify.hpp"
 
 #include <fmt/core.h>
@@ -32,7 +32,7 @@ struct VerifyCommand {
     Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
 };
 
-// "57 checks passed, 0 failed, 2 skipped in 12.3 s"
+// Returns "57 checks passed, 0 failed, 2 skipped in 12.3 s".
 std::string closing_text(const std::vector<Check>& checks, double seconds) {
     return fmt::format("{} passed, {} failed, {} skipped in {:.1f} s",
                        counted(count_of(checks, Outcome::kPass), "check"), count_of(checks, Outcome::kFail),

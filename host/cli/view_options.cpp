@@ -18,9 +18,9 @@ constexpr const char* kPoint = "must be three numbers X,Y,Z, each at most 1e30 i
 constexpr const char* kColour = "must be three numbers R,G,B from 0 to 1e9; 1 is full intensity";
 constexpr const char* kLight = "must be a position X,Y,Z, or position and colour X,Y,Z,R,G,B, colours from 0 to 1e9";
 
-constexpr std::size_t kShown = 60;  // bytes of a value in messages; fmt's precision counts UTF-8 letters
+constexpr std::size_t kShown = 60;  // maximum bytes of a value in messages
 
-/// Parses comma-separated numbers; empty if one of them is malformed or beyond kLargestLength.
+/// Parses comma-separated numbers. Returns an empty vector if one is malformed or its magnitude exceeds kLargestLength.
 std::vector<double> numbers_of(std::string_view text) {
     std::vector<double> numbers;
     while (true) {
@@ -54,7 +54,7 @@ Light light_of(const std::string& text) {
     return light;
 }
 
-/// The camera options given: "--from 0,0,0 --angle 10".
+/// Returns the camera options that were given: "--from 0,0,0 --angle 10".
 std::string viewpoint_text(const ViewOptions& v) {
     std::string text;
     for (const auto& [option, value] : v.given_options())
@@ -92,7 +92,7 @@ void add_view_options(CLI::App& command, ViewOptions& v) {
     add_value(command, "--light", v.lights,
               "A light at X,Y,Z of colour R,G,B; default: white, where n lights have the total intensity sqrt(n)/2; "
               "repeat it for several lights; replaces all lights of the scene")
-        ->allow_extra_args(false)  // the next argument is the scene
+        ->allow_extra_args(false)  // so that the scene may follow
         ->type_name("X,Y,Z[,R,G,B]");
 }
 

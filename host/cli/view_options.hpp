@@ -13,7 +13,7 @@ class App;
 
 namespace raya {
 
-/// As given on the command line; empty: the scene's.
+/// The options as given on the command line. Empty: the scene's value.
 struct ViewOptions {
     std::string from{}, at{}, up{}, background{};
     std::optional<double> angle{};  // degrees
@@ -21,20 +21,20 @@ struct ViewOptions {
 
     bool given() const { return !given_options().empty(); }
 
-    /// The options given, with their values: {"--from", "1,2,3"}.
+    /// Returns the options that were given, with their values: {"--from", "1,2,3"}.
     std::vector<std::pair<std::string, std::string>> given_options() const;
 };
 
 /// Adds --from, --at, --up, --angle, --background and --light.
 void add_view_options(CLI::App& command, ViewOptions& view);
 
-/// The names of those options, without dashes.
+/// Returns the names of the options that add_view_options() adds, without dashes.
 const std::vector<std::string>& view_option_names();
 
-/// Applies the camera options to `view`. UserError as change_view().
+/// Applies the camera options to `view`. Throws UserError as change_view() does.
 void change_viewpoint(const ViewOptions& options, View& view);
 
-/// Applies all options to the scene, with the range checks of the NFF reader. UserError names the option.
+/// Applies all options to the scene, with the range checks of the NFF reader. Throws UserError with the option's name.
 void change_view(const ViewOptions& view, Scene& scene);
 
 }  // namespace raya

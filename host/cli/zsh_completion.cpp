@@ -1,4 +1,4 @@
-// Completion for zsh: a call of _arguments for each command, with the help of each option.
+// Completion for zsh: for each command a call of _arguments, with the help of each option.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// Escapes the letters that _arguments interprets.
+// Escapes the characters that _arguments interprets.
 std::string zsh_plain(const std::string& text) {
     std::string escaped;
     for (const char c : text) {
@@ -17,7 +17,7 @@ std::string zsh_plain(const std::string& text) {
     return escaped;
 }
 
-// ":NAME:(a b)", of an option's value or a positional argument.
+// Returns the message and action of an _arguments spec, ":NAME:(a b)", for an option's value or a positional argument.
 std::string zsh_offer_of(const OptionText& option) {
     const ValueText value = value_of(option);
     const std::string name = ':' + zsh_plain(option.value) + ':';
@@ -37,7 +37,7 @@ std::string zsh_offer_of(const OptionText& option) {
     return name + "( )";
 }
 
-// One spec for each name of an option; it excludes the other names.
+// Returns one _arguments spec for each name of the option. Each spec excludes the other names.
 std::string arguments_of(const OptionText& option) {
     std::string text;
     for (const std::string& name : option.names) {

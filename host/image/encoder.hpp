@@ -12,24 +12,24 @@ inline constexpr int kJpegQuality = 95;  // libjpeg's scale, 1..100
 inline constexpr const char* kEncoderModule = "raya_pictures";
 inline constexpr const char* kEncoderFunction = "raya_encode_picture";
 
-/// Metadata of an image file, as pairs of key and text: PNG texts and OpenEXR header entries with the names `raya:key`,
-/// which no standard attribute has, and lines `raya:key=text` of the image description of TIFF and JPEG. PFM and PPM do
-/// not support metadata.
+/// Metadata of an image file, as pairs of key and text. PNG stores them as text chunks and OpenEXR as header
+/// attributes, named `raya:key` to avoid the names of standard attributes. TIFF and JPEG store lines `raya:key=text` in
+/// the image description. PFM and PPM do not support metadata.
 using ImageAttributes = std::vector<std::pair<std::string, std::string>>;
 
-/// An image to encode: height x width x channels values, row 0 on top.
+/// An image to encode. `values` has the shape [height, width, channels]; row 0 is the top.
 struct PictureToEncode {
     const char* format;  // OpenImageIO's name: "png", "tiff" or "jpeg" (8-bit codes) or "exr" (floats)
     int width;           // pixels
     int height;          // pixels
     int channels;        // 3, or 1: channel Y
     const void* values;  // float for EXR, else std::uint8_t
-    double gamma;        // of the codes; 0: sRGB
+    double gamma;        // 8-bit codes are v^(1/gamma); 0: sRGB
     const ImageAttributes& attributes;
 };
 
-/// The type of kEncoderFunction. Returns true and the file's bytes in `result`, or false and an error message. Throws
-/// only std::bad_alloc.
+/// The type of the module's function kEncoderFunction. On success returns true and sets `result` to the file's bytes,
+/// else returns false and sets `result` to an error message. Throws only std::bad_alloc.
 using EncodePicture = bool(const PictureToEncode& picture, std::string& result);
 
 }  // namespace raya

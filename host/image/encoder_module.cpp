@@ -1,4 +1,4 @@
-// The module of image formats: EncodePicture by OpenImageIO.
+// The image encoder module: implements EncodePicture with OpenImageIO.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-// TIFF and JPEG do not support attributes with custom names.
+// The attributes as one image description, for TIFF and JPEG, which do not support attributes with custom names.
 std::string description(const ImageAttributes& attributes) {
     std::string text;
     for (const auto& [key, value] : attributes) text += (text.empty() ? "raya:" : "\nraya:") + key + '=' + value;
@@ -19,7 +19,7 @@ std::string description(const ImageAttributes& attributes) {
 
 void describe_codes(OIIO::ImageSpec& spec, const PictureToEncode& picture, std::string_view format) {
     std::string space = "sRGB";
-    if (picture.gamma != 0) {  // stored by PNG; TIFF and JPEG cannot store it
+    if (picture.gamma != 0) {  // PNG files store it; TIFF and JPEG cannot
         std::ostringstream name;
         name << "Gamma" << picture.gamma;
         space = name.str();
@@ -32,7 +32,8 @@ void describe_codes(OIIO::ImageSpec& spec, const PictureToEncode& picture, std::
     if (!picture.attributes.empty()) spec.attribute("ImageDescription", description(picture.attributes));
     if (format == "tiff") {
         spec.attribute("compression", "zip");
-        // EXIF needs a second directory linked with the first one, which OpenImageIO 2.4 cannot write in memory.
+        // EXIF data are in a second TIFF directory that the first one refers to. OpenImageIO 2.4 cannot write them to
+        // memory.
         spec.attribute("tiff:write_exif", 0);
         return;
     }
@@ -45,7 +46,8 @@ OIIO::ImageSpec make_spec(const PictureToEncode& picture) {
     OIIO::ImageSpec spec(picture.width, picture.height, picture.channels,
                          format == "exr" ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
     if (picture.channels == 1) spec.channelnames = {"Y"};
-    // Without DateTime OpenImageIO writes today's date. It ignores one that is not a string, with a debug message.
+    // If DateTime is missing, OpenImageIO writes the current date. It ignores a DateTime that is not a string and
+    // prints a debug message, which debug = 0 disables.
     if (format == "exr" || format == "tiff") spec.attribute("DateTime", 0);
     OIIO::attribute("debug", 0);
     if (format != "exr") {
@@ -58,7 +60,7 @@ OIIO::ImageSpec make_spec(const PictureToEncode& picture) {
     return spec;
 }
 
-/// Encodes in memory, so that one function writes all files and checks for errors.
+/// Encodes to memory, so that write_whole_file() writes the files of all formats and checks for errors.
 bool encode(const PictureToEncode& picture, std::string& result) {
     OIIO::Filesystem::IOVecOutput bytes;
     const auto output = OIIO::ImageOutput::create(picture.format, &bytes);
@@ -67,7 +69,7 @@ bool encode(const PictureToEncode& picture, std::string& result) {
         return false;
     }
     const OIIO::ImageSpec spec = make_spec(picture);
-    const std::string name = std::string("memory.") + picture.format;  // not stored in the file
+    const std::string name = std::string("memory.") + picture.format;  // open() requires a name
     if (!output->open(name, spec) || !output->write_image(spec.format, picture.values) || !output->close()) {
         result = output->geterror();
         return false;

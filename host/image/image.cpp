@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-/// XXH3 of 32-bit little-endian words.
+/// Computes XXH3 incrementally, over 32-bit words in little-endian byte order.
 class WordHash {
   public:
     WordHash() : state_(XXH3_createState(), &XXH3_freeState) {

@@ -1,4 +1,4 @@
-// Images as plain data, and their hash.
+// Images in memory, and the hash of an image.
 #pragma once
 #include <string>
 #include <vector>
@@ -19,8 +19,8 @@ struct GreyImage {
     std::vector<float> values;
 };
 
-/// XXH3 (128 bits, 32 lower-case hexadecimal digits) of width, height and the bits of all floats, as 32-bit
-/// little-endian words on any machine. Compares bits: -0 and +0 differ, and so do NaNs with different bits.
+/// The XXH3 hash (128 bits, as 32 lower-case hexadecimal digits) of width, height and the bits of all floats, as 32-bit
+/// little-endian words on any machine. Since bits are hashed, -0 and +0 differ, and so do NaNs with different bits.
 std::string pixel_hash(const Image& image);
 
 }  // namespace raya

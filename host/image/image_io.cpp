@@ -31,7 +31,7 @@ struct Pixels {
     }
 };
 
-// For stdout: the extension of a format that needs no library.
+// The extension of `path` in lower case; for stdout that of a format in `extensions` that needs no library.
 std::string lower_case_extension(const fs::path& path, std::span<const std::string_view> extensions) {
     if (is_standard_stream(path))
         return std::find(extensions.begin(), extensions.end(), ".ppm") != extensions.end() ? ".ppm" : ".pfm";
@@ -40,7 +40,7 @@ std::string lower_case_extension(const fs::path& path, std::span<const std::stri
     return extension;
 }
 
-// OpenImageIO's name of a format; null for formats that raya writes itself.
+// OpenImageIO's name of the format; null for the formats that raya writes itself.
 const char* encoded_format(const std::string& extension) {
     if (extension == ".png") return "png";
     if (extension == ".exr") return "exr";
@@ -57,12 +57,12 @@ void check_shape(int width, int height, std::size_t channels, std::size_t floats
 }
 
 [[noreturn]] void refuse_to_encode(const fs::path& path, const std::string& reason, const std::string& remedy = "") {
-    const char* plain = stores_codes(path) ? ".ppm" : ".pfm";  // same precision, without a library
+    const char* plain = stores_codes(path) ? ".ppm" : ".pfm";  // the same precision; no library needed
     throw UserError(
         fmt::format("cannot write '{}': {}; {}name a {} file instead", path.string(), reason, remedy, plain));
 }
 
-/// The encoding function; loads the module at the first call.
+/// Returns the module's encoding function. The first call loads the module. `path`: for error messages.
 EncodePicture* encoder(const fs::path& path) {
     try {
         static auto* const function =
@@ -93,7 +93,8 @@ std::string encode_codes(const fs::path& path, const char* format, const Pixels&
     return encode(path, format, pixels, codes.data(), attributes, tone.gamma.value_or(0));
 }
 
-// Writes a header, then the rows one by one, so that a large image is not in memory twice.
+// Writes a header, then row by row, so that the file is not in memory as a whole. append_row(bytes, row) appends a
+// row's bytes.
 template <class AppendRow>
 void write_rows(const fs::path& path, const Pixels& pixels, const std::string& header, const AppendRow& append_row) {
     std::string piece;
@@ -107,7 +108,7 @@ void write_rows(const fs::path& path, const Pixels& pixels, const std::string& h
     });
 }
 
-// Portable pixmap (PPM, J. Poskanzer), binary: one line `P6`, one `width height`, one `255`, then three 8-bit codes per
+// Binary portable pixmap (PPM, J. Poskanzer): the lines `P6`, `width height` and `255`, then three 8-bit codes per
 // pixel, the same as in a PNG, the top row first.
 void write_ppm(const fs::path& path, const Pixels& pixels, const Tone& tone) {
     const ToneCodes codes_of(tone);
@@ -119,8 +120,9 @@ void write_ppm(const fs::path& path, const Pixels& pixels, const Tone& tone) {
     });
 }
 
-// Portable float map (P. Debevec): one line `PF` (colour) or `Pf` (grey), one `width height`, one `-1.0`
-// (little-endian, on any machine), then the floats, the bottom row first. OpenImageIO 2.4 reads but does not write PFM.
+// Portable float map (PFM, P. Debevec): the lines `PF` (colour) or `Pf` (grey), `width height` and `-1.0`
+// (little-endian, on any machine), then the floats, the bottom row first. OpenImageIO 2.4 reads PFM but does not write
+// it.
 void write_pfm(const fs::path& path, const Pixels& pixels) {
     const char* const magic = pixels.channels == 3 ? "PF" : "Pf";
     const std::string header = fmt::format("{}\n{} {}\n-1.0\n", magic, pixels.width, pixels.height);
@@ -131,7 +133,7 @@ void write_pfm(const fs::path& path, const Pixels& pixels) {
     });
 }
 
-// `tone` applies to formats of 8-bit codes.
+// Writes the format of `extension`. `tone` applies only to formats with 8-bit codes.
 void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttributes& attributes,
                   const std::string& extension, const Tone& tone) {
     const char* const format = encoded_format(extension);

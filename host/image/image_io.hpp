@@ -16,25 +16,25 @@ inline constexpr std::array<std::string_view, 8> kImageExtensions{".png", ".exr"
                                                                   ".tif", ".tiff", ".jpg", ".jpeg"};
 inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".pfm"};  // floats only
 
-/// Returns true if the format of a file for a colour image has 8-bit codes, for which a tone applies.
+/// Returns true if a colour image in the file `path` is stored as 8-bit codes, to which a Tone applies.
 bool stores_codes(const std::filesystem::path& path);
 
-/// Throws UserError, with file, reason and remedy, if the extension of a name (in either case) is not among
-/// `extensions`. Stdout ("-") uses PPM if that is among `extensions`, else PFM.
+/// Throws UserError, with file, reason and remedy, if the extension of `path` (upper or lower case) is not one of
+/// `extensions`. Images on stdout ("-") are PPM if ".ppm" is one of `extensions`, else PFM.
 void check_image_name(const std::filesystem::path& path, std::span<const std::string_view> extensions);
 
-/// Loads the encoder for the format of that file, if it needs one, so that a command fails before rendering instead of
-/// after it. UserError with file, reason and remedy.
+/// Loads the encoder module if the format of that file needs it, so that a command fails before rendering instead of
+/// after it. Throws UserError with file, reason and remedy.
 void load_encoder(const std::filesystem::path& path);
 
 /// Writes an image atomically in the format of the extension, without date, host or program version. PNG, TIFF (zip),
 /// JPEG (kJpegQuality, 4:4:4) and PPM store the nearest 8-bit code of each tone-mapped value; EXR (channels R, G, B,
-/// zip) and PFM store the floats. UserError with file, reason and remedy; std::logic_error if `image` has not 3 floats
-/// per pixel.
+/// zip) and PFM store the floats. Throws UserError with file, reason and remedy; std::logic_error if `image` does not
+/// have 3 floats per pixel.
 void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes,
                  const Tone& tone = {});
 
-/// Writes an image of one number per pixel as EXR (channel Y) or PFM.
+/// Writes an image of one number per pixel as EXR (channel Y, zip) or PFM. Throws as above.
 void write_image(const std::filesystem::path& path, const GreyImage& image, const ImageAttributes& attributes);
 
 }  // namespace raya

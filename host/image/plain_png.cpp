@@ -20,7 +20,7 @@ void append_word(std::string& bytes, std::uint32_t word) {
     for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(word >> shift & 0xff);
 }
 
-// A chunk: length, name, data, CRC.
+// Appends a chunk: length of the data, name, data, CRC of name and data.
 void append_chunk(std::string& file, const char* name, std::string_view data) {
     append_word(file, static_cast<std::uint32_t>(data.size()));
     const std::string checked = std::string(name) + std::string(data);
@@ -30,14 +30,16 @@ void append_chunk(std::string& file, const char* name, std::string_view data) {
                           crc32(0, static_cast<const Bytef*>(bytes), static_cast<uInt>(checked.size()))));
 }
 
-// Paeth's predictor (filter type 4): of left, above and above left, the one nearest to left + above - above left.
+// Paeth's predictor (filter type 4): of the bytes left, above and above left (`corner`), the one that is nearest to
+// left + above - corner.
 std::uint8_t predicted(int left, int above, int corner) {
     const int p = left + above - corner;
     const int a = std::abs(p - left), b = std::abs(p - above), c = std::abs(p - corner);
     return static_cast<std::uint8_t>(a <= b && a <= c ? left : b <= c ? above : corner);
 }
 
-// The filtered rows: each the number of its filter, followed by the differences from the predictions.
+// The filtered rows of the image. Each row is the filter type, followed by the differences of its bytes from their
+// predictions.
 std::string filtered_rows(const Image& image) {
     constexpr char kPaeth = 4;
     const std::size_t row_bytes = kChannels * static_cast<std::size_t>(image.width);
@@ -77,7 +79,7 @@ std::string plain_png(const Image& image) {
     std::string header;
     append_word(header, static_cast<std::uint32_t>(image.width));
     append_word(header, static_cast<std::uint32_t>(image.height));
-    header += {8, 2, 0, 0, 0};  // bit depth, RGB, deflate, filters by row, no interlacing
+    header += {8, 2, 0, 0, 0};  // bit depth 8, RGB, deflate, a filter type for each row, no interlacing
     std::string file = "\x89PNG\r\n\x1a\n";
     append_chunk(file, "IHDR", header);
     append_chunk(file, "sRGB", std::string(1, '\0'));  // rendering intent: perceptual

@@ -12,7 +12,8 @@ namespace {
 
 double shown(float value) { return value > 0 ? std::min(1.0, static_cast<double>(value)) : 0; }
 
-// The first of the `pixels` pixels that part `at` of `count` covers.
+// The first pixel of part `at`, if a row or column of `pixels` pixels is divided into `count` parts of about equal
+// size.
 std::size_t begin_of(int at, int count, int pixels) {
     return static_cast<std::size_t>(std::int64_t{at} * pixels / count);
 }

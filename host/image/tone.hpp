@@ -10,10 +10,11 @@
 
 namespace raya {
 
-/// borders[k]: the linear value halfway, on the transfer curve, between the codes k and k + 1.
+/// borders[k]: the linear value at which the nearest code changes from k to k + 1: that of the encoded value
+/// (k + 1/2) / 255.
 using CodeBorders = std::array<double, 255>;
 
-/// `linear_from`: the inverse of the transfer curve, from 0..1 to linear light.
+/// The borders of a transfer curve. `linear_from`: the inverse of the curve, from encoded values 0..1 to linear light.
 template <class Curve>
 CodeBorders code_borders(Curve&& linear_from) {
     CodeBorders borders;
@@ -21,17 +22,19 @@ CodeBorders code_borders(Curve&& linear_from) {
     return borders;
 }
 
+/// The borders of the sRGB curve.
 const CodeBorders& srgb_borders();
 
-/// The code 0..255 nearest to 255 curve(linear); 0 for negative values and NaN, 255 above 1.
+/// The code 0..255 that is nearest to 255 curve(linear), for the curve of `borders`; 0 for negative values and NaN, 255
+/// above 1.
 std::uint8_t code_between(const CodeBorders& borders, double linear);
 
-/// The code on the sRGB curve. The same on every machine: the value is compared with the 255 borders between codes, and
-/// no float is close to one (the relative distance is more than 10^-11; the C library's pow() has an error of about
-/// 10^-16).
+/// The nearest code on the sRGB curve. It is the same on every machine: the code follows from comparisons with the 255
+/// borders, and the relative distance of every float from every border is more than 10^-11, while the relative error of
+/// the C library's pow() is about 10^-16.
 std::uint8_t srgb_code(float linear);
 
-/// The linear value of a code.
+/// The linear value of a code on the sRGB curve.
 float srgb_light(std::uint8_t code);
 
 enum class ToneCurve {
@@ -39,7 +42,8 @@ enum class ToneCurve {
     kReinhard,  // luminance L becomes L / (1 + L); all three components are scaled by 1 / (1 + L), which keeps hues
 };
 
-/// The conversion of colours to codes: times 2^exposure, then the tone curve, then the transfer curve.
+/// The conversion of linear colours to codes: multiplication by 2^exposure, then the tone curve, then the transfer
+/// curve.
 struct Tone {
     double exposure = 0;  // stops
     ToneCurve curve = ToneCurve::kClip;
@@ -47,23 +51,24 @@ struct Tone {
     bool operator==(const Tone&) const = default;
 };
 
-/// "clip", "reinhard".
+/// The name of a curve in options and metadata: "clip" or "reinhard".
 const char* tone_curve_name(ToneCurve curve);
 
-/// The attributes of an image file for a tone: its members that differ from the defaults.
+/// The members of `tone` that differ from the defaults, as attributes of an image file.
 ImageAttributes tone_attributes(const Tone& tone);
 
-/// Converts pixels to codes. The same on every machine, except for different rounding of pow() at the border of a code.
+/// Converts pixels to codes. The result is the same on every machine, except for values at the border of two codes,
+/// where the rounding of pow() matters.
 ///
 /// kReinhard: equation 3 of E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone Reproduction for Digital
-/// Images", SIGGRAPH 2002, with the exposure instead of their key over the log-average luminance, so that the images of
-/// a series are comparable. L is the luminance of sRGB's primaries (ITU-R BT.709). NaN becomes black, infinity the
-/// largest float.
+/// Images", SIGGRAPH 2002. The factor 2^exposure replaces the paper's key value divided by the log-average luminance,
+/// so that the images of a series are comparable. L is the luminance for sRGB's primaries (ITU-R BT.709). Before the
+/// conversion, a NaN component becomes 0 and an infinite one the largest float.
 class ToneCodes {
   public:
     explicit ToneCodes(const Tone& tone);
 
-    /// `rgb`: 3 linear values.
+    /// The codes of one pixel. `rgb`: 3 linear values, red, green and blue.
     std::array<std::uint8_t, 3> operator()(const float* rgb) const;
 
   private:

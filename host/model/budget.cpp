@@ -3,14 +3,17 @@
 namespace raya {
 namespace {
 
-// The cost of every ray besides its tests: call of the search and return from it; counter and pointer of the two lists
-// of the paper's machine, spheres and planes.
+// The cost of each ray in addition to its intersection tests. Branches: call of the search for the nearest hit, and
+// return. Moves: counter and pointer for each of the two object lists of the paper's machine, spheres and planes.
 constexpr std::uint32_t kRayBranches = 2, kRayMoves = 4;
 
-// The root of a sphere that the ray intersects is charged to the hit, not to the test, which ends with the sign of the
-// discriminant: b - s, b + s: 2; comparison with the nearest hit so far: 1. Branches: 0 < t, nearer.
+// The cost of a sphere that the ray intersects, from the square root s on. It is charged to the hit, because the test
+// ends with the sign of the discriminant. b - s, b + s: 2; comparison with the nearest hit so far: 1. Branches: 0 < t,
+// nearer.
 constexpr std::uint32_t kPiercedOperations = 3, kPiercedBranches = 2;
 
+// The comment before each budget lists the terms of the event's formulas (names as in kernels/README.md), each with its
+// number of multiply-accumulates, then the moves and the conditions of the branches.
 constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
     // corner + j step: 3, + x step: 3, normalise: 3 + 3. Moves: conversion of j and x to numbers 2, origin 3, sum 3,
     // weight 1, store of the finished pixel 3. Branches: next pixel.
@@ -23,7 +26,7 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .why = "normalised direction through the pixel; store of the pixel. Excluded: the 3 operations of the background "
             "for a ray that hits nothing"},
     {.event = RAYA_PRIMARY_HITS, .why = "counted only for the report: the work is charged to the shaded hits"},
-    // weight: 1. Moves: origin and direction, after the lights have used them.
+    // weight: 1. Moves: origin and direction, which replace those of the ray after all lights were processed.
     {.event = RAYA_REFLECTED,
      .multiply_accumulates = 1,
      .moves = 6 + kRayMoves,
@@ -64,9 +67,9 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .divisions = 1,
      .branches = 2,
      .why = "up to t, which is required to detect a miss"},
-    // Four corners, each: minus O: 3, sheared: 2, v compared with 0: 1. Two of the edges cross v = 0 and compare two
-    // products: 3. One test in twenty continues: (box: 4 * 3 + 4 * 6, plane: 7, t D: 3, in the box: 6) / 20. Moves:
-    // counter and pointer of the corners. Branches: one per edge, inside.
+    // For each of four corners: minus O: 3, shear: 2, v compared with 0: 1. For each of the two edges that cross v = 0,
+    // comparison of two products: 3. One test in twenty continues with (box: 4 * 3 + 4 * 6, plane: 7, t D: 3, inside
+    // the box: 6) / 20. Moves: counter and pointer of the corners. Branches: one per edge, inside.
     {.event = RAYA_POLYGON_TESTS,
      .multiply_accumulates = 4 * (3 + 2 + 1) + 2 * 3 + (12 + 24 + 7 + 3 + 6) / 20,
      .moves = 2,
@@ -74,17 +77,18 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .why = "an outline of four edges (3.5 in scenes/polygons.nff), and its plane for one test in twenty. Excluded: "
             "two divisions per ray, once for all its polygons"},
     // X - base: 3, to the nearest point: 3 + 3, z: 3, dz: 3, side: 3, dside: 3, radius: 1, dradius: 1, a: 1 + 3,
-    // b: 1 + 3, c: 1 + 3, discriminant: 2. A third of the tests continues: (q, z and t twice, compared with 0, h and
-    // the nearest hit: 9) / 3, and a root and two divisions, charged as one division. Branches: miss, a third of three.
+    // b: 1 + 3, c: 1 + 3, discriminant: 2. A third of the tests continues with (q, z and t twice, comparisons with 0, h
+    // and the nearest hit: 9) / 3, and with a root and two divisions, charged as one division to every test. Branches:
+    // miss; in a third of the tests three more.
     {.event = RAYA_CONE_TESTS,
      .multiply_accumulates = 3 + 3 + 3 + 3 + 3 + 3 + 3 + 1 + 1 + 4 + 4 + 4 + 2 + 9 / 3,
      .divisions = 1,
      .branches = 1 + 3 / 3,
      .why = "up to the sign of the discriminant; three tests in ten (scenes/cones.nff) continue to a root and two "
             "divisions, charged as one division to every test. The 40 operations hide the loads of its 10 words"},
-    // Sphere: see above; P: 3, P - C: 3, normalise: 3 + 3, N.D: 3, orient: 3, margin: 3 comparisons + 1, P+: 3, N.D of
-    // the oriented normal: 3, times -2: 1, R: 3, Kd C: 3, w A: 1, ambient: 3, kr: 1. Moves: t and number of the nearest
-    // hit. Branches: any hit, sphere, cone, leaving, T > 0, kr > 0, level, pending ray.
+    // Sphere: kPiercedOperations. P: 3, P - C: 3, normalise: 3 + 3, N.D: 3, orient: 3, margin: 3 comparisons + 1,
+    // P+: 3, N.D of the oriented normal: 3, times -2: 1, R: 3, Kd C: 3, w A: 1, ambient: 3, kr: 1. Moves: t and number
+    // of the nearest hit. Branches: any hit, sphere, cone, leaving, T > 0, kr > 0, level, pending ray.
     {.event = RAYA_SHADED,
      .multiply_accumulates = kPiercedOperations + 3 + 3 + 3 + 3 + 3 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 1,
      .divisions = 1,
@@ -124,8 +128,8 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .moves = 2,
      .branches = 2 + 1 + 1,
      .why = "the next voxel (Amanatides & Woo 1987, but recomputing the plane's position instead of adding)"},
-    // Direction of a primary ray: 12, and its first voxel: 37, as above. Moves: j and x 2, origin 3, sum 3, first voxel
-    // 6. Branches: next pixel, first voxel 4, owner of the voxel.
+    // Direction of a primary ray: 12, as for RAYA_PRIMARY; its first voxel: 37, as for RAYA_WALKS. Moves: j and x 2,
+    // origin 3, sum 3, first voxel 6. Branches: next pixel, first voxel 4, owner of the voxel.
     {.event = RAYA_DISCARDED,
      .multiply_accumulates = 12 + 37,
      .divisions = 1 + 3,
@@ -165,15 +169,16 @@ Operations operations_of(const EventCounts& events) {
     return sum;
 }
 
-// Each colour takes four additions and one multiplication by 1/9. The two buses load both operands of an addition, but
-// the sum must be stored before the operands of the next side are loaded: one move each. Branches: neighbour exists.
+// Each colour component of a pixel takes four additions and one multiplication by 1/9. The two buses load both operands
+// of an operation in parallel with arithmetic, but the result must be stored before the next operands are loaded: one
+// move per operation. Branches: for each side, neighbour exists.
 std::uint64_t filter_cycles(std::uint64_t pixels) {
     constexpr Budget kPixel = {.multiply_accumulates = 3 * (4 + 1), .moves = 3 * (4 + 1), .branches = 4};
     return pixels * cycles_of(kPixel);
 }
 
-// For each side and colour: clamp of both to 0..1: 4, difference: 1, comparison with the threshold: 1. Branches:
-// neighbour exists, and one per colour. Moves: the mark.
+// For each side and colour component: clamp of both values to 0..1: 4, difference: 1, comparison with the threshold: 1.
+// Branches for each side: neighbour exists, and one per component. Moves: the flag that the pixel is supersampled.
 std::uint64_t compare_cycles(std::uint64_t pixels) {
     constexpr Budget kPixel = {.multiply_accumulates = 4 * 3 * (4 + 1 + 1), .moves = 1, .branches = 4 * (1 + 3)};
     return pixels * cycles_of(kPixel);

@@ -1,22 +1,23 @@
-// Instruction budgets: the cycles of each event on a DSP with one multiply-accumulate per cycle and no hardware
-// division or square root. Counted by hand from the formulas of kernels/README.md, and not fitted to any published
-// time.
+// Instruction budgets: the cycles that each event costs on a DSP with one multiply-accumulate per cycle and no hardware
+// division or square root. They were counted by hand from the formulas in kernels/README.md, not fitted to published
+// times.
 //
-// The model, with its sources: [P] printed in Kohata & Ito 1993, [?] assumed here.
+// The assumptions and their sources: [P] printed in Kohata & Ito 1993, [?] assumed here.
 //   - One multiply-accumulate, addition, multiplication or comparison takes one cycle [P: 20 MFLOPS at 100 ns]. Its
 //     result can be used in the next cycle, and a negation is a multiply-subtract [?].
-//   - Two data buses transfer two words per cycle in parallel with the arithmetic, as a DSP needs to sustain one
-//     multiply-accumulate per cycle. A move costs a cycle only if no arithmetic hides it; the budgets list these [?].
-//   - Loops over objects and lights repeat in hardware. A conditional branch, call or return costs 3 cycles, taken or
-//     not: its own and two lost in the pipeline (fetch, decode, execute) [?].
+//   - Two data buses transfer two words per cycle in parallel with the arithmetic; a DSP needs them to sustain one
+//     multiply-accumulate per cycle. A move costs a cycle only if no arithmetic runs in parallel with it. The budgets
+//     contain only such moves [?].
+//   - Loops over objects and lights are hardware loops without overhead. A conditional branch, call or return costs 3
+//     cycles, taken or not: its own and two that are lost in the pipeline (fetch, decode, execute) [?].
 //   - Division a / b: seed y = 1 / b from a table of 256 words indexed by the upper 8 bits of the significand, error
 //     < 2^-8; one Newton step, e = 1 - b y, y + e y, squares the error to < 2^-16, half a unit of a 16-bit significand;
 //     then a y [?].
 //   - Root of x: seed y = 1 / root from 256 words indexed by the lowest bit of the exponent and 7 bits of the
 //     significand, error < 2^-8; one Newton step y (3/2 - (x/2) y y), error < 1.5 * 2^-16; then x y [?].
-// The 512 words of the seed tables are not in the report's memory figures.
+// The memory sizes in the report do not include the 512 words of the seed tables.
 // The kernels round divisions and roots correctly; a DSP would not correct the last bit. The model also ignores that an
-// assembly programmer would normalise by the reciprocal root directly and save the division.
+// assembly programmer would normalise a vector by the reciprocal square root and save the division.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -30,33 +31,34 @@ inline constexpr std::uint32_t kDivisionCycles = kSeedCycles + 2 + 1;  // Newton
 inline constexpr std::uint32_t kRootCycles = kSeedCycles + 1 + 3 + 1;  // x/2, Newton step, x y
 inline constexpr std::uint32_t kBranchCycles = 3;
 
-/// The operations of one event of a kind.
+/// The operations that one event of a kind costs.
 struct Budget {
     int event = 0;                           // RAYA_* of kernels/shared/events.h
     std::uint32_t multiply_accumulates = 0;  // additions, multiplications, comparisons and multiply-accumulates
     std::uint32_t divisions = 0, roots = 0;
-    std::uint32_t moves = 0;  // those that no arithmetic hides
+    std::uint32_t moves = 0;  // only moves without arithmetic in parallel
     std::uint32_t branches = 0;
-    const char* why = "";  // included and excluded work
+    const char* why = "";  // which work is included and excluded
 };
 
 /// The budgets of all events, in the order of kernels/shared/events.h.
 const std::array<Budget, RAYA_EVENTS>& budgets();
 
+/// The cycles of one event with this budget.
 std::uint32_t cycles_of(const Budget& budget);
 
-/// Total operations of many events.
+/// The total operations of many events.
 struct Operations {
     std::uint64_t multiply_accumulates = 0, divisions = 0, roots = 0, moves = 0, branches = 0;
 };
 Operations operations_of(const EventCounts& events);
 
-// Anti-aliasing has no events: every pixel of a PE's share has the same cost.
+// Anti-aliasing has no events, because it costs the same for every pixel.
 
-/// Cycles in which a PE filters `pixels` pixels with their neighbours (kernels/ring/filter.cl).
+/// Modelled cycles of one PE for filtering `pixels` pixels with their neighbours (kernels/ring/filter.cl).
 std::uint64_t filter_cycles(std::uint64_t pixels);
 
-/// Cycles in which a PE compares `pixels` pixels with their neighbours (kernels/ring/contrast.cl).
+/// Modelled cycles of one PE for comparing `pixels` pixels with their neighbours (kernels/ring/contrast.cl).
 std::uint64_t compare_cycles(std::uint64_t pixels);
 
 }  // namespace raya

@@ -14,7 +14,7 @@ namespace raya {
 namespace {
 
 // Kohata & Ito 1993. Marks: [P] printed there, [D] derived from printed figures, [?] assumed here. The paper gives no
-// time of a transfer between PEs over the bus: [?] a link's rate and a rotation's synchronisation.
+// time of a transfer between PEs over the bus: the model uses the rate of a link and the overhead of a rotation [?].
 Machine spa() {
     return {
         .name = "spa",
@@ -24,15 +24,15 @@ Machine spa() {
         .pe_memory_bytes = 32 * 1024,                    // [P]
         .bounces = 8,                                    // [P] up to 8 reflections and refractions
         .format = {6, 15, false},                        // [P] 22 bits; [?] their division into exponent and fraction
-        .mapping = cyclic_mapping(16),                   // [P] the best
+        .mapping = cyclic_mapping(16),                   // [P] the best offset
         .cycle_ns = 100,                                 // [P] 20 MFLOPS
         .link_words_per_s = 6e6,                         // [P] DMA
         .rotation_sync_ms = 10. / 32 - 1e3 * 768 / 6e6,  // [D] Tables 3 and 4: 32 more rotations of 768 words, 10 ms
         .host_words_per_s = 196'608 / 0.140};            // [D] Table 2: 256 x 256 pixels of 3 words in 140 ms
 }
 
-// An array and a mapping that the paper compares with the SPA, modelled with PEs of the SPA without a memory limit, so
-// that loads can be compared. The rates of the real PEs and links are unknown, so there are no modelled times.
+// An array with a mapping that the paper compares with the SPA. Its PEs are those of the SPA without a memory limit, so
+// that loads can be compared. There are no modelled times, because the rates of the real PEs and links are unknown.
 Machine array_like(const std::string& name, const std::string& title, const std::string& topology,
                    const MappingRule& mapping, std::uint32_t pes) {
     Machine machine;
@@ -45,7 +45,7 @@ Machine array_like(const std::string& name, const std::string& title, const std:
     return machine;
 }
 
-// [P] Each PE requests the next pixel from a root when it has finished one; [?] as many PEs as the SPA.
+// [P] When a PE has finished a pixel, it requests the next one from a root PE. [?] As many PEs as the SPA.
 Machine links() {
     Machine machine =
         array_like("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", cyclic_mapping(0), 256);
@@ -64,7 +64,7 @@ Machine grande() {
     return machine;
 }
 
-// [P] The other SPA of Table 2: one DSP with the same host.
+// [P] The SPA with one DSP of Table 2, with the same host.
 Machine spa1() {
     Machine machine = spa();
     machine.name = "spa1";
@@ -75,7 +75,7 @@ Machine spa1() {
 }
 
 // Yoshitani & Yamazaki, about 1995. Marks: [P] printed there, [T] data sheet of the T805, [?] assumed here. The cycles
-// of nodes and links are in model/t805.hpp; the rate here is that of one link in one direction.
+// of nodes and links are in model/t805.hpp. link_words_per_s is the rate of one link in one direction.
 Machine torus() {
     Machine machine;
     machine.name = "torus";
@@ -84,7 +84,7 @@ Machine torus() {
     machine.topology = "torus3d";                         // [P] a torus; [?] six links, the T805 has four
     machine.pes = 64;                                     // [P] T805s, one voxel each: 4 x 4 x 4
     machine.pe_memory_bytes = 4 * 1024 * 1024;            // [?] a T805 board
-    machine.bounces = 8;                                  // [?] as on the SPA; the paper stops at shadows
+    machine.bounces = 8;                                  // [?] as on the SPA; the paper traces shadow rays only
     machine.format = {};                                  // [T] IEEE, single precision
     machine.cycle_ns = kT805CycleNs;                      // [T] 25 MHz
     machine.link_words_per_s = kT805OneWayBytesPerS / 4;  // [T]

@@ -1,5 +1,6 @@
-// The array machines as data, each number with its source, and the acceleration structure inside a PE, which determines
-// the objects that a ray is tested against but never the result.
+// Descriptions of the array machines (machine.cpp gives the source of each number), and of the acceleration structure
+// inside a PE. The acceleration structure determines which objects a ray is tested against, but does not change the
+// image.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,17 +20,17 @@ using Divisions = std::array<std::uint32_t, 3>;  // voxels along x, y, z
 
 enum class AccelKind : std::uint32_t {
     kNone = RAYA_ACCEL_NONE,  // every ray is tested against all objects
-    kGrid = RAYA_ACCEL_GRID,  // voxels (host/accel/partition.hpp)
+    kGrid = RAYA_ACCEL_GRID,  // uniform grid (host/accel/partition.hpp)
     kBvh = RAYA_ACCEL_BVH,    // BVH (host/accel/bvh.hpp)
 };
 
-/// The acceleration structure.
+/// The choice of an acceleration structure.
 struct Accel {
     AccelKind kind = AccelKind::kNone;
     std::optional<Divisions> divisions{};  // of a grid over the bounding box of the scene; empty: see accel_partition()
 };
 
-/// The value of `--accel`: "none", "grid", "grid:4x4x4", "bvh".
+/// The structure as a value of the option `--accel`: "none", "grid", "grid:4x4x4", "bvh".
 std::string accel_text(const Accel& accel);
 
 /// Size of an acceleration structure, for reports.
@@ -37,8 +38,8 @@ struct AccelSummary {
     AccelKind kind = AccelKind::kNone;
     std::uint64_t words = 0;   // its 32-bit words in the job
     Divisions divisions{};     // of a grid
-    std::uint64_t copies = 0;  // entries of a grid's lists beyond the first of each object
-    std::uint32_t apart = 0;   // finite objects in no list and no leaf, which every ray is tested against
+    std::uint64_t copies = 0;  // of a grid: entries in the voxels' lists beyond one per object
+    std::uint32_t apart = 0;   // finite objects in no list and no leaf: every ray is tested against them
     std::uint64_t nodes = 0;   // of a BVH
     std::uint64_t leaves = 0;
     std::uint32_t depth = 0;  // nodes on the longest path from the root of a BVH
@@ -49,13 +50,13 @@ struct DoesNotFit : UserError {
     DoesNotFit(const std::string& message, std::uint64_t needed, std::uint64_t memory)
         : UserError(message), needed_bytes(needed), memory_bytes(memory) {}
 
-    std::uint64_t needed_bytes, memory_bytes;  // required by the fullest PE; available in a PE
+    std::uint64_t needed_bytes, memory_bytes;  // bytes that the fullest PE requires; bytes that a PE has
 };
 
 /// The number of events of each kind (RAYA_* of kernels/shared/events.h).
 using EventCounts = std::array<std::uint64_t, RAYA_EVENTS>;
 
-/// The data that a machine distributes over its PEs.
+/// The kind of a machine: which data it distributes over its PEs.
 enum class MachineKind {
     kRing,  // the pixels (host/ring/)
     kTorus  // the scene: the PEs are nodes that store voxels and send rays to each other (host/torus/)
@@ -65,31 +66,31 @@ enum class MachineKind {
 struct Machine {
     std::string name;
     std::string title;     // for messages: "the SPA"
-    std::string topology;  // of the links
+    std::string topology;  // of the links between PEs: "ring+bus", "torus3d", ...
     MachineKind kind = MachineKind::kRing;
     std::optional<std::uint32_t> pes;              // empty: as many as the image has columns
     std::optional<std::uint64_t> pe_memory_bytes;  // empty: no limit
     std::uint32_t bounces = 8;
     NumberFormat format{};                 // of the PEs' arithmetic
-    MappingRule mapping{};                 // pixels to PEs, of a ring
-    Accel accel{};                         // inside a PE of a ring
+    MappingRule mapping{};                 // of a ring: mapping of pixels to PEs
+    Accel accel{};                         // of a ring: acceleration structure in every PE
     std::optional<DynamicPlan> dynamic{};  // empty: PEs do not request pixels at run time
 
     // Rates of the time model (model/time_model.hpp); empty if unknown.
-    std::optional<double> cycle_ns;          // of a PE, one multiply-accumulate
-    std::optional<double> link_words_per_s;  // from a PE to its neighbour, and over the bus to any PE
-    std::optional<double> rotation_sync_ms;  // overhead of a rotation, or of a transfer over the bus
-    std::optional<double> host_words_per_s;  // broadcast and gather
+    std::optional<double> cycle_ns;          // cycle time of a PE: time of one multiply-accumulate
+    std::optional<double> link_words_per_s;  // rate of a link from a PE to its neighbour, and of the bus
+    std::optional<double> rotation_sync_ms;  // overhead of one rotation, or of one transfer over the bus
+    std::optional<double> host_words_per_s;  // rate of broadcasts from the host and gathers to the host
 };
 
 /// The machines of `--machine`, the default first.
 const std::vector<Machine>& machines();
 
-/// The machine of that name. UserError with a list of all machines if there is none.
+/// The machine of that name. Throws UserError, with a list of all machines, if there is none.
 const Machine& machine_named(const std::string& name);
 
 /// Modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h) on a PE of the SPA, from the
-/// instruction budgets (model/budget.hpp). For the nodes of a torus see t805_cycles() (model/t805.hpp).
+/// instruction budgets (model/budget.hpp). t805_cycles() (model/t805.hpp) is the same for the nodes of a torus.
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events();
 
 }  // namespace raya

@@ -1,5 +1,5 @@
-// Image sizes, and mapping rules: mappings of pixels to PEs that do not depend on the size of the image yet
-// (kernels/shared/mapping.h defines mappings).
+// Image sizes, mapping rules and dynamic distributions. A mapping rule is a mapping of pixels to PEs for which the size
+// of the image and the number of PEs are not chosen yet (kernels/shared/mapping.h defines mappings).
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -18,16 +18,16 @@ struct ImageSize {
     bool operator==(const ImageSize&) const = default;
 };
 
-/// The assignment of slots to PEs if their numbers differ.
+/// The assignment of slots to PEs if the number of slots differs from the number of PEs.
 enum class Fold : std::uint32_t { kCyclic = RAYA_FOLD_CYCLIC, kBlock = RAYA_FOLD_BLOCK };
 
-/// Create it by the functions below.
+/// A mapping rule. Create it by the functions below.
 struct MappingRule {
     std::uint32_t kind = RAYA_FOLD_CYCLIC;  // as in raya_mapping
     std::uint32_t parameter = 0;            // as in raya_mapping
 
     bool has_slots() const { return kind <= RAYA_FOLD_BLOCK; }
-    /// The number of PEs of a grid; empty for mappings to any number of PEs.
+    /// The number of PEs that the rule requires (grid_mapping()); empty for mappings to any number of PEs.
     std::optional<std::uint32_t> pes() const {
         if (kind != RAYA_GRID) return {};
         return raya_first_of(parameter) * raya_second_of(parameter);
@@ -35,24 +35,25 @@ struct MappingRule {
     bool operator==(const MappingRule&) const = default;
 };
 
-/// Each row is shifted by `offset` slots relative to the row above.
+/// Kohata & Ito's cyclic mapping: each row is shifted by `offset` slots relative to the row above.
 inline MappingRule cyclic_mapping(std::uint32_t offset, Fold fold = Fold::kCyclic) {
     return {static_cast<std::uint32_t>(fold), offset};
 }
-/// Offset 0: Kohata & Ito's column split.
+/// Kohata & Ito's column split: the cyclic mapping with offset 0.
 inline MappingRule column_mapping(Fold fold = Fold::kCyclic) { return cyclic_mapping(0, fold); }
-/// Scan lines dealt cyclically; contiguous blocks of scan lines.
+/// Scan lines are assigned to the PEs cyclically.
 inline MappingRule rows_mapping() { return {RAYA_ROWS, 0}; }
+/// Each PE has a contiguous block of scan lines.
 inline MappingRule blocks_mapping() { return {RAYA_BLOCKS, 0}; }
-/// `down` rows of `across` PEs: every `down`-th line, every `across`-th pixel of it. Both below 2^16.
+/// `down` rows of `across` PEs; each PE has every `across`-th pixel of every `down`-th line. Both below 2^16.
 inline MappingRule grid_mapping(std::uint32_t down, std::uint32_t across) {
     return {RAYA_GRID, raya_pair(down, across)};
 }
-/// Tiles of `width` x `height` pixels dealt cyclically. Both below 2^16.
+/// Tiles of `width` x `height` pixels are assigned to the PEs cyclically. Both below 2^16.
 inline MappingRule tiles_mapping(std::uint32_t width, std::uint32_t height) {
     return {RAYA_TILES, raya_pair(width, height)};
 }
-/// Random pixels, with equal shares.
+/// Pixels are assigned to the PEs at random; the numbers of pixels of any two PEs differ by at most one.
 inline MappingRule random_mapping(std::uint32_t seed) { return {RAYA_RANDOM, seed}; }
 
 inline constexpr std::uint32_t kLargestChunk = kLargestSide * kLargestSide;  // pixels: the largest image
@@ -61,13 +62,13 @@ inline constexpr std::uint64_t kLargestOverhead = 1'000'000'000;  // cycles; tim
 /// A dynamic distribution: PEs request pixels at run time.
 struct DynamicPlan {
     std::uint32_t chunk = 1;     // pixels per request, 1..kLargestChunk
-    std::uint64_t overhead = 0;  // cycles of a PE per request, 0..kLargestOverhead
-    double static_share = 0;     // share of its own pixels that a PE renders first, 0..1; hybrid if above 0
+    std::uint64_t overhead = 0;  // cycles that a request costs the PE, 0..kLargestOverhead
+    double static_share = 0;     // fraction of its statically mapped pixels that a PE renders first, 0..1; 0: none
 
     bool operator==(const DynamicPlan&) const = default;
 };
 
-/// Returns true if all members are in their ranges.
+/// Returns true if all members of `plan` are in their ranges.
 inline bool is_plan(const DynamicPlan& plan) {
     const bool is_share = !std::signbit(plan.static_share) && plan.static_share <= 1;  // no NaN, no -0
     return plan.chunk >= 1 && plan.chunk <= kLargestChunk && plan.overhead <= kLargestOverhead && is_share;

@@ -21,7 +21,7 @@ namespace {
                     text));
 }
 
-// Reads `letter` and the number after it at position `at`, which moves behind them.
+// Reads `letter` and the decimal number after it, from position `at` on. Advances `at` past both.
 int read_field(const std::string& text, std::size_t& at, char letter) {
     if (at >= text.size() || text[at] != letter) refuse(text);
     int value = 0;
@@ -33,13 +33,13 @@ int read_field(const std::string& text, std::size_t& at, char letter) {
 
 constexpr int kDoubleFraction = 52, kDoubleBias = 1023;
 
-// 2^exponent, in the range of normal doubles.
+// 2^exponent, which must be in the range of normal doubles.
 double power_of_two(int exponent) {
     return std::bit_cast<double>(static_cast<std::uint64_t>(kDoubleBias + exponent) << kDoubleFraction);
 }
 
 // Rounds to `bits` fraction bits, ties to even, or truncates. A carry out of the fraction gives the next power of two,
-// or infinity. Denormal doubles are below the range of every format.
+// or infinity. The result for denormal doubles does not matter: they are below the range of every format.
 double with_fraction_bits(double value, int bits, bool truncates) {
     const int dropped = kDoubleFraction - bits;
     auto pattern = std::bit_cast<std::uint64_t>(value);

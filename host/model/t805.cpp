@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// The terms are in the order of model/budget.cpp, which names each.
+// The terms of each sum are in the order of the comments here, which abbreviate those of model/budget.cpp.
 constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     // corner + j step, + x step, normalise: |d|^2, times 1 / |d|
     {.event = RAYA_PRIMARY, .additions = 3 + 3 + 2, .multiplications = 3 + 3 + 3 + 3, .makes = Makes::kRay},
@@ -27,13 +27,13 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     {.event = RAYA_SPHERE_TESTS, .additions = 3 + 2 + 3 + 3, .multiplications = 0 + 3 + 3 + 3},
     // n.D, d - n.O, comparison of t with the nearest hit so far
     {.event = RAYA_PLANE_TESTS, .additions = 2 + 3 + 1, .multiplications = 3 + 3},
-    // four corners minus O, sheared, compared with 0; two edges of two products and a comparison; a twentieth of the
-    // box and the plane
+    // four corners minus O, sheared, compared with 0; for two edges two products and a comparison; box and plane in a
+    // twentieth of the tests
     {.event = RAYA_POLYGON_TESTS,
      .additions = 4 * (3 + 2 + 1) + 2 * 1 + (12 + 24 + 2 + 3 + 6) / 20,
      .multiplications = 4 * 2 + 2 * 2 + (3 + 3 + 3) / 20},
-    // X - base, to the nearest point, z, dz, side, dside, radius, dradius, a, b, c, discriminant; a third of (q, z and
-    // t twice, four comparisons)
+    // X - base, to the nearest point, z, dz, side, dside, radius, dradius, a, b, c, discriminant; in a third of the
+    // tests q, z and t twice, four comparisons
     {.event = RAYA_CONE_TESTS,
      .additions = 3 + (2 + 3) + 2 + 2 + 3 + 3 + 1 + 0 + 3 + 3 + 3 + 1 + (1 + 2 + 2 + 4) / 3,
      .multiplications = 0 + (3 + 3) + 3 + 3 + 3 + 3 + 1 + 1 + 4 + 4 + 4 + 2 + 1},
@@ -43,7 +43,7 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
      .additions = 3 + 3 + 3 + 2 + 2 + 3 + 3 + 3 + 2 + 0 + 3 + 0 + 0 + 3 + 0,
      .multiplications = 0 + 3 + 0 + (3 + 3) + 3 + 0 + 1 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 1,
      .makes = Makes::kReturn},
-    // N.L, times tint, R.L, times I, added to the sum: the shadow packet becomes a return packet
+    // N.L, times tint, R.L, times I, added to the sum; the shadow packet becomes a return packet
     {.event = RAYA_LIT, .additions = 2 + 0 + 2 + 0 + 3, .multiplications = 3 + 3 + 3 + 3 + 3, .makes = Makes::kTerm},
     // x compared with 1, log2, times n, exp2, Ks, added to three colours
     {.event = RAYA_HIGHLIGHTS,
@@ -66,7 +66,7 @@ static_assert(work_in_order());
 
 std::uint32_t cycles_of(const T805Work& work, const Budget& budget, const PacketCharge& packets) {
     const std::uint32_t operations =
-        work.additions + work.multiplications + budget.divisions + budget.roots;  // one memory operand each
+        work.additions + work.multiplications + budget.divisions + budget.roots;  // each loads one operand
     return kT805AdditionCycles * work.additions + kT805MultiplicationCycles * work.multiplications +
            kT805DivisionCycles * budget.divisions + kT805RootCycles * budget.roots + kT805OperandCycles * operations +
            kT805MoveCycles * budget.moves + kT805StoreCycles * packets.words_of(work.makes) +

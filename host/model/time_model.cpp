@@ -43,7 +43,7 @@ std::optional<ModelledTime> modelled_time(const Machine& machine, std::span<cons
     time.compute_ms = milliseconds(cycles, *machine.cycle_ns, factor);
     time.filter_ms = milliseconds(smoothing.filter, *machine.cycle_ns, factor);
     time.compare_ms = milliseconds(smoothing.compare, *machine.cycle_ns, factor);
-    // On the ring all PEs send at once, each 1/P of the words; the bus carries one transfer at a time.
+    // In a rotation all P PEs send at once, each 1/P of the words. The bus carries one transfer at a time.
     const auto pes = static_cast<double>(phases.front().per_pe.size());
     const std::uint64_t moves = communication.rotations + communication.transfers + communication.pe_broadcasts;
     time.communication_ms =

@@ -1,5 +1,5 @@
-// Computation and communication of the PEs, load balance in the terms of the papers, and the modelled time: counted
-// cycles and words multiplied by the times of a machine.
+// Load balance and communication of the PEs, and modelled times: counted cycles and words, multiplied by the times that
+// a machine takes for each.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace raya {
 
-/// Transfers and their words, counted where they happen. A word is a machine word: one number.
+/// Numbers of transfers and of words in them. A word is a machine word of the modelled machine, which holds one number.
 struct Communication {
     std::uint64_t broadcasts = 0, broadcast_words = 0;        // host to all PEs
     std::uint64_t rotations = 0, rotation_words = 0;          // every PE to its neighbour
@@ -19,7 +19,7 @@ struct Communication {
     std::uint64_t pe_broadcasts = 0, pe_broadcast_words = 0;  // one PE to all, over the bus
 };
 
-/// Loads of P PEs, in modelled cycles.
+/// The loads of P PEs, in modelled cycles, and their statistics.
 struct Load {
     std::vector<std::uint64_t> per_pe;
     double mean = 0;
@@ -29,10 +29,11 @@ struct Load {
     double efficiency = 0;  // speedup / P
 };
 
-/// `per_pe`: the load of each PE, not empty.
+/// Computes the statistics. `per_pe`: the load of each PE, not empty.
 Load load_of(std::vector<std::uint64_t> per_pe);
 
-/// Cycles of the busiest PE for the arithmetic on neighbouring pixels (model/budget.hpp); 0 without anti-aliasing.
+/// Cycles of the busiest PE for filtering and for comparing neighbouring pixels (model/budget.hpp); 0 without
+/// anti-aliasing.
 struct SmoothingCycles {
     std::uint64_t filter = 0, compare = 0;
 };
@@ -44,9 +45,9 @@ struct ModelledTime {
     double filter_ms = 0;         // part of compute_ms: means of neighbouring pixels
     double compare_ms = 0;        // part of compute_ms: comparisons with neighbouring pixels
     double communication_ms = 0;  // rotations of the ring; transfers and broadcasts of PEs on the bus
-    double image_ms = 0;          // the image to the host
-    double total_ms = 0;          // objects, compute, communication, image
-    double factor = 1;            // contained in compute_ms
+    double image_ms = 0;          // gather of the image by the host
+    double total_ms = 0;          // objects_ms + compute_ms + communication_ms + image_ms
+    double factor = 1;            // the factor of modelled_time() that compute_ms was multiplied by
 };
 
 /// Modelled times of a torus whose nodes compute while its links transfer (host/torus/async_machine.hpp), milliseconds.
@@ -54,27 +55,27 @@ struct AsynchronousTime {
     double finish_ms = 0;
     double processor_ms = 0, links_ms = 0;  // busy time of the busiest node; of the busiest direction of a link
     double port_ms = 0;                     // longest time that a main task waited for space in an outgoing buffer
-    std::uint64_t delivered = 0;            // messages, including those within a node
+    std::uint64_t delivered = 0;            // number of messages, including those from a node to itself
     std::uint64_t queue_max = 0;            // maximum number of rays that waited for a main task
 };
 
 /// Modelled times of a torus in milliseconds (host/torus/torus_result.hpp), without the transfer of the scene to the
-/// nodes and of the image from the root to the host. The time of a real machine is between `overlapped` and `stepwise`:
-/// it overlaps some of the work and waits some of the time.
+/// nodes and of the image from the root to the host. The time of a real machine is between overlapped_ms and
+/// stepwise_ms, because computation and communication overlap only in part.
 struct TorusTime {
     double compute_ms = 0;     // maximum over the nodes
     double messages_ms = 0;    // processor time for sending and receiving, maximum over the nodes
-    double processor_ms = 0;   // sum of both, maximum over the nodes
-    double links_ms = 0;       // both directions, maximum over the links
+    double processor_ms = 0;   // computation plus sending and receiving, maximum over the nodes
+    double links_ms = 0;       // time for both directions, maximum over the links
     double overlapped_ms = 0;  // lower bound: no processor and no link ever waits for another one
     double stepwise_ms = 0;    // every superstep waits for its busiest node, then for its busiest link
-    std::optional<AsynchronousTime> asynchronous{};  // without supersteps; empty if not simulated
+    std::optional<AsynchronousTime> asynchronous{};  // times without supersteps; empty if not simulated
 };
 
 /// The modelled time of a ring; empty if the machine's rates are unknown. `phases`: the loads of all PEs in each phase,
-/// not empty; the machine waits for the busiest PE of each phase. The bus carries the words of one PE at a time, at the
-/// rate of a link and with the synchronisation of a rotation (Machine). `factor` > 0 scales the compute time for cycles
-/// that the budget does not include; report it if it was fitted.
+/// not empty; the machine waits for the busiest PE of each phase. The bus carries the words of one PE at a time, with
+/// the rate of a link and the overhead of a rotation (Machine). `factor` > 0 scales the compute time, to account for
+/// cycles that the budgets do not include; if it was fitted to a published time, say so in the report.
 std::optional<ModelledTime> modelled_time(const Machine& machine, std::span<const Load> phases,
                                           const Communication& communication, double factor = 1,
                                           const SmoothingCycles& smoothing = {});

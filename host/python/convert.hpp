@@ -18,15 +18,16 @@ namespace py = pybind11;
 
 using CostArray = py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>;
 
-/// Converts keyword arguments to command-line arguments: offset=16 to "--offset=16", strict=True to "--strict",
-/// strict=False and None to nothing, from_=(1, 2, 3) to "--from=1,2,3", and a list of lights to one --light per
-/// element. TypeError for other values.
+/// Converts keyword arguments to command-line arguments: offset=16 to "--offset=16", strict=True to "--strict", False
+/// and None to nothing, from_=(1, 2, 3) to "--from=1,2,3", and a list of lights to one --light per element. Raises
+/// TypeError for True in a sequence.
 std::vector<std::string> option_arguments(const py::dict& options);
 
-/// Converts a document to Python's dicts, lists, strings and numbers (json.loads()).
+/// Converts a JSON document to Python's dicts, lists, strings and numbers (by json.loads()).
 py::object python_of(const Json& json);
 
-/// A read-only array that views memory of the Python object `owner`, which it keeps alive.
+/// A read-only array of shape `shape` that refers to `values`, which belong to the Python object `owner`. The array
+/// keeps `owner` alive.
 template <class T>
 py::array view_of(std::span<const T> values, std::vector<py::ssize_t> shape, const py::object& owner) {
     py::array_t<T> array(std::move(shape), values.data(), owner);
@@ -34,13 +35,14 @@ py::array view_of(std::span<const T> values, std::vector<py::ssize_t> shape, con
     return array;
 }
 
-/// A copy, [n].
+/// A copy of the n `values` as an array [n].
 template <class T>
 py::array copy_of(const std::vector<T>& values) {
     return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-/// Converts an integer array [H, W]. ValueError for another shape, another type or negative numbers.
+/// Converts an integer array [height, width] of modelled cycles. Raises ValueError for an array of other dimensions or
+/// type, or with negative numbers.
 CostImage cost_image_of(const py::array& cost);
 
 }  // namespace raya

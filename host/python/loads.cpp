@@ -1,4 +1,5 @@
-// Mappings, loads and schedules computed from given costs, without a device.
+// Functions of the Python module that need no device: mappings, loads and schedules from given pixel costs, machines,
+// and the reference image.
 #include <fmt/core.h>
 #include <pybind11/stl.h>
 
@@ -25,7 +26,7 @@ namespace {
 
 using Number = std::optional<std::uint32_t>;
 
-// Uses the checks and messages of the options of `raya render`.
+// Makes the mapping with the checks and error messages of the options of `raya render`.
 raya_mapping mapping_of(const ImageSize& size, const std::string& mapping, Number offset, const std::string& fold,
                         Number pes) {
     if (is_dynamic(mapping))
@@ -70,8 +71,8 @@ py::array imbalances(const py::array& costs, std::uint32_t pes, const std::vecto
     return copy_of(u);
 }
 
-// If there are at most as many PEs as slots, every PE has whole slots. The loads of the slots are then an image of one
-// row, whose columns are mapped to the PEs.
+// For efficiency: if there are at most as many PEs as slots (image columns), every PE owns whole slots. The loads of
+// the slots are then computed once per offset, as an image of one row whose columns are mapped to the PEs.
 py::array speedups(const py::array& costs, const std::vector<std::uint32_t>& pes,
                    const std::vector<std::uint32_t>& offsets, const std::string& fold) {
     const CostImage cost = cost_image_of(costs);
@@ -110,9 +111,11 @@ py::dict schedule(const py::array& costs, const std::string& plan, const std::st
     return all;
 }
 
-// The rotations that bring each PE its neighbours' pixels once from each side, if whole shares rotate. If no two PEs
-// share a slot, the owner depends only on the slot, and two rows contain all pairs of neighbouring slots that any
-// number of rows has: for p > 0 their left borders are in two slots, for p = 0 all in one.
+// The number of rotations that bring each PE the neighbours of its pixels once from each of the four sides, if PEs pass
+// on all their pixels in a rotation. If no two PEs share a slot, a pixel's owner depends only on its slot, so only the
+// pairs of slots of neighbouring pixels matter, and an image of two rows has the same pairs as one of more rows. The
+// only horizontal pair that a row lacks is the one across the image's left border: for an offset p > 0 the two rows
+// lack different pairs, for p = 0 all rows lack the same one.
 std::uint64_t neighbour_rotations(raya_mapping mapping) {
     if (raya_has_slots(mapping) && mapping.pes <= mapping.width) mapping.height = std::min(mapping.height, 2u);
     std::uint64_t turns = 0;
@@ -137,8 +140,9 @@ std::uint32_t share(std::uint32_t width, std::uint32_t height, const std::string
     return largest_share(mapping_of({width, height}, mapping, offset, fold, pes));
 }
 
-// Modelled times of the SPA for every offset of the cyclic mapping, from the costs of the pixels: the busiest PE of
-// each pass, the arithmetic on neighbouring pixels, and the rotations that bring them. Without broadcast and gather.
+// Modelled times of the SPA for every offset of the cyclic mapping, from the pixels' costs in cycles: times of the
+// busiest PE in each pass, of filtering and comparing neighbouring pixels, and of the rotations that bring these.
+// Broadcast and gather are not included. `trace`, `supersample`: costs of the two passes, [H, W].
 py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::string& antialias,
                       const std::optional<py::array>& supersample) {
     const CostImage first = cost_image_of(trace);

@@ -1,4 +1,4 @@
-// The Python module raya._engine: renders, scenes and loads with numpy arrays. The package raya/ imports it.
+// The Python module raya._engine: renders, scenes and loads as numpy arrays. The package in raya/ imports it.
 #include "host/base/module.hpp"
 
 #include <dlfcn.h>
@@ -14,7 +14,7 @@
 
 namespace {
 
-// Modules are next to this shared object, not next to the interpreter.
+// The path of this shared object: raya's other modules are in its folder, not in that of the Python interpreter.
 std::filesystem::path own_file() {
     Dl_info info{};
     ::dladdr(reinterpret_cast<void*>(&own_file), &info);
@@ -26,7 +26,7 @@ std::filesystem::path own_file() {
 PYBIND11_MODULE(_engine, module) {
     using namespace raya;
     set_own_file(own_file());
-    set_verbosity(kErrorsOnly);  // warnings are raised as Python warnings
+    set_verbosity(kErrorsOnly);  // warnings become Python warnings instead
     auto& refused = pybind11::register_exception<UserError>(module, "InputError", PyExc_ValueError);
     refused.doc() = "Invalid input or options.";
     pybind11::register_exception<TorusDeadlock>(module, "Deadlock", refused).doc() =

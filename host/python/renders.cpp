@@ -1,4 +1,4 @@
-// Renders: sessions, results, and their arrays.
+// The Python classes Session and Result, and the functions of the Python module that render.
 #include <fmt/core.h>
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
@@ -63,7 +63,7 @@ py::array cost_of(const py::object& self) {
     return cost_array(*phase.kept_cost, self);
 }
 
-// Maps the name of each phase to figure(phase).
+// Returns a dict {name of the phase: figure(phase)}.
 template <class Figure>
 py::dict by_phase(const py::object& self, const char* what, Figure figure) {
     py::dict all;
@@ -132,7 +132,8 @@ double events_ms(const std::map<std::string, std::uint64_t>& events) {
     return static_cast<double>(sum) * kT805CycleNs * 1e-6;
 }
 
-// The root's part of torus_time(): its computation, its end of every message over its links, and its busiest link.
+// The times of the root node, as in torus_time(): its processor time, for computation and for all messages that it
+// sends or receives over its links, and the time of its busiest link.
 py::dict root_of(const Result& r) {
     const TorusResult& result = torus_of(*r, "root");
     const raya_torus& torus = r->torus_settings->torus;
@@ -175,7 +176,8 @@ const History& history_of(const Render& r) {
     return *r.history;
 }
 
-// The default machine with changes: message_cycles, word_cycles, one_way, both_ways (bytes/s), buffer (messages).
+// The default machine with the given parameters changed: message_cycles, word_cycles, one_way, both_ways (bytes/s),
+// buffer (messages).
 AsyncMachine async_machine(const py::kwargs& changes) {
     AsyncMachine m;
     for (const auto& [key, value] : changes) {

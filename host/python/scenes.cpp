@@ -1,4 +1,4 @@
-// Scenes: reading, writing, generating and changing them.
+// The Python class Scene, and the functions of the Python module that read, write, generate and change scenes.
 #include <fmt/core.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

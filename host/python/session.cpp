@@ -21,7 +21,7 @@
 namespace raya {
 namespace {
 
-// Restores Python's signal handlers: drivers (LLVM in PoCL) install their own.
+// Saves Python's signal handlers and restores them in the destructor, because drivers (LLVM in PoCL) install their own.
 class SignalHandlers {
   public:
     SignalHandlers() {
@@ -37,8 +37,8 @@ class SignalHandlers {
     struct sigaction before_[32]{};
 };
 
-// PoCL creates its threads when devices are queried, and puts the private memory of a work-group on their stacks
-// (host/cl/driver.cpp).
+// Chooses a device with a larger default stack size for new threads: PoCL creates its threads when devices are queried,
+// and puts the private memory of a work-group on their stacks (host/cl/driver.cpp).
 cl::Device choose_device_with_stacks(const std::string& name) {
     pthread_attr_t before, large;
     ::pthread_getattr_default_np(&before);
@@ -71,20 +71,21 @@ RenderCommand parse_options(CLI::App& program, const py::dict& options) {
         check_files(*render);
         check_render(*render, command);
     });
-    std::vector<std::string> words = {"render"};  // of the command line
+    std::vector<std::string> words = {"render"};  // arguments of the command line
     for (const std::string& word : option_arguments(options)) words.push_back(word);
     parse_arguments(program, words);
     return command;
 }
 
-// The options `cost` and `packets` name files; True stores only the arrays.
+// If the option `name` has the value True, removes it from `options` and returns true. For `cost` and `packets`: a text
+// names a file, while True requests only the arrays in the Result.
 bool takes_true(py::dict& options, const char* name) {
     if (!options.contains(name) || options[name].ptr() != Py_True) return false;
     options.attr("pop")(name);
     return true;
 }
 
-// pixels=(stride, first) is not an option of the command line.
+// Removes pixels=(stride, first), which is not an option of the command line, from `options` and returns its value.
 PixelSubset pixels_of(py::dict& options) {
     if (!options.contains("pixels")) return {};
     const auto [stride, first] = options.attr("pop")("pixels").cast<std::pair<std::uint32_t, std::uint32_t>>();
@@ -92,7 +93,8 @@ PixelSubset pixels_of(py::dict& options) {
     return {stride, first};
 }
 
-// Returns JSON for raya.lab. After printing help it raises SystemExit, as raya exits.
+// Parses the arguments of `raya study` and returns the settings as JSON, for raya.lab. If the arguments request help,
+// prints it and raises SystemExit, because the program raya would exit.
 std::string study_settings(const std::vector<std::string>& arguments) {
     CLI::App program("", "raya");
     program.formatter(std::make_shared<HelpFormatter>());
@@ -132,7 +134,7 @@ void add_study_settings(py::module_& module) {
 }
 
 PythonSession& PythonSession::shared(const std::string& device) {
-    // Never destroyed: drivers may be unloaded first.
+    // Never destroyed, because drivers may be unloaded before the program destroys static objects.
     static auto* const sessions = new std::map<std::string, PythonSession>;
     const SignalHandlers handlers;
     return sessions->try_emplace(device, device).first->second;

@@ -14,20 +14,20 @@
 
 namespace raya {
 
-/// A device with the programs built for it. Renders of several threads run one after another.
+/// An open device with the programs built for it. Renders from several threads run one after another.
 class PythonSession {
   public:
-    /// `device`: as for --device. DeviceError.
+    /// Opens the device that `device` selects, as the option --device. Throws DeviceError.
     explicit PythonSession(const std::string& device);
 
     const DeviceInfo& info() const { return session_.device(); }
 
-    /// Renders with the keyword arguments of raya.render(). Releases the interpreter lock; an exception raised by a
-    /// Python signal handler ends the render. `progress`: None, or a function called with the completed share, 0..1.
-    /// UserError, DeviceError.
+    /// Renders with the keyword arguments of raya.render(). Releases the interpreter lock meanwhile. An exception
+    /// raised by a Python signal handler ends the render. `progress`: None, or a function that is called with the
+    /// completed fraction, 0..1. Throws UserError, DeviceError.
     std::shared_ptr<Render> render(const Scene& scene, const py::dict& options, const py::object& progress);
 
-    /// The shared session of a device, for renders without a session argument.
+    /// The session for renders without a session argument; one for each value of `device`.
     static PythonSession& shared(const std::string& device);
 
   private:
@@ -36,6 +36,7 @@ class PythonSession {
     std::mutex mutex_;
 };
 
+// Each adds the functions and classes of one source file to the Python module.
 void add_scenes(py::module_& module);
 void add_renders(py::module_& module);
 void add_loads(py::module_& module);

@@ -18,7 +18,7 @@
 namespace raya {
 namespace {
 
-constexpr double kDefaultTimeoutS = 600;  // for waits for other ranks; RAYA_RANK_TIMEOUT overrides it
+constexpr double kDefaultTimeoutS = 600;  // time limit of waits for other ranks; RAYA_RANK_TIMEOUT overrides it
 
 std::optional<std::uint32_t> number_in(const char* text) {
     std::uint32_t value = 0;
@@ -37,7 +37,8 @@ double rank_timeout_s() {
     return *seconds;
 }
 
-// MPI's start blocks if another process ends before it starts MPI, hence the deadline.
+// The deadline is necessary because MPI_Init_thread may block forever if another process ends before it calls that
+// function.
 std::unique_ptr<Transport> open_transport(const Launch& launch) {
     const double limit_s = rank_timeout_s();
     const std::uint32_t count = launch.count.value_or(0);
@@ -69,7 +70,7 @@ void share_cores(const Ranks& ranks) {
     ::setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 0);
 }
 
-// Version, and a hash of the embedded files.
+// Returns the version of raya and a hash of the embedded files (kernels).
 std::string build_text() {
     std::size_t hash = 0;
     for (const auto& [path, text] : embedded_files()) hash = 31 * hash + std::hash<std::string>()(path + text);
@@ -82,7 +83,7 @@ std::optional<Launch> launch_of(const std::function<const char*(const char*)>& v
     struct Names {
         const char *rank, *count;
     };
-    // Open MPI; MPICH, Intel MPI and Slurm's pmi2; Slurm's and others' PMIx.
+    // In this order: Open MPI; MPICH, Intel MPI and Slurm's pmi2; PMIx of Slurm and others.
     constexpr Names kLaunchers[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
                                     {"PMI_RANK", "PMI_SIZE"},
                                     {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}};

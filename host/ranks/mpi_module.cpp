@@ -1,7 +1,7 @@
-// MPI transport. A module of its own that is loaded only under mpirun, so that a plain start does not load MPI's
-// libraries. Waits poll their requests instead of calling MPI_Wait, which has no time limit and would not notice that
-// another rank has failed.
-#define OMPI_SKIP_MPICXX  // the C++ bindings, which MPI no longer has
+// MPI transport, in a module that raya loads only if an MPI launcher has started it, so that other runs do not load
+// MPI's libraries. Waits poll their requests instead of calling MPI_Wait, which has no time limit and would not notice
+// that another rank has failed.
+#define OMPI_SKIP_MPICXX  // leaves out the C++ bindings, which MPI-3 has removed
 #define MPICH_SKIP_MPICXX
 #include <fmt/core.h>
 #include <mpi.h>
@@ -24,7 +24,7 @@
 namespace raya {
 namespace {
 
-// MPI's counts are ints, so longer messages are split.
+// Maximum bytes of an MPI message, whose length is an int. Longer messages are split.
 constexpr std::size_t kPiece = std::size_t{1} << 30;
 constexpr int kFailureTag = 1;
 
@@ -36,7 +36,7 @@ void check(int result, const char* call) {
     throw DeviceError(fmt::format("{} failed: {}", call, text.data()));
 }
 
-// Name and version, from "Open MPI v4.1.4, package: ..." or "MPICH Version: 4.0.2 ...".
+// Returns the library's name and version: the start of "Open MPI v4.1.4, package: ..." or "MPICH Version: 4.0.2 ...".
 std::string library_name() {
     std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
     int length = 0;
@@ -54,12 +54,12 @@ class MpiTransport final : public Transport {
     explicit MpiTransport(double limit_s) : limit_s_(limit_s) {
         int provided = 0;
         check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
-        // One communicator for data and one for reports of failures.
+        // Separate communicators for data and for reports of failures.
         for (MPI_Comm* comm : {&comm_, &failures_}) {
             check(MPI_Comm_dup(MPI_COMM_WORLD, comm), "MPI_Comm_dup");
             check(MPI_Comm_set_errhandler(*comm, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
         }
-        ::prctl(PR_SET_TIMERSLACK, 1);  // exact sleeps, instead of up to 50 us longer
+        ::prctl(PR_SET_TIMERSLACK, 1);  // 1 ns: by default Linux may extend each sleep by 50 us
         MPI_Comm_rank(comm_, &rank_);
         MPI_Comm_size(comm_, &count_);
         spin_s_ = ranks_of_host() > ::sysconf(_SC_NPROCESSORS_ONLN) ? 30e-6 : 300e-6;
@@ -98,7 +98,7 @@ class MpiTransport final : public Transport {
         wait();
     }
 
-    // MPI keeps the order of messages of the same pair and tag, so the pieces arrive in order.
+    // MPI keeps the order of messages with the same sender, receiver and tag, so the pieces arrive in order.
     void start(std::span<const Outgoing> out, std::span<const Incoming> in) override {
         for (const Incoming& m : in)
             for_pieces(m.bytes, [&](std::span<std::byte> piece) {
@@ -120,7 +120,8 @@ class MpiTransport final : public Transport {
     }
 
     void report_failure(const std::string& text, int code) override {
-        // Time for rank 0 to end all ranks; staggered, so that of several failed ranks only the first one goes on.
+        // Rank 0 has this time to end all ranks. It increases with the rank, so that if several ranks fail and rank 0
+        // does not react, only the first of them continues and aborts the others.
         const double timeout_s = 4 + failure_delay_s(rank());
         std::string message = fmt::format("{} {}", code, text);
         std::vector<MPI_Request> sent(1);
@@ -128,7 +129,7 @@ class MpiTransport final : public Transport {
         if (MPI_Isend(message.data(), size, MPI_BYTE, 0, kFailureTag, failures_, sent.data()) != MPI_SUCCESS) return;
         const Clock::time_point start = Clock::now();
         complete(sent, timeout_s);
-        // Rank 0 ends this process.
+        // Normally rank 0 ends this process during the sleep.
         std::this_thread::sleep_for(std::chrono::duration<double>(timeout_s - seconds_since(start)));
     }
 
@@ -137,12 +138,12 @@ class MpiTransport final : public Transport {
     }
 
     [[noreturn]] void abort(int code) override {
-        constexpr double kMost = 5;  // seconds
+        constexpr double kMost = 5;  // maximum duration of MPI_Abort, seconds
         const Deadline deadline(kMost, "", code);
         std::this_thread::sleep_for(
             std::chrono::milliseconds(200));  // MPICH's mpirun may lose output written just before
         MPI_Abort(MPI_COMM_WORLD, code);
-        std::_Exit(code);  // not reached, but MPI does not promise that
+        std::_Exit(code);  // only if MPI_Abort returns, which the MPI standard allows
     }
 
     void close() override {
@@ -176,8 +177,10 @@ class MpiTransport final : public Transport {
 
     MPI_Request& next_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }
 
-    // Returns false after `limit_s` seconds. Ranks may share cores, so a wait spins only for the time of a typical
-    // message and then sleeps: the scheduler prefers a woken thread to computing ones, but not one that yields.
+    // Waits until all requests are complete; returns false after `limit_s` seconds. Ranks may share cores, so the wait
+    // polls without sleeping only for the time of a typical message (spin_s_), and then sleeps between polls. It does
+    // not yield instead: the scheduler prefers a thread that wakes up to computing threads, but not a thread that
+    // yields.
     bool complete(std::vector<MPI_Request>& requests, double limit_s) {
         constexpr auto kSleep = std::chrono::microseconds(20);
         const Clock::time_point start = Clock::now();
@@ -208,7 +211,7 @@ class MpiTransport final : public Transport {
     }
 
     const double limit_s_;
-    double spin_s_ = 0;  // time for which a wait polls before it sleeps
+    double spin_s_ = 0;  // seconds for which a wait polls before it sleeps
     MPI_Comm comm_ = MPI_COMM_NULL, failures_ = MPI_COMM_NULL;
     int rank_ = 0, count_ = 1;
     std::string host_, library_;

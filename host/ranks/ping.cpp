@@ -13,11 +13,11 @@ namespace {
 
 constexpr std::uint64_t kLongestPing = 4 << 20;
 
-// An empty message is not sent, so the shortest one has a byte.
+// The transport does not send empty messages, so the shortest message has one byte.
 constexpr std::uint64_t kMessages[] = {1, 64, 1 << 10, 4 << 10, 16 << 10, 64 << 10, 256 << 10, 1 << 20, kLongestPing};
-constexpr std::uint64_t kGathers[] = {136, 1088, 8704, 69632};  // status of 1, 8, 64 and 512 nodes
+constexpr std::uint64_t kGathers[] = {136, 1088, 8704, 69632};  // bytes: the status of 1, 8, 64 and 512 torus nodes
 
-// More repetitions of short messages; at most 1 GB in all.
+// Short messages are repeated more often. All messages together have at most 1 GB.
 int repetitions_of(std::uint64_t bytes) { return bytes <= (64 << 10) ? 300 : 20; }
 
 template <class Call>
@@ -31,7 +31,7 @@ double minimum_seconds(int repetitions, Call&& call) {
     return least;
 }
 
-// Half of the round trip; valid in rank 0.
+// Returns half of the minimum round-trip time; valid only in rank 0.
 MessageTime message_time(Ranks& ranks, std::uint32_t partner, std::uint64_t bytes) {
     std::vector<std::byte> block(bytes);
     if (ranks.rank() != 0 && ranks.rank() != partner) return {bytes, 0};
@@ -58,7 +58,8 @@ Json json_of(const std::vector<MessageTime>& times) {
 
 }  // namespace
 
-// Minimises the sum of ((alpha + beta b) / t - 1)^2: both partial derivatives are 0.
+// Minimises the sum of ((alpha + beta b) / t - 1)^2 over the messages (b bytes, t seconds), by solving the two linear
+// equations "partial derivative = 0". If a parameter would be negative, it is 0 and only the other one is fitted.
 Network fitted_network(std::span<const MessageTime> times) {
     double ones = 0, b = 0, bb = 0, y = 0, by = 0;  // sums of 1/t^2, b/t^2, b^2/t^2, 1/t, b/t
     for (const MessageTime& time : times) {
@@ -76,7 +77,7 @@ Network fitted_network(std::span<const MessageTime> times) {
     return both;
 }
 
-// open_ranks() has set the number of PoCL's threads.
+// The number of threads is POCL_MAX_PTHREAD_COUNT, which open_ranks() has set.
 RankPlace own_place(const std::string& host) {
     const auto cores = static_cast<std::uint32_t>(std::max(1L, ::sysconf(_SC_NPROCESSORS_ONLN)));
     const char* const value = std::getenv("POCL_MAX_PTHREAD_COUNT");

@@ -13,6 +13,7 @@
 namespace raya {
 namespace {
 
+// Transport of a single rank: communication is a no-op.
 class NoTransport final : public Transport {
   public:
     std::uint32_t rank() const override { return 0; }
@@ -39,6 +40,7 @@ std::uint64_t bytes_of(std::span<const Outgoing> out) {
 
 constexpr int kTries = 16;
 
+// Answers kTries requests of a rank with this rank's time.
 void answer(Ranks& ranks, std::uint32_t rank, const std::function<std::uint64_t()>& now) {
     for (int i = 0; i < kTries; ++i) {
         char asked = 0;
@@ -48,6 +50,7 @@ void answer(Ranks& ranks, std::uint32_t rank, const std::function<std::uint64_t(
     }
 }
 
+// Requests rank 0's time kTries times, and returns the clock offset with the minimum uncertainty.
 RankClock ask(Ranks& ranks, const std::function<std::uint64_t()>& now) {
     RankClock best{0, UINT64_MAX};
     for (int i = 0; i < kTries; ++i) {
@@ -162,7 +165,7 @@ int Ranks::fail(const RankFailure& failure) { return end_all(failure.what(), fai
 
 int Ranks::end_all(const std::string& whole, int code) {
     if (!first()) transport_->report_failure(whole, code);
-    suppress_interrupt_message();  // mpirun ends this rank too
+    suppress_interrupt_message();  // mpirun also ends this rank, by a signal
     print_log(fmt::format("raya: {}\n", whole));
     transport_->abort(code);
     return code;

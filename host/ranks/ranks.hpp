@@ -1,4 +1,5 @@
-// Ranks: the processes that share a render, each with its own device. A program started alone has a single rank.
+// Ranks: the processes that together compute one render, each on its own device. Without a launcher there is a single
+// rank.
 #pragma once
 #include <concepts>
 #include <cstdint>
@@ -17,8 +18,8 @@ namespace raya {
 template <class T>
 concept Sendable = std::is_trivially_copyable_v<T>;
 
-/// Traffic that a rank has sent, and its waiting time. A broadcast counts as one message of rank 0, an all-gather as
-/// one message of each rank.
+/// Messages and bytes that a rank has sent, and the time that it has waited for others. A broadcast counts as one
+/// message of rank 0, an all-gather as one message of each rank.
 struct RankTraffic {
     std::uint64_t messages = 0, bytes = 0;
     double waiting_s = 0;
@@ -28,14 +29,14 @@ struct RankTraffic {
     }
 };
 
-/// Communication among ranks. Collective calls must be made by all ranks in the same order. With a single rank they do
-/// nothing.
+/// Communication among ranks. All ranks must make the same collective calls in the same order. With a single rank,
+/// communication is a no-op.
 class Ranks {
   public:
-    /// A single rank.
+    /// Returns the single rank of a program that was started without a launcher.
     static Ranks& alone();
 
-    /// Collective: finds the ranks that share a host.
+    /// Collective: determines which ranks run on the same host.
     explicit Ranks(std::unique_ptr<Transport> transport);
 
     std::uint32_t rank() const { return rank_; }
@@ -47,7 +48,7 @@ class Ranks {
     std::string host() const { return transport_->host(); }
     std::string library() const { return transport_->library(); }
 
-    /// Sends a value, a vector or a text of rank 0 to all ranks.
+    /// Collective: replaces the value, vector or text in every rank by that of rank 0.
     template <Sendable T>
     void broadcast(T& value) {
         broadcast_bytes(std::as_writable_bytes(std::span(&value, 1)));
@@ -61,7 +62,7 @@ class Ranks {
     }
     void broadcast(std::string& text);
 
-    /// Returns the elements of all ranks, in the order of ranks.
+    /// Collective: returns the elements of all ranks, concatenated in the order of ranks.
     template <Sendable T>
     std::vector<T> all_gather(std::span<const T> own) {
         return all_gather(own, all_sizes(own.size()));
@@ -70,7 +71,7 @@ class Ranks {
     std::vector<T> all_gather(const T& own) {
         return all_gather(std::span(&own, 1), std::vector<std::size_t>(count_, 1));
     }
-    /// `sizes` [rank]: number of elements.
+    /// The same if the number of elements of each rank is known: sizes[rank].
     template <Sendable T>
     std::vector<T> all_gather(std::span<const T> own, std::vector<std::size_t> sizes) {
         std::size_t all = 0;
@@ -79,7 +80,7 @@ class Ranks {
         gather_bytes(std::as_bytes(own), std::as_writable_bytes(std::span(gathered)), sizes);
         return gathered;
     }
-    /// The same in rank 0 only, for large data; empty in other ranks.
+    /// Collective: as all_gather(), but only rank 0 gets the elements; returns empty in other ranks. For large data.
     template <Sendable T>
     std::vector<T> gather(std::span<const T> own, const std::vector<std::size_t>& sizes) {
         if (!first()) {
@@ -109,15 +110,15 @@ class Ranks {
         wait();
     }
 
-    /// Several messages at once (see Transport).
+    /// Starts several non-blocking messages, and waits for them (see Transport).
     void start(std::span<const Outgoing> out, std::span<const Incoming> in);
     void wait();
 
     /// Throws RankFailure in rank 0 if another rank has failed. To be called during long computations.
     void poll_failures() { transport_->poll_failures(); }
 
-    /// Does the work in one rank of each host, then in the others, so that these find its results in caches. Returns
-    /// when all ranks have done it.
+    /// Collective: calls work() first in one rank of each host, then in the host's other ranks, so that these find the
+    /// results in caches on disk. Returns when all ranks have finished.
     template <std::invocable Work>
     void one_first_on_each_host(Work&& work) {
         if (on_host_ == 0) work();
@@ -128,10 +129,11 @@ class Ranks {
 
     const RankTraffic& traffic() const { return traffic_; }
 
-    /// Prints the error of this rank once and ends all ranks with the code. With a single rank, returns the code.
+    /// Reports an error of this rank, which is printed once, and ends all ranks with that exit code. With a single
+    /// rank, prints the error and returns the code.
     int fail(const std::string& text, int code);
 
-    /// The same for a failure of another rank.
+    /// The same for a failure that another rank has reported.
     int fail(const RankFailure& failure);
 
     /// Collective: closes the transport and returns the maximum of all exit codes.
@@ -152,18 +154,19 @@ class Ranks {
     std::unique_ptr<Transport> transport_;
     std::uint32_t rank_, count_;
     std::uint32_t on_host_ = 0, of_host_ = 1;
-    std::vector<std::uint32_t> host_ranks_;  // of this host, ascending
+    std::vector<std::uint32_t> host_ranks_;  // ranks of this host, ascending
     RankTraffic traffic_;
 };
 
-/// Adding `offset_ns` to a time of this rank gives rank 0's time, with an error of at most `uncertainty_ns`.
+/// Clock offset of a rank: its time plus offset_ns is rank 0's time, with an error of at most uncertainty_ns.
 struct RankClock {
     std::int64_t offset_ns = 0;
     std::uint64_t uncertainty_ns = 0;
 };
 
-/// Synchronises clocks as NTP does (D. L. Mills 1991): each rank in turn asks rank 0 for its time repeatedly and takes
-/// the answer with the shortest round trip. Later drift of the clocks is not corrected. `now`: nanoseconds.
+/// Collective: measures this rank's clock offset as NTP does (D. L. Mills 1991). Each rank in turn asks rank 0 for its
+/// time repeatedly and uses the answer with the shortest round trip. Later drift of the clocks is not corrected. `now`:
+/// returns this rank's time in nanoseconds.
 RankClock rank_clock(Ranks& ranks, const std::function<std::uint64_t()>& now);
 
 }  // namespace raya

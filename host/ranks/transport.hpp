@@ -1,5 +1,5 @@
-// Interface for the transfer of bytes between ranks: MPI in a module of its own, threads in tests, a stub for a single
-// rank.
+// Interface for the transfer of bytes between ranks. Implementations: MPI in a loadable module, threads in tests, a
+// stub for a single rank.
 #pragma once
 #include <unistd.h>
 
@@ -18,36 +18,36 @@
 
 namespace raya {
 
-/// Bytes to send to a rank; `tag` distinguishes messages of the same pair of ranks.
+/// A message to send to rank `to`. `tag` distinguishes messages between the same two ranks.
 struct Outgoing {
     std::uint32_t to = 0;
     int tag = 0;  // 0..32767
     std::span<const std::byte> bytes{};
 };
 
-/// Buffer for bytes from a rank, of exactly the size that it sends.
+/// A message to receive from rank `from`. `bytes` must have exactly the size of the message.
 struct Incoming {
     std::uint32_t from = 0;
     int tag = 0;
     std::span<std::byte> bytes{};
 };
 
-/// Another rank has failed or does not answer; thrown by waiting calls. The text has rank and host; `code` is the exit
-/// code.
+/// Thrown by waiting calls if another rank has failed or does not answer. The text names rank and host; `code` is the
+/// exit code.
 struct RankFailure : std::runtime_error {
     RankFailure(const std::string& text, int exit_code) : std::runtime_error(text), code(exit_code) {}
     int code;
 };
 
-/// Seconds that a failed rank waits before its report, so that of several failed ranks only the first one reports and
-/// ends all.
+/// Seconds that a failed rank waits before its report. The delay increases with the rank, so that if several ranks
+/// fail, only the first one reports and ends all ranks.
 inline double failure_delay_s(std::uint32_t rank) {
     constexpr double kTurn = 0.25, kMost = 3;
     return std::min(kTurn * rank, kMost);
 }
 
-/// Collective calls must be made by all ranks in the same order, by one thread each. Every wait has a time limit, after
-/// which it throws RankFailure.
+/// All ranks must make the same collective calls in the same order, each from one thread. Every wait has a time limit,
+/// after which it throws RankFailure.
 class Transport {
   public:
     virtual ~Transport() = default;
@@ -57,15 +57,16 @@ class Transport {
     virtual std::string host() const = 0;     // the name of this rank's host
     virtual std::string library() const = 0;  // name and version, for messages and reports
 
-    /// Sends the bytes of rank 0 to all; the size must be the same in all ranks.
+    /// Collective: copies the bytes of rank 0 to all ranks. The size must be the same in all ranks.
     virtual void broadcast(std::span<std::byte> bytes) = 0;
 
-    /// Concatenates the bytes of all ranks in each rank; `sizes` [rank]: bytes, at most 2^31 in all.
+    /// Collective: concatenates the bytes of all ranks, in each rank. sizes[rank]: number of bytes of a rank; at most
+    /// 2^31 - 1 in total.
     virtual void all_gather(std::span<const std::byte> own, std::span<std::byte> all,
                             std::span<const std::size_t> sizes) = 0;
 
-    /// Starts non-blocking messages. wait() must be called before any other call, and the buffers must stay valid until
-    /// then.
+    /// Starts non-blocking messages; wait() waits until they are complete. The buffers must stay valid, and no other
+    /// function may be called, until wait() has returned.
     virtual void start(std::span<const Outgoing> out, std::span<const Incoming> in) = 0;
     virtual void wait() = 0;
 
@@ -73,23 +74,24 @@ class Transport {
     virtual void poll_failures() = 0;
 
     /// Reports an error of this rank to rank 0, which prints it and ends all ranks. Returns after some seconds if rank
-    /// 0 does not.
+    /// 0 has not ended this rank.
     virtual void report_failure(const std::string& text, int code) = 0;
 
     /// Ends the processes of all ranks with that exit code.
     [[noreturn]] virtual void abort(int code) = 0;
 
-    /// Must be the last call.
+    /// Ends the communication. Must be the last call.
     virtual void close() = 0;
 };
 
-/// Starts MPI. A wait of more than `limit_s` seconds ends with RankFailure. The caller owns the result.
+/// Type of the module's function that starts MPI. A wait of more than `limit_s` seconds throws RankFailure. The caller
+/// owns the result.
 using OpenMpi = Transport*(double limit_s);
 
 inline constexpr const char *kMpiModule = "raya_mpi", *kOpenMpi = "raya_open_mpi";
 
-/// Time limit for calls without one, such as MPI_Init and MPI_Finalize. Unless destroyed within `limit_s` seconds, it
-/// prints `text` on stderr and ends the process with `code`.
+/// Time limit for calls that have none, such as MPI_Init and MPI_Finalize. If the object is not destroyed within
+/// `limit_s` seconds, it prints `text` on stderr and ends the process with `code`.
 class Deadline {
   public:
     Deadline(double limit_s, std::string text, int code)
@@ -114,7 +116,7 @@ class Deadline {
     std::mutex mutex_{};
     std::condition_variable ended_{};
     bool over_ = false;
-    std::thread watch_;  // last: it uses the others
+    std::thread watch_;  // declared last, because the thread uses the members above
 };
 
 }  // namespace raya

@@ -13,7 +13,7 @@ namespace {
 
 using Rows = std::vector<BenchMeasurement>;
 
-/// Identifies what was measured.
+/// Returns the members that identify a row, as a tuple.
 auto key(const BenchMeasurement& r) {
     return std::tie(r.kernel, r.scene, r.size, r.array, r.format, r.lanes, r.group_size);
 }
@@ -23,7 +23,7 @@ const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wante
     return found == rows.end() ? nullptr : &*found;
 }
 
-/// Change of a rate in percent.
+/// Returns the change of a rate in percent.
 double change(double before, double now) { return 100 * (now / before - 1); }
 
 std::string percent(double value) { return fmt::format("{:+.1f} %", value); }
@@ -39,7 +39,7 @@ std::vector<std::string> joined(std::vector<std::string> first, const std::vecto
 
 std::string rate(double value) { return fmt::format("{:.1f}", value); }
 
-/// Verdict on a row of both runs; counts it in `sum`.
+/// Returns the verdict on a row that both runs have, and counts it in `sum`.
 std::string verdict(BenchComparison& sum, const BenchMeasurement& before, const BenchMeasurement& now,
                     double tolerance) {
     const double best = change(before.best_rate(), now.best_rate());
@@ -63,7 +63,7 @@ void add_difference(BenchComparison& sum, const char* what, const std::string& b
     sum.text += "warning: " + sum.remarks.back() + "\n";
 }
 
-/// `before`, `now`: null if that run does not have the row.
+/// `before`, `now`: null if the run does not have the row.
 Json row_json(const BenchMeasurement* before, const BenchMeasurement* now, const std::string& verdict_text) {
     Json json = measured_json(now != nullptr ? *now : *before);
     json["mrays_per_s"] = now != nullptr ? rates_json(*now) : Json{};

@@ -1,4 +1,4 @@
-// Report of one render: plain data, written as JSON and as a summary on the terminal.
+// Report of one render: a struct, written as JSON and as a summary on the terminal.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,22 +20,22 @@ namespace raya {
 /// Anti-aliasing of an image on the ring machine.
 struct Antialiasing {
     std::string method;             // "filter" or "supersample"
-    std::string exchange;           // how neighbours' pixels are exchanged: "ring", "bus", "bus-broadcast"
-    std::string points;             // of supersampling: "axes" or "diagonals"
-    double threshold = 0;           // of supersampling, 0..1
-    std::uint64_t recomputed = 0;   // pixels supersampled
-    double recomputed_share = 0;    // of all pixels
-    std::uint32_t band_pixels = 0;  // pixels of a PE that move at once
+    std::string exchange;           // transfer of neighbours' pixels: "ring", "bus", "bus-broadcast"
+    std::string points;             // points of supersampling: "axes" or "diagonals"
+    double threshold = 0;           // threshold of supersampling, 0..1
+    std::uint64_t recomputed = 0;   // number of pixels supersampled
+    double recomputed_share = 0;    // fraction of all pixels that is supersampled
+    std::uint32_t band_pixels = 0;  // pixels of a PE in one transfer
 };
 
-/// Conversion of linear colours to codes of an 8-bit picture.
+/// Conversion of linear colours to the values of an 8-bit image.
 struct ImageCodes {
     double exposure = 0;          // stops: colours were multiplied by 2^exposure
     std::string tone;             // "clip" or "reinhard"
     std::optional<double> gamma;  // empty: the sRGB curve
 };
 
-/// The build of one program, on the host.
+/// Time on the host for building one OpenCL program.
 struct ProgramBuild {
     std::string name;
     double seconds = 0;
@@ -45,24 +45,24 @@ struct RenderReport {
     std::string raya;  // version
     std::string scene;
     std::vector<std::string> warnings;  // as printed on stderr
-    std::vector<NffRemark> skipped;     // entities of the scene's file that were skipped
+    std::vector<NffRemark> skipped;     // entities of the scene file that were skipped
 
-    Json view;  // as rendered, with the options of the command line (view_json() in scene_report.hpp)
+    Json view;  // camera and lights after applying command-line options (view_json() in scene_report.hpp)
 
     struct {
         int width = 0, height = 0;  // pixels
-        std::string file, hash;     // hash of the linear pixel values: equal for equal pixels
+        std::string file, hash;     // hash: of the linear pixel values
         std::optional<ImageCodes> codes{};
         struct {
             int width = 0, height = 0;  // pixels
-            std::string png;            // bytes of the file; empty: no preview
-        } preview{};                    // for the report's page (host/image/preview.hpp)
+            std::string png;            // contents of the PNG file; empty: no preview
+        } preview{};                    // shown in the report's page (host/image/preview.hpp)
     } image;
 
     struct {
         std::string name, topology;
-        std::string mapping;              // "cyclic" or "column", otherwise with parameters: "grid:16x16"
-        std::optional<std::string> fold;  // of a mapping with slots
+        std::string mapping;              // "cyclic" or "column"; others with parameters: "grid:16x16"
+        std::optional<std::string> fold;  // fold of a mapping with slots
         std::string format;
         std::uint32_t pes = 0;
         std::optional<std::uint32_t> offset;  // p of a mapping with slots
@@ -75,43 +75,43 @@ struct RenderReport {
     struct {
         std::string name, platform, version, driver, build_options;
         std::uint32_t lanes = 0, group_size = 0;
-        std::string tuned;  // origin of lanes, group and related options: "defaults", "options", "FILE, DATE"
+        std::string tuned;  // source of lanes, group and related options: "defaults", "options", "FILE, DATE"
     } device;
 
     EventCounts events{};
-    std::optional<std::uint64_t> requests;            // for pixels, if loads are of a simulated dynamic distribution
-    Load load;                                        // of all phases together
-    std::vector<std::pair<std::string, Load>> loads;  // of each phase, by its name
+    std::optional<std::uint64_t> requests;            // pixel requests, if dynamic scheduling was simulated
+    Load load;                                        // sum of all phases
+    std::vector<std::pair<std::string, Load>> loads;  // name and load of each phase
     std::optional<Antialiasing> antialias;
     std::optional<AccelSummary> accel;  // empty: no accelerator
     Communication communication;
-    std::optional<ModelledTime> modelled;  // empty: the machine's rates are not known
-    std::optional<TorusReport> torus;      // of the torus machine, instead of the four members above
+    std::optional<ModelledTime> modelled;  // empty: the machine's rates are unknown
+    std::optional<TorusReport> torus;      // torus machine only; replaces the four members above
 
     std::vector<Json> ranks;  // device, times and messages of each MPI rank; empty for one rank
 
     struct {
         double build_s = 0, render_s = 0;
         std::vector<LabelSummary> commands;
-        std::vector<ProgramBuild> builds{};  // with --profile, like `roofline`
+        std::vector<ProgramBuild> builds{};  // only with --profile, like `roofline`
         std::optional<Roofline> roofline{};
-        double earlier_s = 0;  // part of render_s that earlier runs took, whose checkpoint this run resumed
+        double earlier_s = 0;  // part of render_s spent by earlier runs whose checkpoint this run resumed
     } measured;
 };
 
-/// Member "kind" of a report, which identifies it.
+/// Value of the member "kind", which identifies the report.
 inline constexpr const char* kRenderReportKind = "raya render";
 
-/// Number of rays of all kinds.
+/// Returns the number of rays of all kinds.
 std::uint64_t ray_count(const EventCounts& events);
 
-/// Number of intersection tests of all kinds.
+/// Returns the number of intersection tests of all kinds.
 std::uint64_t test_count(const EventCounts& events);
 
-/// Members are documented in docs/report.md and only ever added.
+/// docs/report.md documents the members. Later versions may add members, but do not remove or change them.
 Json to_json(const RenderReport& report);
 
-/// The summary on the terminal: rays, imbalance u, efficiency, times.
+/// Returns the summary for the terminal: rays, load imbalance u, efficiency, times.
 std::string summary_text(const RenderReport& report);
 
 }  // namespace raya

@@ -15,7 +15,8 @@ double as_double(std::uint64_t count) { return static_cast<double>(count); }
 
 double per_second(double count, double seconds) { return seconds > 0 ? count / seconds : 0; }
 
-// Time of the operations at the format's own rates.
+// Returns the seconds that the operations take at the peak rates of multiply-adds, divisions and square roots in the
+// number format.
 double seconds_in_format(const KernelWork& w, const DevicePeak& peak) {
     return as_double(w.operations) / peak.multiply_per_s + as_double(w.divisions) / peak.divide_per_s +
            as_double(w.roots) / peak.root_per_s;
@@ -40,7 +41,7 @@ const char* bound_name(Bound bound) { return bound == Bound::kCompute ? "compute
 
 std::string hundredths(double share) { return fmt::format("{:.2f}", 100 * share); }
 
-// "-" for a value of 0.
+// Returns "-" for a value of 0.
 std::string cell(double value, const std::string& text) { return value > 0 ? text : "-"; }
 
 std::vector<std::string> cells_of(const RooflineRow& r) {
@@ -81,7 +82,7 @@ std::string format_remark(const DevicePeak& p) {
            "        above 100 % if most are cheaper: comparisons, and spheres that the fp32 filter rejects\n";
 }
 
-// The kernel's bound and its share of the roof.
+// Returns the kernel's bound and its fraction of the roof.
 std::string verdict(const RooflineRow& r, const DevicePeak& p) {
     const bool compute = r.bound == Bound::kCompute;
     std::string line = fmt::format("roof    {}: {} bound, {:.2f} % of {}", r.work.label, bound_name(r.bound),

@@ -133,7 +133,7 @@ std::string format_text(const FormatFit& f) {
     return text;
 }
 
-// "fits", "needs 12 KB more" or "refused".
+// Returns "fits", "needs 12 KB more" or "refused".
 std::string verdict(const AccelNeed& need) {
     if (need.refusal.empty()) return "fits";
     if (need.missing_bytes > 0) return fmt::format("needs {} more", required_size_text(need.missing_bytes));
@@ -152,7 +152,7 @@ std::string machine_table(const std::vector<MachineNeeds>& machines) {
     return rows.size() == 1 ? "" : text_table(rows) + "*: the machine's default\n";
 }
 
-// Refusals for other reasons than memory.
+// Returns the error messages for reasons other than memory.
 std::string refusals_text(const std::vector<MachineNeeds>& machines) {
     std::string text;
     for (const MachineNeeds& m : machines) {

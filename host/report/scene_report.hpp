@@ -1,4 +1,4 @@
-// Report of `raya info`: plain data about a scene, written as JSON and as text on the terminal.
+// Report of `raya info`: a struct with data on a scene, written as JSON and as text on the terminal.
 #pragma once
 
 #include <Imath/ImathBox.h>
@@ -16,22 +16,22 @@
 
 namespace raya {
 
-/// Representation of a scene in a number format.
+/// Whether and how a scene can be represented in a number format.
 struct FormatFit {
     std::string format;
     LengthScale scale;
-    std::string refusal;  // error of a render in this format; empty: none
+    std::string refusal;  // error message of a render in this format; empty: none
 };
 
-/// Memory that a PE (on the torus the fullest node) needs for a scene with one accelerator.
+/// Memory that a PE of the ring, or the fullest node of the torus, needs for a scene with one accelerator.
 struct AccelNeed {
     std::string accel;                // value of --accel; "voxels" on the torus
-    bool is_default = false;          // the machine's default for this scene
-    std::uint64_t words = 0;          // of 4 bytes: job with accelerator, on the torus of the fullest node
-    AccelSummary made;                // grid or BVH
-    std::uint64_t pe_bytes = 0;       // with rays, pixels and buffers; if that does not fit: the minimum
-    std::uint64_t missing_bytes = 0;  // 0: it fits
-    std::string refusal;              // error of a render; empty: none
+    bool is_default = false;          // `accel` is the machine's default for this scene
+    std::uint64_t words = 0;          // of 4 bytes: job with accelerator, or fullest node
+    AccelSummary made;                // figures of the grid or BVH
+    std::uint64_t pe_bytes = 0;       // needed, with rays, pixels and buffers; the minimum if it does not fit
+    std::uint64_t missing_bytes = 0;  // 0: the scene fits
+    std::string refusal;              // error message of a render; empty: none
 };
 
 /// Memory needs of a machine's PEs.
@@ -40,7 +40,7 @@ struct MachineNeeds {
     std::uint32_t pes = 0;
     std::optional<std::uint64_t> memory_bytes;  // of a PE; empty: no limit
     std::vector<AccelNeed> needs;
-    std::string refusal;  // error for the options on this machine; `needs` is then empty
+    std::string refusal;  // error message for the options on this machine; `needs` is then empty
 };
 
 struct SceneReport {
@@ -54,16 +54,16 @@ struct SceneReport {
     std::vector<MachineNeeds> machines;
 };
 
-/// Members are documented in docs/report.md and only ever added.
+/// docs/report.md documents the members. Later versions may add members, but do not remove or change them.
 Json to_json(const SceneReport& report);
 
-/// The text on the terminal: objects, camera, lights, extent, formats, and a table of machines.
+/// Returns the text for the terminal: objects, camera, lights, extent, formats, and a table of machines.
 std::string summary_text(const SceneReport& report);
 
 Json vector_json(const Vec3& v);
 
-/// Camera, background, and lights with the colours that they emit: the values of --from, --at, --up, --angle,
-/// --background and --light that reproduce the picture.
+/// Returns camera, background, and lights with the colours that they emit, as the values of --from, --at, --up,
+/// --angle, --background and --light that reproduce the image.
 Json view_json(const Scene& scene);
 
 }  // namespace raya

@@ -15,7 +15,7 @@ std::string name_of(const std::string& process, const TraceRank& rank) {
     return rank.named ? fmt::format("rank {} {}", rank.number, process) : process;
 }
 
-// Converts times of the device's clock to times of the trace.
+// Converts times on the device's clock to nanoseconds since the start of the trace.
 class DeviceTimes {
   public:
     DeviceTimes(const ClockAnchor& anchor, std::uint64_t begin)
@@ -51,7 +51,7 @@ Json arguments_of(const CommandRecord& c) {
     return json;
 }
 
-// Returns the first track that is free at `start`; adds one if there is none.
+// Returns the first track without a slice at time `start`; adds a track if there is none.
 std::uint32_t free_track(TraceFile& trace, std::uint32_t process, std::vector<std::uint64_t>& busy_until,
                          std::uint64_t start) {
     const auto found =

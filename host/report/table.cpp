@@ -12,7 +12,7 @@ bool is_number(const std::string& cell) {
     return cell == "-" || (!cell.empty() && std::isdigit(static_cast<unsigned char>(cell.front())));
 }
 
-// Returns true for a column whose cells, except the header, are numbers.
+// Returns true if all cells of the column, except the header, are numbers or "-".
 bool is_right_aligned(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
     return std::all_of(rows.begin() + 1, rows.end(),
                        [&](const auto& row) { return column >= row.size() || is_number(row[column]); });

@@ -5,8 +5,8 @@
 
 namespace raya {
 
-/// Formats rows as lines with columns two spaces apart; the first row is the header. Columns of numbers and "-" are
-/// aligned to the right.
+/// Formats rows as lines of text with two spaces between columns. The first row is the header. Columns that contain
+/// only numbers and "-" are right-aligned.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace raya

@@ -36,7 +36,7 @@ void TraceFile::name_track(TraceTrack track, const std::string& name) {
     open_[track];
 }
 
-// Counts `events` events as added, or as dropped if they exceed the limit. Returns true if they fit.
+// Returns true and counts `events` events as added if they do not exceed the limit; otherwise counts them as dropped.
 bool TraceFile::reserve(std::size_t events) {
     const bool fits = events <= max_events_ - events_;
     (fits ? events_ : left_out_) += events;

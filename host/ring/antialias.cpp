@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-// In the order of AntialiasMethod.
+// Names of the methods, in the order of AntialiasMethod.
 constexpr std::array<const char*, 3> kMethods = {"none", "filter", "supersample"};
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Anti-aliasing of the image after the first pass (Kohata & Ito 1993).
+// Anti-aliasing methods, applied to the image after the first pass (Kohata & Ito 1993).
 #pragma once
 #include <string>
 
@@ -11,30 +11,32 @@ namespace raya {
 enum class AntialiasMethod {
     kNone,
     kFilter,      // mean of the 3 x 3 neighbourhood of every pixel
-    kSupersample  // mean of five points for pixels that differ from a neighbour
+    kSupersample  // mean of five samples for each pixel that differs from a neighbour
 };
 
 struct Antialias {
     AntialiasMethod method = AntialiasMethod::kNone;
-    double threshold = 0.125;            // difference of a colour component, 0..1; supersampling
-    raya_u32 points = RAYA_POINTS_AXES;  // RAYA_POINTS_AXES or _DIAGONALS; supersampling
+    double threshold = 0.125;            // supersampling: minimum difference of a colour component, 0..1
+    raya_u32 points = RAYA_POINTS_AXES;  // supersampling: RAYA_POINTS_AXES or RAYA_POINTS_DIAGONALS
     ExchangeMethod exchange = ExchangeMethod::kRing;
 };
 
-/// "none", "filter", "supersample"
+/// Returns "none", "filter" or "supersample".
 std::string antialias_name(AntialiasMethod method);
 
-/// Throws UserError if the mapping is dynamic or random, so that neighbours are not in fixed PEs nearby.
+/// Throws UserError if the method needs neighbours and the mapping is dynamic or random: then a pixel's neighbours are
+/// not on PEs at fixed, small distances.
 void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool dynamic);
 
-/// "axes" or "diagonals", for RAYA_POINTS_*
+/// Returns "axes" or "diagonals". `points`: RAYA_POINTS_AXES or RAYA_POINTS_DIAGONALS.
 std::string points_name(raya_u32 points);
 
-/// Moves of ring or bus that bring neighbours' pixels from each side, if whole shares move. The filter's sums depend on
-/// the order of sides, comparisons do not.
+/// Number of ring or bus moves that bring the neighbours' pixels from each side to every PE, if each move carries a
+/// PE's whole share. The filter processes the sides one by one, as its rounded sums depend on their order;
+/// supersampling compares all sides in any order.
 MovesOfSides smoothing_moves(const Antialias& antialias, const raya_mapping& mapping);
 
-/// Cycles of the method's arithmetic between neighbours, for a PE of `share` pixels.
+/// Modelled cycles of the method's arithmetic on neighbours, for a PE that owns `share` pixels.
 SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share);
 
 }  // namespace raya

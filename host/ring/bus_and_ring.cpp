@@ -89,7 +89,7 @@ void Ring::load(const Buffer<float>& own, std::size_t own_words, std::size_t beg
     session_.copy_blocks("ring.load", own, {begin, own_words}, front_, {0, row_words_}, count, rows);
 }
 
-// The block for another rank is sent first, so that it travels while the others are copied.
+// The block for another rank is sent first, so that its transfer overlaps with the copies within this rank.
 void Ring::rotate(Turn turn) {
     if (ranks_.many()) send_block(turn);
     turn_here(turn);
@@ -99,7 +99,8 @@ void Ring::rotate(Turn turn) {
     std::swap(front_, back_);
 }
 
-// Moves blocks within the segment; with a single rank also from one end to the other.
+// Moves the blocks within the segment. With a single rank, also moves the block at one end of the segment to the other
+// end.
 void Ring::turn_here(Turn turn) {
     const bool down = turn == Turn::kDown;
     const char* const label = down ? "ring.rotate_down" : "ring.rotate_up";

@@ -1,5 +1,5 @@
-// Bus and ring of the machine, as counted and labelled buffer transfers (Kohata & Ito 1993, section on the array), and
-// the division of PEs among ranks.
+// Bus and ring of the machine (Kohata & Ito 1993, section on the array), modelled by labelled buffer transfers that are
+// counted, and the distribution of PEs over ranks.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,18 +13,18 @@
 
 namespace raya {
 
-/// Consecutive PEs of a rank. The segments of ranks differ by at most one PE.
+/// The consecutive PEs that a rank models. The sizes of segments differ by at most one PE.
 struct PeSegment {
     std::uint32_t first = 0, count = 0;
 };
 
-/// The segment of a rank; requires pes >= ranks.
+/// Returns the segment of a rank. Requires pes >= ranks.
 inline PeSegment segment_of(std::uint32_t pes, std::uint32_t ranks, std::uint32_t rank) {
     const auto begin = [&](std::uint64_t r) { return static_cast<std::uint32_t>(r * pes / ranks); };
     return {begin(rank), begin(rank + 1) - begin(rank)};
 }
 
-/// The rank that has a PE.
+/// Returns the rank that models a PE.
 inline std::uint32_t rank_of_pe(std::uint32_t pes, std::uint32_t ranks, std::uint64_t pe) {
     return static_cast<std::uint32_t>(((pe + 1) * ranks - 1) / pes);
 }
@@ -33,38 +33,40 @@ inline PeSegment own_segment(std::uint32_t pes, const Ranks& ranks) {
     return segment_of(pes, ranks.count(), ranks.rank());
 }
 
-/// Words of one PE in a buffer of `rows` rows of `pitch` words for each PE, from word `offset` of each row on.
+/// Part of one PE's data in a buffer with the layout [PE][rows][pitch]: the words of each row from `offset` on.
 struct PeWords {
     std::size_t pe = 0, pitch = 0, offset = 0, rows = 1;
 };
 
-/// PE numbers are those of the whole ring. All ranks must make the same transfers; each counts them all, and its
-/// buffers have the PEs of its own segment.
+/// PE numbers are those of the whole ring. All ranks must make the same calls. Each rank counts all transfers, but its
+/// buffers hold only the PEs of its own segment.
 class Bus {
   public:
     Bus(Session& session, Communication& counted, std::uint32_t pes, Ranks& ranks = Ranks::alone())
         : session_(session), counted_(counted), ranks_(ranks), pes_(pes), here_(own_segment(pes, ranks)) {}
 
-    /// Host to all PEs. The PEs copy `to` into their memories at the start of a kernel.
+    /// Sends words from the host to all PEs, by writing them to the device buffer `to`. The PEs copy them into their
+    /// memories at the start of a kernel.
     void broadcast(Buffer<std::uint32_t>& to, std::span<const std::uint32_t> words);
 
-    /// Sends `words` words of each row from one PE to another. The buffers must differ and have the same number of
-    /// rows.
+    /// Sends `words` words of each row from one PE to another. `own` and `blocks` must be different buffers, and
+    /// from.rows must equal to.rows.
     void send(const Buffer<float>& own, PeWords from, Buffer<float>& blocks, PeWords to, std::size_t words);
 
-    /// Broadcasts `words` words of each row of one PE to all others. `heard`, once on each device, has a place for the
-    /// words of every PE of the ring.
+    /// Broadcasts `words` words of each row of one PE to all others. Each device has one buffer `heard`, with space for
+    /// the words of every PE of the ring.
     void broadcast_from(const Buffer<float>& own, PeWords from, Buffer<float>& heard, PeWords to, std::size_t words);
 
-    /// Counts a gather of the machine, which may take several calls of gather().
+    /// Counts one gather. Its data may be read by several calls of gather().
     void begin_gather() { counted_.gathers += 1; }
 
-    /// Reads the blocks of this rank's PEs. `words`: number of words in the blocks of all ranks that are pixels, to be
-    /// counted; the others are padding.
+    /// Reads the blocks of this rank's PEs. `words`: number of words to count: those of pixels in the blocks of all
+    /// ranks, without padding.
     void gather(const Buffer<float>& blocks, std::span<float> to, std::uint64_t words);
 
   private:
-    /// Copies between buffers, and to and from the host as [row][words]. `first_of_blocks`: first PE of `blocks`.
+    /// copy() copies between device buffers; read() and write() transfer [row][words] to and from the host.
+    /// `first_of_blocks`: number of the first PE in `blocks`.
     void copy(const char* label, const Buffer<float>& own, const PeWords& from, Buffer<float>& blocks,
               const PeWords& to, std::size_t words, std::size_t first_of_blocks);
     std::vector<float> read(const char* label, const Buffer<float>& own, const PeWords& from, std::size_t words);
@@ -78,34 +80,35 @@ class Bus {
     PeSegment here_;
 };
 
-/// One block in the memory of each PE, and the rotations that move them. The device needs a second buffer, as source
-/// and destination of a copy must not overlap; a PE of the machine sends and receives word by word and needs only one.
+/// One block in the memory of each PE, and the rotations that move all blocks. The device needs a second buffer,
+/// because source and destination of a copy must not overlap. A PE of the modelled machine sends and receives word by
+/// word and needs only one block.
 class Ring {
   public:
-    /// `pes` blocks of `rows` rows of `row_words` words, all > 0; those of this rank's segment lie on the device. Their
-    /// contents are undefined at first. `counted` counts the rotations of all ranks.
+    /// Allocates the blocks of this rank's segment on the device, [PE][rows][row_words], with undefined contents.
+    /// `pes`: number of PEs of the whole ring. All sizes must be > 0. `counted` counts the rotations of all PEs.
     Ring(Session& session, Communication& counted, std::uint32_t pes, std::size_t rows, std::size_t row_words,
          Ranks& ranks = Ranks::alone());
 
-    /// Copies words from `begin` on of each row of each PE's own memory, [PE][rows][own_words], into its block, as many
-    /// as fit or exist. Not counted, as it is no transfer between PEs.
+    /// Fills each PE's block from its own memory `own`, [PE][rows][own_words]: copies the words of each row from
+    /// `begin` on, at most row_words of them. Not counted, because no data moves between PEs.
     void load(const Buffer<float>& own, std::size_t own_words, std::size_t begin);
 
-    /// One rotation of all blocks, including the wrap-around.
+    /// Every PE sends its block to the next PE in the direction, with wrap-around at the end of the ring.
     void rotate(Turn turn);
 
-    /// PE i takes the block of PE (i + distance) mod P from `heard`, [PE of all ranks][rows][row_words], which was
-    /// broadcast over the bus. Not counted.
+    /// For each PE i, copies the block of PE (i + distance) mod P from `heard` into the block of PE i. `heard`: blocks
+    /// that were broadcast over the bus, [PE of all ranks][rows][row_words]. Not counted.
     void take(const Buffer<float>& heard, std::size_t distance);
 
-    /// Current blocks of the PEs of the segment, [PE][rows][row_words].
+    /// Current blocks of the PEs of this rank's segment, [PE][rows][row_words].
     Buffer<float>& blocks() { return front_; }
 
   private:
     void turn_here(Turn turn);
     void send_block(Turn turn);
     void receive_block(Turn turn);
-    /// Copies blocks; `first` and `at` count in blocks.
+    /// Copies `blocks` blocks. `first` and `at` are the indices of the first source and destination block.
     void move(const char* label, const Buffer<float>& from, std::size_t first, Buffer<float>& to, std::size_t at,
               std::size_t blocks);
 
@@ -115,7 +118,7 @@ class Ring {
     PeSegment here_;
     std::size_t pes_, rows_, row_words_, block_words_;
     Buffer<float> front_, back_;
-    std::vector<float> outgoing_, incoming_;  // a block each, to and from another rank
+    std::vector<float> outgoing_, incoming_;  // block sent to, and block received from, another rank
 };
 
 }  // namespace raya

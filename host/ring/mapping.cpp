@@ -9,7 +9,7 @@
 namespace raya {
 namespace {
 
-// The divisor of `side` nearest to `wanted`, the lower one in case of a tie.
+// Returns the divisor of `side` that is nearest to `wanted`; the smaller one in a tie.
 std::uint32_t nearest_divisor(std::uint32_t side, std::uint32_t wanted) {
     const auto away = [&](std::uint32_t d) { return d < wanted ? wanted - d : d - wanted; };
     std::uint32_t nearest = 1;

@@ -7,17 +7,17 @@
 
 namespace raya {
 
-/// Checks and completes a mapping. Throws UserError, with the option and its legal range, for an image side outside
-/// 1..16384, PEs outside 1..W*H or different from the grid's, an offset outside 0..W-1, tiles that do not divide the
-/// image.
+/// Returns the mapping of an image of W x H pixels by this rule. Throws UserError, with the option and its legal range,
+/// if W or H is outside 1..16384, the number of PEs is outside 1..W*H or differs from that of the grid, the offset is
+/// outside 0..W-1, or tiles do not divide the image.
 raya_mapping make_mapping(const MappingRule& rule, const ImageSize& image, std::uint32_t pes);
 
-/// The argument of --mapping for this mapping, without the fold: "cyclic:16", "grid:16x16". The column split is
-/// "cyclic:0".
+/// Returns the argument of --mapping for this mapping, without the fold: "cyclic:16", "grid:16x16". The mapping of
+/// whole columns is "cyclic:0".
 std::string mapping_text(const MappingRule& rule);
 std::string mapping_text(const raya_mapping& mapping);
 
-/// Maximum number of pixels of a PE.
+/// Returns the maximum number of pixels that a PE owns.
 std::uint32_t largest_share(const raya_mapping& mapping);
 
 }  // namespace raya

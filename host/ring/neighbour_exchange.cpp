@@ -32,7 +32,7 @@ void NeighbourExchange::visit(const Buffer<float>& own, std::initializer_list<ra
     }
 }
 
-// Rotates the ring along the shortest route.
+// Rotates the ring along the shortest route, and reports an arrival at each stop.
 void NeighbourExchange::exchange_by_rotation(const Buffer<float>& own, raya_u32 side, std::uint32_t begin,
                                              const Arrived& arrived) {
     for (const Leg& leg : shortest_route(pes_, distances_[side])) {
@@ -45,7 +45,7 @@ void NeighbourExchange::exchange_by_rotation(const Buffer<float>& own, raya_u32 
     }
 }
 
-// Sends from PE to PE over the bus, one distance after another.
+// For each distance, sends the block of PE (i + distance) mod P over the bus to each PE i.
 void NeighbourExchange::exchange_by_transfers(const Buffer<float>& own, raya_u32 side, std::uint32_t begin,
                                               const Arrived& arrived) {
     for (const std::uint32_t distance : distances_[side]) {
@@ -57,7 +57,7 @@ void NeighbourExchange::exchange_by_transfers(const Buffer<float>& own, raya_u32
     }
 }
 
-// Broadcasts from each PE in turn, unless every PE owns its neighbours.
+// Broadcasts the block of each PE in turn. No broadcast is needed if every PE itself owns all its pixels' neighbours.
 void NeighbourExchange::exchange_by_broadcast(const Buffer<float>& own, std::initializer_list<raya_u32> sides,
                                               std::uint32_t begin, const Arrived& arrived) {
     const bool needed = std::ranges::any_of(
@@ -72,7 +72,7 @@ void NeighbourExchange::exchange_by_broadcast(const Buffer<float>& own, std::ini
         }
 }
 
-// Number of pixels of a band; the last one may be shorter.
+// Returns the number of pixels of the band that starts at `begin`; the last band may be shorter.
 std::size_t NeighbourExchange::pixels_from(std::uint32_t begin) const { return std::min(band_, capacity_ - begin); }
 
 }  // namespace raya

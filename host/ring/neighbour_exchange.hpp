@@ -1,4 +1,5 @@
-// Brings the blocks of pixels that contain neighbours to every PE, over ring or bus.
+// Exchange of neighbours' pixels between PEs, over ring or bus. Every PE receives the blocks that contain neighbours of
+// its own pixels.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,16 +13,16 @@
 
 namespace raya {
 
-/// A block that has arrived in every PE.
+/// The blocks that have arrived, one in every PE.
 struct Arrival {
     Buffer<float>& blocks;   // [PE][3][band]
-    raya_u32 side;           // of the neighbours that it contains, RAYA_LEFT..RAYA_BELOW
-    std::uint32_t distance;  // PE i holds the block of PE (i + distance) mod P
-    std::uint32_t begin;     // index of the block's first pixel in that PE's share
+    raya_u32 side;           // side of the neighbours that the blocks contain: RAYA_LEFT..RAYA_BELOW
+    std::uint32_t distance;  // PE i has received the block of PE (i + distance) mod P
+    std::uint32_t begin;     // index of the block's first pixel in the share of PE (i + distance) mod P
 };
 
-/// Moves bands of `band` pixels of each PE: the whole share if the PE's memory can hold a second one (see PeMemory),
-/// else its parts in turn.
+/// Each move carries a band of at most `band` pixels of each PE. If a PE's memory can hold a second share (see
+/// PeMemory), the band is the whole share; otherwise the bands of the share are moved one after another.
 class NeighbourExchange {
   public:
     /// `capacity`: pixels in each PE's memory; `band`: 1..capacity.
@@ -30,8 +31,9 @@ class NeighbourExchange {
 
     std::uint32_t band() const { return band_; }
 
-    /// Brings pixels to the PEs whose neighbours on `sides` they are, and calls `arrived` for each block with
-    /// neighbours of some PE. `own`: [PE][3][capacity], of this rank's PEs. The order of several sides is unspecified.
+    /// Moves every pixel to the PEs that need it as a neighbour on one of `sides`, and calls `arrived` after each
+    /// arrival of blocks that contain such neighbours. `own`: pixels of this rank's PEs, [PE][3][capacity]. The order
+    /// of the sides is unspecified.
     void visit(const Buffer<float>& own, std::initializer_list<raya_u32> sides,
                const std::function<void(const Arrival&)>& arrived);
 
@@ -49,7 +51,7 @@ class NeighbourExchange {
     std::array<std::vector<std::uint32_t>, RAYA_SIDES> distances_;
     Ring ring_;
     Bus bus_;
-    std::optional<Buffer<float>> broadcast_blocks_;  // [PE][3][band]; a PE of the machine needs only one block
+    std::optional<Buffer<float>> broadcast_blocks_;  // [PE][3][band]; a PE of the machine stores only one block
 };
 
 }  // namespace raya

@@ -10,8 +10,8 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kWaitingRayWords = 7;  // a ray on the stack: origin, direction, weight
-constexpr std::uint64_t kWalkWords = 32;       // the ray, its hit, normal, mirror direction, tint, sum and counters
+constexpr std::uint64_t kWaitingRayWords = 7;  // a pending ray on the stack: origin, direction, weight
+constexpr std::uint64_t kWalkWords = 32;       // current ray, hit, normal, mirror direction, tint, sum, counters
 constexpr std::uint64_t kPixelBytes = 12;
 
 [[noreturn]] void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes,

@@ -1,4 +1,5 @@
-// Memory that a PE needs, and how much of its share fits. A PE of the machine accesses only its own memory.
+// Plan of a PE's memory: what it must hold, and how many of the PE's pixels fit at a time. A PE of the ring machine can
+// access only its own memory.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,32 +11,32 @@ namespace raya {
 
 /// Contents of the memory of each PE. A word has 4 bytes.
 struct PeMemory {
-    std::uint64_t job_words = 0;     // the broadcast words
-    std::uint64_t tree_words = 0;    // traversal of one ray tree: the modelled PE traces one ray at a time
-    std::uint32_t block_pixels = 0;  // traced pixels until they are gathered, 3 words each
-    std::uint32_t sum_pixels = 0;    // sums of the filter, 3 words each
-    std::uint32_t band_pixels = 0;   // pixels that are being exchanged, 3 words each
-    std::uint32_t marks = 0;         // pixels to be supersampled, one byte each
+    std::uint64_t job_words = 0;     // words of the job, which are broadcast to all PEs
+    std::uint64_t tree_words = 0;    // state of one ray tree: the modelled PE traces one ray at a time
+    std::uint32_t block_pixels = 0;  // traced pixels that are not gathered yet, 3 words each
+    std::uint32_t sum_pixels = 0;    // filter sums, 3 words each
+    std::uint32_t band_pixels = 0;   // pixels received from another PE, 3 words each
+    std::uint32_t marks = 0;         // supersampling flags of pixels, one byte each
 
     std::uint64_t bytes() const {
         return 4 * (job_words + tree_words + 3ull * (block_pixels + sum_pixels + band_pixels)) + marks;
     }
 };
 
-/// Memory demand of a render.
+/// Properties of a render that determine a PE's memory.
 struct PeDemand {
-    std::string scene;            // its name, for messages
+    std::string scene;            // name of the scene, for messages
     std::uint64_t job_words = 0;  // see PeMemory
     std::uint32_t bounces = 0;
-    std::uint32_t share = 0;  // maximum number of pixels of a PE
+    std::uint32_t share = 0;  // maximum number of pixels that a PE owns
     AntialiasMethod antialias = AntialiasMethod::kNone;
 };
 
-/// Without anti-aliasing, each PE gets space for its whole share if that fits, else for as many pixels as fit; the
-/// image is then gathered block by block, as the paper's run on one PE (256 x 256 pixels, 32 KB) requires. With
-/// anti-aliasing, each PE gets space for its whole share with sums or marks, and for a band of exchanged pixels, as
-/// long as fits; all bands have about the same length. Throws DoesNotFit, with both figures and the remedy, if not even
-/// a block or band of one pixel fits.
+/// Without anti-aliasing, block_pixels is the whole share if that fits, else as many pixels as fit; the image is then
+/// gathered block by block. (The paper's run on one PE, 256 x 256 pixels with 32 KB, requires this.) With
+/// anti-aliasing, each PE holds its whole share with sums or marks, and band_pixels is as large as fits, reduced so
+/// that all bands have about the same length. Throws DoesNotFit, with the required and available bytes and a remedy, if
+/// not even one pixel of the block or band fits.
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand);
 
 }  // namespace raya

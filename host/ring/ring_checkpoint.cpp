@@ -14,14 +14,15 @@
 namespace raya {
 namespace {
 
-constexpr std::uint32_t kFirstBands = 64;    // the first band is this fraction of a share
-constexpr std::uint32_t kFewestOfLane = 16;  // minimum pixels of a lane: with fewer, many lanes idle at a band's end
+constexpr std::uint32_t kFirstBands = 64;    // the first band is 1 / kFirstBands of a share
+constexpr std::uint32_t kFewestOfLane = 16;  // minimum pixels per lane of the first band: fewer would leave lanes idle
 
 std::string words_hash(const std::vector<std::uint32_t>& words) {
     return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
 }
 
-// Length of the next band, scaled to take `aim` seconds, but at least half and at most four times the last length.
+// Returns the length of the next band, scaled so that it takes `aim` seconds, but between half and four times the
+// length `band` of the last one, which took `seconds`.
 std::uint32_t next_band(std::uint32_t band, double seconds, double aim) {
     const double factor = std::clamp(aim / std::max(seconds, 1e-6), 0.5, 4.0);
     return static_cast<std::uint32_t>(std::clamp(band * factor, 1.0, 1e9));
@@ -67,7 +68,8 @@ StateSettings RingRenderer::state_settings() const {
             {"another scene, camera or light", words_hash(job_.job.words())}};
 }
 
-// The state on the host, with vectors of the right size for the state on the device.
+// Returns the part of the state that is on the host. The vectors for the part on the device have the right sizes but no
+// contents.
 RingState RingRenderer::host_state(const RingResult& result) const {
     RingState s;
     s.seconds = earlier_s_ + seconds_since(started_);
@@ -98,7 +100,7 @@ RingState RingRenderer::checkpoint_state(const RingResult& result) {
 
 void RingRenderer::save_checkpoint(std::uint32_t pass, PixelRange range, RingResult& result) {
     const StepLog::Step step = session_.step("keep state");
-    prepare_memory(result);  // also places the gathered pixels
+    prepare_memory(result);  // also copies the gathered pixels into the image
     RingState s = checkpoint_state(result);
     s.pass = pass;
     s.window = range.block;

@@ -1,4 +1,4 @@
-// Collects results from the PEs of all ranks in rank 0: pixels, costs, marks, counters.
+// Collection of the results of all ranks' PEs in rank 0: pixels, costs, marks, counters.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -13,9 +13,10 @@
 namespace raya {
 namespace {
 
-/// Calls `move(PE, pixel, to)` for the pixels in `range` of every PE's share: index of the PE in the segment, of the
-/// pixel in the PE's block, and of the pixel in the image. Interleaves runs of some PEs for locality, as neighbouring
-/// PEs often own neighbouring columns.
+/// Calls move(PE, pixel, to) for the pixels in `range` of the share of every PE of the segment. The arguments are the
+/// index of the PE in the segment, the index of the pixel in the PE's device buffer, and the index of the pixel in the
+/// image. Neighbouring PEs often own neighbouring columns, so the runs of kTogether PEs are interleaved for memory
+/// locality.
 template <class Move>
 void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange range, Move&& move) {
     constexpr std::uint32_t kTogether = 16;
@@ -52,8 +53,8 @@ Image black(const raya_mapping& m) {
             std::vector<float>(3 * std::size_t{m.width} * m.height)};
 }
 
-// Checks that every pixel has a primary ray. Some devices end long loops early without an error (Mesa's llvmpipe after
-// 65,535 iterations of a work-item), so that pixels would be missing.
+// Throws DeviceError unless one primary ray was counted for each pixel of this rank. Some devices silently end long
+// loops (Mesa's llvmpipe after 65,535 iterations of a work-item), so that pixels would be missing.
 void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const PeSegment& pes,
                       const DeviceInfo& device) {
     std::uint64_t pixels = 0;
@@ -66,7 +67,7 @@ void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, cons
         device.platform, device.name, traced, pixels));
 }
 
-// Adds the events of all ranks to those of the phase and of the render.
+// Adds the event counts of all ranks to those of the phase and to those of the whole render.
 void add_events(const std::vector<EventCounts>& of_ranks, EventCounts& phase, EventCounts& all) {
     for (const EventCounts& events : of_ranks)
         for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
@@ -77,7 +78,8 @@ void add_events(const std::vector<EventCounts>& of_ranks, EventCounts& phase, Ev
 
 }  // namespace
 
-// Sends the elements of each rank, `of_pe` a PE, to rank 0, which calls `take` for one rank after another.
+// Sends each rank's elements, `of_pe` per PE, to rank 0. Rank 0 calls take(segment, elements) for one rank after
+// another, including itself.
 template <class T, class Take>
 void RingRenderer::collect(std::vector<T>& own, std::size_t of_pe, const Take& take) {
     if (!ranks_.first()) return ranks_.send(0, std::span<const T>(own));
@@ -90,7 +92,8 @@ void RingRenderer::collect(std::vector<T>& own, std::size_t of_pe, const Take& t
     }
 }
 
-// Places the pixels gathered last, and touches the memory for the next ones in advance, as its first use is slow.
+// Copies the pixels of the last gather into the image, and allocates the host memory for the next gather in advance, as
+// the first access to new memory is slow. trace() calls this function while the device traces.
 void RingRenderer::prepare_memory(RingResult& result) {
     const StepLog::Step step = session_.step("make room");
     if (result.image.rgb.empty() && ranks_.first()) result.image = black(settings_.mapping);
@@ -132,7 +135,7 @@ void RingRenderer::place(const PeSegment& pes, PixelRange range, std::span<const
     });
 }
 
-// The host reads the kernels' counters for reports; this is no transfer of the modelled machine.
+// Reads the cost of each pixel for reports. The modelled machine does not make this transfer, so it is not counted.
 void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
     if (!records_costs()) return;
     const StepLog::Step step = session_.step("collect costs");

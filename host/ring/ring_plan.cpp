@@ -13,23 +13,25 @@
 namespace raya {
 namespace {
 
-// Copying the words into local memory costs time for each PE in each launch. It does not pay if there are many words of
-// which an accelerator reads few, nor on CPUs, whose local memory is no faster.
+// Returns true if PEs should copy the job's words into local memory. Each PE then copies them in each launch. This does
+// not pay if an accelerator reads only few of many words. Returns false if the words do not fit, or if the copying loop
+// could exceed the device's limit of loop iterations.
 bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel) {
     constexpr std::size_t kMostCopied = 64 * 1024;
     constexpr std::size_t kFewTurns = 4096;
     if (device.max_loop_iterations > 0 && job.words().size() > kFewTurns) return false;
-    const std::size_t bytes = 4 * job.words().size() + 32;  // padding to whole rows, and the work-group's own data
+    const std::size_t bytes = 4 * job.words().size() + 32;  // 32: padding to whole rows, and the work-group's own data
     return bytes <=
            (accel != AccelKind::kNone ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
 }
 
-constexpr std::size_t kTestsOfWalk = 20;  // approximate tests of a ray with an accelerator
+constexpr std::size_t kTestsOfWalk = 20;  // approximate number of tests for a ray with an accelerator
 
-// Maximum work of a launch on a device that limits loop iterations, in tests and steps of a lane's rays; `step`:
-// maximum work beyond the budget. For the images of `raya verify` on llvmpipe, 12 iterations for a test were too few
-// and 16 enough; a BVH step has one iteration for each of sixteen boxes and some more. The fixed part of a launch is
-// the loop that copies words.
+// Returns the maximum work of a launch, in tests and traversal steps of a lane's rays, so that the device does not
+// exceed its limit of loop iterations. `step`: maximum work by which a lane may exceed its limit, which it checks only
+// after each ray and its shadow rays. The constants convert work to iterations. Measured with the images of `raya
+// verify` on llvmpipe: 12 iterations per test were too few and 16 enough. A BVH step has one iteration for each of
+// sixteen boxes and some more. kTurnsOfLaunch is for the loop that copies words.
 double most_work(AccelKind accel, double step, const DeviceInfo& device) {
     constexpr double kTurnsOfTest = 24, kTurnsOfStep = 96, kTurnsOfLaunch = 8192;
     if (device.max_loop_iterations == 0) return 1u << 31;
@@ -53,7 +55,7 @@ RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSett
     return all;
 }
 
-// A job without its words, as it is sent to other ranks.
+// The members of a RingJob other than the job's words, as they are sent to other ranks.
 struct RingFigures {
     AccelSummary accel;
     double accel_s = 0;
@@ -95,7 +97,7 @@ RingSettings checked(RingSettings settings, const DeviceInfo& device) {
 LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
                        std::size_t lights, std::uint32_t pes, const DeviceInfo& device) {
     if (const std::uint32_t work = settings.work_per_launch) return {work, work, work};
-    constexpr double kTestsPerLaunch = 2e8;  // about a quarter of a second of two CPU cores
+    constexpr double kTestsPerLaunch = 2e8;  // a quarter of a second on two CPU cores
     constexpr double kRaysPerPixel = 6;      // typical
     const double tests_of_ray = static_cast<double>(
         settings.accel.kind != AccelKind::kNone ? std::min(kTestsOfWalk, objects) : std::max<std::size_t>(1, objects));

@@ -1,4 +1,4 @@
-// Set-up of a render on a ring machine: settings, choices that the user leaves open, and the words of the scene.
+// Preparation of a render on a ring machine: its settings, the settings that raya chooses, and the packed scene.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -20,8 +20,8 @@ namespace raya {
 
 struct RingSettings {
     Machine machine;
-    std::optional<DynamicPlan> dynamic;  // dynamic distribution, whose loads are simulated from the pixels' costs
-    raya_mapping mapping{};              // image size, PEs and owners of pixels
+    std::optional<DynamicPlan> dynamic;  // dynamic distribution: its loads are simulated from the pixels' costs
+    raya_mapping mapping{};              // image size, number of PEs, and owner of each pixel
     std::uint32_t bounces = 8;
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
@@ -30,30 +30,31 @@ struct RingSettings {
     Accel accel;
     KernelChoice kernels;
     std::uint64_t device_pixels = 1 << 22;  // pixels of all PEs on the device at a time, 20 bytes each; anti-aliased
-                                            // images are there as a whole
-    std::uint32_t work_per_launch = 0;      // tests and steps of a lane's rays; 0: about a second's worth
+                                            // images are held as a whole
+    std::uint32_t work_per_launch = 0;      // limit in tests and traversal steps of a lane's rays; 0: about one second
 };
 
 JobSettings job_settings(const RingSettings& settings, const LengthScale& scale);
 
-/// Memory demand of a PE for a job of that many words; `scene`: name of the scene.
+/// Returns the properties of a render that determine a PE's memory. `scene`: name of the scene, for messages.
+/// `job_words`: number of words of the job.
 PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::uint64_t job_words);
 
-/// Returns the settings with lanes and group size chosen. Throws UserError, before anything is packed or allocated, if
-/// the kernels cannot be built with them.
+/// Returns the settings with the number of lanes and the group size chosen for the device. Throws UserError if the
+/// kernels cannot be built with these settings; no scene has been packed and no memory allocated by then.
 RingSettings checked(RingSettings settings, const DeviceInfo& device);
 
-/// Work of a launch: at most about a second, so that progress is shown, Ctrl-C takes effect and no GPU watchdog
-/// intervenes, and at most the loop iterations that the device allows. `objects`, `lights`: of the scene; `pes`: on
-/// this device.
+/// Returns the work limits of a launch. A launch should take at most about a second, so that progress is shown, Ctrl-C
+/// takes effect and no GPU watchdog ends it, and it must not exceed the loop iterations that the device allows.
+/// `objects`, `lights`: their numbers in the scene; `pes`: number of PEs on this device.
 LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
                        std::size_t lights, std::uint32_t pes, const DeviceInfo& device);
 
-/// `accel`: of the accelerator that settings.accel selected.
+/// `accel`: summary of the accelerator that settings.accel has selected.
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
                              const DeviceInfo& device);
 
-/// A job with its grid or BVH.
+/// A packed job with its grid or BVH.
 struct RingJob {
     PackedJob job;
     AccelSummary accel;
@@ -62,13 +63,13 @@ struct RingJob {
     std::uint64_t objects = 0;
 };
 
-/// The words of a scene for this machine, without accelerator.
+/// Packs a scene for the ring machine, with its mapping but without an accelerator.
 PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const LengthScale& scale);
 
-/// Builds the settings' accelerator, which must not be kNone, and appends it to the job.
+/// Builds the accelerator of settings.accel, which must not be kNone, and appends it to the job.
 AccelSummary append_accel(PackedJob& job, const RingSettings& settings);
 
-/// Rank 0 packs the job and sends it to all; other ranks do not read `scene`.
+/// Collective: rank 0 packs the scene and sends the job to all ranks. Other ranks do not use `scene`.
 RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks);
 
 }  // namespace raya

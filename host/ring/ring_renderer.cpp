@@ -21,11 +21,12 @@ PeSegment segment_here(const raya_mapping& m, const Ranks& ranks) {
     return own_segment(m.pes, ranks);
 }
 
-// For large images the device holds only a window of each PE's pixels, to save memory on device and host. Anti-aliasing
-// needs all pixels on the device. The result must be the same in all ranks.
+// Returns the number of pixels of each PE that the device holds at a time. For large images this is only a part (a
+// window) of a PE's block, to save memory on device and host; anti-aliasing needs all pixels on the device. The result
+// must be the same in all ranks, so it is computed from the maximum number of PEs of a rank.
 std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings, std::uint32_t ranks) {
     if (settings.antialias.method != AntialiasMethod::kNone) return memory.block_pixels;
-    const std::uint32_t pes = (settings.mapping.pes + ranks - 1) / ranks;  // maximum of a rank
+    const std::uint32_t pes = (settings.mapping.pes + ranks - 1) / ranks;  // maximum number of PEs of a rank
     const std::uint64_t most = std::max<std::uint64_t>(1, settings.device_pixels / pes);
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory.block_pixels, most));
 }
@@ -109,7 +110,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const RingChec
     return result;
 }
 
-// Renders the block of each PE's share that fits its memory, one device window after another.
+// Renders one block, the pixels of each PE's share that fit its memory at a time, one device window after another.
 void RingRenderer::render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress) {
     const std::uint32_t end = std::min(share_, block + memory_.block_pixels);
     if (resumed_ && resumed_->window >= end) return;
@@ -171,8 +172,8 @@ void RingRenderer::supersample(RingResult& result, const ProgressCallback& progr
     });
 }
 
-// OpenCL work-groups cannot hand out pixels among each other at run time, so the dynamic distribution is simulated from
-// the costs of the pixels.
+// OpenCL work-groups cannot distribute pixels among each other at run time, so the dynamic distribution is simulated
+// from the pixels' costs.
 void RingRenderer::simulate_schedule(RingResult& result) {
     const StepLog::Step step = session_.step("simulate schedule");
     const Schedule schedule = dynamic_schedule(result.cost(), settings_.mapping, *settings_.dynamic);

@@ -1,4 +1,5 @@
-// Renders a scene on a model of a ring machine: the host drives PEs, bus and ring; kernels model the PEs.
+// Renderer on a model of a ring machine: kernels model the PEs; the host launches them and performs the transfers of
+// bus and ring.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -23,22 +24,23 @@ namespace raya {
 
 class RingRenderer {
   public:
-    /// Packs the scene, checks that it fits the PEs, builds the kernels and allocates the device memory for the PEs of
-    /// this rank. Only rank 0 reads the scene. Throws UserError (the scene does not fit, a setting is out of range,
-    /// more ranks than PEs) or DeviceError.
+    /// Packs the scene, checks that it fits a PE's memory, builds the kernels and allocates the device memory for the
+    /// PEs of this rank. Only rank 0 uses `scene`. Throws UserError if the scene does not fit, a setting is out of
+    /// range or there are more ranks than PEs, and DeviceError.
     RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks = Ranks::alone());
 
-    /// Renders one image; may be called again. In ranks other than 0 the result is of this rank only and has no image.
-    /// With `checkpointing`, which requires a single rank, the image is traced in bands, after each of which a
-    /// checkpoint may be saved. A resumed render has the same image and counts, and the sum of the seconds of all runs.
+    /// Renders one image. May be called repeatedly. In ranks other than 0 the result covers only this rank and has no
+    /// image. With `checkpointing`, which requires a single rank, the image is traced in bands, and a checkpoint may be
+    /// saved after each band. A resumed render returns the same image and counts as an uninterrupted one; its times are
+    /// the sums over all runs.
     RingResult render(const ProgressCallback& progress = {}, const RingCheckpointing* checkpointing = nullptr);
 
-    /// The factor by which the scene's lengths are multiplied.
+    /// The power of two by which the scene's lengths are multiplied.
     const LengthScale& scale() const { return job_.scale; }
 
   private:
     bool records_costs() const { return settings_.keep_costs || settings_.dynamic.has_value(); }
-    bool polls_failures() const { return ranks_.many() && ranks_.first(); }  // of other ranks
+    bool polls_failures() const { return ranks_.many() && ranks_.first(); }  // failures of other ranks
     void build();
     void build_exchange(KernelOptions options);
     void prepare(RingResult& result);
@@ -66,31 +68,31 @@ class RingRenderer {
 
     Session& session_;
     Ranks& ranks_;
-    RingSettings settings_;  // lanes and group size chosen
-    PeSegment pes_;          // of this rank
+    RingSettings settings_;  // with lanes and group size chosen
+    PeSegment pes_;          // PEs of this rank
     RingJob job_;
-    std::uint32_t share_ = 0;  // maximum number of pixels of a PE
+    std::uint32_t share_ = 0;  // maximum number of pixels that a PE owns
     PeMemory memory_;
-    std::uint32_t window_ = 0;  // pixels of each PE on the device at a time: a whole block of its memory or a part
+    std::uint32_t window_ = 0;  // pixels of each PE on the device at a time: its block (PeMemory) or a part of it
     Communication communication_;
     Bus bus_;
     double build_s_ = 0;
     Buffer<std::uint32_t> broadcast_;
     Buffer<float> pixels_;         // [PE][3][window]
-    std::vector<float> gathered_;  // pixels of gathered_range_, read from the device but not placed in the image yet
+    std::vector<float> gathered_;  // pixels of gathered_range_: read, but not yet copied into the image
     PixelRange gathered_range_;
-    Buffer<std::uint8_t> marks_;  // stands for marks in the first pass
+    Buffer<std::uint8_t> marks_;  // dummy argument of the first pass, which has no marks
     std::unique_ptr<Tracer> tracer_;
-    std::vector<PassCounters> counters_;  // of each phase
+    std::vector<PassCounters> counters_;  // one for each phase
     std::unique_ptr<NeighbourExchange> exchange_;
     std::unique_ptr<RingFilter> filter_;
     std::unique_ptr<RingContrast> contrast_;
 
-    // Of a render with checkpoints.
+    // State of a render with checkpoints.
     const RingCheckpointing* checkpointing_ = nullptr;
-    std::optional<RingState> resumed_;  // until its window is complete
-    std::uint32_t band_ = 0;            // length, pixels of each PE's share
-    double earlier_s_ = 0;              // of earlier runs
+    std::optional<RingState> resumed_;  // the loaded checkpoint, until its window is complete
+    std::uint32_t band_ = 0;            // length of the next band, in pixels of each PE's share
+    double earlier_s_ = 0;              // seconds of earlier runs
     Clock::time_point started_;
 };
 

@@ -14,7 +14,8 @@ std::uint64_t launches_of(const RingResult& result, const std::string& label) {
     return launches;
 }
 
-// Bytes of each launch except for pixels: the broadcast words of the scene, and the counters.
+// Returns the bytes of all launches with this label, except those of pixels: the job's words, if PEs copy them, and the
+// counters, which are read and written.
 std::uint64_t launch_bytes(const RingSettings& s, const RingResult& r, const std::string& label) {
     const std::uint64_t words = r.words_local ? r.communication.broadcast_words * s.mapping.pes : 0;
     const std::uint64_t counters = std::uint64_t{s.mapping.pes} * r.group_size * RAYA_EVENTS;
@@ -30,7 +31,8 @@ KernelWork trace_work(const RingSettings& s, const RingResult& r, const Phase& p
     return work;
 }
 
-// `operations` for each of three colour components, and `colours` read or written, for each of `pixels`.
+// For each of `pixels` pixels: `operations` operations on each of three colour components, and `colours` colours read
+// or written.
 KernelWork neighbour_work(const std::string& label, std::uint64_t pixels, std::uint64_t operations,
                           std::uint64_t colours) {
     KernelWork work;
@@ -60,13 +62,14 @@ std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const Rin
     for (std::size_t i = 0; i < result.phases.size(); ++i)
         works.push_back(trace_work(settings, result, result.phases[i], i == 0));
     const std::uint64_t width = settings.mapping.width, height = settings.mapping.height;
-    const std::uint64_t beside = 2 * (width - 1) * height, above = 2 * width * (height - 1);  // both sides
+    // Numbers of pairs of a pixel and its left or right neighbour, and of a pixel and its neighbour above or below.
+    const std::uint64_t beside = 2 * (width - 1) * height, above = 2 * width * (height - 1);
     if (settings.antialias.method == AntialiasMethod::kFilter) {
         works.push_back(neighbour_work("filter.sum_rows", beside, 1, 3));
         works.push_back(neighbour_work("filter.sum_columns", above, 1, 3));
         works.push_back(neighbour_work("filter.take_means", width * height, 1, 2));
     }
-    // Both colours clamped to 0..1, their difference, the threshold: as in compare_cycles().
+    // Operations per component, as in compare_cycles(): 4 to clamp both colours to 0..1, 1 difference, 1 comparison.
     if (settings.antialias.method == AntialiasMethod::kSupersample)
         works.push_back(neighbour_work("supersample.compare", beside + above, 4 + 1 + 1, 2));
     return works;

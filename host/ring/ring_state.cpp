@@ -54,7 +54,7 @@ class Reader {
     std::string_view bytes_;
 };
 
-// All vectors of a state, in the order of the file.
+// Calls each(vector) for all vectors of a state, in the order in which the file has them.
 template <class State, class Each>
 void for_each_vector(State& state, const Each& each) {
     each(state.image);
@@ -75,7 +75,7 @@ Json header_of(const RingState& s, const StateSettings& settings) {
             {"share", s.share}, {"seconds", s.seconds}, {"passes", s.passes.size()}};
 }
 
-// Reports the first difference: settings with a name come before hashes.
+// Throws UserError for the first setting that differs. Hashes are last, so that a named option is reported if possible.
 void check_settings(const Json& of, const StateSettings& settings) {
     for (const auto& [name, value] : settings) {
         const std::string& kept = of.at(name).text();

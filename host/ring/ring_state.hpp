@@ -1,5 +1,5 @@
-// Checkpoint of a ring render between two bands of its pixels: all state that another run needs to resume it, and its
-// file format.
+// Checkpoint of a ring render, taken between two bands of pixels: the state that another run needs to resume the
+// render, and the file format.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -16,25 +16,26 @@ namespace raya {
 /// State of a render. Device data have the layout of the renderer's buffers ([PE][window], ...).
 struct RingState {
     struct Pass {
-        std::vector<std::uint64_t> cycles, events;  // as PassCounters
-        std::vector<std::uint64_t> costs;           // of the image's pixels, if they are recorded
+        std::vector<std::uint64_t> cycles, events;  // contents of PassCounters
+        std::vector<std::uint64_t> costs;           // cost of each pixel of the image, if recorded
     };
 
-    std::uint32_t pass = 0;    // that was interrupted: 0 trace, 1 supersample
-    std::uint32_t window = 0;  // first pixel of PEs' shares on the device
-    std::uint32_t next = 0;    // first pixel of PEs' shares that the pass has not traced
-    double share = 0;          // of the render that is complete, 0..1
+    std::uint32_t pass = 0;    // current pass: 0 trace, 1 supersample
+    std::uint32_t window = 0;  // index of the first pixel of each PE's share that is on the device
+    std::uint32_t next = 0;    // index of the first pixel of each PE's share that this pass has not traced
+    double share = 0;          // fraction of the render that is complete, 0..1
     double seconds = 0;        // measured time of all runs so far
     Communication communication;
-    std::vector<float> image;   // complete pixels
-    std::vector<float> pixels;  // on the device
+    std::vector<float> image;   // the image so far
+    std::vector<float> pixels;  // pixels on the device
     std::vector<std::uint8_t> marks;
-    std::vector<Pass> passes;  // one for each pass of the render
+    std::vector<Pass> passes;  // one for each pass
     std::vector<std::uint64_t> all_costs;
 };
 
-/// Names and values of all settings that determine the state, to reject the checkpoint of a different render. A name is
-/// an option, or a text that can follow "was rendered with"; the value of a flag is "yes" or "no".
+/// Names and values of all settings that determine the state. read_state() compares them to reject the checkpoint of a
+/// different render. A name is an option, or a text that can follow "was rendered with". The value of a flag is "yes"
+/// or "no".
 using StateSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// First bytes of a checkpoint.
@@ -42,18 +43,20 @@ inline constexpr std::string_view kStateMagic = "raya state 2\n";
 
 std::string state_bytes(const RingState& state, const StateSettings& settings);
 
-/// Reads a checkpoint into `like`, whose vectors must have the sizes of the render's. Throws UserError, without the
-/// name of the file: not a checkpoint, damaged, or of a different render, with the first setting that differs.
+/// Reads a checkpoint. The vectors of `like` must have the sizes of this render. Throws UserError, whose text does not
+/// contain the file's name, if the bytes are not a checkpoint, are damaged, or belong to a different render; then the
+/// text contains the first setting that differs.
 RingState read_state(std::string_view bytes, const StateSettings& settings, RingState like);
 
 /// Callbacks for the checkpoints of a render.
 struct RingCheckpointing {
-    /// Target time of a band, seconds.
+    /// Target duration of a band, seconds.
     double band_s = 2;
-    /// Called after each band; if it returns true, `keep` gets the state to save.
+    /// `due` is called after each band. If it returns true, `keep` is called with the state and must save it.
     std::function<bool()> due;
     std::function<void(const RingState&, const StateSettings&)> keep;
-    /// Returns the checkpoint to resume, given the renderer's settings and a state of the right sizes; empty: none.
+    /// Returns the checkpoint to resume, or empty to start from the beginning. Arguments: the renderer's settings, and
+    /// a state whose vectors have the right sizes.
     std::function<std::optional<RingState>(const StateSettings&, const RingState& like)> resume;
 };
 

@@ -14,7 +14,7 @@ namespace {
 constexpr TraceTrack kPhases = {kTraceMachine, 1};
 constexpr std::array<const char*, RAYA_SIDES> kSides = {"left", "right", "above", "below"};
 
-// Lays the phases out one after another.
+// Adds the phases to the trace, one after another, from time 0 on.
 class RingTimeline {
   public:
     RingTimeline(TraceFile& trace, const Machine& machine, std::vector<TracedPe> pes)
@@ -24,7 +24,8 @@ class RingTimeline {
         for (const TracedPe& p : pes_) trace.name_track(track_of(p), traced_pe_name("PE", p));
     }
 
-    // A slice of all PEs. With `times` > 1, it contains that many equal rotations.
+    // Adds a slice of `ms` milliseconds to the tracks of all PEs. If `times` > 1, the slice contains that many
+    // rotations of equal duration.
     void together(const std::string& name, double ms, const Json& arguments, std::uint64_t times = 1) {
         const double begin = now_ms_;
         phase(name, ms, arguments);
@@ -37,7 +38,7 @@ class RingTimeline {
         }
     }
 
-    // Each PE computes for its own cycles, then waits for the busiest PE.
+    // Adds a phase in which each PE computes for its own number of cycles, then waits for the busiest PE.
     void compute(const std::string& name, const Load& load) {
         const double begin = now_ms_;
         const auto busiest = std::max_element(load.per_pe.begin(), load.per_pe.end()) - load.per_pe.begin();
@@ -55,7 +56,8 @@ class RingTimeline {
         }
     }
 
-    // A PE of this machine traces one ray at a time, so the number of live rays is that of PEs that trace.
+    // Adds a tracing phase with a counter of live rays. A PE of this machine traces one ray at a time, so the number of
+    // live rays is the number of PEs that are tracing. The counter has at most kMostPoints points after the first.
     void trace_rays(const std::string& name, const Load& load) {
         constexpr std::size_t kMostPoints = 512;
         std::vector<std::uint64_t> ends = load.per_pe;
@@ -87,7 +89,8 @@ class RingTimeline {
     std::vector<TracedPe> pes_;
 };
 
-// One side's quarter of the cycles that each PE spends on its pixels; the quarters add up to all cycles.
+// Returns, for each PE, one side's quarter of the cycles cycles_of(pixels of its share). The quarters of the four sides
+// add up to all cycles exactly.
 Load quarter(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_t), std::uint32_t side) {
     std::vector<std::uint64_t> cycles;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
@@ -97,8 +100,7 @@ Load quarter(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_t), s
     return load_of(std::move(cycles));
 }
 
-// Names of a move and of all moves of a side. A bus transfer concerns few PEs, so the tracks do not show them one by
-// one.
+// Names of one move, and of the number of all moves of a side.
 struct MoveNames {
     const char *one, *all;
 };

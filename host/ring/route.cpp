@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// In the order of ExchangeMethod.
+// Names of the methods, in the order of ExchangeMethod.
 constexpr std::array<const char*, 3> kExchangeNames = {"ring", "bus", "bus-broadcast"};
 
 std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeMethod method, raya_u32 side) {
@@ -42,7 +42,8 @@ std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya
 
 std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances) {
     if (distances.empty()) return {};
-    // The first `down` distances are reached downwards, the others upwards, where distance d is P - d turns away.
+    // The blocks at the first `down` distances are fetched by downward turns, the others by upward turns. A block at
+    // distance d arrives after d downward turns or P - d upward turns. Tries every split.
     std::size_t down = 0;
     std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();
     for (std::size_t n = 0; n <= distances.size(); ++n) {

@@ -1,4 +1,4 @@
-// Routes of neighbours' pixels over ring or bus: the PEs that hold them, and the number of moves.
+// Routes of neighbours' pixels over ring or bus: which PEs own the neighbours, and how many moves bring them.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,46 +9,47 @@
 
 namespace raya {
 
-/// Direction of a rotation: every PE sends its block to the PE of the next lower (kDown) or higher (kUp) number.
+/// Direction of a rotation: every PE sends its block to the PE with the next lower (kDown) or next higher (kUp) number.
 enum class Turn { kDown, kUp };
 
-/// Rotations in one direction, starting with the PEs' own blocks. After s turns downwards PE i holds the block of PE
-/// i + s, after s turns upwards that of PE i - s, modulo P.
+/// A sequence of rotations (turns) in one direction, starting with each PE's own block. After s turns downwards, PE i
+/// holds the block of PE (i + s) mod P; after s turns upwards, that of PE (i - s) mod P.
 struct Leg {
     Turn turn = Turn::kDown;
-    std::vector<std::uint32_t> stops;  // turns after which the block is used, ascending; 0: the PE's own block
+    std::vector<std::uint32_t> stops;  // turns after which the blocks are used, ascending; 0: each PE's own block
 
     std::uint32_t turns() const { return stops.empty() ? 0 : stops.back(); }
 };
 
-/// All d in 0..P-1, ascending, such that the neighbour on `side` (RAYA_LEFT..RAYA_BELOW) of some pixel of some PE i
-/// belongs to PE (i + d) mod P. Empty if no pixel has such a neighbour. If PEs own whole columns: left P - 1, right 1,
-/// above p, below P - p (Kohata & Ito 1993, cyclic mapping).
+/// Returns all d in 0..P-1, ascending, for which some PE i owns a pixel whose neighbour on `side`
+/// (RAYA_LEFT..RAYA_BELOW) belongs to PE (i + d) mod P; empty if no pixel has such a neighbour. For the cyclic mapping
+/// with offset p and P = W: left P - 1, right 1, above p, below P - p (Kohata & Ito 1993).
 std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya_u32 side);
 
-/// The legs, at most one in each direction, that reach all `distances` with the minimum number of turns; downwards
-/// first.
+/// Returns the legs, at most one in each direction and the downward one first, that bring the blocks at all `distances`
+/// with the minimum number of turns.
 std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances);
 
-/// Method of the exchange of neighbours' pixels. The ring moves the data of all PEs at once, the bus those of one PE at
-/// a time (Kohata & Ito 1993, section on the array).
+/// How neighbours' pixels are exchanged. The ring moves data of all PEs at the same time, the bus data of one PE at a
+/// time (Kohata & Ito 1993, section on the array).
 enum class ExchangeMethod {
     kRing,      // rotations of all blocks; the paper's anti-aliasing
-    kBus,       // transfers to each PE from those that own its neighbours
-    kBroadcast  // broadcast of each PE in turn
+    kBus,       // transfers to each PE from the PEs that own its neighbours
+    kBroadcast  // broadcasts from one PE after another
 };
 
-/// "ring", "bus", "bus-broadcast"
+/// Returns "ring", "bus" or "bus-broadcast".
 std::string exchange_name(ExchangeMethod method);
 
-/// [side]: number of successive rotations, transfers or broadcasts.
+/// [side]: number of rotations, transfers or broadcasts, which take place one after another.
 using MovesOfSides = std::array<std::uint64_t, RAYA_SIDES>;
 
-/// Moves that bring every PE the whole shares with its neighbours on each side. `together`: the sides may be processed
-/// in any order, so that one broadcast serves all of them; it counts for the first side that needs it.
+/// Returns the moves that bring to every PE the whole shares that contain its neighbours on each side. `together`: the
+/// sides may be processed in any order, so that one series of broadcasts serves all sides; it is counted for the first
+/// side that needs it.
 MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool together);
 
-/// Sum over all sides.
+/// Returns the sum over all sides.
 std::uint64_t sum_of(const MovesOfSides& moves);
 
 }  // namespace raya

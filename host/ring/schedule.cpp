@@ -27,7 +27,7 @@ void check_mapping(const CostImage& image, const raya_mapping& mapping) {
         throw std::invalid_argument("the mapping has another size than the cost image");
 }
 
-/// [row][slot]: the owner. `unsheared` must have an offset of 0, so that columns are slots.
+/// Returns the owner of each slot, [row][slot]. `unsheared` must have an offset of 0, so that columns are slots.
 std::vector<std::uint32_t> owners_of_slots(const raya_mapping& unsheared) {
     std::vector<std::uint32_t> owners;
     owners.reserve(std::size_t{unsheared.width} * unsheared.height);
@@ -36,12 +36,12 @@ std::vector<std::uint32_t> owners_of_slots(const raya_mapping& unsheared) {
     return owners;
 }
 
-/// Adds the loads of the PEs for an offset.
+/// Adds the PEs' loads with the given offset to `per_pe`. `owners`: [row][slot].
 void add_sheared(const CostImage& image, const std::vector<std::uint32_t>& owners, std::uint32_t offset,
                  std::vector<std::uint64_t>& per_pe) {
     const std::uint64_t* costs = image.cycles.data();
     const std::uint32_t* owner = owners.data();
-    std::uint64_t first = 0;  // column of the row's slot 0: row x offset mod W
+    std::uint64_t first = 0;  // column of slot 0 in this row: (row x offset) mod W
     for (std::uint32_t row = 0; row < image.height; ++row) {
         for (std::uint64_t column = first; column < image.width; ++column) per_pe[*owner++] += costs[column];
         for (std::uint64_t column = 0; column < first; ++column) per_pe[*owner++] += costs[column];
@@ -51,7 +51,8 @@ void add_sheared(const CostImage& image, const std::vector<std::uint32_t>& owner
     }
 }
 
-/// Renders the static part of each PE: adds its costs to `busy`. Returns the pixels that are done.
+/// Adds the costs of each PE's static part to `busy`. Returns a flag for each pixel of the image: true if it is in a
+/// static part. `share`: fraction of each PE's pixels.
 std::vector<bool> do_static_part(const CostImage& image, const raya_mapping& start, double share,
                                  std::vector<std::uint64_t>& busy) {
     std::vector<bool> done(image.cycles.size());
@@ -69,10 +70,11 @@ std::vector<bool> do_static_part(const CostImage& image, const raya_mapping& sta
     return done;
 }
 
-/// Cost of each chunk of the pixels that are not done, requests not included.
+/// Divides the pixels that are not done into chunks of `chunk` pixels, and returns the cost of each chunk without
+/// overhead.
 std::vector<std::uint64_t> chunks_of(const CostImage& image, const std::vector<bool>& done, std::uint32_t chunk) {
     std::vector<std::uint64_t> chunks;
-    std::uint32_t free_pixels = 0;  // of the last chunk
+    std::uint32_t free_pixels = 0;  // number of pixels that the last chunk can still take
     for (std::size_t at = 0; at < done.size(); ++at) {
         if (done[at]) continue;
         if (free_pixels == 0) {
@@ -85,9 +87,9 @@ std::vector<std::uint64_t> chunks_of(const CostImage& image, const std::vector<b
     return chunks;
 }
 
-/// Assigns the chunks to PEs. `busy`: finishing times before and after.
+/// Assigns each chunk to the PE that becomes idle first. `busy`: finishing time of each PE, in and out.
 void assign_chunks(const std::vector<std::uint64_t>& chunks, std::uint64_t overhead, std::vector<std::uint64_t>& busy) {
-    using Free = std::pair<std::uint64_t, std::uint32_t>;  // time, PE; ties go to the lowest PE
+    using Free = std::pair<std::uint64_t, std::uint32_t>;  // time at which it becomes idle, PE; the lowest PE in a tie
     std::vector<Free> all;
     all.reserve(busy.size());
     for (std::uint32_t pe = 0; pe < busy.size(); ++pe) all.emplace_back(busy[pe], pe);
@@ -131,7 +133,7 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
         add_sheared(image, owners, offset, per_pe);
         Load load = load_of(std::move(per_pe));
         imbalances.push_back(load.imbalance);
-        per_pe = std::move(load.per_pe);  // its memory serves the next offset
+        per_pe = std::move(load.per_pe);  // reuses the memory for the next offset
     }
     return imbalances;
 }

@@ -1,4 +1,5 @@
-// Costs of an image's pixels, and the loads of static and dynamic mappings that follow from them without tracing again.
+// Costs of an image's pixels, and the PEs' loads with static and dynamic mappings, computed from these costs without
+// tracing.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,52 +11,55 @@
 
 namespace raya {
 
-/// Modelled cycles of each pixel, including all its rays. The sum must be below 2^63, to leave range for requests.
+/// Modelled cycles of each pixel, including all its rays. The sum must be below 2^63, so that adding the overhead of
+/// requests does not overflow.
 struct CostImage {
     std::uint32_t width = 0, height = 0;  // pixels
     std::vector<std::uint64_t> cycles;    // height x width, row-major
 };
 
-/// The argument of --mapping for this plan, for a hybrid with all its numbers.
+/// Returns the argument of --mapping for this plan.
 std::string dynamic_text(const DynamicPlan& plan);
 
-/// A simulated run. A PE never waits before its last pixel, so its finishing time is also its busy time.
+/// Result of a simulated run. A PE is never idle before its last pixel, so its finishing time equals its busy time.
 struct Schedule {
-    Load load;  // finishing time of each PE, cycles, with pixels and requests. Its speedup is sum / max
-                // of busy times with overhead, a measure of balance; see speedup() for the gain
-    std::uint64_t requests = 0;  // that were answered with pixels
+    Load load;  // finishing time of each PE in cycles, including the overhead of requests. load.speedup is sum / max
+                // of these times, a measure of balance; speedup() is the gain over one PE
+    std::uint64_t requests = 0;  // number of requests that were answered with pixels
 };
 
-// Functions of a cost image throw std::invalid_argument if cycles.size() is not W H, if the mapping has another size,
-// for P outside 1..W H, and for a number of a plan, an offset or a fold out of range.
+// The functions below throw std::invalid_argument if cycles.size() is not W H, if the mapping is for another image
+// size, if P is outside 1..W H, or if a plan's number, an offset or a fold is out of range.
 
-/// The load of a static mapping: a PE's load is the sum of its pixels' costs.
+/// Returns the load with a static mapping: a PE's load is the sum of its pixels' costs.
 Load static_load(const CostImage& image, const raya_mapping& mapping);
 
-/// static_load(...).imbalance for each of the offsets, with these PEs and fold (RAYA_FOLD_*). Much faster, as it
-/// computes the owner once for each pixel instead of once for each pixel and offset.
+/// Returns static_load().imbalance of the cyclic mapping with each of the offsets; `fold`: RAYA_FOLD_*. Faster than
+/// calling static_load() for each offset, because it computes the owner once per pixel instead of once per pixel and
+/// offset.
 std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t pes, std::uint32_t fold,
                                          const std::vector<std::uint32_t>& offsets);
 
-/// Simulates list scheduling. Each PE first renders the first floor(static_share x size) pixels of its share under
-/// `start`. The other pixels, in scan-line order, are divided into chunks, the last of which may be smaller. The first
-/// PE to become idle, in case of a tie the one with the lowest number, takes the next chunk, for the overhead and the
-/// pixels' costs. With a static share of 0 only the size and the PEs of `start` matter; with 1 the result is that of
-/// static_load(). O(pixels + P + chunks log P).
+/// Simulates list scheduling. Each PE first renders its static part: the first floor(static_share x n) of the n pixels
+/// that it owns under `start`. The other pixels, in scan-line order, are divided into chunks of plan.chunk pixels; the
+/// last chunk may be smaller. The PE that becomes idle first (in a tie, the one with the lowest number) takes the next
+/// chunk, which costs it the overhead of a request plus the costs of the pixels. If static_share is 0, only the image
+/// size and the number of PEs of `start` are used; if it is 1, the result is that of static_load(). Time: O(pixels + P
+/// + chunks log P).
 Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, const DynamicPlan& plan);
 
-/// Work without overhead: the sum of all pixels' costs.
+/// Returns the sum of all pixels' costs, without overhead.
 std::uint64_t total_cycles(const CostImage& image);
 
-/// Finishing time of the last PE, cycles.
+/// Returns the finishing time of the last PE, cycles.
 std::uint64_t makespan(const Schedule& schedule);
 
-/// total_cycles() / makespan(): the gain over one PE that has all pixels and makes no requests. Overhead is time but
-/// not work, so it is at most Schedule::load.speedup. P if the makespan is 0, as in Load.
+/// Returns total_cycles() / makespan(): the speed-up over a single PE that renders all pixels without requests. At most
+/// Schedule::load.speedup, whose numerator includes the overhead. P if the makespan is 0, as in Load.
 double speedup(const Schedule& schedule, const CostImage& image);
 
-/// Lower bound of the makespan of any distribution of whole pixels over P PEs: max(ceil(total / P), largest pixel),
-/// cycles.
+/// Returns a lower bound, in cycles, of the makespan of every distribution of whole pixels over P PEs: max(ceil(total /
+/// P), cost of the most expensive pixel).
 std::uint64_t lower_bound(const CostImage& image, std::uint32_t pes);
 
 }  // namespace raya

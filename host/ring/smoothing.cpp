@@ -23,7 +23,8 @@ void RingFilter::apply(Buffer<float>& pixels, NeighbourExchange& exchange) {
                           Uint<"capacity">{setup_.capacity}, Uint<"first_pe">{setup_.pes.first}, pixels);
 }
 
-// pixels = (pixels + first side) + second side. The order of rounding matters, so the sides are exchanged one by one.
+// Computes pixels = (pixels + neighbours on the first side) + neighbours on the second side. The rounded sum depends on
+// the order, so the sides are exchanged one after the other.
 void RingFilter::sum_line(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label,
                           raya_u32 first_side, raya_u32 second_side) {
     setup_.session.copy("filter.begin_sums", pixels, 0, sums_, 0, pixels.size());

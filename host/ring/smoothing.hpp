@@ -1,5 +1,5 @@
-// Anti-aliasing steps that need neighbours' pixels: the 3 x 3 filter (kernels/ring/filter.cl), and marks of pixels that
-// differ from a neighbour (kernels/ring/contrast.cl).
+// The parts of anti-aliasing that need neighbours' pixels: the 3 x 3 filter (kernels/ring/filter.cl), and the detection
+// of pixels that differ from a neighbour (kernels/ring/contrast.cl).
 #pragma once
 #include <cstdint>
 #include <span>
@@ -14,7 +14,7 @@ namespace raya {
 struct ExchangeSetup {
     Session& session;
     Buffer<std::uint32_t> broadcast;  // the job's words
-    PeSegment pes;                    // on the device
+    PeSegment pes;                    // PEs on the device
     std::uint32_t capacity = 0;       // pixels in the memory of each PE
     std::uint32_t group_size = 1;
 };
@@ -27,12 +27,12 @@ using TakeMeansKernel = DescribedKernel<"ring/filter.cl", "take_means", const Bu
 
 class RingFilter {
   public:
-    /// The kernels must be built for one lane. Launches each once without pixels, as PoCL compiles at the first launch,
-    /// and allocates the device memory.
+    /// The kernels must be built for one lane. Allocates the device memory, and launches each kernel once without
+    /// pixels, because PoCL compiles a kernel at its first launch.
     RingFilter(Kernels& kernels, const ExchangeSetup& setup);
 
-    /// Replaces every pixel by the mean of its 3 x 3 neighbourhood. `pixels`: [PE][3][capacity]; may be swapped with
-    /// another buffer of that shape.
+    /// Replaces every pixel by the mean of its 3 x 3 neighbourhood. `pixels`: [PE][3][capacity]; the object is
+    /// exchanged for another buffer of the same shape.
     void apply(Buffer<float>& pixels, NeighbourExchange& exchange);
 
   private:
@@ -53,14 +53,15 @@ using MarkContrastsKernel =
 
 class RingContrast {
   public:
-    /// The kernel must be built for one lane. Launches it once without pixels, as PoCL compiles at the first launch,
-    /// and allocates the device memory. `threshold` must be a number of the format, 0..1.
+    /// The kernel must be built for one lane. Allocates the device memory, and launches the kernel once without pixels,
+    /// because PoCL compiles a kernel at its first launch. `threshold`, 0..1, must be representable in the number
+    /// format.
     RingContrast(Kernels& kernels, const ExchangeSetup& setup, float threshold);
 
-    /// Marks the pixels of `pixels`, [PE][3][capacity].
+    /// Marks each pixel that differs from a neighbour by the threshold or more. `pixels`: [PE][3][capacity].
     void apply(const Buffer<float>& pixels, NeighbourExchange& exchange);
 
-    /// [PE][capacity]: 1 where a pixel is marked, else 0.
+    /// [PE][capacity]: 1 for marked pixels, else 0.
     const Buffer<std::uint8_t>& marks() const { return marks_; }
 
     /// Restores the marks of a checkpoint.

@@ -7,7 +7,8 @@
 namespace raya {
 namespace {
 
-// Work of the next launch, scaled from that of the last one, which took `seconds`, to take `aim` seconds.
+// Returns the work of the next launch, so that it takes about `aim` seconds. `work`: work of the last launch, which
+// took `seconds`; `most`: maximum. The work grows at most by a factor of kMostGrowth.
 std::uint32_t next_work(std::uint32_t work, std::uint32_t most, double seconds, double aim) {
     constexpr double kMostGrowth = 4;
     const double growth = seconds * kMostGrowth > aim ? aim / seconds : kMostGrowth;
@@ -78,7 +79,7 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
     }
 }
 
-// Writes instead of filling, as Oclgrind takes a filled buffer for uninitialised.
+// Writes the buffer instead of filling it, because Oclgrind reports filled buffers as uninitialised.
 void Tracer::begin(const std::string& label, std::uint32_t pixel) {
     session_.write(label, progress_, std::vector<raya_trace_progress>(pes_.count, {pixel, 0, 0}));
 }

@@ -1,4 +1,4 @@
-// The trace kernel: its build for a job and a device, and its launches in slices of bounded work.
+// The trace kernel: its build for a job and a device, and its launches, each of which does a bounded amount of work.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -17,16 +17,18 @@ namespace raya {
 /// Counters of one pass.
 struct PassCounters {
     Buffer<std::uint64_t> cycles;  // [PE][capacity]: modelled cycles of each pixel
-    Buffer<std::uint64_t> events;  // [PE][L][RAYA_EVENTS]
+    Buffer<std::uint64_t> events;  // [PE][L][RAYA_EVENTS]; L: work-items of a PE
 };
 
-/// Pixels `begin` .. `end` - 1 of each PE's share, in the block that starts with pixel `block`.
+/// Pixels begin .. end - 1 of each PE's share. `block`: index in the share of the pixel at the start of the device
+/// buffers.
 struct PixelRange {
     std::uint32_t block = 0, begin = 0, end = 0;
 };
 
-/// Work of a lane in a launch, in tests and steps of its rays: `first` for the first launch, or `watched` if progress
-/// is shown. Later launches are scaled to a second, half a second if progress is shown, but to at most `most`.
+/// Limits of the work of one lane in one launch, in tests and traversal steps of its rays: `first` for the first
+/// launch, or `watched` if progress is shown. Later launches are scaled to take one second (half a second if progress
+/// is shown), with `most` as the maximum.
 struct LaunchWork {
     std::uint32_t first = 0, watched = 0, most = 0;
 };
@@ -39,21 +41,22 @@ using TraceKernel = DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::
 
 class Tracer {
   public:
-    /// `pes`: of this device; `capacity`: pixels in the memory of each PE.
+    /// `pes`: PEs on this device; `capacity`: pixels of each PE in the device buffers.
     Tracer(Kernels& kernels, const PeSegment& pes, std::uint32_t capacity, const LaunchWork& work);
 
     /// Allocates the counters of a pass.
     PassCounters make_counters(const std::string& pass) const;
     void clear(PassCounters& counters);
 
-    /// One launch without pixels: PoCL compiles a kernel at its first launch, which is to count as build time.
+    /// Launches the kernel once without pixels, so that its compilation, which PoCL does at the first launch, counts as
+    /// build time.
     void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                  PassCounters& counters);
 
-    /// Traces `points` (RAYA_POINTS_*) of the range's pixels, for supersampling points only of marked pixels. Commands
-    /// are labelled `label`. `job`: the broadcast words. A launch ends after a bounded amount of work, so that no
-    /// watchdog intervenes, and is repeated until all pixels are traced. The host calls `meanwhile` after it has
-    /// submitted the first launch. Throws DeviceError if the device ends loops early even in the smallest launch.
+    /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; supersampling points only of marked
+    /// pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of work,
+    /// so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Calls `meanwhile` on the
+    /// host while the first launch runs. Throws DeviceError if the device ends loops early even in the smallest launch.
     void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                const ProgressCallback& progress = {}, const std::function<void()>& meanwhile = {});
@@ -62,14 +65,14 @@ class Tracer {
     const std::string& build_options() const { return build_options_; }
 
   private:
-    /// Launches the kernel for the range's pixels that PEs have not taken yet.
+    /// Launches the kernel for those pixels of the range that have not been traced.
     void launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                 std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
-    void begin(const std::string& label, std::uint32_t pixel);  // of each PE's share
+    void begin(const std::string& label, std::uint32_t pixel);  // index in each PE's share
     struct State {
         bool done = false;
-        std::uint64_t taken = 0;  // pixels that all PEs have taken, from the start of their shares on
-        bool cut = false;         // the device has ended loops early
+        std::uint64_t taken = 0;  // sum over all PEs: index of the next pixel of the share to trace
+        bool cut = false;         // the device has ended loops early, so results are wrong
     };
     State read_state(const std::string& label);
 
@@ -81,7 +84,7 @@ class Tracer {
     std::string build_options_;
     TraceKernel kernel_;
     Buffer<raya_trace_progress> progress_;  // [PE]
-    Buffer<std::uint32_t> saved_trees_;     // ray trees that the next launch continues
+    Buffer<std::uint32_t> saved_trees_;     // unfinished ray trees, which the next launch continues
     LaunchGuard<raya_trace_progress, std::uint32_t, float, std::uint64_t, std::uint64_t> guard_;
 };
 

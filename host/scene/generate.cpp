@@ -13,14 +13,14 @@
 namespace raya {
 namespace {
 
-constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // precision of coordinates
+constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // parts per unit to which coordinates are rounded
 
 void check_count(const char* kind, int count) {
     if (count < 1 || count > kMaxSpheres)
         throw UserError(fmt::format("{}: {} spheres: must lie in 1..{}", kind, count, kMaxSpheres));
 }
 
-/// A view of the cube [-1, 1]^3 from a corner; the cube fills most of the image.
+/// A view of the cube [-1, 1]^3 towards one of its corners; the cube fills most of the image.
 View view_of_cube() { return {{2.6, 3.4, 1.9}, {0, 0, -0.1}, {0, 0, 1}, 36, 0, 512, 512}; }
 
 /// Adds `count` spheres in the box with corner `low` and the given sides, each in its own cell of a k^3 grid.
@@ -35,7 +35,7 @@ void fill_box(Scene& scene, const Vec3& low, const Vec3& sides, std::int64_t cou
             low +
             Vec3(static_cast<double>(at % k), static_cast<double>(at / k % k), static_cast<double>(at / k / k)) * cell;
         const double radius = half * random.uniform(0.5, 0.9);
-        const double shift = 0.98 * (1 - radius / half);  // maximum offset from the cell's centre, relative to `half`
+        const double shift = 0.98 * (1 - radius / half);  // maximum offset from the cell's centre, in units of `half`
         const auto place = [&](double side) {
             return side / 2 + (side / 2 - half + half * shift) * random.uniform(-1, 1);
         };
@@ -47,12 +47,12 @@ void fill_box(Scene& scene, const Vec3& low, const Vec3& sides, std::int64_t cou
 
 struct SphereRing {
     int count;
-    double distance;  // of the centres from the z axis
-    double height;    // of the centres
-    double radius;    // of the spheres
-    double first;     // azimuth of the first sphere, in turns
+    double distance;  // distance of the centres from the z axis
+    double height;    // z of the centres
+    double radius;    // of a sphere
+    double first;     // azimuth of the first sphere, in full turns
     int first_surface;
-    int surface_count;  // surfaces assigned cyclically
+    int surface_count;  // number of surfaces, which are assigned cyclically
 };
 
 void add_ring(Scene& scene, const SphereRing& ring) {
@@ -161,7 +161,7 @@ Scene generate_centre() {
 }
 
 Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
-    constexpr int kTries = 200;  // to place a sphere where it touches no other
+    constexpr int kTries = 200;  // maximum number of redraws of a sphere that touches another one
     enum { kGlass, kMirror, kMatt, kFloor };
     Scene scene;
     scene.name = fmt::format("cluster{}.nff", seed);
@@ -200,7 +200,7 @@ Scene scattered(const Scene& even, std::uint64_t seed) {
 
 Scene moved_within(const Scene& scene) {
     constexpr double kVoxel = 2.0 / kObjectSides;
-    constexpr double kGap = kVoxel / 16;  // upper bound of the enlargement of a sphere's bounds at registration
+    constexpr double kGap = kVoxel / 16;  // upper bound of the margin by which hit regions (host/accel) exceed a sphere
     Scene moved = scene;
     for (Sphere& sphere : moved.spheres)
         for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-// SPD's scenes (E. Haines): balls, gears, lattice.
+// Scenes of the SPD programs (E. Haines): balls, lattice, and gears with wheels of a different shape.
 #include <fmt/core.h>
 
 #include <array>
@@ -13,9 +13,9 @@
 namespace raya {
 namespace {
 
-/// The directions from a ball to the nine that touch it, around +z, in SPD's order: the twelve neighbours in a dense
-/// packing without the lower three. Three groups, a third of a turn apart, each of one upper ball and two on the
-/// equator.
+/// Returns the directions from a sphere with axis +z to the nine smaller spheres that touch it, in SPD's order. They
+/// are the directions to the twelve neighbours in a dense sphere packing, without the lower three: three groups, a
+/// third of a turn apart, each with one direction upwards and two in the equatorial plane.
 std::array<Vec3, 9> nine_directions() {
     std::array<Vec3, 9> directions;
     const double upper = std::sqrt(2.0 / 3.0), outward = std::sqrt(1.0 / 3.0);
@@ -29,8 +29,8 @@ std::array<Vec3, 9> nine_directions() {
     return directions;
 }
 
-/// `v` rotated by the shortest rotation that maps +z to the unit vector `axis` (Rodrigues); for -z half a turn about y,
-/// as in SPD.
+/// Returns `v` after the shortest rotation that maps +z to the unit vector `axis` (Rodrigues' formula); if `axis` is
+/// -z, after half a turn about y, as in SPD.
 Vec3 turned_from_z(const Vec3& v, const Vec3& axis) {
     if (axis.z < -1 + 1e-9) return {-v.x, v.y, -v.z};
     const Vec3 pivot(-axis.y, axis.x, 0);
@@ -47,16 +47,16 @@ void add_flake(Scene& scene, int level, const Vec3& centre, double radius, const
     }
 }
 
-/// A multiple of four, so that wheels that mesh on one side mesh on all four.
+/// Number of teeth of a wheel. A multiple of four, so that wheels that mesh on one side mesh on all four sides.
 constexpr int kTeeth = 24;
 
 struct Corner {
-    double turn;    // angle from the middle of the tooth, in pitches
-    double radius;  // in pitch radii
+    double turn;    // angle from the tooth's centre line, in pitches (1 / kTeeth of a turn)
+    double radius;  // as a multiple of the radius of the pitch circle
 };
 
-/// A tooth, counter-clockwise: foot, flank and tip, tip, flank and foot. It is narrower than half a pitch at the pitch
-/// circle and shorter than the depth of a gap, so that meshing wheels do not touch.
+/// The outline of a tooth, counter-clockwise: foot, flank, tip, tip, flank, foot. At the pitch circle the tooth is
+/// narrower than half a pitch, and it is shorter than the gaps are deep, so that meshing wheels do not touch.
 constexpr std::array<Corner, 6> kTooth{
     {{-0.32, 0.9}, {-0.235, 1}, {-0.12, 1.075}, {0.12, 1.075}, {0.235, 1}, {0.32, 0.9}}};
 
@@ -74,13 +74,13 @@ std::vector<Surface> finishes() {
 /// A wheel with a vertical axis.
 struct Wheel {
     Vec3 centre;
-    double radius;     // of the pitch circle
-    double thickness;  // along the axis
+    double radius;     // radius of the pitch circle
+    double thickness;  // length along the axis
     double turned;     // angle of its first tooth from the x axis, in pitches
     int surface;
 };
 
-/// The wheel's outline at the given height, counter-clockwise seen from above.
+/// Returns the wheel's outline at z = `height`, counter-clockwise as seen from above.
 std::vector<Vec3> outline(const Wheel& wheel, double height) {
     std::vector<Vec3> corners;
     for (int tooth = 0; tooth < kTeeth; ++tooth)
@@ -93,7 +93,7 @@ std::vector<Vec3> outline(const Wheel& wheel, double height) {
     return corners;
 }
 
-/// Adds two faces and a quadrilateral for each of their edges; all fronts face outwards.
+/// Adds the upper and lower face and a quadrilateral for each edge between them. All fronts face outwards.
 void add_wheel(Scene& scene, const Wheel& wheel) {
     const std::vector<Vec3> upper = outline(wheel, rounded(wheel.centre.z + wheel.thickness / 2));
     const std::vector<Vec3> lower = outline(wheel, rounded(wheel.centre.z - wheel.thickness / 2));
@@ -105,13 +105,13 @@ void add_wheel(Scene& scene, const Wheel& wheel) {
     }
 }
 
-// Relative to the distance between neighbouring spheres. A cylinder starts inside its sphere, at 0.99 of half the
-// sphere's radius, and ends at the same depth inside the next one.
+// Sizes of the lattice, relative to the distance between the centres of neighbouring spheres. A cylinder starts inside
+// a sphere, at 0.99 of half the sphere's radius from the centre, and ends at the same depth inside the next sphere.
 constexpr double kSphereRadius = 1.0 / 4, kCylinderRadius = 1.0 / 16, kCylinderStart = 0.99 / 8;
 
-/// A view from near the middle of an upper edge diagonally down through the cube. The eye is half a lattice distance
-/// from a column and a layer of spheres, so that it is outside of all objects. SPD's own view is known only for size
-/// 12.
+/// A view from near the middle of an upper edge, diagonally down through the cube. The eye is half a lattice distance
+/// away from a column and from a layer of spheres, so that it is outside all objects. SPD's own view is known only for
+/// size 12.
 View view_of_lattice(int size) {
     const double x = (size / 2 + 0.5) / size, z = 1 - 0.5 / size;
     return {rounded({x, 1, z}), rounded({x, -1, z - 2}), {0.2, 1, 0}, 60, 0, 512, 512};
@@ -165,7 +165,7 @@ Scene generate_gears(int size) {
         for (int y = 0; y < size; ++y)
             for (int z = 0; z < size; ++z) {
                 const Vec3 centre = Vec3(-1) + (Vec3(x, y, z) + Vec3(0.5)) * distance;
-                const double turned = (x + y) % 2 == 0 ? 0 : 0.5;  // a tooth faces a gap
+                const double turned = (x + y) % 2 == 0 ? 0 : 0.5;  // half a pitch: teeth face the neighbours' gaps
                 add_wheel(scene, {centre, distance / 2, 0.4 * distance, turned, (x + 2 * y + z) % ground});
             }
     share_surfaces(scene);

@@ -11,11 +11,12 @@
 namespace raya {
 namespace {
 
-// Powers of two: kSpare is the margin to the format's lower limits in a scene that is not scaled; kHorizon is added
-// above the largest length of a scaled scene with planes, which extend to the horizon.
+// Margins as exponents of two. kSpare: minimum margin to the format's lower limits of a scene that is not scaled.
+// kHorizon: margin above the largest length of a scaled scene with planes, which extend to the horizon.
 constexpr double kSpare = 2, kHorizon = 6;
 
-/// Calls `visit` with each length that must not become 0, because its square is stored or it is a divisor.
+/// Calls visit(length) for each length that must not be flushed to 0, because the job has its square or kernels divide
+/// by it.
 template <class Visit>
 void for_each_small_length(const Scene& scene, Visit&& visit) {
     for (const Sphere& s : scene.spheres) visit(std::abs(s.radius));
@@ -33,8 +34,8 @@ double largest_length(const Scene& scene) {
     return largest;
 }
 
-/// The margins between a scene at scale 1 and the limits of a format, in powers of two; negative if a limit is
-/// exceeded.
+/// The margins between the lengths of a scene at scale 1 and the limits of a format, as exponents of two; negative if a
+/// limit is exceeded. `above`: to the upper limit; `below`: to the nearer of the two lower limits.
 struct ScaleRange {
     double above, below;
 };

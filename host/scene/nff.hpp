@@ -2,14 +2,14 @@
 // Environments", IEEE CG&A 7(11), 1987; SPD 3.9).
 //
 //     v / from x y z / at x y z / up x y z / angle degrees / hither distance / resolution width height
-//     b r g b                               background; black without it
+//     b r g b                               background; black by default
 //     l x y z [r g b]                       light
-//     f r g b Kd Ks Shine T ior             surface of the objects that follow; white with Kd = 1 before the first
+//     f r g b Kd Ks Shine T ior             surface of the objects that follow; before the first f: white, Kd = 1
 //     s x y z radius                        sphere
 //     p n, then n times x y z               polygon
 //     pp n, then n times x y z nx ny nz     patch: polygon with a normal at each vertex
 //     c x y z radius, x y z radius          cone or cylinder from base to apex, without caps
-//     #raya plane nx ny nz d                infinite plane n.x = d
+//     #raya plane nx ny nz d                infinite plane: points p with n.p = d
 //     #raya checker r g b r g b size        checker for the next plane, polygon or patch
 //     # anything else                       comment
 //
@@ -26,35 +26,35 @@
 
 namespace raya {
 
-/// A remark on something in a file that the scene does not contain, or contains in a changed form; one for each kind.
+/// A remark on a part of a file that the reader has left out or changed. Equal remarks are stored once and counted.
 struct NffRemark {
     std::string what;  // "polygon without area, left out"
     std::uint64_t count = 0;
-    int line = 0;  // of the first occurrence
+    int line = 0;  // line of the first occurrence
 };
 
 /// Adds a remark, or increments the count of an equal one.
 void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line);
 
-/// "FILE:LINE: polygon without area, left out (3 in all)".
+/// Returns the remark as text: "FILE:LINE: polygon without area, left out (3 in all)".
 std::string remark_text(const std::string& file, const NffRemark& remark);
 
-/// Parses NFF. The scene has shared surfaces (share_surfaces()) and normals of length 1; its name is `name` without
-/// folder. Throws UserError "NAME:LINE: reason" for anything that is not NFF or cannot be traced.
+/// Parses NFF. The returned scene has shared surfaces (share_surfaces()) and normals of length 1; its name is `name`
+/// without folder. Throws UserError "NAME:LINE: reason" if the text is not NFF or the scene cannot be traced.
 ///
-/// If `remarks` is not null, parse_nff() accepts what other programs tolerate, and records a remark for it: it leaves
-/// out objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
-/// with a normal of 0 into polygons, and skips entities of other dialects (la, lf, tt, ...) and a mail header. Prose,
-/// and a file without view or objects, are still errors.
+/// If `remarks` is not null, parse_nff() tolerates the following deviations and adds a remark for each: it leaves out
+/// objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
+/// with a normal of 0 into polygons, and skips entities of other NFF dialects (la, lf, tt, ...) and a mail header.
+/// Prose, and a file without view or objects, remain errors.
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks = nullptr);
 
-/// Reads a file, or stdin ("-") with the name "stdin". Throws UserError as parse_nff() does, and "NAME: reason" if the
-/// file cannot be read.
+/// Reads and parses a file; "-" is stdin, which has the name "stdin". Throws UserError as parse_nff() does, and
+/// UserError "NAME: reason" if the file cannot be read.
 Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remarks = nullptr);
 
-/// Writes a scene as NFF. Numbers have the fewest digits that round-trip, so parse_nff() of the text returns an equal
-/// scene if `scene` has shared surfaces (share_surfaces()). UserError for a checker on a sphere or cone, which NFF
-/// cannot express.
+/// Returns a scene as NFF text. Numbers have the minimum number of digits that round-trip, so parse_nff() of the text
+/// returns an equal scene if `scene` has shared surfaces (share_surfaces()). Throws UserError for a checker on a sphere
+/// or cone, which NFF cannot express.
 std::string write_nff(const Scene& scene);
 
 }  // namespace raya

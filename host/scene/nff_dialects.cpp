@@ -22,7 +22,7 @@ bool reads_as_keyword(std::string_view token) {
                        [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-/// Has a dot or a slash before its last character: `wood.ppm`, but not the last word of a sentence.
+/// Returns true if a dot or slash occurs before the last character: `wood.ppm`, but not the last word of a sentence.
 bool reads_as_file(std::string_view token) {
     return token.substr(0, token.size() - 1).find_first_of("./") != token.npos;
 }

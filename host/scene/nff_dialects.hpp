@@ -6,15 +6,15 @@
 namespace raya {
 
 /// Returns true if a line looks like an entity of an NFF dialect (`la 0.2 0.2 0.2`, `tt wood.ppm 0 0 1`, `Q`) and not
-/// like prose: a short keyword of letters and digits, followed by numbers and file names, and if there are numbers, by
-/// at most two other names. `rest`: the line after the keyword.
+/// like prose: it must start with a keyword of at most eight letters, digits and underscores. Numbers and file names
+/// may follow, and if there are numbers, up to two other names. `rest`: the line after the keyword.
 bool reads_as_entity(std::string_view keyword, std::string_view rest);
 
-/// Returns true if the first token of a text identifies Sense8's NFF, another format of the same name.
+/// Returns true if this token, the first one of a file, identifies Sense8's NFF, a different format with the same name.
 bool is_sense8_keyword(std::string_view token);
 
-/// Guesses the format of a text that is not NFF, with its article: "an OBJ", "a PLY", "a glTF", "a POV-Ray" or "a
-/// JSON"; empty if unknown.
+/// Guesses the format of a text that is not NFF. Returns its name with an article ("an OBJ", "a PLY", "a glTF", "a
+/// POV-Ray" or "a JSON"), or empty if unknown.
 std::string_view foreign_format(std::string_view text);
 
 struct Header {
@@ -22,8 +22,8 @@ struct Header {
     int lines = 0;
 };
 
-/// Finds a mail header at the beginning of a text, after empty lines: from `From somebody` or `Name: text` to the next
-/// empty line.
+/// Finds a mail header at the beginning of a text. It may follow empty lines, starts with a line `From somebody` or
+/// `Name: text`, and ends before the next empty line.
 Header mail_header(std::string_view text);
 
 }  // namespace raya

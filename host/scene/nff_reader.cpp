@@ -19,7 +19,7 @@ namespace raya {
 namespace {
 
 constexpr int kLargestSide = 16384;    // pixels
-constexpr double kLargestShare = 100;  // Kd, Ks, T; more than 1 is unphysical, far more is a typing error
+constexpr double kLargestShare = 100;  // for Kd, Ks, T: above 1 is unphysical, above 100 probably a typing error
 constexpr int kMaxVertices = 1'000'000'000;
 
 class NffReader {
@@ -47,8 +47,8 @@ class NffReader {
   private:
     [[noreturn]] void refuse(std::string_view reason) const { tokens_.refuse(tokens_.entity_line(), reason); }
 
-    /// Records the remark `what` about an object that cannot be traced as given and is left out or repaired. Refuses it
-    /// for `reason` in strict mode.
+    /// Handles an object that cannot be traced as given. In strict mode throws UserError with `reason`; otherwise adds
+    /// the remark `what`, and the caller leaves the object out or repairs it.
     void remark_or_refuse(std::string_view reason, const std::string& what) {
         if (!remarks_) refuse(reason);
         add_remark(*remarks_, what, tokens_.entity_line());
@@ -163,7 +163,7 @@ class NffReader {
         scene_.surfaces.push_back(surface);
     }
 
-    /// Returns the surface of a plane or polygon: the current one, with a pending checker.
+    /// Returns the surface of a plane or polygon: the current one, with the pending checker, if any.
     int take_flat_surface() {
         if (!checker_) return current_surface_;
         Surface surface = scene_.surfaces[static_cast<std::size_t>(current_surface_)];
@@ -188,7 +188,7 @@ class NffReader {
         const int min_count = remarks_ ? 0 : 3;
         const auto count =
             static_cast<std::size_t>(tokens_.take_integer("the number of vertices", min_count, kMaxVertices));
-        const std::size_t shortest = patch ? 12 : 6;  // characters: one digit and one blank for each number
+        const std::size_t shortest = patch ? 12 : 6;  // minimum characters: one digit and one blank per number
         if (count > tokens_.characters_left() / shortest + 2)
             refuse(fmt::format("the file is too short for a polygon of {} vertices", count));
         for (std::size_t i = 0; i < count; ++i) {
@@ -206,7 +206,8 @@ class NffReader {
 
     void add_polygon(Polygon polygon) {
         const OutlineCheck check = clean_outline(polygon);
-        // A triangle is flat up to rounding. One that is not is a sliver with almost no area, and cannot be cut.
+        // A triangle is flat by definition. If the check says otherwise, it is a sliver with almost no area, and it
+        // cannot be cut into triangles.
         const bool is_sliver = check.fault == OutlineFault::kNotFlat && polygon.vertices.size() == 3;
         if (check.fault == OutlineFault::kNoArea || check.fault == OutlineFault::kCrosses || (remarks_ && is_sliver))
             return remark_or_refuse("the polygon " + check.reason, check.fault == OutlineFault::kCrosses
@@ -272,7 +273,7 @@ class NffReader {
     }
 
     NffTokens tokens_;
-    std::vector<NffRemark>* remarks_;  // null: strict mode
+    std::vector<NffRemark>* remarks_;  // null: strict mode, in which every deviation is an error
     Scene scene_;
     bool has_view_ = false, has_background_ = false;
     int current_surface_ = 0;

@@ -22,11 +22,12 @@ bool is_binary(char c) { return (static_cast<unsigned char>(c) < ' ' && !is_blan
 
 struct ParsedNumber {
     double value = 0;
-    std::string_view rest;  // characters after the number
+    std::string_view rest;  // remaining characters after the number
     std::errc error{};
 };
 
-/// std::from_chars ignores the locale. Unlike scanf, which other readers use, it rejects a leading '+'.
+/// Parses the number at the start of a text. Uses std::from_chars, which ignores the locale. It rejects a leading '+',
+/// which scanf, and so other NFF readers, accept; hence the '+' is removed first.
 ParsedNumber parsed_number(std::string_view text) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     ParsedNumber number;

@@ -6,10 +6,11 @@
 
 namespace raya {
 
-/// The largest colour, exponent or other number without a unit.
+/// Maximum magnitude of colours, exponents and other numbers that are not lengths.
 inline constexpr double kLargestNumber = 1e9;
 
-/// The largest length. The packer scales lengths into a format's range; products of four must not overflow a double.
+/// Maximum magnitude of lengths. Products of four lengths must not overflow a double; the packer scales lengths into
+/// the range of the number format.
 inline constexpr double kLargestLength = 1e30;
 
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8; some editors write it
@@ -29,11 +30,11 @@ class NffTokens {
     /// file, are an error.
     NffTokens(std::string_view text, std::string name, int first_line = 1);
 
-    /// The next token, without taking it.
+    /// Returns the next token without taking it.
     const NffToken& peek() const { return next_; }
 
-    /// Starts an entity: takes its keyword, which must be the first token of a line. An entity that starts with `#raya`
-    /// must end on its line.
+    /// Takes the keyword of the next entity. It must be the first token of a line. An entity that starts with `#raya`
+    /// must end on the same line.
     std::string_view take_keyword();
 
     /// Takes the name after `#raya`, or the name of a part of `v`; `what` describes it in messages.
@@ -42,20 +43,20 @@ class NffTokens {
     /// Takes a finite number of at most `max` in magnitude; `what` describes it in messages ("the radius").
     double take_number(std::string_view what, double max = kLargestNumber);
 
-    /// Takes an integer in [lowest, highest].
+    /// Takes an integer in [lowest, highest]; `what` describes it in messages.
     int take_integer(std::string_view what, int lowest, int highest);
 
     /// Skips an unknown entity: the rest of its line and all following lines that begin with a number. Returns false
     /// and skips nothing if the line does not look like an entity (reads_as_entity()).
     bool skip_unknown();
 
-    /// Returns true if the next token starts like a number, valid or not.
+    /// Returns true if the next token starts with a number; more characters may follow it.
     bool number_follows() const;
 
-    /// The line on which the current entity started.
+    /// Returns the line on which the current entity started.
     int entity_line() const { return entity_line_; }
 
-    /// The number of characters after the next token.
+    /// Returns the number of characters after the next token.
     std::size_t characters_left() const { return text_.size() - position_; }
 
     /// Throws UserError "NAME:LINE: reason".
@@ -73,15 +74,16 @@ class NffTokens {
     int line_ = 1;
     bool at_line_start_ = true;
     NffToken next_;
-    std::string entity_;  // its name in messages
+    std::string entity_;  // the current entity's name in messages
     int entity_line_ = 1;
     bool one_line_ = false;
 };
 
-/// Returns true if a token starts like a number, valid or not.
+/// Returns true if a token starts with a number; more characters may follow it.
 bool reads_as_number(std::string_view token);
 
-/// The text in quotes, shortened, with unprintable characters replaced by '?'.
+/// Returns the text in single quotes, shortened to 24 characters, with '?' for each character that is not printable
+/// ASCII.
 std::string in_quotes(std::string_view text);
 
 }  // namespace raya

@@ -52,7 +52,7 @@ OutlineCheck clean_outline(Polygon& polygon) {
     }
     if (size < kSmallestLength) return {OutlineFault::kNoArea, fmt::format("is smaller than {}", kSmallestLength)};
 
-    // Upper bound of the area that rounding alone gives collinear vertices.
+    // Upper bound of the doubled area that rounding errors alone can give to collinear vertices.
     const double no_area = 1e-12 * size * size + 8 * kEpsilon * reach * size;
     const Vec3 normal = newell_normal(vertices);
     for (std::size_t i = 2; normal.length() <= no_area && i < vertices.size(); ++i)
@@ -72,7 +72,7 @@ OutlineCheck clean_outline(Polygon& polygon) {
 }
 
 std::string view_error(const View& view) {
-    constexpr double kMinUpSine = 1e-6;  // of the angle between the viewing direction and up
+    constexpr double kMinUpSine = 1e-6;  // minimum sine of the angle between viewing direction and up
     const Vec3 gaze = view.at - view.from;
     if (gaze.length() < kSmallestLength) return "'from' and 'at' are the same point";
     if (!(view.angle_degrees > 0 && view.angle_degrees < 180))

@@ -1,4 +1,4 @@
-// Validity of polygon outlines, viewpoints and colours, for scene files and the command line.
+// Validation of polygon outlines, views and colours from scene files and the command line.
 #pragma once
 #include <string>
 
@@ -6,12 +6,14 @@
 
 namespace raya {
 
-/// Shorter lengths count as 0: products of four must not underflow a double. A scene may be in any unit; the packer
-/// handles lengths that a number format cannot represent next to the largest one (length_scale.hpp).
+/// Shorter lengths are treated as 0, because products of four lengths must not underflow a double. Scenes may use any
+/// unit: length_scale.hpp handles lengths that are too small for a number format compared with the scene's largest
+/// length.
 inline constexpr double kSmallestLength = 1e-30;
 
-/// The maximum distance of a vertex from the plane of its polygon, relative to the polygon's size (the longest side of
-/// its bounding box). Files with six digits deviate by about 1e-5; 1e-3 is one pixel if the polygon spans 1,000.
+/// Maximum distance of a vertex from the plane of its polygon, relative to the polygon's size (the longest side of its
+/// bounding box). Vertices with six digits deviate by about 1e-5. 1e-3 is one pixel of a polygon that spans 1,000
+/// pixels.
 inline constexpr double kFlatness = 1e-3;
 
 enum class OutlineFault { kNone, kNoArea, kCrosses, kNotFlat };
@@ -22,15 +24,15 @@ struct OutlineCheck {
     std::string reason;
 };
 
-/// Removes vertices that repeat their neighbour, with their normals, and checks the outline. A self-intersection is
+/// Removes each vertex that equals the previous one, with its normal, and checks the outline. A self-intersection is
 /// detected only if the signed area is 0.
 OutlineCheck clean_outline(Polygon& polygon);
 
-/// Normalises `v`. A vector that has length 1 up to rounding is returned unchanged, so that a scene survives writing
-/// and reading; so is the zero vector.
+/// Returns `v` normalised. Returns a vector unchanged if its length is 1 up to rounding, so that writing and reading a
+/// scene does not change it; also returns the zero vector unchanged.
 Vec3 unit_vector(const Vec3& v);
 
-/// Returns why a view is invalid: "'from' and 'at' are the same point"; empty if it is valid.
+/// Returns why a view is invalid, for example "'from' and 'at' are the same point", or empty if it is valid.
 std::string view_error(const View& view);
 
 /// Returns true if all components are in 0..kLargestNumber.

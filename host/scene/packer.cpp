@@ -150,6 +150,49 @@ void pack_cone(JobWords& words, const Cone& c, const std::vector<std::uint32_t>&
     put_index(words, c.base_radius < 0 || c.apex_radius < 0 ? 1 : 0);
 }
 
+// All of the job but where its lists start.
+raya_job header_of(const Scene& scene, const JobSettings& settings) {
+    raya_job job{};
+    job.mapping = {settings.image.width, settings.image.height, 1, 0, RAYA_FOLD_CYCLIC};
+    job.bounces = settings.bounces;
+    std::copy(settings.cycles.begin(), settings.cycles.end(), job.cycles);
+    pack_camera(job, scene.view, settings);
+    store(job.background, scene.background, settings.format);
+    job.ambient = round_to_format(ambient_intensity(scene), settings.format);
+    job.extent = round_to_format(std::ldexp(scene_extent(scene), settings.length_exponent), settings.format);
+    return job;
+}
+
+// Appends spheres, lights, planes, cones and polygons, and writes their numbers and offsets into the job.
+void pack_objects(JobWords& words, raya_job& job, const Scene& scene, const std::vector<Face>& faces,
+                  const std::vector<std::uint32_t>& surface_at) {
+    const auto start = [&](const auto& list, std::uint32_t& count, std::uint32_t& at) {
+        count = static_cast<std::uint32_t>(list.size());
+        at = static_cast<std::uint32_t>(words.size());
+    };
+    start(scene.spheres, job.objects.spheres, job.objects.spheres_at);
+    for (const Sphere& s : scene.spheres) {
+        put_length(words, s.centre);
+        put_square(words, std::copysign(s.radius * s.radius, s.radius));
+    }
+    for (const Sphere& s : scene.spheres) words.push_back(surface_at[s.surface]);
+    start(scene.lights, job.lights, job.lights_at);
+    for (const Light& light : scene.lights) {
+        put_length(words, light.position);
+        put(words, light_colour(scene, light));
+    }
+    start(scene.planes, job.objects.planes, job.objects.planes_at);
+    for (const Plane& p : scene.planes) {
+        put(words, p.normal);
+        put_length(words, p.distance);
+        words.push_back(surface_at[p.surface]);
+    }
+    start(scene.cones, job.objects.cones, job.objects.cones_at);
+    for (const Cone& c : scene.cones) pack_cone(words, c, surface_at);
+    start(faces, job.objects.polygons, job.objects.polygons_at);
+    pack_faces(words, faces, surface_at);
+}
+
 }  // namespace
 
 PackedJob::PackedJob(const raya_job& header, std::vector<std::uint32_t> words, bool has_patches)
@@ -167,15 +210,7 @@ void PackedJob::append(const std::vector<std::uint32_t>& words) {
 }
 
 PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
-    raya_job job{};
-    job.mapping = {settings.image.width, settings.image.height, 1, 0, RAYA_FOLD_CYCLIC};
-    job.bounces = settings.bounces;
-    std::copy(settings.cycles.begin(), settings.cycles.end(), job.cycles);
-    pack_camera(job, scene.view, settings);
-    store(job.background, scene.background, settings.format);
-    job.ambient = round_to_format(ambient_intensity(scene), settings.format);
-    job.extent = round_to_format(std::ldexp(scene_extent(scene), settings.length_exponent), settings.format);
-
+    raya_job job = header_of(scene, settings);
     JobWords words(settings.format, std::ldexp(1.0, settings.length_exponent));
     words.resize(kWordsOf<raya_job>);
     std::vector<std::uint32_t> surface_at;
@@ -183,34 +218,8 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
         surface_at.push_back(static_cast<std::uint32_t>(words.size()));
         pack_surface(words, s);
     }
-    const auto here = [&] { return static_cast<std::uint32_t>(words.size()); };
-    job.objects.spheres = static_cast<std::uint32_t>(scene.spheres.size());
-    job.objects.spheres_at = here();
-    for (const Sphere& s : scene.spheres) {
-        put_length(words, s.centre);
-        put_square(words, std::copysign(s.radius * s.radius, s.radius));
-    }
-    for (const Sphere& s : scene.spheres) words.push_back(surface_at[s.surface]);
-    job.lights = static_cast<std::uint32_t>(scene.lights.size());
-    job.lights_at = here();
-    for (const Light& light : scene.lights) {
-        put_length(words, light.position);
-        put(words, light_colour(scene, light));
-    }
-    job.objects.planes = static_cast<std::uint32_t>(scene.planes.size());
-    job.objects.planes_at = here();
-    for (const Plane& p : scene.planes) {
-        put(words, p.normal);
-        put_length(words, p.distance);
-        words.push_back(surface_at[p.surface]);
-    }
-    job.objects.cones = static_cast<std::uint32_t>(scene.cones.size());
-    job.objects.cones_at = here();
-    for (const Cone& c : scene.cones) pack_cone(words, c, surface_at);
     const std::vector<Face> faces = faces_of(scene);
-    job.objects.polygons = static_cast<std::uint32_t>(faces.size());
-    job.objects.polygons_at = here();
-    pack_faces(words, faces, surface_at);
+    pack_objects(words, job, scene, faces, surface_at);
     if (words.size() > kMaxWords)
         throw UserError(
             fmt::format("{}: packs to {} words, more than 32-bit indices can address", scene.name, words.size()));

@@ -1,4 +1,5 @@
-// Packs a scene and a view into the words that the bus broadcasts and every PE stores (kernels/shared/job.h).
+// Packing of a scene and its view into a job: the words that the bus broadcasts and every PE stores
+// (kernels/shared/job.h).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -18,10 +19,10 @@ namespace raya {
 template <class Record>
 inline constexpr std::size_t kWordsOf = sizeof(Record) / sizeof(std::uint32_t);
 
-/// The maximum number of words of a job or of a node's memory, 4 GB: well within 32-bit indices.
+/// Maximum number of words (4 GB) of a job or of a torus node's memory; 32-bit indices can address them.
 inline constexpr std::size_t kMaxWords = std::size_t{1} << 30;
 
-/// `words` rounded up to a multiple of four (kernels read float4).
+/// Returns `words` rounded up to a multiple of four, as kernels read float4.
 constexpr std::size_t padded_to_rows(std::size_t words) { return (words + 3) / 4 * 4; }
 
 template <class Record>
@@ -44,20 +45,20 @@ void put_record(std::span<std::uint32_t> words, std::size_t at, const Record& re
 /// The position of the primary ray in a pixel (kernels/README.md, Camera).
 enum class Sampling { kCentres, kCorners };
 
-/// Parameters of a job besides its scene.
+/// Parameters of a job other than its scene.
 struct JobSettings {
     ImageSize image;
     Sampling sampling = Sampling::kCentres;
     std::uint32_t bounces = 8;
     std::array<std::uint32_t, RAYA_EVENTS> cycles{};  // modelled cycles of one event of each kind
-    NumberFormat format{};                            // of every number in the job
+    NumberFormat format{};                            // format of every number in the job
     int length_exponent = 0;                          // lengths are multiplied by 2^length_exponent; see length_scale()
 };
 
 /// The words of a job, which begin with its header.
 class PackedJob {
   public:
-    /// `words` begins with space for the header.
+    /// `words`: the job's words, with space for the header at the start.
     PackedJob(const raya_job& header, std::vector<std::uint32_t> words, bool has_patches);
 
     const raya_job& header() const { return header_; }
@@ -75,9 +76,9 @@ class PackedJob {
     bool has_patches_;
 };
 
-/// Packs a scene. The header's mapping assigns all pixels to one PE; machines with more PEs replace it. Each number is
-/// rounded from double to the format once. Patches of more than three vertices are cut into triangles, each of which
-/// counts as a polygon. UserError for a scene of more than 2^30 words.
+/// Packs a scene. The mapping in the header assigns all pixels to one PE; machines with more PEs replace it. Each
+/// number is rounded once, from double to the number format. Patches of more than three vertices are cut into
+/// triangles, each of which counts as a polygon. Throws UserError if the job has more than kMaxWords words.
 PackedJob pack_job(const Scene& scene, const JobSettings& settings);
 
 }  // namespace raya

@@ -10,10 +10,11 @@ namespace {
 
 using Vec2 = Imath::V2d;
 
-/// Twice the signed area of a triangle, > 0 if it is counter-clockwise.
+/// Returns twice the signed area of a triangle; > 0 if the triangle is counter-clockwise.
 double doubled_area(const Vec2& a, const Vec2& b, const Vec2& c) { return (b - a).cross(c - a); }
 
-/// The vertices in the plane's two coordinates, mirrored if necessary to be counter-clockwise.
+/// Returns the vertices in the two coordinates other than dropped_axis(), mirrored if necessary so that they are
+/// counter-clockwise.
 std::vector<Vec2> flattened(const std::vector<Vec3>& vertices, const Vec3& normal) {
     const int axis = dropped_axis(normal);
     const int first = axis == 0 ? 1 : 0;
@@ -27,9 +28,10 @@ std::vector<Vec2> flattened(const std::vector<Vec3>& vertices, const Vec3& norma
     return flat;
 }
 
-/// Returns true if a corner is an ear: convex, with no other vertex in its triangle. Vertices on the triangle's border
-/// count as inside, so that cutting an ear never leaves a degenerate polygon. Vertices that coincide with a corner (the
-/// two sides of a cut that joins a hole to the outline) do not count.
+/// Returns true if a corner (previous vertex, vertex, next vertex) is an ear: convex, with no other vertex of `rest` in
+/// its triangle. Vertices on the triangle's border count as inside, so that cutting off an ear never leaves a
+/// degenerate polygon. Vertices at the same position as one of the three are ignored: they occur where a cut joins a
+/// hole to the outline.
 bool is_ear(const std::vector<Vec2>& flat, const std::vector<int>& rest, const std::array<int, 3>& corner) {
     const auto at = [&](int i) { return flat[static_cast<std::size_t>(i)]; };
     const Vec2 a = at(corner[0]), b = at(corner[1]), c = at(corner[2]);
@@ -46,7 +48,7 @@ bool is_ear(const std::vector<Vec2>& flat, const std::vector<int>& rest, const s
 
 Vec3 newell_normal(const std::vector<Vec3>& vertices) {
     Vec3 sum(0, 0, 0);
-    // Relative to the first vertex instead of the origin: a small polygon far from the origin keeps its precision.
+    // Uses positions relative to the first vertex, so that a small polygon far from the origin keeps its precision.
     for (std::size_t i = 2; i < vertices.size(); ++i)
         sum += (vertices[i - 1] - vertices[0]).cross(vertices[i] - vertices[0]);
     return sum;
@@ -69,7 +71,7 @@ std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, c
     };
     std::vector<std::array<int, 3>> triangles;
     while (rest.size() >= 3) {
-        std::size_t ear = 1;  // for a triangle or an outline without ears: corners (0, 1, 2)
+        std::size_t ear = 1;  // default, also if there is no ear: triangle (0, 1, 2)
         if (rest.size() > 3)
             for (std::size_t i = 0; i < rest.size(); ++i)
                 if (is_ear(flat, rest, corner(i))) {

@@ -18,7 +18,7 @@ double shared_intensity(std::size_t lights) {
 
 using SurfaceKey = std::array<double, 16>;
 
-/// All numbers of a surface: equal surfaces have equal keys.
+/// Returns all numbers of a surface. Equal surfaces have equal keys.
 SurfaceKey surface_key(const Surface& s) {
     const Checker c = s.checker.value_or(Checker{Colour(0), Colour(0), 0});
     return {s.colour.x, s.colour.y, s.colour.z, s.diffuse, s.specular, s.shine, s.transmittance, s.refraction,
@@ -30,7 +30,7 @@ SurfaceKey surface_key(const Surface& s) {
 void share_surfaces(Scene& scene) {
     const std::vector<Surface> before = std::exchange(scene.surfaces, {});
     std::map<SurfaceKey, int> numbers;
-    std::vector<int> known(before.size(), -1);  // new number of each old surface; -1: not used yet
+    std::vector<int> known(before.size(), -1);  // new index of each old surface; -1: not used so far
     const auto number_of = [&](std::size_t surface) {
         if (known.at(surface) >= 0) return known[surface];
         const auto [entry, added] = numbers.try_emplace(surface_key(before[surface]), static_cast<int>(numbers.size()));

@@ -1,4 +1,4 @@
-// A scene as plain data in double precision, independent of machines, number formats and OpenCL.
+// A scene as structs of double precision numbers, independent of machines, number formats and OpenCL.
 #pragma once
 #include <Imath/ImathVec.h>
 
@@ -17,14 +17,14 @@ struct View {
     Vec3 from{0, 0, 0};
     Vec3 at{0, 0, 1};
     Vec3 up{0, 1, 0};
-    double angle_degrees = 45;  // of the whole height, in (0, 180)
-    double hither = 0;          // stored for writing only: a ray tracer has no hither plane
+    double angle_degrees = 45;  // vertical angle of the image, in (0, 180)
+    double hither = 0;          // near plane; unused, stored only for write_nff()
     int width = 256;            // pixels
     int height = 256;
     bool operator==(const View&) const = default;
 };
 
-/// A positional light. An empty `colour` means white of sqrt(n) / (2 n) for n lights.
+/// A point light. An empty `colour` means white of intensity sqrt(n) / (2 n) in a scene of n lights.
 struct Light {
     Vec3 position;
     std::optional<Colour> colour;
@@ -38,19 +38,19 @@ struct Checker {
     bool operator==(const Checker&) const = default;
 };
 
-/// The fill colour and shading parameters (`f` of NFF).
+/// Colour and shading parameters of a surface (`f` of NFF).
 struct Surface {
     Colour colour{1, 1, 1};
     double diffuse = 1;        // Kd
-    double specular = 0;       // Ks: highlight and share of the reflected ray
+    double specular = 0;       // Ks: weight of highlight and reflected ray
     double shine = 0;          // Phong exponent
-    double transmittance = 0;  // T: share of the refracted ray
+    double transmittance = 0;  // T: weight of the refracted ray
     double refraction = 1;     // index of refraction, > 0 if transmittance > 0
     std::optional<Checker> checker{};
     bool operator==(const Surface&) const = default;
 };
 
-/// `surface` is an index into Scene::surfaces in every object.
+/// A sphere (`s`). In every object, `surface` is an index into Scene::surfaces.
 struct Sphere {
     Vec3 centre;
     double radius = 1;  // < 0: only the inside is visible
@@ -58,10 +58,10 @@ struct Sphere {
     bool operator==(const Sphere&) const = default;
 };
 
-/// The infinite plane n.x = d (`#raya plane`); the normal has length 1.
+/// The infinite plane of the points p with dot(normal, p) = distance (`#raya plane`). The normal has length 1.
 struct Plane {
     Vec3 normal{0, 0, 1};
-    double distance = 0;  // d
+    double distance = 0;  // from the origin, along the normal; scene units
     int surface = 0;
     bool operator==(const Plane&) const = default;
 };
@@ -69,12 +69,13 @@ struct Plane {
 /// A planar polygon, convex or concave (`p`), or a patch with a normal at each vertex (`pp`).
 struct Polygon {
     std::vector<Vec3> vertices;  // 3 or more, in order around the polygon, counter-clockwise seen from its front
-    std::vector<Vec3> normals;   // empty, or one of length 1 for each vertex
+    std::vector<Vec3> normals;   // empty, or a unit normal for each vertex
     int surface = 0;
     bool operator==(const Polygon&) const = default;
 };
 
-/// A cone or cylinder without caps (`c`). Radii are both >= 0, or both <= 0: only the inside is visible.
+/// A cone or cylinder without caps (`c`). Both radii are >= 0, or both are <= 0; in the latter case only the inside is
+/// visible.
 struct Cone {
     Vec3 base;
     double base_radius = 1;
@@ -85,9 +86,9 @@ struct Cone {
 };
 
 /// The contents of a scene file. Objects are numbered by kind, then by their order in the file: all spheres, then
-/// planes, polygons and cones. Of two hits at equal distance the lower number wins.
+/// planes, polygons and cones. Of two hits at equal distance, that of the object with the lower number is used.
 struct Scene {
-    std::string name;  // the file's name without folder, or what generated it
+    std::string name;  // the file's name without folder, or a name given by the generator
     Colour background{0, 0, 0};
     View view;
     std::vector<Light> lights;
@@ -101,17 +102,20 @@ struct Scene {
     bool operator==(const Scene&) const = default;
 };
 
-/// Stores equal surfaces once, in the order in which the objects (by number) first use them, and removes unused ones,
-/// so that equivalent scenes compare equal.
+/// Stores equal surfaces once and removes unused ones, so that equivalent scenes compare equal. The surfaces are in the
+/// order in which the objects, by number, first use them.
 void share_surfaces(Scene& scene);
 
-/// The colour of a light of this scene: its own, or white of sqrt(n) / (2 n) (SPD, E. Haines).
+/// Returns the colour of a light of this scene: its own, or white of intensity sqrt(n) / (2 n) for n lights (SPD, E.
+/// Haines).
 Colour light_colour(const Scene& scene, const Light& light);
 
-/// The ambient intensity: sqrt(n) / (2 n) for n lights (SPD); 1 without lights, so that the image is not black.
+/// Returns the intensity of ambient light: sqrt(n) / (2 n) for n lights (SPD), or 1 without lights, so that the image
+/// is not black.
 double ambient_intensity(const Scene& scene);
 
-/// Half the side of the smallest cube around the origin that contains the eye and all finite objects, scene units.
+/// Returns half the side, in scene units, of the smallest cube centred at the origin that contains the eye and all
+/// finite objects.
 double scene_extent(const Scene& scene);
 
 }  // namespace raya

@@ -33,8 +33,8 @@ double millionths(double x) { return std::round(x * 1e6) / 1e6 + 0.0; }
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-/// Extends `box` by a disk perpendicular to `axis`, which has length 1. The half extent of the disk along a coordinate
-/// axis is its radius times the sine of the angle between the two axes.
+/// Extends `box` so that it contains a disk perpendicular to `axis`, which has length 1. Along a coordinate axis, the
+/// disk extends from its centre by its radius times the sine of the angle between `axis` and the coordinate axis.
 void extend_by_disk(Imath::Box3d& box, const Vec3& centre, double radius, const Vec3& axis) {
     Vec3 reach;
     for (int i = 0; i < 3; ++i) reach[i] = std::abs(radius) * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
@@ -44,7 +44,7 @@ void extend_by_disk(Imath::Box3d& box, const Vec3& centre, double radius, const 
 
 }  // namespace
 
-// Rodrigues' rotation formula.
+// Uses Rodrigues' rotation formula.
 View turned(View view, double degrees) {
     const double rest = std::fmod(degrees, 360);
     if (rest == 0) return view;
@@ -60,7 +60,8 @@ Scene random_view(Scene scene, std::uint64_t seed) {
     const Vec3 other = std::abs(up.x) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
     const Vec3 east = up.cross(other).normalized(), north = up.cross(east);
     SplitMix random(seed);
-    // Heights are uniform on a sphere: the area of a zone is proportional to its height (Archimedes).
+    // A uniform point on a sphere has a uniform height, because the area of a zone is proportional to its height
+    // (Archimedes).
     const double height = random.uniform(std::sin(radians(kLowestView)), std::sin(radians(kHighestView)));
     const double azimuth = random.uniform(0, 2 * std::numbers::pi), level = std::sqrt(1 - height * height);
     const Vec3 direction = up * height + (east * std::cos(azimuth) + north * std::sin(azimuth)) * level;

@@ -8,20 +8,19 @@
 
 namespace raya {
 
-/// Rotates the eye by `degrees` around the axis through `at` along `up`, anticlockwise as seen from above (`up` towards
-/// the viewer). Height and distance stay the same. Full turns change no bit; quarter turns use the exact sine and
-/// cosine.
+/// Rotates the eye by `degrees` around the axis through `at` along `up`, counter-clockwise when `up` points towards the
+/// observer. Height and distance stay the same. Full turns change no bit; quarter turns use exact sines and cosines.
 View turned(View view, double degrees);
 
 inline constexpr double kLowestView = 5, kHighestView = 75;  // elevation above the target, degrees
 
-/// The scene with a random eye at the same distance from `at` and with the same angle. The eye is uniform on the part
-/// of the sphere around `at` between the two elevations above the plane perpendicular to `up`. A function of its
-/// arguments, the same on every platform: directions are rounded to six decimals.
+/// Returns the scene with a random eye at the same distance from `at`. The eye is uniformly distributed on the zone of
+/// the sphere around `at` between the elevations kLowestView and kHighestView above the plane perpendicular to `up`.
+/// The result depends only on the arguments, not on the platform: directions are rounded to six decimals.
 Scene random_view(Scene scene, std::uint64_t seed);
 
-/// The axis-aligned bounding box of all spheres, polygons and cones, scene units; empty (isEmpty()) if the scene has
-/// only planes. Patches count by their corners.
+/// Returns the axis-aligned bounding box of all spheres, polygons and cones, in scene units; empty (isEmpty()) if the
+/// scene has only planes.
 Imath::Box3d scene_box(const Scene& scene);
 
 }  // namespace raya

@@ -51,7 +51,7 @@ void AsyncSimulation::handle(const Event& event) {
     const bool valid = event.kind == EventKind::kMessageDone ||
                        event.version == (event.kind == EventKind::kTaskDone ? nodes_[event.location].version
                                                                             : channels_[event.location].version);
-    if (!valid) return;  // it was postponed and scheduled again
+    if (!valid) return;  // obsolete: the event was rescheduled
     now_ = event.time;
     result_.finish_ms = now_ * kMsPerNs;
     if (event.kind == EventKind::kMessageDone) finish_job(event.location);

@@ -1,4 +1,4 @@
-// The processors (communication task and main task), then the links (output threads, transfers, input threads).
+// First the processors (communication task, main task), then the links (output threads, transfers, input threads).
 #include "host/torus/async_simulation.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ constexpr double kBytesPerWord = 4, kNsPerS = 1e9;
 
 }  // namespace
 
-// The communication task preempts the main task.
+// Adds a job of the communication task, which preempts the main task.
 void AsyncSimulation::add_job(std::uint32_t node, const MessageJob& job) {
     nodes_[node].jobs.push_back(job);
     run_processor(node);
@@ -53,7 +53,7 @@ void AsyncSimulation::finish_job(std::uint32_t node) {
     run_processor(node);
 }
 
-// Takes the first waiting ray, or else the node's next task without a cause.
+// Starts the task of the first waiting ray, or, if none waits, the node's next task without a cause.
 void AsyncSimulation::start_next_task(std::uint32_t node) {
     Node& n = nodes_[node];
     if (n.task != kNone || (n.queue.empty() && n.own.empty())) return;
@@ -78,7 +78,7 @@ void AsyncSimulation::finish_task(std::uint32_t node) {
     send_outputs(node);
 }
 
-// Sends the rest of the messages of the current task, until a port is full or all are sent.
+// Sends the remaining messages of the current task until a port is full.
 void AsyncSimulation::send_outputs(std::uint32_t node) {
     Node& n = nodes_[node];
     const std::span<const HistoryMessage> made = history_.sent_by(n.task);
@@ -113,7 +113,7 @@ void AsyncSimulation::deliver(std::uint32_t message) {
     start_next_task(node);
 }
 
-// The channel by which a message leaves the node; kNone if this is its destination.
+// Returns the channel by which the message leaves the node; kNone if the node is its destination.
 std::uint32_t AsyncSimulation::next_channel(std::uint32_t node, std::uint32_t message) const {
     const std::uint32_t to = history_.messages[message].to;
     if (node == to) return kNone;
@@ -122,7 +122,8 @@ std::uint32_t AsyncSimulation::next_channel(std::uint32_t node, std::uint32_t me
     return node * RAYA_LINKS + link;
 }
 
-// Puts the message into the output thread, or registers it as waiting and returns false.
+// Puts the message into the output thread, or, if too few slots are free, adds it to the waiting messages and returns
+// false.
 bool AsyncSimulation::enqueue(std::uint32_t link, const Waiting& from) {
     const std::uint32_t cls = class_of(from.message);
     Channel& channel = channels_[link];
@@ -135,8 +136,8 @@ bool AsyncSimulation::enqueue(std::uint32_t link, const Waiting& from) {
     return true;
 }
 
-// A slot of an output thread has become free: admits the first waiting message whose need of slots is met. A ray that
-// stays in its ring may so overtake one that waits to enter it.
+// Called when a slot of an output thread has become free: admits the first waiting message for which enough slots are
+// free. So a ray that stays in its ring can overtake a ray that waits to enter the ring.
 void AsyncSimulation::admit_waiting(std::uint32_t link, std::uint32_t cls) {
     Channel& channel = channels_[link];
     for (;;) {
@@ -159,7 +160,8 @@ void AsyncSimulation::admit_waiting(std::uint32_t link, std::uint32_t cls) {
     }
 }
 
-// Sends the first message for whose class the input thread has a free slot; returns, which are short, go first.
+// Sends the first message of a class for which the input thread has a free slot. Returns have priority, because they
+// are short.
 void AsyncSimulation::start(std::uint32_t link) {
     Channel& channel = channels_[link];
     if (channel.sending) return;
@@ -182,7 +184,7 @@ void AsyncSimulation::begin_transfer(std::uint32_t link) {
     if (channels_[channel.back].transferring) set_rate(channel.back);
 }
 
-// Continues the transfer at the rate that the wire now leaves to this direction.
+// Updates the rate of the current transfer to what is now available to this direction of the link.
 void AsyncSimulation::set_rate(std::uint32_t link) {
     Channel& channel = channels_[link];
     channel.words_left -= channel.rate * (now_ - channel.since);
@@ -212,7 +214,7 @@ void AsyncSimulation::end_transfer(std::uint32_t link) {
     start(link);
 }
 
-// The communication task has received a message: delivers or forwards it.
+// Called when the communication task has received a message: delivers or forwards the message.
 void AsyncSimulation::arrive(std::uint32_t link, std::uint32_t message) {
     const std::uint32_t node = channels_[link].end, on = next_channel(node, message);
     if (on == kNone) {

@@ -1,5 +1,5 @@
-// Discrete-event simulator of the machine that async_machine.hpp describes. One class in two files: async_machine.cpp
-// has the event loop, async_simulation.cpp the processors, the links and their threads.
+// Discrete-event simulator of the machine that async_machine.hpp describes. async_machine.cpp implements the event
+// loop, async_simulation.cpp the processors, links and threads.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,47 +14,47 @@
 
 namespace raya {
 
-/// One run. The history and the machine must be valid and outlive it.
+/// Runs one simulation. The constructor's arguments must be valid and outlive this object.
 class AsyncSimulation {
   public:
     AsyncSimulation(const raya_torus& torus, const History& history, const AsyncMachine& machine);
     AsyncResult run();
 
   private:
-    static constexpr std::uint32_t kNone = UINT32_MAX, kClasses = 2;  // returns, rays
+    static constexpr std::uint32_t kNone = UINT32_MAX, kClasses = 2;  // message classes: 0 returns, 1 rays
     static constexpr double kMsPerNs = 1e-6;
 
     enum class EventKind : std::uint8_t { kMessageDone, kTaskDone, kTransferDone };
     struct Event {
         double time = 0;           // ns
-        std::uint64_t number = 0;  // order of scheduling; breaks ties of time
+        std::uint64_t number = 0;  // in the order of scheduling; orders events of equal time
         EventKind kind{};
-        std::uint32_t location = 0;  // a node or a channel
-        std::uint32_t version = 0;   // of the node or channel; the event is void if that has a newer one
+        std::uint32_t location = 0;  // index of a node (kMessageDone, kTaskDone) or of a channel
+        std::uint32_t version = 0;   // of the node or channel; if it has changed, the event is obsolete
         bool operator>(const Event& other) const {
             return time != other.time ? time > other.time : number > other.number;
         }
     };
 
-    // A message that waits for `needs` free slots in an output thread: in the input thread of channel `link`, or, if
-    // that is kNone, in the node's main task.
+    // A message that waits until an output thread has `needs` free slots. It is in the input thread of channel `link`,
+    // or, if `link` is kNone, in the node's main task.
     struct Waiting {
         std::uint32_t link = kNone, message = 0, needs = 1;
     };
 
-    // One direction of a link: the output thread at its start, the wire, and the input thread at its end.
+    // One direction of a link: the output thread at its start, the transfer, and the input thread at its end.
     struct Channel {
-        std::uint32_t start = 0, end = 0, back = 0;  // nodes; channel of the other direction
+        std::uint32_t start = 0, end = 0, back = 0;  // nodes `start`, `end`; index of the opposite channel
         std::array<std::deque<std::uint32_t>, kClasses> out{};
         std::array<std::vector<Waiting>, kClasses> waiting{};
-        std::array<bool, kClasses> taken{};      // the slot of the input thread is in use
-        std::optional<std::uint32_t> sending{};  // message, from its job in the sender to the end of the transfer
+        std::array<bool, kClasses> taken{};      // [class]: the input thread's slot is occupied
+        std::optional<std::uint32_t> sending{};  // from the sender's job until the transfer ends
         std::uint32_t sent_class = 0, version = 0;
         bool transferring = false;
-        double words_left = 0, rate = 0, since = 0, began = 0;  // words, words/ns, ns
+        double words_left = 0, rate = 0, since = 0, began = 0;  // words, words/ns, ns, ns
     };
 
-    // Work of the communication task for one message.
+    // Work of the communication task for one message at one end of channel `link`.
     struct MessageJob {
         std::uint32_t link = 0, message = 0;
         bool arrives = false;
@@ -64,12 +64,12 @@ class AsyncSimulation {
         std::deque<MessageJob> jobs{};
         bool in_job = false;
         std::deque<std::uint32_t> queue{};  // messages that wait for the main task
-        std::deque<std::uint32_t> own{};    // tasks without a causing message
-        std::uint32_t task = kNone;         // current one of the main task
-        std::uint32_t sent = 0;             // number of its messages sent; kNone until its computation ends
+        std::deque<std::uint32_t> own{};    // tasks that no message causes
+        std::uint32_t task = kNone;         // current task of the main task
+        std::uint32_t sent = 0;             // messages of `task` sent so far; kNone until its computation ends
         bool computing = false;
-        double left = 0, since = 0;  // ns of computation left at the time `since`
-        double port_since = 0;       // time at which it began to wait for a port
+        double left = 0, since = 0;  // remaining computation at time `since`, ns
+        double port_since = 0;       // when the main task began to wait for a port, ns
         std::uint32_t version = 0;
     };
 

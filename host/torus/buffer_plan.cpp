@@ -15,7 +15,7 @@
 namespace raya {
 namespace {
 
-// Twice the length, or the longest queue that fits if twice the length does not.
+// Returns twice the length, or, if that does not fit a node although `tried` does, the longest queue that fits.
 std::uint32_t next_queue(std::uint32_t tried, const QueueTrial& trial) {
     const auto fits = [&](std::uint32_t queue) { return trial.bytes(buffers_for(queue)) <= trial.limit; };
     const std::uint32_t next = std::min(2 * tried, trial.most);
@@ -24,7 +24,7 @@ std::uint32_t next_queue(std::uint32_t tried, const QueueTrial& trial) {
     return longest > tried ? longest : next;
 }
 
-// Limit for a trial's object lists: entries that take a fraction of a second.
+// Maximum number of entries in a trial's object lists: as many as take a fraction of a second.
 constexpr std::uint64_t kFewEntries = std::uint64_t{1} << 24;
 
 std::uint64_t voxels_of(const Divisions& divisions) {
@@ -57,27 +57,28 @@ class PlanTrial {
     const PackedJob& job_;
     const NumberFormat format_;
     const Divisions voxels_;
-    // Number of objects if the last trial registered every object in every voxel, else 0. Formats without a bound for
-    // the registration do so for any number of voxels. Then no number of nodes helps, and the lists grow long.
+    // Number of objects if the last trial registered every object in every voxel, else 0. Formats for which no error
+    // bound is known register every object in every voxel, for any number of voxels. Then more nodes do not help, and
+    // the lists become long.
     std::uint64_t everywhere_ = 0;
 };
 
 constexpr std::uint64_t kPacketBytes = RAYA_PACKET_WORDS * sizeof(std::uint32_t);
 constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t);
 
-// The longest queue in [least, most] that fits next to the words; `least` must fit.
+// Returns the longest queue in [least, most] that, together with `words` words, fits `memory` bytes; `least` must fit.
 std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t least,
                             std::uint32_t most) {
     return last_where(least, std::uint64_t{most} + 1,
                       [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; });
 }
 
-// Memory that a scene needs in every node.
+// A scene divided among the nodes, with buffers, and the memory of a node.
 struct Demand {
     const std::string& scene;
     const NodeMemories& memories;
     const raya_torus& torus;
-    std::uint64_t limit;  // bytes
+    std::uint64_t limit;  // memory of a node, bytes
     NodeBuffers buffers;
 
     std::uint32_t nodes() const { return raya_nodes(torus); }
@@ -93,7 +94,7 @@ std::uint32_t fullest_node(const NodeMemories& memories) {
     return fullest;
 }
 
-// "node 219 (voxel 3, 3, 3 with 2310 objects)"
+// Returns text such as "node 219 (voxel 3, 3, 3 with 2310 objects)".
 std::string node_text(const NodeMemories& memories, std::uint32_t number) {
     const std::size_t start = memories.starts[number];
     const auto node = record_at<raya_node>(memories.words, start);
@@ -113,16 +114,16 @@ std::string node_text(const NodeMemories& memories, std::uint32_t number) {
     return fmt::format("node {} ({} with {})", number, voxels, counted(objects, "object"));
 }
 
-// Twice as many nodes along the shortest side, the first in case of a tie.
+// Returns the nodes with the shortest side doubled, the first one in case of a tie.
 std::array<std::uint32_t, 3> doubled(std::array<std::uint32_t, 3> nodes) {
     *std::min_element(nodes.begin(), nodes.end()) *= 2;
     return nodes;
 }
 
-// "--nodes 16x16x8", or an empty text if no machine of up to 65,536 nodes fits.
+// Returns options such as "--nodes 16x16x8"; empty if the scene does not fit any machine of up to 65,536 nodes.
 std::string larger_machine(const Demand& demand, const NodeTrial& trial) {
     const std::uint32_t* const own = demand.torus.nodes;
-    // A torus of I x J x 1 sides may be of either kind: assume the 3-D one, which needs at least as much memory.
+    // A torus with sides I x J x 1 may be 2-D or 3-D. Assume 3-D, which needs at least as much memory.
     const Links links = demand.torus.sides[2] != own[2] ? Links::kTorus2d : Links::kTorus3d;
     std::array<std::uint32_t, 3> nodes = doubled({own[0], own[1], own[2]});
     for (std::uint64_t count = 2 * demand.nodes(); count <= kMaxNodes; count *= 2, nodes = doubled(nodes)) {
@@ -130,7 +131,7 @@ std::string larger_machine(const Demand& demand, const NodeTrial& trial) {
         const auto fits = [&](std::uint64_t words) {
             return node_bytes(words, demand.buffers, node_links) <= demand.limit;
         };
-        // Smaller voxels add copies of objects, so an even split of the present words is a lower bound.
+        // Smaller voxels only add copies of objects, so an even division of the present words is a lower bound.
         if (!fits(demand.memories.words.size() / count)) continue;
         const std::optional<NodeTrialResult> tried = trial(nodes);
         if (tried && fits(tried->words))
@@ -191,7 +192,7 @@ QueueFound find_longer_queue(std::uint32_t queue, const QueueTrial& trial) {
             found.ends = trial.ends(buffers);
             found.queue = next;
         }
-    } catch (const DeviceError&) {  // a machine with that queue does not fit the device
+    } catch (const DeviceError&) {  // the device cannot allocate queues of this length
     }
     found.bytes = trial.bytes(buffers_for(found.queue));
     found.fits = found.bytes <= trial.limit;

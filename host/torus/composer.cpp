@@ -22,8 +22,8 @@ void put(std::vector<float>& colours, const raya_head& packet) {
     colours.push_back(packet.weight);
 }
 
-// Number of work-groups of `group` work-items: at least 16 pixels for each work-item, but so few that no loop exceeds
-// the device's limit of iterations.
+// Returns the number of work-groups of `group` work-items: a work-item gets about 16 pixels or more, but fewer if its
+// loops would otherwise exceed the device's limit of iterations.
 std::size_t groups_of(const Contributions& contributions, std::uint32_t group, const DeviceInfo& device) {
     constexpr std::size_t kPixels = 16, kMostGroups = 4096;
     const std::vector<std::uint32_t>& starts = contributions.starts;
@@ -66,7 +66,7 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
 
 Composer::Composer(Kernels& kernels)
     : session_(kernels.session()), group_(kernels.options().group_size), compose_(kernels.get<ComposeKernel>()) {
-    compose({{0, 0, 0, 0}, {0, 1}});  // PoCL compiles at the first launch
+    compose({{0, 0, 0, 0}, {0, 1}});  // PoCL compiles a kernel at its first launch
 }
 
 std::vector<float> Composer::compose(const Contributions& contributions) {

@@ -1,4 +1,5 @@
-// Collects the contributions that the root receives: sorts them by pixel and place in the ray tree, and sums them up.
+// Sorts the contributions to pixels that the root has received by pixel and position in the pixel's ray tree, and sums
+// them.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,14 +9,14 @@
 
 namespace raya {
 
-/// Contributions in the order of summation: by pixel, then by place in the pixel's ray tree.
+/// Contributions in the order of summation: by pixel, then by position in the pixel's ray tree.
 struct Contributions {
     std::vector<float> colours;         // [contribution][4]: red, green, blue, weight
-    std::vector<std::uint32_t> starts;  // [pixels + 1]: first contribution of each pixel
+    std::vector<std::uint32_t> starts;  // [pixels + 1]: index of each pixel's first contribution
 };
 
-/// Takes return packets in any order. Throws std::logic_error for a pixel >= `pixels`, or for two packets with the same
-/// place in a pixel's tree, UserError for more than 2^32 packets.
+/// `returns`: heads of return packets, in any order. Throws std::logic_error for a pixel >= `pixels` and for two
+/// packets with the same position in a pixel's ray tree, and UserError for more than 2^32 packets.
 Contributions sort_contributions(const std::vector<raya_head>& returns, std::uint32_t pixels);
 
 using ComposeKernel = DescribedKernel<"torus/compose.cl", "compose", const Buffer<float>&, const Buffer<std::uint32_t>&,
@@ -23,11 +24,11 @@ using ComposeKernel = DescribedKernel<"torus/compose.cl", "compose", const Buffe
 
 class Composer {
   public:
-    /// The kernels must be built for one lane.
+    /// `kernels` must be built for one lane.
     explicit Composer(Kernels& kernels);
 
-    /// Returns [pixels][3]: linear red, green, blue, in the format of the build. Throws DeviceError if the device ends
-    /// loops early.
+    /// Returns [pixels][3]: linear red, green and blue, rounded to the kernels' number format. Throws DeviceError if
+    /// the device cuts loops short (kernels/shared/loop_canary.clh).
     std::vector<float> compose(const Contributions& contributions);
 
   private:

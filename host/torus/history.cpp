@@ -13,7 +13,8 @@ namespace {
 constexpr unsigned kLightBits = 16;
 constexpr std::uint64_t kLights = std::uint64_t{1} << kLightBits;
 
-// Finaliser of SplitMix64 (Steele, Lea & Flood 2014): spreads neighbouring pixels over the table.
+// Finaliser of SplitMix64 (Steele, Lea & Flood 2014), the hash function: distributes neighbouring pixels over the
+// table.
 std::uint64_t scrambled(std::uint64_t x) {
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
     x = (x ^ x >> 27) * 0x94d049bb133111ebu;
@@ -54,7 +55,7 @@ std::uint64_t RayNumbers::number_of(const RayId& id) {
     return slot.number_and_light >> kLightBits;
 }
 
-// The slot of the ray, or the empty slot where it is to be inserted.
+// Returns the slot of the ray, or the empty slot at which the caller must insert it.
 RayNumbers::Slot& RayNumbers::slot_of(std::uint64_t ray, std::uint64_t light) {
     std::size_t at = scrambled(ray + scrambled(light));
     for (;; ++at) {
@@ -137,7 +138,8 @@ void HistoryRecorder::add(const NodeWork& work) {
     add_packets(work, first_task);
 }
 
-// Adds a task for each primary ray not seen before: already processed, or still in the slot in which it was made.
+// Adds a task for each new primary ray. The node has already processed the ray, or the ray is still in the queue slot
+// in which it was created.
 void HistoryRecorder::add_injection(const NodeWork& work) {
     std::vector<Sent> made;
     for (std::size_t slot = 0; slot < work.processed.size(); ++slot) {
@@ -173,8 +175,8 @@ void HistoryRecorder::add_processed(const NodeWork& work) {
     }
 }
 
-// Adds the packets that this superstep's tasks made or changed. A packet with RAYA_STATE_FRESH may also be older and
-// wait for a link; then the task of its ray precedes `first_task`.
+// Adds the packets that this superstep's tasks created or changed. A packet with RAYA_STATE_FRESH may also be older and
+// waiting for a link; then the task that last processed its ray precedes `first_task`.
 void HistoryRecorder::add_packets(const NodeWork& work, std::size_t first_task) {
     std::vector<Sent> made;
     for (const raya_packet& p : work.queue) {

@@ -26,7 +26,8 @@ std::uint32_t most_corners(const raya_objects& objects, std::span<const std::uin
     return most;
 }
 
-// Units of work until all primary rays are made: rows, and batches of their pixels (kernels/torus/pixel_rows.clh).
+// Returns the units of work to generate all primary rays of a node: rows, and batches of their pixels
+// (kernels/torus/pixel_rows.clh).
 std::uint64_t inject_work_of(const raya_node& header, bool root_injects, std::uint64_t batch) {
     const std::uint64_t width = header.job.mapping.width, height = header.job.mapping.height;
     const auto work = [&](std::uint64_t rows, std::uint64_t columns) { return rows * (1 + parts(columns, batch)); };
@@ -78,9 +79,10 @@ void LaunchPlan::look(const NodeStatus& status) {
 }
 
 LaunchBudget LaunchPlan::budget(const Unit& unit, std::uint64_t most, std::uint64_t all) const {
-    // About a second: of two CPU cores, and of one compute unit of a slow GPU.
+    // Ray-object tests in about a second: of a launch on two CPU cores, and of a node on one compute unit of a slow
+    // GPU.
     constexpr double kTestsOfLaunch = 1e9, kTestsOfNode = 1e8;
-    constexpr double kTurnsOfLaunch = 4096;  // loop iterations of a launch's fixed part
+    constexpr double kTurnsOfLaunch = 4096;  // loop iterations that do not depend on the work
     constexpr double kMostWork = 1u << 31;
     const auto whole = [&](double work) { return static_cast<std::uint32_t>(std::clamp(work, 1.0, kMostWork)); };
     const double of_launch = unit.of_test * kTestsOfLaunch / lanes_;
@@ -104,7 +106,7 @@ LaunchBudget LaunchPlan::inject() {
     return budget({.turns = 32, .of_test = 1.0 / 8}, most, all);
 }
 
-// In the worst case the packets of all lanes lie in different voxels, which are processed one by one.
+// In the worst case the packets of all lanes are in different voxels, which a work-item processes one after another.
 std::uint64_t LaunchPlan::trace_work(const Node& node, std::uint64_t packets) const {
     const std::uint64_t batches = parts(packets, lanes_);
     const std::uint64_t steps = std::min(packets, batches * std::min<std::uint64_t>(lanes_, node.voxels + 1));
@@ -119,8 +121,9 @@ LaunchBudget LaunchPlan::trace_voxel() const {
         all += work;
         of_batch = std::max(of_batch, trace_work(node, lanes_));
     }
-    // Loop iterations of a test, measured on llvmpipe with the ring's tests. A sphere takes loops over batches, over
-    // hits and over spheres that the filter rejects; refined quotients and roots a few more; a polygon's corner three.
+    // Loop iterations of a ray-object test, measured on llvmpipe with the ring's kernels. A sphere takes iterations of
+    // the loops over batches, over hits and over spheres that the filter rejects. Refining quotients and roots takes a
+    // few more, and each corner of a polygon three.
     const double turns = (exact_ ? 24 : 32) + 3.0 * corners_;
     return budget({.turns = turns, .beyond = static_cast<double>(group_ * of_batch)}, most, all);
 }

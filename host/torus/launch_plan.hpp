@@ -1,4 +1,4 @@
-// Work budgets of kernel launches: how much a node may do in one launch, and whether a single launch suffices.
+// Work budgets of kernel launches: the maximum work of a node in one launch, and whether a single launch suffices.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace raya {
 
-/// A launch of a node kernel ends after `work` units of the kernel in a node, and is repeated until no work is left.
-/// `once`: a single launch is certain to be enough, so the host need not read back whether work is left.
+/// In one launch a kernel does at most `work` units of work for each node. The host repeats the launch until no node
+/// has work left. `once`: one launch is certainly enough, so the host need not read the status to find out.
 struct LaunchBudget {
     std::uint32_t work = 0;
     bool once = false;
@@ -20,23 +20,25 @@ struct LaunchBudget {
     bool operator==(const LaunchBudget&) const = default;
 };
 
-/// Limits launches to about a second, so that Ctrl-C takes effect and no GPU watchdog intervenes, and to the loop
-/// iterations that a device allows. Tracks the objects of each node and an upper bound of its packets, so that the host
-/// can skip reading back whether work is left.
+/// Limits a launch to about a second, so that Ctrl-C takes effect and the GPU's watchdog does not end it, and to the
+/// maximum number of loop iterations of the device. Keeps the number of objects and an upper bound of the packets of
+/// each node, to determine LaunchBudget::once.
 class LaunchPlan {
   public:
-    /// `memories`: of the nodes of `share`, in the order of its slots.
+    /// `memories`: memories of this rank's nodes, by slots of `share`.
     LaunchPlan(const TorusSettings& settings, const NodeMemories& memories, const NodeShare& share,
                const NodeBuffers& buffers, const KernelOptions& options, const DeviceInfo& device);
 
-    /// Resets to empty queues and mailboxes.
+    /// Resets the upper bounds of packets to 0.
     void clear();
 
-    /// Updates the bounds from the nodes' status, read after routing or before tracing. A node's queue may receive
-    /// everything that waits in it and in the mailboxes of links that lead to it before the next update.
+    /// Updates the upper bounds of packets from `status`, which was read after routing or before tracing. Until the
+    /// next update a node's queue can receive at most the packets now in it and in the mailboxes of links that lead to
+    /// the node.
     void look(const NodeStatus& status);
 
-    /// Budgets of the next launches. inject() raises the bounds by the rays that it may make.
+    /// Budgets of the next launches. inject() also raises the upper bounds to the number of packets up to which
+    /// inject.cl fills a queue.
     LaunchBudget inject();
     LaunchBudget trace_voxel() const;
     LaunchBudget route() const;
@@ -45,24 +47,24 @@ class LaunchPlan {
   private:
     struct Node {
         std::uint64_t voxels = 0;
-        std::uint64_t most = 0;         // maximum number of objects in a voxel
-        std::uint64_t inject_work = 0;  // inject's units of work for an image: rows, and batches of their pixels
-        std::uint64_t packets = 0;      // upper bound of its queue's length
+        std::uint64_t most = 0;         // maximum number of objects in one of its voxels
+        std::uint64_t inject_work = 0;  // units of work of inject in an image: rows, and batches of their pixels
+        std::uint64_t packets = 0;      // upper bound of the packets in its queue
     };
-    /// A kernel's unit of work: maximum loop iterations, units that take as long as a ray-object test, and units by
-    /// which a launch may exceed its budget to complete what it has begun.
+    /// A kernel's unit of work. turns: maximum loop iterations of a unit; of_test: number of units that take as long as
+    /// a ray-object test; beyond: units by which a launch may exceed its budget to complete the work that it has begun.
     struct Unit {
         double turns, of_test = 1, beyond = 0;
     };
-    /// `most`, `all`: upper bounds of the work of one node and of all nodes.
+    /// Returns the budget of a launch. `most`, `all`: upper bounds of the work of one node, and of all nodes together.
     LaunchBudget budget(const Unit& unit, std::uint64_t most, std::uint64_t all) const;
     std::uint64_t trace_work(const Node& node, std::uint64_t packets) const;
 
     const NodeShare& share_;
     const NodeBuffers buffers_;
-    std::uint32_t lanes_, group_, lights_ = 0, corners_ = 0;  // corners: maximum of a polygon
+    std::uint32_t lanes_, group_, lights_ = 0, corners_ = 0;  // corners_: maximum of a polygon
     std::uint32_t loop_turns_, work_per_launch_;
-    bool exact_;               // the device rounds quotients and roots correctly, without our refinement loops
+    bool exact_;               // the device rounds quotients and square roots correctly: no refinement loops
     std::vector<Node> nodes_;  // [slot]
 };
 

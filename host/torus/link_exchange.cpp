@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// Fixed cost of a command, as the number of bytes that could be copied in its time: some microseconds of PoCL.
+// Fixed cost of a command, in bytes that could be copied in the same time: a few microseconds with PoCL.
 constexpr std::uint64_t kCommandBytes = 100'000;
 
 raya_head head_at(const std::uint32_t* packet) {
@@ -38,7 +38,7 @@ void LinkExchange::clear() {
     sent_flags_.assign(outboxes, 0);
     device_flags_ = sent_flags_;
     session_.fill("clear boxes", sent_, 0);
-    // Clears only the count of packets: mailboxes are large, and most of their pages are never touched.
+    // Clears only the packet counts: mailboxes are large, and most of their memory pages are never used.
     const Session::Blocks zeros{.pitch = 1}, boxes{.pitch = box_words(capacity_)};
     session_.copy_blocks("clear boxes", sent_, zeros, inboxes_, boxes, 1, sent_.size());
     session_.copy_blocks("clear boxes", sent_, zeros, outboxes_, boxes, 1, outboxes);
@@ -65,12 +65,12 @@ void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>
         send(status, link, words);
         if (!kernel_) copy_boxes(status, link);
     }
-    // The kernel sets the flags of its own transfers, which are all if no link crosses ranks.
+    // The kernel sets the flags of its own transfers. If no link crosses ranks, these are all transfers.
     if (!kernel_ || !crossings_.empty()) write_sent();
     if (kernel_) launch();
 }
 
-// Counts the transfers over the links of one direction, and sets their flags.
+// Counts the transfers over the links of one direction, and sets their flags in sent_flags_.
 void LinkExchange::send(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words) {
     for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
         const std::uint32_t packets = status.at(node, class_.outbox_status + link);
@@ -133,7 +133,7 @@ std::vector<LinkExchange::Crossing> LinkExchange::find_crossings() const {
     return found;
 }
 
-// Both ranks of a face know the number of packets in each mailbox from the status.
+// Both ranks of a face read the number of packets in each mailbox from the status.
 void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in) {
     outgoing_.clear();
     incoming_.clear();
@@ -197,7 +197,8 @@ std::uint64_t LinkExchange::cost(const Span& span) const {
     return kCommandBytes + (span.end - span.first) * box_words(span.packets) * sizeof(std::uint32_t);
 }
 
-// Extends a span while that costs less than another command. Empty outboxes in between are copied onto empty inboxes.
+// Extends a span while that takes less time than another command. A span may include empty outboxes, which are copied
+// to empty inboxes.
 std::vector<LinkExchange::Span> LinkExchange::spans(const NodeStatus& status, std::uint32_t link) const {
     std::vector<Span> found;
     bool closed = true;

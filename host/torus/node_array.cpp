@@ -16,10 +16,10 @@ std::uint32_t largest_node(const NodeMemories& memories) {
     return largest;
 }
 
-constexpr std::size_t kRow = 4;  // words; a node's words are aligned to the start of a row
+constexpr std::size_t kRow = 4;  // words in a row; the words of each node start at a row
 
-// Kernels copy a node's words into local memory if they fit there next to the work-group's own data, and if the device
-// has no limit of loop iterations: devices with one are CPUs, whose local memory is no faster.
+// Kernels copy a node's words to local memory if these words and the work-group's own data fit there, and if the device
+// does not limit loop iterations. Devices that do are CPUs, whose local memory is not faster than global memory.
 KernelOptions choose_words_local(KernelOptions options, const NodeMemories& memories, const DeviceInfo& device) {
     const std::size_t shared =
         std::max(RAYA_INJECT_WORDS(options.group_size, options.lanes), RAYA_ROUTE_WORDS(options.group_size));
@@ -37,7 +37,7 @@ bool any_node(std::span<const std::uint32_t> status, std::size_t which) {
     return false;
 }
 
-// Reorders `each` elements of every node, in the order of ranks and slots, to [node][each].
+// Reorders [rank][slot][each] to [node][each].
 template <class T>
 std::vector<T> in_order_of_nodes(const NodeShare& share, std::uint32_t ranks, const std::vector<T>& of_ranks,
                                  std::size_t each) {
@@ -261,7 +261,8 @@ void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns
     session_.read("gather", returns_, 0, returns_readback_, 0, returns_pending_);
 }
 
-// Called in the next superstep, when the readback is complete: look() has waited for the queue in the meantime.
+// Called in the superstep after the start of the readback. The readback is complete, because look() has waited for the
+// command queue in the meantime.
 void NodeArray::gather_remaining(std::vector<raya_head>& returns) {
     if (returns_pending_ == 0) return;
     session_.wait("gather", returns_readback_);

@@ -1,4 +1,4 @@
-// The nodes of the torus on this rank's device: their memories, queues and counters, and the launches of their kernels.
+// The torus nodes of this rank's device: their memories, queues and counters, and the launches of their kernels.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -16,27 +16,27 @@
 
 namespace raya {
 
-/// State of the whole machine in a superstep.
+/// State of the whole machine in a superstep, computed from the status of all nodes.
 struct Census {
-    std::uint64_t live = 0;      // packets in queues and mailboxes
-    std::uint64_t full = 0;      // full queues
-    std::uint64_t progress = 0;  // 0 if no packet was processed or moved
-    std::uint64_t cycles = 0;    // of the busiest node
+    std::uint64_t live = 0;      // number of packets in queues and mailboxes
+    std::uint64_t full = 0;      // number of full queues
+    std::uint64_t progress = 0;  // 0 if no packet was processed or transferred
+    std::uint64_t cycles = 0;    // modelled cycles of the busiest node
     std::uint32_t fullest = 0;   // packets in the fullest queue
-    bool all_made = true;        // no primary ray is left to be made
-    double scanned = 0;          // share of the image rows that nodes have made primary rays for, 0..1
+    bool all_made = true;        // all primary rays are generated
+    double scanned = 0;          // fraction of the image rows whose primary rays are generated
 };
 
-/// `capacity`: packets that a queue holds.
+/// `capacity`: capacity of a queue, in packets.
 Census census_of(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity);
 
-/// [node]: modelled cycles in the superstep.
+/// Returns [node]: modelled cycles in the superstep.
 std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32_t nodes);
 
-/// Free slots that a packet needs before a node accepts or processes it (kernels/shared/traffic.h).
+/// Number of free queue slots that a packet needs before a node accepts or processes it (kernels/shared/traffic.h).
 enum class Reserve : cl_uint {
-    kWholeTree,  // the slots of the packet's whole ray tree
-    kTight       // the minimum, to resolve a stall
+    kWholeTree,  // enough for the packet's whole ray tree
+    kTight       // the minimum, used after a superstep without progress
 };
 
 namespace node_kernels {
@@ -45,11 +45,11 @@ using Words = const Buffer<std::uint32_t>&;
 using Run = const Buffer<raya_run>&;
 using First = Uint<"first_node">;        // slot of the first node of a launch
 using Work = Uint<"work">;               // work budget of a node in a launch
-using Again = Uint<"again">;             // 1: the launch continues the work that the last one left
-using Own = LocalMemory<std::uint32_t>;  // of a node's work-group
+using Again = Uint<"again">;             // 1: continue the work that the previous launch left
+using Own = LocalMemory<std::uint32_t>;  // local memory of a node's work-group
 using Queues = Buffer<raya_packet>&;
 using Boxes = Buffer<std::uint32_t>&;
-using Returns = Buffer<raya_head>&;  // at the root
+using Returns = Buffer<raya_head>&;  // returns that have reached the root
 using Status = Buffer<std::uint32_t>&;
 using Counters = Buffer<std::uint64_t>&;
 using Processed = Buffer<raya_processed>&;
@@ -65,19 +65,19 @@ using Accept = DescribedKernel<"torus/accept.cl", "accept", Words, Words, Run, R
 
 }  // namespace node_kernels
 
-/// Kernels are launched with one work-group for each node, and again until no work is left. Commands are labelled with
-/// the kernel's name. Throws DeviceError if the device ends loops early even in the smallest launch.
+/// Each kernel is launched with one work-group per node, and relaunched until no node has work left. Commands are
+/// labelled with the kernel's name. Throws DeviceError if the device cuts loops short even in the smallest launch.
 class NodeArray {
   public:
-    /// Builds the kernels with `options` and allocates the device memory. `memories`: of the nodes of `share`, in the
-    /// order of its slots. `ranks` and `share` must outlive this.
+    /// Builds the kernels with `options` and allocates the device memory. `memories`: memories of this rank's nodes, by
+    /// slots of `share`. `ranks` and `share` must outlive this object.
     NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
               const KernelOptions& options, const NodeShare& share, Ranks& ranks);
 
-    /// Resets to empty queues and mailboxes, counters of 0, and no ray made.
+    /// Empties queues and mailboxes, sets counters to 0, and restarts the generation of primary rays.
     void clear();
 
-    /// Sets the pixels of the following images; initially those of the settings.
+    /// Sets the pixels of the following images; the default is TorusSettings::pixels.
     void set_pixels(const PixelSubset& pixels);
 
     /// A range of slots.
@@ -91,40 +91,42 @@ class NodeArray {
     void inject(Slots nodes);
     void trace_voxel(Slots nodes, Reserve reserve);
     void route();
-    /// Transfers rays and returns over the links of all nodes. Returns the words that each link is charged for,
-    /// [node][RAYA_LINKS]. Messages between ranks are still pending on return: only inner nodes may accept before
-    /// arrive(), which waits for them.
+    /// Transfers rays and returns over the links of all nodes. Returns the words charged for each link,
+    /// [node][RAYA_LINKS]. Messages between ranks may still be in flight when it returns. arrive() waits for them;
+    /// before that, call accept() for inner nodes only.
     std::vector<std::uint64_t> exchange(const NodeStatus& status);
     void arrive();
     void accept(Slots nodes, Reserve reserve, std::uint32_t superstep);
 
-    /// Reads the status of the nodes of all ranks; blocks. accept() resets the part that is counted by superstep.
+    /// Reads the status of the nodes of all ranks; blocks. accept() resets the status words that are counted per
+    /// superstep.
     NodeStatus look();
 
-    /// Reports the work of trace_voxel in each node. To be called after trace_voxel and before route; `injected`: the
-    /// status between inject and trace_voxel. Requires KernelOptions::costs and a single rank.
+    /// Passes the work of trace_voxel in each node to `sink`. Must be called after trace_voxel() and before route().
+    /// `injected`: the status that look() returned between inject() and trace_voxel(). Requires KernelOptions::costs
+    /// and a single rank.
     void report_work(const NodeStatus& injected, const NodeWorkSink& sink);
 
-    /// In rank 0, starts to read back the returns that wait at the root, and appends those of the last call to
-    /// `returns`. After the last superstep, gather_remaining() appends the pending ones.
+    /// In rank 0, appends the returns of the previous call's readback to `returns`, and starts to read back those that
+    /// now wait at the root. After the last superstep, gather_remaining() appends the returns of the last readback.
     void gather(const NodeStatus& status, std::vector<raya_head>& returns);
     void gather_remaining(std::vector<raya_head>& returns);
 
-    /// Passes the messages in the outboxes that the sending node made or changed to `sink`, in rank 0 those of all
-    /// ranks. Must be called in every superstep; an empty sink, in all ranks alike, skips the superstep.
+    /// In rank 0, passes to `sink` the messages in the outboxes of all ranks that the sending node created or changed.
+    /// All ranks must call it in every superstep. An empty sink, which all ranks must pass alike, skips the superstep.
     void record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
-    std::vector<std::uint64_t> read_events();  // [node][RAYA_EVENTS] of all nodes, in rank 0; empty in others
-    PacketCounts read_made();                  // of all ranks
+    std::vector<std::uint64_t> read_events();  // rank 0: [node][RAYA_EVENTS] of all nodes; others: empty
+    PacketCounts read_made();                  // sum over all ranks
     PacketCounts read_ended();
 
     std::vector<std::uint64_t> link_packets() const;  // [node][RAYA_LINKS]: messages since clear(), of all ranks
-    bool links_by_kernel() const { return links_by_kernel_; }          // else by copies
+    bool links_by_kernel() const { return links_by_kernel_; }          // false: by copies
     const std::string& links_origin() const { return links_origin_; }  // see TorusResult
     std::uint64_t moved_rays() const { return ray_links_.moved(); }
     std::uint64_t moved_returns() const { return return_links_.moved(); }
     const std::string& build_options() const { return build_options_; }
-    bool words_local() const { return options_.words_local; }  // kernels copy a node's words into local memory
+    bool words_local() const { return options_.words_local; }  // kernels copy a node's words to local memory
 
   private:
     NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
@@ -137,8 +139,8 @@ class NodeArray {
     template <class Launch>
     void launch_all(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch);
     std::vector<PacketRecord> records_of_all(const std::vector<PacketRecord>& own);
-    std::vector<std::size_t> sizes(std::size_t of_node) const;  // [rank]: elements, `of_node` for each of its nodes
-    /// Local memory of a kernel: `shared` words, and the node's words if kernels copy them.
+    std::vector<std::size_t> sizes(std::size_t of_node) const;  // [rank]: `of_node` times its nodes
+    /// Local memory of a kernel: `shared` words, plus the node's words if kernels copy them there.
     LocalMemory<std::uint32_t> local_words(std::size_t shared) const;
     PacketCounts read_packets(const Buffer<std::uint64_t>& counters);
 
@@ -147,7 +149,7 @@ class NodeArray {
     NodeBuffers buffers_;
     const NodeShare& share_;
     Ranks& ranks_;
-    std::uint32_t nodes_, node_words_;  // nodes: on this device
+    std::uint32_t nodes_, node_words_;  // nodes_: number of nodes on this device
     KernelOptions options_;
     LaunchPlan plan_;
     Buffer<std::uint32_t> memories_, starts_;
@@ -156,13 +158,13 @@ class NodeArray {
     Buffer<std::uint32_t> status_, inbox_of_link_;
     Buffer<raya_head> returns_;
     Readback<raya_head> returns_readback_;
-    std::size_t returns_pending_ = 0;  // into returns_readback_
+    std::size_t returns_pending_ = 0;  // number of returns that returns_readback_ is reading
     Buffer<std::uint64_t> events_, made_, ended_;
     Buffer<raya_processed> processed_;
     LaunchGuard<raya_packet, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, raya_head, std::uint32_t,
                 std::uint64_t, std::uint64_t, std::uint64_t>
         guard_;
-    LinkExchange ray_links_, return_links_;  // mailboxes of rays, of returns
+    LinkExchange ray_links_, return_links_;  // mailboxes of rays; mailboxes of returns
     node_kernels::Inject inject_;
     node_kernels::TraceVoxel trace_;
     node_kernels::Route route_;

@@ -1,4 +1,4 @@
-// Divides the words of a job into the memories of the torus's nodes.
+// Divides the words of a job among the memories of the torus nodes.
 #include "host/torus/node_memory.hpp"
 
 #include <fmt/core.h>
@@ -14,9 +14,9 @@
 namespace raya {
 namespace {
 
-using Numbers = std::span<const std::uint32_t>;  // of objects in the whole scene, ascending
+using Numbers = std::span<const std::uint32_t>;  // object numbers in the scene, ascending
 
-// Locates the parts of a job.
+// Finds the parts of a packed job.
 class JobParts {
   public:
     explicit JobParts(const PackedJob& job) : header(job.header()), words_(job.words()) {}
@@ -27,7 +27,7 @@ class JobParts {
     std::uint32_t first_polygon() const { return header.objects.spheres + header.objects.planes; }
     std::uint32_t first_cone() const { return first_polygon() + header.objects.polygons; }
     std::size_t surfaces() const { return surface(header.objects.spheres_at); }
-    // The number of the surface that starts at `word`.
+    // Returns the number of the surface that starts at `word`.
     std::size_t surface(std::uint32_t word) const { return (word - kWordsOf<raya_job>) / RAYA_SURFACE_WORDS; }
 
     const std::uint32_t* plane(std::uint32_t i) const { return at(header.objects.planes_at + i * RAYA_PLANE_WORDS); }
@@ -39,7 +39,7 @@ class JobParts {
         return at(o.cones_at + (number - first_cone()) * RAYA_CONE_WORDS);
     }
 
-    // First word of the surface of an object.
+    // Returns the first word of the surface of an object.
     std::uint32_t surface_of(std::uint32_t number) const {
         const raya_objects& o = header.objects;
         return number < o.spheres ? *at(raya_sphere_surfaces_at(o.spheres_at, o.spheres) + number)
@@ -55,7 +55,7 @@ std::size_t outline_words(const std::uint32_t* polygon) {
            (polygon[RAYA_POLYGON_NORMALS_AT] != 0 ? RAYA_PATCH_WORDS : 0);
 }
 
-// The objects of a voxel by kind.
+// The objects of a voxel, separated by kind.
 struct VoxelLists {
     Numbers all, spheres, polygons, cones;
 };
@@ -76,7 +76,7 @@ class NodePacker {
             throw std::logic_error("a partition must have one more start than voxels");
     }
 
-    // Number of words of a node.
+    // Returns the number of words of a node.
     std::uint64_t words(std::uint32_t node) {
         find_surfaces(node);
         const raya_job& h = job_.header;
@@ -101,7 +101,7 @@ class NodePacker {
         header.job = job_.header;
         header.job.objects = {};
         header.job.objects.planes = job_.header.objects.planes;
-        header.job.accel_at = 0;  // a node traverses its own grid
+        header.job.accel_at = 0;  // 0: a node has its voxels' object lists instead of the job's accelerator
         header.torus = torus_;
         header.grid = partition_.grid;
         header.number = node;
@@ -125,7 +125,7 @@ class NodePacker {
         return lists_of(job_, partition_, raya_voxel_of_node(torus_, partition_.grid, node, local));
     }
 
-    // Present offset from the node's first word.
+    // Returns the current offset from the node's first word.
     std::uint32_t here() const { return static_cast<std::uint32_t>(to_->size() - start_); }
 
     void append_words(const std::uint32_t* from, std::size_t words) { to_->insert(to_->end(), from, from + words); }
@@ -136,7 +136,7 @@ class NodePacker {
             surface_at_[job_.surface(object[RAYA_OBJECT_SURFACE_AT])];
     }
 
-    // Pads to a whole row of four words; rows and nodes start there.
+    // Pads with zeros to a multiple of four words, at which rows and nodes must start.
     void fill_row() { to_->resize(start_ + padded_to_rows(here())); }
 
     void need_surface(std::uint32_t at) {
@@ -144,7 +144,7 @@ class NodePacker {
         if (std::exchange(seen_[surface], searches_) != searches_) surfaces_.push_back(surface);
     }
 
-    // Finds the surfaces of the node's objects, in the scene's order.
+    // Finds the surfaces of the node's objects, in the order of the scene.
     void find_surfaces(std::uint32_t node) {
         ++searches_;
         surfaces_.clear();
@@ -213,12 +213,12 @@ class NodePacker {
     JobParts job_;
     const Partition& partition_;
     const raya_torus torus_;
-    std::uint32_t searches_ = 0;                // number of find_surfaces() calls
-    std::vector<std::uint32_t> seen_;           // [surface]: the last search that found it
-    std::vector<std::size_t> surfaces_;         // found by the last search
-    std::vector<std::uint32_t> surface_at_;     // [surface]: its offset in the node that is being packed
-    std::vector<std::uint32_t>* to_ = nullptr;  // output
-    std::size_t start_ = 0;                     // first word of the node in the output
+    std::uint32_t searches_ = 0;                // number of calls of find_surfaces()
+    std::vector<std::uint32_t> seen_;           // [surface]: number of the last call that found it
+    std::vector<std::size_t> surfaces_;         // surfaces found by the last call
+    std::vector<std::uint32_t> surface_at_;     // [surface]: its offset in the node being packed
+    std::vector<std::uint32_t>* to_ = nullptr;  // words of all nodes
+    std::size_t start_ = 0;                     // index of the node's first word in *to_
 };
 
 }  // namespace

@@ -21,7 +21,7 @@ class Divider {
   public:
     explicit Divider(const raya_torus& torus) : torus_(torus), rank_of(raya_nodes(torus)) {}
 
-    // Divides a brick among `ranks` ranks, at most one for each node; the first rank is `first`.
+    // Divides a cuboid among the ranks `first` to `first` + `ranks` - 1; `ranks` must not exceed its number of nodes.
     void divide(const Brick& brick, std::uint32_t ranks, std::uint32_t first) {
         if (ranks == 1) return assign(brick, first);
         std::uint32_t axis = 0;
@@ -46,7 +46,8 @@ class Divider {
     std::vector<std::uint32_t> rank_of;
 
   private:
-    // The layer at which the brick is cut: the lower `low` ranks get about their share of nodes, and every rank one.
+    // Returns the layer at which the cuboid is cut, so that the lower part has about low / ranks of the nodes, and both
+    // parts have at least one node for each of their ranks.
     std::uint32_t layer_for(const Brick& brick, std::uint32_t axis, std::uint32_t low, std::uint32_t ranks) const {
         const std::uint32_t layers = brick.side(axis);
         const std::uint64_t of_layer = brick.nodes() / layers;

@@ -1,4 +1,4 @@
-// Division of the torus's nodes among ranks, and the status words of nodes.
+// Division of the torus nodes among ranks, and the status words of nodes.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,35 +10,37 @@
 
 namespace raya {
 
-/// [node]: its rank, 0..ranks - 1; rank 0 has the root. Recursive bisection of bricks along their longest side, in the
-/// ratio of the ranks of either half, as closely as whole layers of nodes allow. Throws UserError for more ranks than
-/// nodes.
+/// Returns the rank of each node, 0..ranks - 1; rank 0 has the root. Each rank gets a cuboid of nodes, by recursive
+/// bisection: a cuboid is cut across its longest side, between two layers of nodes, and the numbers of nodes in its
+/// parts are as nearly proportional to their numbers of ranks as possible. Throws UserError for more ranks than nodes.
 std::vector<std::uint32_t> ranks_of_nodes(const raya_torus& torus, std::uint32_t ranks);
 
-/// One rank's view of the division. Slots number the nodes of a rank: first the inner nodes, whose links all end in the
-/// same rank, then the border nodes; both in the order of their numbers. With one rank all nodes are inner.
+/// The division from the viewpoint of one rank. A slot is the index of a node within its rank: first come the inner
+/// nodes, whose links all end in the same rank, then the border nodes, both in ascending order. With one rank all nodes
+/// are inner.
 class NodeShare {
   public:
     explicit NodeShare(const raya_torus& torus, std::uint32_t ranks = 1, std::uint32_t rank = 0);
 
     const raya_torus& torus() const { return torus_; }
     std::uint32_t rank() const { return rank_; }
-    std::uint32_t nodes() const { return static_cast<std::uint32_t>(own().size()); }  // of this rank
+    std::uint32_t nodes() const { return static_cast<std::uint32_t>(own().size()); }  // number of nodes of this rank
     std::uint32_t inner() const { return inner_; }                                    // inner nodes of this rank
     std::uint32_t max_nodes_of_rank() const;
 
-    /// [slot]: node.
+    /// Returns the nodes of a rank, or of this rank, indexed by slot.
     const std::vector<std::uint32_t>& nodes_of(std::uint32_t rank) const { return nodes_of_[rank]; }
     const std::vector<std::uint32_t>& own() const { return nodes_of_[rank_]; }
     std::uint32_t rank_of(std::uint32_t node) const { return rank_of_[node]; }
     bool has(std::uint32_t node) const { return rank_of_[node] == rank_; }
-    std::uint32_t slot_of(std::uint32_t node) const { return slot_of_[node]; }  // in its rank
+    std::uint32_t slot_of(std::uint32_t node) const { return slot_of_[node]; }  // slot of the node in its rank
 
-    /// Inboxes of each link direction on this device: those of links that start at this rank's nodes, indexed by slot,
-    /// then those of links from other ranks, as many as the direction with most needs.
+    /// Number of inboxes for each link direction on this device: one per node of this rank, for the link that starts
+    /// there, indexed by slot; then the inboxes of links from other ranks, as many as the direction with the largest
+    /// number of such links needs.
     std::uint32_t inboxes() const { return inboxes_; }
 
-    /// Index of the inbox of the link that starts at `node`. The link's start or end must be in this rank.
+    /// Returns the index of the inbox of the link that starts at `node`. The link's start or end must be in this rank.
     std::uint32_t inbox(std::uint32_t link, std::uint32_t node) const;
 
   private:
@@ -49,7 +51,7 @@ class NodeShare {
     std::vector<std::uint32_t> rank_of_, slot_of_;
     std::vector<std::vector<std::uint32_t>> nodes_of_;
     std::vector<std::vector<std::uint32_t>>
-        remote_starts_;  // [link]: nodes of other ranks whose link ends in this rank
+        remote_starts_;  // [link]: nodes of other ranks whose link in this direction ends in this rank
 };
 
 /// Host copy of the nodes' status words: [node][RAYA_STATUS_WORDS].

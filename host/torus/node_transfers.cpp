@@ -1,4 +1,5 @@
-// Transfers between nodes and host: status of a superstep, choice of the faster link transfer, packets for a trace.
+// Transfers between nodes and host: the status of a superstep, the measurement that chooses between the methods of link
+// exchange, and packets for a trace.
 #include <algorithm>
 #include <limits>
 
@@ -12,12 +13,12 @@ std::uint64_t cycles_of(const NodeStatus& status, std::uint32_t node) {
     return status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)} << 32;
 }
 
-constexpr std::uint32_t kPackets = 32;  // in each mailbox of a measurement
-constexpr int kTimes = 5;               // repetitions, of which the shortest counts
+constexpr std::uint32_t kPackets = 32;  // packets in each mailbox of a measurement
+constexpr int kTimes = 5;               // repetitions; the shortest time is used
 
 bool is_return(const raya_head& packet) { return raya_state_kind(packet.state) == RAYA_KIND_RETURN; }
 
-// Returns true for a packet of an outbox that is a message and was made or changed by that node.
+// Returns true if a packet of an outbox is charged as a message and the outbox's node created or changed it.
 bool is_new_message(const raya_head& packet) {
     return packet.state & RAYA_STATE_FRESH && (!is_return(packet) || packet.state & RAYA_STATE_CHARGED);
 }
@@ -67,7 +68,7 @@ Census census_of(const NodeStatus& status, std::uint32_t nodes, std::uint32_t ca
     return c;
 }
 
-// On CPUs the kernel is at least as fast (figures in docs/tuning.md), so nothing is measured there.
+// Measures only on devices other than CPUs: on CPUs the kernel is at least as fast as copies (docs/tuning.md).
 void NodeArray::choose_link_move(Kernels& kernels) {
     const LinkMove wanted = settings_.kernels.link_move;
     const bool cpu = session_.device().type == "cpu";
@@ -89,7 +90,8 @@ void NodeArray::use_kernel(const ExchangeKernel& kernel) {
     links_by_kernel_ = true;
 }
 
-// Time of an exchange over all links, with some packets in every outbox. clear() resets its counts and packets.
+// Returns the seconds of an exchange over all links with kPackets packets in every outbox. The caller must clear() the
+// packets and counts afterwards.
 double NodeArray::exchange_seconds() {
     const std::uint32_t packets = std::min(kPackets, buffers_.box);
     NodeStatus status(raya_nodes(settings_.torus));
@@ -117,7 +119,7 @@ double NodeArray::exchange_seconds() {
         return_links_.exchange(status, words);
         session_.finish();
         const double seconds = seconds_since(start);
-        if (i > 0) least = std::min(least, seconds);  // the first one may build the kernel
+        if (i > 0) least = std::min(least, seconds);  // the first exchange may compile the kernel
     }
     return least;
 }

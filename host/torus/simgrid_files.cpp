@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-constexpr double kNoTimeBytesPerS = 1e18;  // rate of links that take no time
+constexpr double kNoTimeBytesPerS = 1e18;  // rate of links whose transfers take no time
 
 struct Text {
     std::string text;
@@ -22,7 +22,7 @@ struct Text {
 
 std::string channel_name(std::uint32_t node, std::uint32_t link) { return fmt::format("{}{}", node, link_name(link)); }
 
-// A wire is named after its direction of ascending coordinates.
+// A wire is named after its direction with ascending coordinates.
 std::string wire_name(const raya_torus& torus, std::uint32_t node, std::uint32_t link) {
     return "wire " +
            (link % 2 == 0 ? channel_name(node, link) : channel_name(raya_link_end(torus, node, link), link ^ 1u));
@@ -36,7 +36,7 @@ std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machin
     Text hosts, links, routes;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
         hosts.add("    <host id=\"{}\" speed=\"{:.17g}f\"/>\n", node, 1e9 / machine.cycle_ns);
-        std::set<std::uint32_t> joined = {node};  // on a side of 2, two wires join the same nodes: only one is used
+        std::set<std::uint32_t> joined = {node};  // on a side of 2, two wires connect the same nodes; only one is used
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t end = raya_link_end(torus, node, link);
             if (!joined.insert(end).second) continue;

@@ -1,4 +1,4 @@
-// Nodes and links of the torus: names, and the layout of three dimensions on a 2-D torus.
+// Names of topologies, and the layout of a 3-D array of nodes on a 2-D torus.
 #include "host/torus/topology.hpp"
 
 #include <fmt/core.h>
@@ -11,8 +11,9 @@
 namespace raya {
 namespace {
 
-// C: the divisor of K that makes the sides I C and J K / C most alike, the lower one in case of a tie. Their product
-// does not depend on C, so comparing their difference is equivalent to comparing their ratio.
+// Returns C, the number of slabs in a row: the divisor of K for which the sides I C and J K / C differ least, the
+// smallest one in case of a tie. The product of the sides does not depend on C, so the smallest difference also gives
+// the ratio nearest to 1.
 std::uint32_t slabs_beside(const std::array<std::uint32_t, 3>& nodes) {
     const std::uint32_t i = nodes[0], j = nodes[1], k = nodes[2];
     const auto apart = [&](std::uint32_t c) {
@@ -31,7 +32,7 @@ void check_nodes(const std::array<std::uint32_t, 3>& nodes) {
         if (side == 0)
             throw UserError(
                 fmt::format("--nodes {}: a side of 0 nodes; use 1 or more on each side", sides_text(nodes)));
-        count *= side;  // cannot overflow: at most 2^16 before
+        count *= side;  // cannot overflow: `count` was at most 2^16
         if (count > kMaxNodes)
             throw UserError(fmt::format("--nodes {}: more than {} nodes; use fewer", sides_text(nodes), kMaxNodes));
     }

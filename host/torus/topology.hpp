@@ -12,18 +12,19 @@ inline constexpr std::uint32_t kMaxNodes = 65536;
 
 enum class Links { kTorus3d, kTorus2d };
 
-/// "torus3d" or "torus2d"
+/// Returns "torus3d" or "torus2d".
 std::string links_name(Links links);
 
-/// I x J x K nodes. A 2-D torus arranges the K slabs of I x J nodes in rows of C, where C is the divisor of K that
-/// makes the two sides most alike (the lower one in case of a tie). Throws UserError unless 1 <= I, J, K and I J K <=
-/// kMaxNodes.
+/// Makes a torus of I x J x K nodes. A 2-D torus places the K slabs of I x J nodes on a grid, C slabs in each row, so
+/// that its sides are I C and J K / C nodes. C is the divisor of K that minimises the difference of the sides, the
+/// smallest such divisor in case of a tie. Throws UserError unless 1 <= I, J, K and I J K <= kMaxNodes.
 raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links);
 
-/// Links of each node that lead to another node: 6, 4, or fewer if a side of the torus is 1.
+/// Number of links of a node that lead to another node: 2 for each side of the torus longer than 1, so at most 6 in 3-D
+/// and 4 in 2-D.
 std::uint32_t links_of_node(const raya_torus& torus);
 
-/// "4x4x4"
+/// Returns text such as "4x4x4".
 std::string sides_text(const std::array<std::uint32_t, 3>& sides);
 
 }  // namespace raya

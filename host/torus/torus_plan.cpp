@@ -39,7 +39,7 @@ NodeBuffers buffers_of(const Scene& scene, const NodeMemories& memories, const T
                         raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces), trial);
 }
 
-// The job of all nodes.
+// Packs the job and divides it among all nodes.
 TorusJob divide(const Session& session, const Scene& scene, const TorusSettings& s, const NodeShare& share,
                 const DeviceMemory& device) {
     const LengthScale scale = length_scale(scene, s.format);
@@ -55,7 +55,7 @@ TorusJob divide(const Session& session, const Scene& scene, const TorusSettings&
     return all;
 }
 
-// Extracts the words of one rank's nodes.
+// Returns the memories of `nodes`, in this order.
 NodeMemories memories_of(const NodeMemories& all, const std::vector<std::uint32_t>& nodes) {
     NodeMemories own;
     own.copies = all.copies;
@@ -69,7 +69,7 @@ NodeMemories memories_of(const NodeMemories& all, const std::vector<std::uint32_
     return own;
 }
 
-// A job without the nodes' words, as it is sent to other ranks.
+// A job without the nodes' words, in the form that is sent to other ranks.
 struct TorusFigures {
     raya_job header;
     bool has_patches;

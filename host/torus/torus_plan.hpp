@@ -1,5 +1,5 @@
-// Set-up of a render on the torus: chosen settings, the division of the job among nodes and ranks, and the pixels whose
-// primary rays may enter the bounding box at each node's voxels.
+// Set-up of a render on the torus: final settings, the division of the job among nodes and ranks, and for each node the
+// pixels whose primary rays may enter the bounding box at the node's voxels.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -22,31 +22,32 @@
 
 namespace raya {
 
-/// Half-open ranges of rows and columns: [0], the first; [1], one past the last.
+/// Half-open ranges of rows and columns: [0] is the first one, [1] is one past the last.
 struct PixelWindow {
     std::uint32_t rows[2], columns[2];
 };
 
-/// For each node, a window that contains every pixel whose primary ray enters the bounding box at one of its voxels:
-/// the projection of those of the voxels' faces that lie in a side of the box towards the eye, widened by the rounding
-/// error of a ray's direction. It is the whole image if the eye is in a voxel of the node or too close to such a side,
-/// or if the format has too few bits for a bound. It is empty for a node that no ray enters.
+/// Returns for each node a window that contains every pixel whose primary ray enters the bounding box at one of the
+/// node's voxels. A ray enters through a face of a voxel that is part of a side of the box facing the eye. The window
+/// bounds the projections of these faces, widened by the rounding error of a ray's direction. It is the whole image if
+/// the eye is in a voxel of the node or too close to such a side, or if the format has too few bits for an error bound.
+/// It is empty for a node that no primary ray can enter.
 std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& grid, const raya_torus& torus,
                                        const NumberFormat& format);
 
-/// The default nodes with one voxel each, the machine's bounces and format, and no limit of memory.
+/// Returns kDefaultNodes nodes with one voxel each, the default bounces and format of the machine, and no memory limit.
 TorusSettings default_torus(const ImageSize& size);
 
 JobSettings job_settings(const TorusSettings& settings, const LengthScale& scale);
 
-/// Throws UserError if there are more voxels or lights than a packet can name.
+/// Throws UserError if there are more voxels or lights than the fields of a packet can number.
 void check_packets(const TorusSettings& settings, const Scene& scene);
 
-/// Returns the settings with lanes and group size chosen. Throws UserError, before anything is packed or allocated, if
-/// packets cannot name the voxels or lights, or if the kernels cannot be built with the settings.
+/// Returns the settings with lanes and group size filled in. Throws UserError like check_packets(), and if the kernels
+/// cannot be built with the settings. Called before the scene is packed and memory is allocated.
 TorusSettings checked(TorusSettings settings, const Scene& scene, const DeviceInfo& device);
 
-/// Number of pixels to trace.
+/// Returns the number of pixels to trace.
 std::uint64_t pixels_of(const TorusSettings& settings);
 
 KernelOptions kernel_options(const TorusSettings& settings, const PackedJob& job);
@@ -57,29 +58,28 @@ void set_windows(NodeMemories& memories, const TorusSettings& settings, const Pa
 
 struct TorusJob {
     PackedJob outline;      // the job's header, without objects
-    NodeMemories memories;  // of this rank's nodes, by slots; `copies` and `max_objects` are of all nodes
+    NodeMemories memories;  // of this rank's nodes, by slot; but `copies` and `max_objects` are of all nodes
     LengthScale scale;
     NodeBuffers buffers;
-    std::uint64_t words = 0;          // of all nodes
+    std::uint64_t words = 0;          // total of all nodes
     std::uint64_t fullest_words = 0;  // of the fullest node
 };
 
-/// Memory that the fullest node needs.
+/// Memory needs of the fullest node.
 struct NodeNeeds {
     LengthScale scale;
-    std::uint64_t words = 0, bytes = 0;  // words of the scene; bytes of these and the buffers
+    std::uint64_t words = 0, bytes = 0;  // scene words; bytes of scene words and buffers
 };
 
-/// Divides the scene as a render does, without a device. Throws UserError if packets cannot name the voxels or lights,
-/// NodesDoNotFit.
+/// Divides the scene as a render does, without a device. Throws UserError like check_packets(), or NodesDoNotFit.
 NodeNeeds node_needs(const Scene& scene, const TorusSettings& settings);
 
-/// The minimum over all ranks.
+/// Returns the minimum over the devices of all ranks.
 DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks);
 
-/// Rank 0 packs the scene, divides it among the nodes and sends each rank the words of its nodes; meanwhile it holds
-/// the words of all. Other ranks do not read `scene`. `device`: minimum over all ranks. Throws UserError if nodes do
-/// not fit their memory or the device's.
+/// Rank 0 packs the scene, divides it among the nodes and sends each rank the words of its nodes. Until then, rank 0's
+/// host memory holds the words of all nodes. Other ranks do not read `scene`. `device`: smallest_device_memory().
+/// Throws UserError if the scene or the buffers exceed the memory of a node or of the device.
 TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,
                         const NodeShare& share, const DeviceMemory& device, Ranks& ranks);
 

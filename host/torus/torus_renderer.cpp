@@ -16,9 +16,9 @@
 namespace raya {
 namespace {
 
-// Progress, 0..1: the share of rows scanned times the mean of two estimates. The share of finished packets is right
-// while all nodes compute, but too high at the end, when few packets take many supersteps. The logarithmic decrease of
-// live packets is right at the end, but too low before.
+// Returns the progress, 0..1: the fraction of image rows whose rays are generated, times the mean of two estimates. The
+// fraction of finished packets is accurate while all nodes compute, but too high at the end, when few packets take many
+// supersteps. The logarithmic decrease of live packets is accurate at the end, but too low before.
 double share_done(const Census& census, std::size_t returns, std::uint64_t max_live) {
     const auto finished = static_cast<double>(returns), live = static_cast<double>(census.live);
     if (live == 0) return census.scanned;
@@ -28,7 +28,8 @@ double share_done(const Census& census, std::size_t returns, std::uint64_t max_l
 
 }  // namespace
 
-// Maximum number of returns to reserve memory for in advance: 128 MB, of which only the used pages are touched.
+// Maximum number of returns for which memory is reserved in advance: 128 MB, of which only the used pages are
+// allocated.
 constexpr std::uint64_t kReservedReturns = 1 << 22;
 
 struct TorusRenderer::Parts {
@@ -37,7 +38,7 @@ struct TorusRenderer::Parts {
     TorusSettings settings;
     std::string scene;
     NodeShare share;
-    DeviceMemory device;  // that every rank has
+    DeviceMemory device;  // minimum over all ranks
     TorusJob job;
     KernelOptions options;
     std::unique_ptr<NodeArray> nodes{};
@@ -117,7 +118,7 @@ void TorusRenderer::Parts::build() {
     Kernels kernels(session, one_lane, settings.kernels.sources);
     composer = std::make_unique<Composer>(kernels);
     nodes->clear();
-    // Launches with empty queues: PoCL compiles a kernel at its first launch.
+    // Launches the kernels once with empty queues, because PoCL compiles a kernel at its first launch.
     nodes->trace_voxel(nodes->all(), Reserve::kWholeTree);
     nodes->route();
     nodes->accept(nodes->all(), Reserve::kWholeTree, 0);
@@ -148,7 +149,7 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Render
     return result;
 }
 
-// The computing part of a superstep, before packets move.
+// The computation of a superstep, before packets are transferred.
 void TorusRenderer::Parts::compute(NodeArray::Slots slots, Reserve reserve, bool injects, const NodeWorkSink& work) {
     if (injects) nodes->inject(slots);
     if (!work) return nodes->trace_voxel(slots, reserve);
@@ -157,9 +158,9 @@ void TorusRenderer::Parts::compute(NodeArray::Slots slots, Reserve reserve, bool
     nodes->report_work(injected, work);
 }
 
-// Runs supersteps until the image is complete, or returns the state of a deadlock. All ranks know the status of all
-// nodes, so they take the same decisions. While packets travel between ranks, the inner nodes compute the next
-// superstep.
+// Runs supersteps until the image is complete; on a deadlock, returns the state of the machine. All ranks read the
+// status of all nodes, so they take the same decisions. While packets are transferred between ranks, the inner nodes
+// already compute the next superstep.
 std::optional<DeadlockFigures> TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns,
                                                          const ProgressCallback& progress,
                                                          const RenderObservers& observers) {
@@ -190,7 +191,8 @@ std::optional<DeadlockFigures> TorusRenderer::Parts::run(TorusResult& result, st
         const bool ended = census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made;
         if (progress) progress(ended ? 1 : share_done(census, returns.size(), max_live));
         const bool injects = !census.all_made && census.fullest <= job.buffers.queue / 4;
-        // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep.
+        // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep; so only
+        // three supersteps without progress are a deadlock.
         stalled = census.progress == 0 && max_words == 0 ? stalled + 1 : 0;
         const Reserve next = stalled > 0 ? Reserve::kTight : Reserve::kWholeTree;
         const bool continues = !ended && stalled < 3;
@@ -239,7 +241,7 @@ void TorusRenderer::Parts::collect(TorusResult& result) {
     result.moved_returns = nodes->moved_returns();
 }
 
-// Checks that no packet was lost or duplicated; otherwise the image would be wrong.
+// Throws std::logic_error if a packet was lost or duplicated: the image would be wrong.
 void TorusRenderer::Parts::check(const TorusResult& result) const {
     for (std::size_t kind = 1; kind < RAYA_KINDS; ++kind)
         if (result.made[kind] != result.ended[kind])
@@ -256,7 +258,7 @@ void TorusRenderer::Parts::check(const TorusResult& result) const {
         throw std::logic_error(fmt::format("{} returns are messages, not {}", result.returns, returns));
 }
 
-// Memory of the fullest node.
+// Returns the memory of the fullest node in bytes.
 std::uint64_t TorusRenderer::Parts::node_bytes(const NodeBuffers& any) const {
     return raya::node_bytes(job.fullest_words, any, links_of_node(settings.torus));
 }

@@ -1,4 +1,5 @@
-// Renders a scene on a model of a torus machine: nodes hold voxels of the scene and exchange rays as packets.
+// Renders a scene on a model of a torus machine: each node stores some voxels of the scene, and nodes send each other
+// rays as packets.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -16,31 +17,32 @@ namespace raya {
 
 class TorusRenderer {
   public:
-    /// Partitions and packs the scene, checks that it fits the nodes, builds the kernels and allocates the device
-    /// memory for the nodes of this rank. Only rank 0 reads the scene. Throws UserError (the scene does not fit, a
-    /// setting is out of range, more ranks than nodes) or DeviceError.
+    /// Packs and divides the scene, checks that it fits the nodes, builds the kernels and allocates the device memory
+    /// for the nodes of this rank. Only rank 0 reads `scene`. Throws UserError if the scene does not fit, a setting is
+    /// out of range or there are more ranks than nodes, or DeviceError.
     TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks = Ranks::alone());
     ~TorusRenderer();
 
-    /// Renders one image; may be called again. All ranks must pass the same kinds of observers. In ranks other than 0
-    /// the result has no image and no counts. Throws TorusDeadlock, or std::logic_error for an observer of work without
-    /// TorusSettings::history.
+    /// Renders one image; can be called repeatedly. All ranks must set the same members of `observers`. In ranks other
+    /// than 0 the result has no image and no counts. Throws TorusDeadlock, or std::logic_error if RenderObservers::work
+    /// is set without TorusSettings::history.
     TorusResult render(const ProgressCallback& progress = {}, const RenderObservers& observers = {});
 
-    /// The factor by which the scene's lengths are multiplied.
+    /// Returns the factor by which the scene's lengths are multiplied.
     const LengthScale& scale() const;
 
-    /// Sets the pixels of the following images, so that groups of a machine can render in turn with the same kernels.
+    /// Sets the pixels of the following images. A machine of several groups of nodes uses this to render the pixels of
+    /// one group after another with the same kernels.
     void set_pixels(const PixelSubset& pixels);
 
-    /// Sets the queue length of the following images, regardless of a node's memory. Throws UserError if the device
-    /// cannot hold the queues, or DeviceError.
+    /// Sets the capacity of the queues, in packets, for the following images; it may exceed a node's memory. Throws
+    /// UserError if the queues do not fit the device, or DeviceError.
     void set_queue(std::uint32_t queue);
 
-    /// Runs the supersteps of an image; returns true if they complete, false on a deadlock.
+    /// Runs the supersteps of an image without composing it. Returns true if they complete, false on a deadlock.
     bool ends();
 
-    /// Limits and callbacks for find_longer_queue(). They refer to the renderer, which keeps the last queue tried.
+    /// Returns limits and callbacks for find_longer_queue(). The callbacks use this renderer and change its queues.
     QueueTrial queue_trial();
 
   private:

@@ -21,7 +21,7 @@ std::uint64_t launches_of(const TorusResult& result, const std::string& label) {
     return launches;
 }
 
-// Size of the counted packets in bytes.
+// Returns the size of the packets in bytes.
 std::uint64_t packet_bytes(const PacketCounts& made) {
     std::uint64_t words = 0;
     for (std::uint32_t kind = RAYA_KIND_PRIMARY; kind < RAYA_KINDS; ++kind)
@@ -29,13 +29,14 @@ std::uint64_t packet_bytes(const PacketCounts& made) {
     return kWordBytes * words;
 }
 
-// The stepwise time hides the processors' part of messages (see the header); the shortest packets are the worst case.
+// Checks that transfers take longer than the processors' work for messages, as the stepwise time assumes (see the
+// header). The shortest packets are the worst case.
 constexpr std::uint32_t kWords = PacketCharge::kWholeReturnWords;
 static_assert(kWords < RAYA_RETURN_WORDS);
 static_assert(2 * RAYA_LINKS * (kT805MessageWordCycles * kWords + kT805MessageCycles) * kT805CycleNs <
               kWords * 1e9 * 2 * 4 / kT805BothWaysBytesPerS);
 
-// [node]: processor cycles for the messages that it sends and receives.
+// Returns, for each node, the processor cycles for the messages that it sends and receives.
 std::vector<std::uint64_t> message_cycles(const raya_torus& torus, const TorusResult& result) {
     std::vector<std::uint64_t> cycles(raya_nodes(torus));
     for (std::uint32_t node = 0; node < cycles.size(); ++node)
@@ -48,7 +49,8 @@ std::vector<std::uint64_t> message_cycles(const raya_torus& torus, const TorusRe
     return cycles;
 }
 
-// Link 2 d of a node and link 2 d + 1 of the node at its end are the two directions of one wire.
+// Returns the milliseconds that the busiest link takes for its transfers in both directions. Link 2 d of a node and
+// link 2 d + 1 of the node at its end are the two directions of one link.
 double busiest_link_ms(const raya_torus& torus, const TorusResult& result) {
     double most = 0;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node)
@@ -87,7 +89,7 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
     inject.bytes = opened("inject") + packet_bytes(rays);
     trace.bytes =
         opened("trace_voxel") + kWordBytes * RAYA_PACKET_WORDS * r.events[RAYA_STEPS] + packet_bytes(followers);
-    trace.rays += primary[RAYA_PRIMARY];  // trace_voxel traces primary rays, too
+    trace.rays += primary[RAYA_PRIMARY];  // trace_voxel also traces the primary rays
     KernelWork route, accept, compose;
     route.label = "route";
     route.bytes = opened("route") +

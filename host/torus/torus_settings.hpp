@@ -16,13 +16,15 @@ namespace raya {
 /// Capacity of a node's buffers, in packets of 16 words (kernels/shared/packet.h).
 struct NodeBuffers {
     std::uint32_t queue = 0;
-    std::uint32_t box = 0;  // of one outbox or one inbox
+    std::uint32_t box = 0;  // of each outbox and each inbox
 };
 
-/// Makers of primary rays: the root, or all nodes, each those that enter the bounding box at its voxels.
+/// Nodes that generate primary rays. kRoot: the root generates all of them; kAll: each node generates those that enter
+/// the bounding box at one of its voxels.
 enum class Injection { kRoot, kAll };
 
-/// The pixels first, first + stride, ...: the share of one of several groups of nodes.
+/// The pixels with row-major indices first, first + stride, first + 2 stride, ... One of several groups of nodes
+/// renders them.
 struct PixelSubset {
     std::uint32_t stride = 1, first = 0;
 };
@@ -34,19 +36,19 @@ struct TorusSettings {
     Machine machine;
     std::uint32_t width = 0, height = 0;  // pixels
     raya_torus torus{};
-    Links links = Links::kTorus3d;  // of `torus`
+    Links links = Links::kTorus3d;  // topology of `torus`
     Divisions voxels{};
     Injection inject = Injection::kAll;
-    PacketCharge packets;                       // words that the model charges, which may differ from those moved
-    std::uint32_t queue = 0;                    // packets of a node's queue; 0: as many as its memory allows
-    std::optional<std::uint64_t> memory_bytes;  // of a node; empty: no limit
+    PacketCharge packets;                       // modelled message sizes; the device may move more or fewer words
+    std::uint32_t queue = 0;                    // capacity of a node's queue, packets; 0: plan_buffers() chooses
+    std::optional<std::uint64_t> memory_bytes;  // memory of a node; empty: no limit
     PixelSubset pixels;
     std::uint32_t bounces = 8;
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     KernelChoice kernels;
-    std::uint32_t work_per_launch = 0;  // of a node, in a kernel's units; 0: chosen for the device (LaunchPlan)
-    bool history = false;               // nodes record the cost of each packet, as RenderObservers::work needs it
+    std::uint32_t work_per_launch = 0;  // budget of a node in the kernel's work units; 0: see LaunchPlan
+    bool history = false;               // record the cost of each packet; required by RenderObservers::work
 };
 
 }  // namespace raya

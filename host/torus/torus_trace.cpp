@@ -19,15 +19,15 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kBlock = 1 << 16;  // bytes of text that are compressed at a time
+constexpr std::size_t kBlock = 1 << 16;  // bytes of text compressed at a time
 
-// Number of a packet and of its parent; a primary ray has no parent.
+// Numbers of a packet and of its parent; a primary ray has no parent.
 struct Lineage {
     std::uint64_t ray = 0;
     std::optional<std::uint64_t> parent;
 };
 
-// A return packet is recorded once and has no children, so its number need not be stored.
+// A return packet is recorded once and has no children, so its number need not be looked up again.
 Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
     const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
     const RayId name = {record.head.pixel, RayId::place_of(record.head.path, raya_state_level(state)),
@@ -41,7 +41,7 @@ Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
     return lineage;
 }
 
-// Detects heads that only a defect of a kernel can produce, instead of writing a wrong row.
+// Throws std::logic_error for packet heads that only a faulty kernel can produce, instead of writing a wrong row.
 void check_head(const PacketRecord& record) {
     const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
     const bool root_of_tree = raya_state_level(state) == 0, has_light = raya_state_light(state) != 0;
@@ -57,7 +57,8 @@ constexpr std::uint32_t kFirstNode = 2;  // track of node 0
 double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }  // as in torus_time()
 TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kFirstNode + node}; }
 
-// Number of links on the route of a packet. Returns take the axes in another order, but as many links.
+// Returns the number of links on the route of a packet. Returns take the axes in another order than rays, but their
+// routes are equally long.
 std::uint32_t route_length(const raya_torus& torus, std::uint32_t source, std::uint32_t destination) {
     return raya_node_distance(torus, source, destination);
 }
@@ -117,7 +118,7 @@ void TorusTrace::add_packet(const PacketRecord& p) {
     if (place < kMaxPackets) packets_[place] = sample;
 }
 
-// Lays the supersteps out one after another.
+// Computes the times of the supersteps, which follow one another.
 class TorusTrace::Timeline {
   public:
     Timeline(const TorusTrace& seen, TraceFile& trace, const TorusResult& result, std::size_t nodes)
@@ -140,7 +141,7 @@ class TorusTrace::Timeline {
         }
     }
 
-    // Returns the number of flows.
+    // Adds the flows and returns their number.
     std::size_t add_flows() {
         std::set<std::uint32_t> shown;
         for (const TracedPe& n : nodes_) shown.insert(n.pe);
@@ -200,7 +201,7 @@ class TorusTrace::Timeline {
     TraceFile& trace_;
     const TorusResult& result_;
     std::vector<TracedPe> nodes_;
-    std::vector<double> begins_, computed_;  // of each superstep, ms
+    std::vector<double> begins_, computed_;  // [superstep]: start, end of computation, ms
     double now_ms_ = 0;
 };
 

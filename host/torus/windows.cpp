@@ -11,7 +11,8 @@ namespace {
 
 Vec3 vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-// Projects points P onto the image: P - eye = c (corner + x column_step + y row_step).
+// Projects a point P onto the image: solves P - eye = c (corner + x column_step + y row_step) for depth c, column x and
+// row y.
 class Projection {
   public:
     Projection(const raya_job& job, const NumberFormat& format)
@@ -22,7 +23,8 @@ class Projection {
           normal_(column_.cross(row_)),
           step_(std::min(column_.length(), row_.length())) {
         const double width = job.mapping.width, height = job.mapping.height;
-        // Rounding error of a direction: some units in the last place of its length, in pixels; one more for the edge.
+        // Bound of the rounding error of a direction, in pixels: 16 units in the last place of the sum of its terms'
+        // lengths. One more pixel for the half-open edge.
         const double unit = std::ldexp(1.0, -format.fraction_bits);
         margin_ = 1 + 16 * unit * (corner_.length() + width * column_.length() + height * row_.length()) / step_;
         for (const double x : {-1.0, width})
@@ -32,12 +34,12 @@ class Projection {
 
     const Vec3& eye() const { return eye_; }
     double margin() const { return margin_; }
-    double step() const { return step_; }        // minimum distance of neighbouring pixels at c = 1
+    double step() const { return step_; }        // minimum distance of adjacent pixels at c = 1
     double longest() const { return longest_; }  // maximum |P - eye| of a pixel at c = 1
 
     double depth(const Vec3& p) const { return (p - eye_).dot(normal_) / corner_.dot(normal_); }  // c
 
-    // Column and row of P, which must lie in front of the eye.
+    // Returns column and row of P, which must be in front of the eye.
     std::array<double, 2> pixel(const Vec3& p) const {
         const Vec3 flat = (p - eye_) / depth(p) - corner_;
         return {flat.dot(row_.cross(normal_)) / column_.dot(row_.cross(normal_)),
@@ -52,12 +54,12 @@ class Projection {
 struct ScreenBounds {
     double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     double high[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    bool whole = false;  // the whole image: no bound is known
+    bool whole = false;  // no bound is known: use the whole image
     bool any() const { return whole || low[0] <= high[0]; }
 };
 
-// Extent of the bounding box along an axis, and the rounding error of a ray's entry point (grid/walk.clh): a few units
-// in the last place of fp32, of the path length and the origin.
+// Extent of the bounding box along an axis. slack: bound of the rounding error of a ray's entry point (grid/walk.clh),
+// a few fp32 units in the last place of the path length and the origin.
 struct Side {
     double low, high, slack;
 };
@@ -67,7 +69,7 @@ Side side_of(const raya_grid& grid, std::uint32_t axis, double eye) {
     return {low, high, std::ldexp(std::abs(eye) + std::max(std::abs(low), std::abs(high)), -20)};
 }
 
-// Clips a face to depths >= `least` (Sutherland & Hodgman 1974).
+// Clips a face to the points with depth >= `least` (Sutherland & Hodgman 1974).
 std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4>& face, double least) {
     std::vector<Vec3> part;
     for (std::size_t i = 0; i < face.size(); ++i) {
@@ -79,7 +81,7 @@ std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4
     return part;
 }
 
-// Adds the face of a voxel in plane k of an axis; `distance`: of the plane from the eye.
+// Extends the bounds by the face of voxel `at` in plane k of `axis`. `distance`: distance of the plane from the eye.
 void add_face(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, const raya_place& at,
               std::uint32_t axis, std::uint32_t k, double distance) {
     const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
@@ -89,7 +91,7 @@ void add_face(ScreenBounds& bounds, const Projection& projection, const raya_gri
         face[corner][second] = raya_voxel_plane(grid, second, at.at[second] + (corner == 1 || corner == 2 ? 1 : 0));
         face[corner][third] = raya_voxel_plane(grid, third, at.at[third] + corner / 2);
     }
-    // No visible point has a smaller depth.
+    // The clipping depth is smaller than the depth of any visible point of the face.
     for (const Vec3& p : clipped(projection, face, distance / projection.longest() / 2)) {
         const std::array<double, 2> place = projection.pixel(p);
         for (std::size_t i = 0; i < 2; ++i) {
@@ -111,7 +113,7 @@ void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_gr
         const double before = box.low - eye, behind = eye - box.high, distance = std::max(before, behind);
         const bool is_outer = before > 0 ? low <= box.low + box.slack : behind > 0 && high >= box.high - box.slack;
         if (!is_outer) continue;
-        // The eye is so close that rounding may move the entry point by more than a pixel.
+        // The eye is so close to this side that rounding may move the entry point by more than a pixel.
         bounds.whole = bounds.whole || box.slack * projection.longest() > distance * projection.step();
         add_face(bounds, projection, grid, at, axis, at.at[axis] + (behind > 0 ? 1 : 0), distance);
     }

@@ -12,7 +12,7 @@ namespace {
 
 using Values = std::vector<std::uint32_t>;
 
-// Powers of two in minimum..maximum, or else `maximum`; `minimum` is a power of two.
+// Returns the powers of two in minimum..maximum, or `maximum` if there are none; `minimum` is a power of two.
 Values group_sizes(std::uint32_t minimum, std::uint32_t maximum) {
     Values all;
     for (std::uint32_t size = minimum; size <= maximum; size *= 2) all.push_back(size);
@@ -23,7 +23,7 @@ Values group_sizes(std::uint32_t minimum, std::uint32_t maximum) {
 constexpr auto kByCopies = static_cast<std::uint32_t>(LinkMove::kCopies);
 constexpr auto kByKernel = static_cast<std::uint32_t>(LinkMove::kKernel);
 
-// Inserts the default if it is not one of the values.
+// Inserts the default value if `values` does not contain it.
 void add_default(Values& values, std::uint32_t value) {
     if (std::find(values.begin(), values.end(), value) == values.end())
         values.insert(std::lower_bound(values.begin(), values.end(), value), value);
@@ -37,10 +37,10 @@ std::string value_text(const Knob& knob, std::uint32_t value) {
 }
 
 constexpr double kDropped = std::numeric_limits<double>::infinity();
-// Limits of time over the best time.
-constexpr double kSteep = 1.25;  // measured: beyond it, further values of the knob are unlikely to be better
-constexpr double kNear = 1.12;   // predicted: interactions of knobs may compensate up to this
-constexpr double kFar = 1.5;     // likewise for neighbours in two knobs
+// Limits for a candidate's time divided by the best time.
+constexpr double kSteep = 1.25;  // measured time: beyond it, further values of the knob are unlikely to be better
+constexpr double kNear = 1.12;   // predicted time: interactions of knobs may make up for this much
+constexpr double kFar = 1.5;     // predicted time of neighbours that differ in two knobs
 
 class CoordinateDescent {
   public:
@@ -82,8 +82,8 @@ class CoordinateDescent {
         return true;
     }
 
-    // Tries one knob after another until none gains; knobs with few values first, so that most knobs have been tried
-    // if time runs out.
+    // Varies one knob after another until no change helps. Knobs with few values come first, so that most knobs have
+    // been varied if time runs out.
     void descend() {
         for (bool gained = true; gained && result_.ended;) {
             gained = false;
@@ -91,7 +91,7 @@ class CoordinateDescent {
         }
     }
 
-    // Upwards from the best one's value; downwards if that does not gain.
+    // Tries larger values than the best candidate's, and smaller ones if no larger one helps.
     bool try_values(std::size_t knob) {
         const Candidate from = result_.best;
         return try_direction(from, knob, +1) || try_direction(from, knob, -1);
@@ -109,7 +109,7 @@ class CoordinateDescent {
         return gained;
     }
 
-    // [knob][value]: the minimum cost measured with that value.
+    // Returns [knob][value]: the minimum cost measured with that value.
     std::vector<std::vector<double>> least_costs() const {
         std::vector<std::vector<double>> least;
         for (const Knob& knob : space_.knobs) least.emplace_back(knob.values.size(), kDropped);
@@ -119,8 +119,9 @@ class CoordinateDescent {
         return least;
     }
 
-    // Finds the candidate with the lowest predicted cost among those offered that have not been tried: the cost of the
-    // best times, for each knob, the loss of the best candidate with the same value.
+    // Finds the candidate with the lowest predicted cost among the untried candidates passed to offer(). The prediction
+    // is the cost of the best multiplied, for each knob, by the loss of the candidate's value: the minimum cost
+    // measured with this value divided by the cost of the best.
     class Prediction {
       public:
         Prediction(const CoordinateDescent& search, double near)
@@ -140,7 +141,7 @@ class CoordinateDescent {
         const CoordinateDescent& search_;
         std::vector<std::vector<double>> least_;
         double lowest_;
-        Candidate found_;  // empty: none is near enough
+        Candidate found_;  // empty: no prediction is near enough to the best
     };
 
     Candidate most_promising() const {
@@ -149,7 +150,8 @@ class CoordinateDescent {
         return prediction.found();
     }
 
-    // Knobs that share a resource, such as registers, may gain only if both change.
+    // Returns the most promising neighbour that differs in two knobs. If two knobs share a resource, such as registers,
+    // it may be necessary to change both.
     Candidate best_step_of_two() const {
         Prediction prediction(*this, kFar);
         for (std::size_t a = 0; a < space_.knobs.size(); ++a)
@@ -167,9 +169,9 @@ class CoordinateDescent {
     const Space& space_;
     const MeasureRatio& measure_;
     const ShouldStop& stop_;
-    std::vector<std::size_t> order_;  // in which knobs are tried
+    std::vector<std::size_t> order_;  // order in which knobs are varied
     SearchResult result_;
-    std::map<Candidate, double> costs_;  // time over that of the start, or kDropped
+    std::map<Candidate, double> costs_;  // time divided by that of the start, or kDropped
 };
 
 }  // namespace
@@ -211,7 +213,8 @@ Space space_of(const DeviceInfo& device, const TunedFor& what) {
         space.knobs.push_back({value, std::move(values)});
     };
     const std::uint32_t max_group = largest_group_size(device);
-    // It vectorises over work-items; compiling several lanes takes minutes and gigabytes.
+    // llvmpipe vectorises over work-items. Compiling kernels with several lanes takes it minutes and gigabytes of
+    // memory.
     const bool llvmpipe = device.max_loop_iterations > 0;
     add(&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16});
     // Torus nodes on a CPU keep their default, which preserves the order of packets (docs/packets.md).
@@ -225,7 +228,7 @@ Space space_of(const DeviceInfo& device, const TunedFor& what) {
         add(&TunedValues::trees, {0, 1, 2, 4, 8});
         add(&TunedValues::beams, {0, 1, 2, 4, 8});
     }
-    // On a CPU the default, 0, is the kernel.
+    // On a CPU the default, 0, already selects the kernel.
     if (what.torus) add(&TunedValues::link_exchange, cpu ? Values{0, kByCopies} : Values{0, kByCopies, kByKernel});
     return space;
 }

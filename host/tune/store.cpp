@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kKind = "raya tune";
-constexpr std::uint64_t kVersion = 2;                                        // of the file format
-constexpr std::array<const char*, 3> kAccelNames = {"none", "grid", "bvh"};  // by RAYA_ACCEL_*
+constexpr std::uint64_t kVersion = 2;                                        // version of the file format
+constexpr std::array<const char*, 3> kAccelNames = {"none", "grid", "bvh"};  // index: RAYA_ACCEL_*
 
 Json to_json(const TunedEntry& entry) {
     return {{"machine", entry.what.torus ? "torus" : "ring"},
@@ -32,7 +32,7 @@ Json to_json(const TunedEntry& entry) {
             {"scene", entry.scene}};
 }
 
-// Index of the member's text in `names`.
+// Returns the index of the member's text in `names`.
 std::uint32_t choice_of(const Json& json, const char* key, const std::vector<std::string>& names) {
     const auto found = std::find(names.begin(), names.end(), json.at(key).text());
     if (found == names.end()) throw JsonError(fmt::format("unknown {} \"{:.40}\"", key, json.at(key).text()));
@@ -86,7 +86,7 @@ std::optional<TunedFile> read_stored(const fs::path& path, const DeviceInfo& dev
     return read_tuned(json_text(path, {path}, Pipes::kRefused, kMaxFileBytes), path, device);
 }
 
-// Replaces other characters than letters, digits, '.' and '+' by '-', at most 80 characters.
+// Replaces all characters except letters, digits, '.' and '+' by '-', and keeps at most 80 characters.
 std::string file_name_part(const std::string& name) {
     std::string text;
     for (const char c : name) {
@@ -97,7 +97,8 @@ std::string file_name_part(const std::string& name) {
     return text.substr(0, kMaxLength);
 }
 
-// Folder named by an environment variable; relative paths are ignored, as the XDG Base Directory Specification says.
+// Returns the folder named by an environment variable. Ignores relative paths, as the XDG Base Directory Specification
+// requires.
 std::optional<fs::path> folder_in(const char* variable) {
     const char* text = std::getenv(variable);
     if (text == nullptr || !fs::path(text).is_absolute()) return {};

@@ -1,4 +1,4 @@
-// Tuned values, stored in one file for each device and driver version.
+// Storage of tuned values, in one file for each device and driver version.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -11,18 +11,18 @@
 
 namespace raya {
 
-/// For files, and between processes.
+/// The JSON form in files and in messages between processes.
 Json to_json(const TunedValues& values);
 
 /// Throws JsonError if a value is missing or not an unsigned 32-bit integer.
 TunedValues values_of(const Json& json);
 
-/// Tuned values of one kind of kernels.
+/// Tuned values of one configuration of kernels.
 struct TunedEntry {
     TunedFor what;
     TunedValues values;
-    double speedup = 1;  // measured, over the defaults
-    std::string scene;   // that it was measured with
+    double speedup = 1;  // measured time of the defaults over that of `values`
+    std::string scene;   // scene of the measurement
 };
 
 struct TunedFile {
@@ -30,29 +30,32 @@ struct TunedFile {
     std::vector<TunedEntry> entries;
 };
 
-/// Folder of the files: $XDG_CACHE_HOME/raya, or else $HOME/.cache/raya. Empty if neither variable is an absolute path.
+/// Returns the folder of the files: $XDG_CACHE_HOME/raya, or, if that variable is not an absolute path,
+/// $HOME/.cache/raya. Empty if neither is absolute.
 std::optional<std::filesystem::path> tuned_folder();
 
-/// File name of a device, from the names of platform and device and the driver version.
+/// Returns the file name of a device, made of the platform's and the device's name and the driver version.
 std::string tuned_file_name(const DeviceInfo& device);
 
-/// Text of a file, with the names of device and driver and the version of raya.
+/// Returns the text of a file, which contains the names of device and driver and the version of raya.
 std::string tuned_text(const DeviceInfo& device, const TunedFile& file);
 
-/// Reads the text of the file `name`. Throws UserError if it is damaged or another file, has values that the device
-/// does not support, or is for another device, driver or version of raya.
+/// Parses the text of file `name`. Throws UserError if the text is not a valid file of tuned values, has values that
+/// the device does not support, or is for another device, driver or version of raya.
 TunedFile read_tuned(const std::string& text, const std::string& name, const DeviceInfo& device);
 
-/// Path of a device's file; creates its folder. Throws UserError if there is no folder or the file is not writable.
+/// Returns the path of a device's file, and creates its folder. Throws UserError if tuned_folder() is empty or the file
+/// is not writable.
 std::filesystem::path tuned_path(const DeviceInfo& device);
 
-/// Merges `now` into the device's file, replacing entries for the same kernels, and writes the file atomically. An
-/// unusable file is overwritten. Throws UserError like tuned_path().
+/// Merges `now` into the device's file: replaces the entries for the same kernels and keeps the others. Writes the file
+/// atomically, and overwrites an unusable file. Throws UserError like tuned_path().
 void save_tuned(const DeviceInfo& device, const TunedFile& now);
 
-/// Stored values, for ScopedTunedSource. Reads a device's file at the first request for it. A file that is unusable or
-/// writable by other users is ignored, with one call of `warn`. Empty if the environment variable RAYA_TUNED is "off";
-/// throws UserError for any other value.
+/// Returns a source of the stored values, for ScopedTunedSource. It reads the file of a device at the first request for
+/// that device. If the file is unusable or writable by other users, it ignores the file and calls `warn` once. Returns
+/// an empty function if the environment variable RAYA_TUNED is "off"; throws UserError for any other value of the
+/// variable.
 TunedSource stored_choices(std::function<void(const std::string&)> warn);
 
 }  // namespace raya

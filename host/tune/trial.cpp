@@ -22,13 +22,13 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kMinSamples = 2;  // before stop_early drops a candidate
+constexpr std::size_t kMinSamples = 2;  // minimum before stop_early can drop a candidate
 constexpr double kFarSlower = 1.25;
 
 struct Variant {
     const char* name;
     AccelKind accel;
-    std::uint32_t side;  // pixels of the default image
+    std::uint32_t side;  // side of the default image, pixels
 };
 constexpr Variant kVariants[] = {{"none", AccelKind::kNone, 512},
                                  {"grid", AccelKind::kGrid, 256},
@@ -51,7 +51,7 @@ struct TrialPicture {
 Scene scene_of(const TrialSetup& render, const Variant& variant) {
     constexpr const char* kSpheres = "scenes/spheres.nff";
     constexpr int kLevel = 4;
-    std::vector<NffRemark> remarks;  // ignored: the parent process has printed them
+    std::vector<NffRemark> remarks;  // ignored: the parent process prints them
     if (!render.scene.empty()) return read_nff(render.scene, render.strict ? nullptr : &remarks);
     if (variant.accel != AccelKind::kNone) return generate_balls(kLevel);
     return parse_nff(embedded_files().at(kSpheres), kSpheres);
@@ -86,7 +86,7 @@ TorusSettings torus_settings(const TrialRequest& request, const ImageSize& size,
 const EventCounts& events_of(const RingResult& result) { return result.all.events; }
 const EventCounts& events_of(const TorusResult& result) { return result.events; }
 
-/// Renders one image with built kernels and returns the seconds from packed scene to image.
+/// Renders one image with built kernels; returns the seconds from the packed scene to the image.
 using NextImage = std::function<double()>;
 
 template <class Renderer>

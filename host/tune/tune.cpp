@@ -14,7 +14,7 @@
 namespace raya {
 namespace {
 
-// Builds a Trial from the lines of its process.
+// Builds a Trial from the lines that its process writes.
 class TrialReader {
   public:
     TrialReader(const TrialRequest& request, const std::string& check) : request_(request), check_(check) {
@@ -63,12 +63,12 @@ class TrialReader {
     const TrialRequest& request_;
     const std::string& check_;
     Trial trial_;
-    std::size_t built_ = 0;  // number of built candidates
+    std::size_t built_ = 0;  // number of candidates built so far
     bool ended_ = false;
 };
 
-// Runs a trial in a child process, which isolates crashes and hangs of drivers, and ends it after `limit_s` seconds.
-// `check`: the required check text of the image; empty: any. Throws UserError if the process reports one.
+// Runs a trial in a child process, because drivers may crash or hang, and ends the process after `limit_s` seconds.
+// `check`: the expected Trial::check; empty: any. Throws UserError if the process reports a user error.
 Trial supervise_trial(const TrialRequest& request, double limit_s, const std::string& check,
                       const TrialProgress& running) {
     const Clock::time_point start = Clock::now();
@@ -83,14 +83,14 @@ Trial supervise_trial(const TrialRequest& request, double limit_s, const std::st
         if (seconds_since(start) > limit_s)
             reader.end(TrialStatus::kTimeout, fmt::format("not done in {:.0f} s", limit_s));
     }
-    Trial trial = reader.trial();  // ~ChildProcess() ends a process that still runs
+    Trial trial = reader.trial();  // ~ChildProcess() ends the process if it still runs
     trial.wall_s = seconds_since(start);
     trial.when = utc_text("%Y-%m-%dT%H:%M:%SZ");
     return trial;
 }
 
 constexpr std::uint32_t kSamples = 5, kFinalSamples = 9;
-constexpr double kLimitFactor = 10;  // of TuneSettings::limit_s, for trials with the defaults and final comparisons
+constexpr double kLimitFactor = 10;  // limit_s is multiplied by this for trials of the defaults and final comparisons
 
 class Tuner {
   public:
@@ -118,7 +118,7 @@ class Tuner {
   private:
     double seconds() const { return seconds_since(start_); }
 
-    // Time left for a candidate; at least 2 s, so the last one may exceed the limit a little.
+    // Returns the seconds left for a candidate, at least 2, so that the last candidate may exceed the limit slightly.
     double remaining_seconds() const { return std::max(2.0, settings_.seconds - seconds()); }
 
     Trial trial(const std::vector<TunedValues>& candidates, std::uint32_t samples, double limit_s, bool stop_early) {
@@ -142,7 +142,8 @@ class Tuner {
         return t.status == TrialStatus::kCorrect ? std::optional(ratio_of(t)) : std::nullopt;
     }
 
-    // The minimum over many candidates is biased, so the winner is measured against the defaults again.
+    // The best of many measured candidates is biased towards lucky measurements, so compares it with the defaults
+    // again.
     void confirm(const TunedValues& found) {
         result_.best = result_.space.defaults;
         if (found == result_.best) return;
@@ -158,7 +159,7 @@ class Tuner {
             return measure(best, candidate, settings_.limit_s);
         };
         const SearchResult all = search_all(result_.space, from, ratio, [] { return false; });
-        result_ = searched;  // drops the trials of search_all()
+        result_ = searched;  // discards the trials of search_all()
         result_.tried_all = all.tried;
         result_.best_all = result_.space.values_of(all.best);
         if (*result_.best_all == result_.best) return;

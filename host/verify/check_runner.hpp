@@ -1,4 +1,4 @@
-// Runs kernels of one program on filled buffers and reads their results.
+// Runs the kernels of one program on buffers with given contents, and reads the results.
 #pragma once
 #include <cstdint>
 #include <stdexcept>
@@ -12,17 +12,17 @@
 
 namespace raya {
 
-/// The largest number of lanes. Checks pad their rows to a multiple of it, so that every number of lanes takes the same
-/// rows.
+/// Maximum number of lanes. Checks pad their rows to a multiple of kMaxLanes, so that the rows are the same for every
+/// number of lanes.
 inline constexpr std::size_t kMaxLanes = 16;
 
 class CheckRunner {
   public:
-    /// `lanes`: lanes V of the program's build.
+    /// `lanes`: V, the number of lanes for which the program is built.
     CheckRunner(Session& session, Program program, std::uint32_t lanes = 1)
         : session_(session), program_(std::move(program)), lanes_(lanes) {}
 
-    /// The program's build options.
+    /// Build options of the program.
     const std::string& options() const { return program_.options(); }
 
     /// Returns a buffer with `values`.
@@ -61,8 +61,8 @@ class CheckRunner {
         session_.launch(kernel, function, groups, group_size, args...);
     }
 
-    /// Launches a kernel that takes V of `rows` rows in each work-group of one work-item. Throws std::invalid_argument
-    /// unless `rows` is a multiple of kMaxLanes.
+    /// Launches a kernel on `rows` rows: `rows` / V work-groups of one work-item, each of which processes V rows.
+    /// Throws std::invalid_argument unless `rows` is a multiple of kMaxLanes.
     template <class... Args>
     void run_rows(const std::string& kernel, std::size_t rows, std::type_identity_t<Args>... args) {
         if (rows % kMaxLanes != 0) throw std::invalid_argument("rows must be a multiple of the widest lanes");

@@ -34,7 +34,7 @@ PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
     return job;
 }
 
-// Rays from around the scene towards its middle, with directions normalised and rounded to the format.
+// Returns rays from points around the scene towards its centre, with normalised directions rounded to the format.
 Rays random_rays(const NumberFormat& format, double extent, std::size_t count) {
     constexpr std::uint64_t kSeed = 1986;
     SplitMix random(kSeed);
@@ -72,7 +72,7 @@ void verify_hits(Verification& v, const HitBuild& build) {
     };
     for (const KnownScene& known : known_scenes())
         check("known hits of " + known.name, [&](HitRunner& runner) { return check_known_hits(runner, known); });
-    const std::size_t rays = v.depth() == Depth::kBrief ? 128 : 4096;  // in each scene
+    const std::size_t rays = v.depth() == Depth::kBrief ? 128 : 4096;  // number of rays in each scene
     if (build.grid)
         check("grid", [&](HitRunner& runner) {
             return check_grid_walk(runner, {"polygons", "cones", "spheres"}, rays);
@@ -183,7 +183,7 @@ void verify_geometry(Verification& v) {
     for (const std::uint32_t lanes : v.lanes())
         for (const char* format : {"fp32", "spa22"}) {
             HitBuild build{.format = parse_format(format), .lanes = lanes, .sources = v.sources()};
-            // The grid traversal computes in fp32 for every format.
+            // The grid traversal computes in fp32, whatever the number format.
             build.grid = v.depth() != Depth::kBrief || build.format.is_fp32();
             verify_hits(v, build);
             if (!v.full() || build.format.is_fp32()) continue;

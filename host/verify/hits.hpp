@@ -1,5 +1,5 @@
-// Checks of intersections by kernels/checks/hits.cl: hits calculated by hand, and the grid traversal compared with
-// tests of all objects.
+// Checks of ray-object intersections with kernels/checks/hits.cl: hits calculated by hand, and hits found by the grid
+// traversal, compared with hits found by testing all objects.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -17,13 +17,13 @@
 
 namespace raya {
 
-inline constexpr std::uint32_t kNoObject = 0xffffffffu;  // RAYA_NO_OBJECT of the kernels
-inline constexpr float kDefaultRayLimit = 4096;          // of a ray; beyond all objects of the scenes
+inline constexpr std::uint32_t kNoObject = 0xffffffffu;  // equals RAYA_NO_OBJECT of the kernels
+inline constexpr float kDefaultRayLimit = 4096;          // maximum t of a ray; beyond all objects of the scenes
 
 struct KnownHit {
     const char* what;
     std::array<float, 3> origin, direction;
-    std::uint32_t object;  // number in the job, or kNoObject
+    std::uint32_t object;  // object number in the job, or kNoObject
     float t;               // distance of the hit; undefined for a miss
     float limit = kDefaultRayLimit;
 };
@@ -34,11 +34,11 @@ struct KnownScene {
     std::vector<KnownHit> hits;
 };
 
-/// Scenes of spheres, planes, polygons and patches, and cones, with hits from outside and inside, tangents, misses and
-/// equal distances. All numbers are exact in formats with at least 12 fraction bits.
+/// Returns scenes of spheres, planes, polygons and patches, and cones, with hits from outside and inside, tangents,
+/// misses and equal distances. All numbers are exact in formats with at least 12 fraction bits.
 std::vector<KnownScene> known_scenes();
 
-/// Rays in the kernels' layout.
+/// Rays in the memory layout of the kernels.
 struct Rays {
     static constexpr std::size_t kWords = 7;
     std::vector<float> words;  // [ray][kWords]: origin, direction, limit
@@ -50,26 +50,27 @@ struct Rays {
     std::string text(std::size_t ray) const;
 };
 
-/// Results of rays: [ray].
+/// Results, indexed by ray.
 struct Hits {
-    std::vector<std::uint32_t> objects;    // number, or kNoObject
-    std::vector<std::uint32_t> distances;  // bits of t; the ray's limit for a miss
+    std::vector<std::uint32_t> objects;    // object number, or kNoObject
+    std::vector<std::uint32_t> distances;  // bits of t; for a miss, of the ray's limit
 
     std::string text(std::size_t ray) const;
 };
 
-/// Runs `kernel`, hits_of_all or hits_by_search, on the words of a job. The number of rays is a multiple of kMaxLanes.
+/// Runs `kernel`, "hits_of_all" or "hits_by_search", on the words of a job. The number of rays must be a multiple of
+/// kMaxLanes.
 Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector<std::uint32_t>& job, const Rays& rays);
 
 /// Build options of the kernels.
 struct HitBuild {
     NumberFormat format;
     std::uint32_t lanes = 1;
-    bool filter = false;  // fp32 filter for spheres
-    bool grid = true;     // false: without the grid traversal, which takes most of the build time
+    bool filter = false;  // fp32 pre-test that rejects spheres
+    bool grid = true;     // false: build without the grid traversal, which takes most of the build time
     KernelSources sources{};
 
-    /// "e6m15 filtered, 16 lanes"
+    /// Returns text such as "e6m15 filtered, 16 lanes".
     std::string name() const;
 };
 
@@ -84,16 +85,17 @@ class HitRunner : public CheckRunner {
     bool grid_;
 };
 
-/// Compares the first `count` rays. Fails with the number of wrong rays and details of the first; `what` returns the
-/// description of a ray. Passes with `done`.
+/// Compares the hits of the first `count` rays. A pass has the result text `done`. A failure states the number of wrong
+/// rays and details of the first one. `what(ray)` returns the description of a ray.
 Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
                      const std::function<std::string(std::size_t)>& what, const std::string& done);
 
-/// Checks that all kernels of the build find the known hits.
+/// Checks that every kernel of the build finds the known hits.
 Verdict check_known_hits(HitRunner& runner, const KnownScene& known);
 
-/// Checks that the grid traversal finds the same hits as tests of all objects on the same device, for `rays` random
-/// rays (a multiple of kMaxLanes) in each of the named scenes of scenes/. The build must have the grid.
+/// Checks that the grid traversal finds the same hits as testing all objects on the same device, for `rays` random rays
+/// in each of the scenes, which are named files of scenes/. `rays` must be a multiple of kMaxLanes. The build must
+/// include the grid traversal.
 Verdict check_grid_walk(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays);
 
 }  // namespace raya

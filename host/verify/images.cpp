@@ -1,4 +1,4 @@
-// Checks of layer `image`: renders known pictures with settings that must not change any bit of them.
+// Checks of layer "image": renders the reference pictures with settings that must not change any bit of the image.
 #include <fmt/core.h>
 
 #include <bit>
@@ -14,30 +14,30 @@
 namespace raya {
 namespace {
 
-// Short name for names of checks.
+// Returns a short name of the antialiasing, for names of checks.
 std::string mapping_name(const MappingRule& mapping) {
     if (mapping == column_mapping()) return "column";
     return mapping.kind == RAYA_RANDOM ? "random" : mapping_text(mapping);
 }
 
-// Settings of a rendering that must not change any bit of the picture.
+// Settings of a rendering that must not change any bit of the image.
 struct Rendering {
     std::string picture;
-    Depth from = Depth::kFull;                // the least depth that includes it
+    Depth from = Depth::kFull;                // the rendering is part of this depth and of deeper ones
     std::uint32_t lanes = 0, group_size = 0;  // 0: the device's default
-    MappingRule mapping = cyclic_mapping(8);  // on the ring
+    MappingRule mapping = cyclic_mapping(8);  // mapping of pixels to PEs of the ring
     std::uint32_t pes = kPictureSide;
-    std::uint32_t work_per_launch = 0;  // see RingSettings and TorusSettings; 0: about a second
+    std::uint32_t work_per_launch = 0;  // see RingSettings and TorusSettings; 0: default
     AccelKind accel = AccelKind::kNone;
     bool torus = false;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     LinkMove link_move = LinkMove::kCopies;
-    bool global_words = false;  // job words in global memory, as if local memory were too small
-    bool refined = false;       // as if division, square root and a b + c were not rounded correctly
+    bool global_words = false;  // put job words in global memory, as if local memory were too small
+    bool refined = false;       // refine, as if the device did not round division, square root and fma correctly
 
-    // Variant in KnownPicture::counts; all renderings of a picture and variant have equal counts.
+    // Returns the key in KnownPicture::counts. All renderings of a picture with the same key have equal counts.
     std::string variant() const {
         if (torus)
             return fmt::format("{} {}{}", links_name(links), sides_text(nodes),
@@ -95,9 +95,9 @@ Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Re
     s.width = s.height = kPictureSide;
     s.torus = make_torus(r.nodes, r.links);
     s.links = r.links;
-    s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // more than nodes: some hold several
+    s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // more voxels than nodes, so some nodes have several
     s.inject = r.inject;
-    s.packets.return_a_ray = r.inject == Injection::kRoot;  // covers both kinds of returns
+    s.packets.return_a_ray = r.inject == Injection::kRoot;  // covers both values
     s.bounces = kPictureBounces;
     s.format = parse_format(picture.format);
     s.sampling = picture.sampling;
@@ -126,7 +126,7 @@ std::array<std::uint32_t, 3> pixel_bits(const Image& image, std::size_t pixel) {
     return bits;
 }
 
-// Renders the picture with reference_settings() and without compiler optimisation; empty where that fails.
+// Renders the picture with reference_settings() and without compiler optimisation. Returns nullopt if that fails.
 std::optional<Image> unoptimised_image(const Verification& v, Session& session, const Picture& picture) {
     RingSettings settings = reference_settings(picture);
     settings.kernels.sources = v.kernels(1, 1).sources;
@@ -138,7 +138,7 @@ std::optional<Image> unoptimised_image(const Verification& v, Session& session, 
     }
 }
 
-// Chooses remedies by the result of unoptimised_image() on this device.
+// Chooses remedies according to whether unoptimised_image() is correct on this device.
 std::vector<std::string> remedies(const Verification& v, Session& session, const Picture& picture) {
     const std::optional<Image> image = unoptimised_image(v, session, picture);
     if (image && pixel_hash(*image) == known_picture(picture).hash)
@@ -176,9 +176,10 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
          .remedies = remedies(v, session, picture)});
 }
 
-// Every kernel and option at least once. Renderings with equal build options are adjacent and share a build, which
-// takes most of a rendering's time. For the same reason some quick ones combine several features (global words, refined
-// division). Brief ones need one build of each machine and one of a reduced format.
+// Renderings that use every kernel and option at least once. A build takes most of a rendering's time. So renderings
+// with equal build options are adjacent and share a build, and some renderings of depth kQuick combine several
+// features, such as global words and refined division. Those of depth kBrief need three builds: one for each machine
+// and one for a reduced format.
 std::vector<Rendering> standard_renderings() {
     constexpr auto k2d = Links::kTorus2d;
     constexpr auto kRoot = Injection::kRoot;
@@ -244,7 +245,8 @@ std::vector<Rendering> standard_renderings() {
         {.picture = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};
 }
 
-// Every number of lanes with groups of 1 and 32 work-items, on both machines, in fp32 and reduced formats.
+// Renderings with every number of lanes and groups of 1 and 32 work-items, on both machines, in fp32 and reduced
+// formats.
 std::vector<Rendering> all_builds() {
     std::vector<Rendering> all;
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
@@ -268,7 +270,7 @@ std::vector<Rendering> all_builds() {
 std::map<std::string, std::string> counts_by_variant(Session& session, const Picture& picture) {
     std::map<std::string, std::string> counts;
     std::vector<Rendering> all = standard_renderings();
-    all.push_back({.picture = picture.name});  // every picture on a ring
+    all.push_back({.picture = picture.name});  // every picture on the ring
     for (const Rendering& r : all)
         if (r.picture == picture.name && !counts.contains(r.variant()))
             counts[r.variant()] = render({.lanes = 1, .group_size = 1}, session, r).counts;

@@ -13,14 +13,15 @@ Scene empty_scene() {
     return scene;
 }
 
-// Sphere of radius 5 about (x, 0, 16). A ray ahead at height h above the centre hits at t = 16 - sqrt(25 - h^2).
+// Returns a sphere of radius 5 with centre (x, 0, 16). A ray along +z from z = 0 at height h above the centre hits at t
+// = 16 - sqrt(25 - h^2).
 Sphere ball(double x, double z = 16, double radius = 5) { return {{x, 0, z}, radius, 0}; }
 
 KnownScene spheres() {
     Scene scene = empty_scene();
     scene.spheres = {ball(0), ball(32, 16, -5), ball(64), ball(64), ball(96), ball(96, 4, 2)};
-    for (int i = 0; i < 5; ++i) scene.spheres.push_back(ball(200 + 16 * i));  // more than a batch of 8
-    scene.spheres.push_back(ball(264, 12));  // in front of the last one, in the incomplete last batch
+    for (int i = 0; i < 5; ++i) scene.spheres.push_back(ball(200 + 16 * i));  // 11: more than a batch of 8
+    scene.spheres.push_back(ball(264, 12));  // in front of the previous sphere, in the incomplete last batch
     return {"spheres",
             scene,
             {{"through the centre", {0, 0, 0}, kAhead, 0, 11},
@@ -43,7 +44,7 @@ KnownScene spheres() {
              {"nearest of two in different batches", {264, 3, 0}, kAhead, 11, 8}}};
 }
 
-// A wall at z = 16, twice; another at y = 64; a ball and a square that touch the first wall at z = 16 too.
+// Two equal planes z = 16, a plane y = 64, a sphere that touches the planes z = 16, and a square in them.
 KnownScene planes() {
     Scene scene = empty_scene();
     scene.spheres = {{{0, 32, 21}, 5, 0}};
@@ -63,8 +64,8 @@ KnownScene planes() {
              {"at the ray's limit", {0, 0, 0}, kAhead, kNoObject, 0, 16}}};
 }
 
-// An L of 8 x 8 without its upper right quarter, a triangle with normals, a square with normals (two triangles), a wall
-// across x, twice.
+// An L-shaped polygon (8 x 8 without the upper right quarter), a triangle with vertex normals, a square with vertex
+// normals (two triangles), and two equal walls perpendicular to x.
 KnownScene polygons() {
     Scene scene = empty_scene();
     const Vec3 back = {0, 0, -1};
@@ -96,8 +97,8 @@ KnownScene polygons() {
              {"past the wall", {120, 9, 4}, kRight, kNoObject, 0}}};
 }
 
-// Cylinders of radius 5 along y from (x, 0, 16), 16 high; a cone that narrows from radius 8 to 0 over a height of 8,
-// along y and along z.
+// Cylinders of radius 5 and height 16 along y from (x, 0, 16), and two cones of height 8 that narrow from radius 8 to
+// 0, one along y and one along z.
 KnownScene cones() {
     Scene scene = empty_scene();
     const auto cylinder = [](double x, double radius) { return Cone{{x, 0, 16}, radius, {x, 16, 16}, radius, 0}; };

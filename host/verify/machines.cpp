@@ -1,5 +1,6 @@
-// Checks of layer `machine`: integer arithmetic, local memory, barriers and atomics by kernels/checks/machine.cl, and
-// transfers. All results are exact; the host computes the expected ones with the same headers.
+// Checks of layer "machine": integer arithmetic, local memory, barriers and atomics with kernels/checks/machine.cl, and
+// transfers. All results are exact integers. The host computes the expected results with the headers that the kernels
+// use.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-// Random number in 0..end - 1. Seeds are fixed.
+// Returns a random number in 0..end - 1. Seeds are fixed.
 std::uint32_t below(SplitMix& random, std::uint32_t end) { return static_cast<std::uint32_t>(random.next() % end); }
 
 std::uint32_t divisor_of(SplitMix& random, std::uint32_t side) {
@@ -34,7 +35,7 @@ std::uint32_t divisor_of(SplitMix& random, std::uint32_t side) {
     return divisor;
 }
 
-// Random side of an image: small, any, or the largest.
+// Returns a random side of an image in pixels: a small one, any one, or the maximum.
 std::uint32_t side(SplitMix& random) {
     const std::uint32_t kinds[] = {1 + below(random, 40), 1 + below(random, kLargestSide), kLargestSide};
     return kinds[below(random, 3)];
@@ -56,8 +57,8 @@ raya_mapping random_case(SplitMix& random, std::uint32_t kind) {
     return m;
 }
 
-// `count` valid mappings of a kind (RAYA_FOLD_CYCLIC..RAYA_RANDOM), up to the largest images and arrays, and one pixel
-// of each.
+// `count` valid mappings of a kind (RAYA_FOLD_CYCLIC..RAYA_RANDOM), with sizes up to the maximum of images and arrays,
+// and one pixel for each.
 std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std::uint32_t kind, std::size_t count) {
     constexpr std::uint64_t kSeed = 1993;
     SplitMix random(kSeed + kind);
@@ -72,7 +73,7 @@ std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std:
     return {mappings, pixels};
 }
 
-// `count` toruses, 2-D and 3-D in turn, and two nodes of each: [case][2].
+// `count` toruses, alternately 2-D and 3-D, and two nodes of each: [case][2].
 std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::size_t count) {
     constexpr std::uint64_t kSeed = 805;
     SplitMix random(kSeed);
@@ -87,7 +88,8 @@ std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::
     return {toruses, nodes};
 }
 
-// Compares cases of names.size() words each. `what(i)` describes case i; `names` are the names of its words.
+// Compares the results of cases. `names` are the names of the words of a case. `what(i)` returns the description of
+// case i.
 template <class What>
 Verdict compare_cases(const Words& expected, const Words& got, const std::vector<std::string>& names, const What& what,
                       const std::string& done) {
@@ -104,7 +106,7 @@ Verdict compare_cases(const Words& expected, const Words& got, const std::vector
                    .got = fmt::format("{0} = 0x{0:08x}", got[at])});
 }
 
-// The expected words of find_owners in kernels/checks/machine.cl.
+// Returns the expected results of kernel find_owners in kernels/checks/machine.cl.
 void add_owner(Words& to, const raya_mapping& m, const raya_pixel& pixel) {
     const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
     const raya_share share = raya_share_of(m, owner);
@@ -116,13 +118,13 @@ void add_owner(Words& to, const raya_mapping& m, const raya_pixel& pixel) {
     to.insert(to.end(), {owner, raya_share_size(share), number, back.row, back.column, sides});
 }
 
-// `group_size`: work-items in a group of kernel turn_round, 1..1024.
+// `group_size`: work-group size of kernel turn_round, 1..1024.
 CheckRunner machine_runner(Session& session, const KernelSources& sources, std::uint32_t group_size = 1) {
     return {session, Kernels(session, {.group_size = group_size}, sources).program("checks/machine.cl")};
 }
 
-// Checks owners of pixels, numbers in their shares, and neighbours for a kind of mapping (RAYA_FOLD_CYCLIC..
-// RAYA_RANDOM).
+// For a kind of mapping (RAYA_FOLD_CYCLIC..RAYA_RANDOM), checks the owners of pixels, the index of a pixel among those
+// of its PE, and the neighbours.
 Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases) {
     const auto [mappings, pixels] = mapping_cases(kind, cases);
     Words expected;
@@ -141,7 +143,8 @@ Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases)
                          fmt::format("{} pixels", cases));
 }
 
-// Checks the first link of routes between nodes, the first link of returns, and the ends of links.
+// Checks the first link on the route of a ray between two nodes, the first link on the route of a return, and the nodes
+// at the ends of links.
 Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
     const auto [toruses, nodes] = torus_cases(cases);
     Words expected;
@@ -165,13 +168,14 @@ Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
                          what, fmt::format("{} pairs of nodes", cases));
 }
 
-// Work-groups reverse words in local memory kTimes times; their work-items take numbers from an atomic counter.
+// Checks barriers and atomics. Each work-group reverses words in local memory kTimes times. Its work-items take numbers
+// from an atomic counter; each number must be taken once.
 Verdict check_local_memory(CheckRunner& runner, std::uint32_t group_size) {
     constexpr std::uint32_t kGroups = 64, kTimes = 9;
-    const std::uint32_t words = 2000;  // 2 x 2000 words: half of the 32 KB that OpenCL guarantees
+    const std::uint32_t words = 2000;  // 2 x 2000 words of 4 bytes: half of the 32 KB that OpenCL guarantees
     Words from(std::size_t{kGroups} * words), expected(from.size());
     std::iota(from.begin(), from.end(), 0u);
-    for (std::size_t i = 0; i < from.size(); ++i)  // kTimes is odd, so the words end up reversed
+    for (std::size_t i = 0; i < from.size(); ++i)  // kTimes is odd, so the result is reversed
         expected[i] = from[i / words * words + (words - 1 - i % words)] + kTimes;
     const auto given = runner.filled("from", from);
     auto turned = runner.poisoned("to", from.size());
@@ -249,7 +253,7 @@ void verify_transfers(Verification& v) {
             const raya_torus torus = make_torus({3, 2, 4}, links);
             check(name, [&](Session& s) { return check_links(s, torus, every); });
             v.check("machine", name + " by a kernel", [&](Session& s) {
-                // Mailboxes of up to 12 units of 8 words: some work-items have one unit, some none.
+                // Mailboxes have up to 12 units of 8 words: some work-items copy one unit, others none.
                 Kernels kernels(s, {.group_size = std::min(8u, largest_group_size(v.device()))}, v.sources());
                 return with_remedies(check_links(s, torus, every, &kernels), "", integer_remedies());
             });

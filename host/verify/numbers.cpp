@@ -154,7 +154,7 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
     return passed(fmt::format("{} answers{}", compared, denormals));
 }
 
-// --- Checks of the layer `number`: all operations and formats against the known answers
+// --- Checks of layer "number": compares all operations and formats with the known answers
 namespace {
 
 std::vector<std::string> remedies_for(const NumberBuild& build, const DeviceInfo& device,
@@ -173,7 +173,7 @@ std::vector<std::string> remedies_for(const NumberBuild& build, const DeviceInfo
     return all;
 }
 
-// Runs the rows of all operations in one launch; each operation has answers only for its own rows.
+// Runs the rows of all operations in one launch. An operation has answers only for its own rows.
 Verdict check_answers(Session& session, const NumberBuild& build, const FormatAnswers& answers,
                       const std::vector<std::string>& remedies) {
     NumberRows rows;
@@ -198,7 +198,8 @@ void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t 
     });
 }
 
-// One format for each code path of the layer: fp32; fewer exponent bits than fp32, or as many; either rounding.
+// Returns true for a few formats that cover every code path of the number layer: fp32; reduced formats with fewer
+// exponent bits than fp32 or as many; both kinds of rounding.
 bool is_representative(const NumberFormat& format) {
     for (const char* name : {"fp32", "e6m15", "e6m15t", "e5m10", "e8m12", "e8m21t"})
         if (format == parse_format(name)) return true;
@@ -225,7 +226,7 @@ std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
         std::vector<std::string> fields;
         std::istringstream in(line);
         for (std::string field; in >> field;) fields.push_back(field);
-        // A format's name has a letter that is not a hexadecimal digit: "fp32", or the m of eXmY.
+        // The name of a format contains a letter that is not a hexadecimal digit: the p of "fp32" or the m of "eXmY".
         if (fields[0].find_first_of("mp") != std::string::npos && fields.size() == 2) {
             const NumberFormat format = parse_format(fields[0]);
             if (all.empty() || all.back().format != format) all.push_back({format, {}});

@@ -1,5 +1,5 @@
 // Runs the operations of the number layer on rows of operands (kernels/checks/numbers.cl) and compares the results bit
-// by bit with expected ones. The caller provides those: known answers, MPFR, or the host's arithmetic.
+// by bit with expected results from the caller: known answers, results of MPFR or results of the host's arithmetic.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -19,7 +19,7 @@ struct NumberOperation {
     std::size_t operands;  // 1..3
 };
 
-/// In the order of results in kernels/checks/numbers.cl.
+/// In the order in which kernels/checks/numbers.cl returns the results.
 inline constexpr std::array<NumberOperation, 16> kNumberOperations = {{{"add", 2},
                                                                        {"sub", 2},
                                                                        {"mul", 2},
@@ -36,7 +36,7 @@ inline constexpr std::array<NumberOperation, 16> kNumberOperations = {{{"add", 2
                                                                        {"abs", 1},
                                                                        {"log2", 1},
                                                                        {"exp2", 3}}};
-/// Indices into kNumberOperations; exp2 takes the third operand.
+/// Indices into kNumberOperations. Operand of exp2: c.
 enum NumberOperationNumber : std::size_t {
     kAdd,
     kSub,
@@ -55,11 +55,12 @@ enum NumberOperationNumber : std::size_t {
     kLog2,
     kExp2
 };
-/// Number of operations of kernel `operations`, which come first; kernel `functions` does the others.
+/// Number of operations in kernel `operations`, which are the first in kNumberOperations. Kernel `functions` computes
+/// the others.
 inline constexpr std::size_t kAnsweredOperations = kPower + 1;
 
-/// Operands a, b, c, one column each; operations ignore those that they do not take. For from_index, a has the bits of
-/// an integer.
+/// Operands a, b and c of each row. An operation ignores the operands that it does not need. For from_index, `a`
+/// contains the bits of an integer.
 struct NumberRows {
     std::vector<float> a, b, c;
 
@@ -76,15 +77,15 @@ using NumberResults = std::vector<std::vector<std::uint32_t>>;
 struct NumberBuild {
     NumberFormat format;
     std::uint32_t lanes = 1;
-    bool trusted = true;  // use the device's division, square root and fma where it promises them; false: refine
+    bool trusted = true;  // use division, square root and fma of the device if it rounds them correctly; false: refine
     bool optimised = true;
     KernelSources sources{};
 
-    /// "e6m15, 16 lanes, division refined"
+    /// Returns text such as "e6m15, 16 lanes, division refined".
     std::string name() const;
 };
 
-/// Expected results of an operation in consecutive rows, from `first_row` on.
+/// Expected results (bits) of an operation in consecutive rows, from `first_row` on.
 struct ExpectedNumbers {
     std::size_t operation;
     std::vector<std::uint32_t> results{};
@@ -97,13 +98,13 @@ class NumberRunner {
 
     const std::string& options() const { return runner_.options(); }
 
-    /// Returns the results of all operations, or only of the first kAnsweredOperations. The number of rows is a
-    /// multiple of kMaxLanes.
+    /// Returns the results of all operations if `all`, else of the first kAnsweredOperations. The number of rows must
+    /// be a multiple of kMaxLanes.
     NumberResults run(const NumberRows& rows, bool all);
 
-    /// Passes with "357 answers", or fails with the number of wrong results of each operation and the first of them.
-    /// Any NaN matches any NaN. On devices without denormal numbers, rows with a denormal operand or result are
-    /// skipped.
+    /// Compares the results with `expected`. A pass has a result text such as "357 answers". A failure states the
+    /// number of wrong results of each operation and the first wrong result. Any NaN matches any NaN. On devices
+    /// without denormal numbers, rows with a denormal operand or result are skipped.
     Verdict check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected);
 
   private:
@@ -114,8 +115,8 @@ class NumberRunner {
     CheckRunner runner_;
 };
 
-/// Operands of a corner case and the correct result, as bits of fp32 numbers; the operand of from_index is an integer.
-/// Unused operands are 1. tests/verify/make_known_answers.cpp generates them with MPFR into known_answers.csv.
+/// Operands and correct result of an edge case, as bits of fp32 numbers; the operand of from_index is an integer.
+/// Unused operands are 1. tests/verify/make_known_answers.cpp computes them with MPFR and writes known_answers.csv.
 struct KnownAnswer {
     std::array<std::uint32_t, 3> operands{};
     std::uint32_t result = 0;
@@ -127,15 +128,15 @@ struct FormatAnswers {
     std::array<std::vector<KnownAnswer>, kAnsweredOperations> operations;  // in the order of kNumberOperations
 };
 
-/// Parses known_answers.csv: a line "FORMAT OPERATION" opens a section; each further line has the bits of the operands
-/// and of the result, in hexadecimal without trailing zeros; # starts a comment. Throws std::logic_error for any other
-/// text: the file is generated.
+/// Parses known_answers.csv. A line "FORMAT OPERATION" starts a section. Each further line has the bits of the operands
+/// and of the result, in hexadecimal without trailing zeros. # starts a comment. Throws std::logic_error for a syntax
+/// error, because the file is generated.
 std::vector<FormatAnswers> parse_known_answers(const std::string& text);
 
 /// Inverse of parse_known_answers().
 std::string known_answers_text(const std::vector<FormatAnswers>& all);
 
-/// The answers embedded in the program.
+/// Returns the answers that are embedded in the program.
 const std::vector<FormatAnswers>& known_answers();
 
 }  // namespace raya

@@ -45,7 +45,7 @@ struct NamedDevices {
     std::vector<std::string> left_out;  // one line for each unusable device
 };
 
-// See supervise(). Throws DeviceError if no device fits.
+// Selects devices as described at supervise(). Throws DeviceError if no device matches.
 NamedDevices named_devices(const std::string& wanted) {
     if (wanted != "all") return {{choose_device(wanted)}, {}};
     NamedDevices named;
@@ -57,11 +57,11 @@ NamedDevices named_devices(const std::string& wanted) {
             named.left_out.push_back(
                 fmt::format("{} ({}): skipped: not available, or without a compiler", info.name, info.platform));
     }
-    if (named.devices.empty()) choose_device("");  // throws, with the remedy
+    if (named.devices.empty()) choose_device("");  // throws DeviceError with a remedy
     return named;
 }
 
-// The first check of each layer, as examples for --only.
+// Returns the first check of each layer, as examples for --only.
 std::string example_names(const std::vector<std::string>& names) {
     std::string text, layer;
     for (const std::string& name : names) {
@@ -99,7 +99,7 @@ std::vector<std::string> remedies(const std::string& full_name, int status, cons
     return all;
 }
 
-// The checks of one device, in as many processes as needed.
+// Runs the checks of one device, in as many processes as needed.
 class Supervision {
   public:
     Supervision(const VerifySettings& settings, const SupervisorSink& sink) : settings_(settings), sink_(sink) {}
@@ -151,7 +151,7 @@ class Supervision {
     }
 
     void take_device(const Json& line) {
-        if (devices_ > 0) return;  // known from the first process
+        if (devices_ > 0) return;  // already reported by the first process
         devices_ = line.at("devices").whole();
         all_.name = line.at("name").text();
         all_.platform = line.at("platform").text();
@@ -171,7 +171,7 @@ class Supervision {
         if (sink_.finished) sink_.finished(check);
     }
 
-    // The failed check of a process that ended too early with `status`.
+    // Returns the failed check of a process that ended too early, with exit status `status`.
     Check crashed_check(int status) const {
         const std::string result = "ended by " + ending_text(status);
         if (devices_ == 0 && WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)
@@ -192,7 +192,7 @@ class Supervision {
         return check;
     }
 
-    VerifySettings settings_;  // `done`: number of finished checks
+    VerifySettings settings_;  // settings_.done: number of finished checks
     const SupervisorSink& sink_;
     DeviceChecks all_;
     std::size_t devices_ = 0;

@@ -1,9 +1,9 @@
-// Runs a device's checks in a child process, because a driver that crashes ends its process. After a crash another
-// child continues with the next check. Protocol: one JSON object per line:
+// Runs a device's checks in a child process, because a crash in a driver ends its process. After a crash another child
+// process continues with the next check. Protocol: the child writes one JSON object per line:
 //
 //     {"devices": N, "left_out": [TEXT, ...], "name": ..., "platform": ..., "version": ..., "driver": ...}
 //     {"started": {"layer": LAYER, "name": NAME}}    a check starts
-//     {"check": {...}}      it is done: to_json() of verify.hpp
+//     {"check": {...}}      the check is done: to_json() of verify.hpp
 //     {"ended": true}       all checks are done
 //     {"error": TEXT, "kind": "user" or "device" or "internal"}      the last line
 #pragma once
@@ -26,22 +26,23 @@ struct DeviceChecks {
 };
 
 struct SupervisorSink {
-    /// Called before a device's first check; `left_out`: one line for each unusable device.
+    /// Called before a device's first check. `left_out`: one line for each unusable device.
     std::function<void(const DeviceChecks&, const std::vector<std::string>& left_out)> device{};
-    /// Called about once a second while a check runs, with its run time in seconds.
+    /// Called about once a second while a check runs, with the check's run time in seconds.
     std::function<void(const std::string& layer, const std::string& name, double seconds)> running{};
     std::function<void(const Check&)> finished{};
 };
 
-/// Checks device number `index` of the devices that `wanted` selects: "all" for every usable one, otherwise one by the
-/// rules of choose_device(). If the process ends early, the running check has failed, and the next checks run in a new
-/// process, as long as each process completes at least one. Sets `devices` to the number of selected devices. Throws
-/// the process's UserError or DeviceError, and DeviceError if the driver ends it before the first check.
+/// Checks device number `index`, from 0, of the devices that `wanted` selects: "all" selects every usable device, any
+/// other text one device by the rules of choose_device(). If the child process ends early, the running check has
+/// failed, and the next checks run in a new process, as long as each process completes at least one check. Sets
+/// `devices` to the number of selected devices. Throws the UserError or DeviceError that the child process reports, and
+/// DeviceError if the driver ends the process before the first check.
 DeviceChecks supervise(const std::string& wanted, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink, std::size_t& devices);
 
-/// Task of the child process (host/base/child_process.hpp). run_checks() writes all lines except "error"; it throws
-/// instead.
+/// Task of the child process (host/base/child_process.hpp). run_checks() writes the lines of the protocol to the file
+/// descriptor `lines`; instead of writing "error" it throws.
 inline constexpr const char* kVerifyTask = "verify";
 void run_checks(int lines, const Json& order);
 

@@ -45,6 +45,36 @@ std::optional<Verdict> difference(const Words& expected, const Words& got, const
                    .got = fmt::format("0x{:08x}", got[at])});
 }
 
+// Packets of a test of the links: a different number in each outbox, words that name their link and place.
+struct LinkTraffic {
+    LinkTraffic(const raya_torus& torus, std::uint32_t every, std::size_t words)
+        : status(raya_nodes(torus)), out(words), in(words), expected(words) {
+        const std::uint32_t nodes = raya_nodes(torus);
+        expected_sent.resize(std::size_t{nodes} * RAYA_LINKS);
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+            for (std::uint32_t node = 0; node < nodes && torus.sides[link / 2] > 1; ++node)
+                fill(link, node, nodes, every);
+        for (std::size_t at = 0; at < words; ++at) in[at] = at % kBox ? kPoison : 0;  // empty, independent of clear()
+    }
+
+    static constexpr std::uint32_t kCapacity = 5, kWords = RAYA_PACKET_WORDS, kBox = (1 + kCapacity) * kWords;
+    NodeStatus status;
+    Words out, in, expected, expected_sent;
+    std::uint32_t packets_sent = 0;
+
+  private:
+    void fill(std::uint32_t link, std::uint32_t node, std::uint32_t nodes, std::uint32_t every) {
+        const std::uint32_t number = link * nodes + node, packets = number % every ? 0 : 1 + number % kCapacity;
+        status.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX + link] = packets;
+        const std::size_t at = std::size_t{number} * kBox;
+        out[at] = expected[at] = packets;
+        expected_sent[number] = packets > 0;
+        for (std::uint32_t w = 0; w < packets * kWords; ++w)
+            out[at + kWords + w] = expected[at + kWords + w] = number << 12 | (w + 1);
+        packets_sent += packets;
+    }
+};
+
 }  // namespace
 
 Verdict check_bus(Session& session) {
@@ -130,46 +160,33 @@ Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
 }
 
 Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every, Kernels* kernels) {
-    constexpr std::uint32_t kCapacity = 5, kWords = RAYA_PACKET_WORDS;
-    const std::uint32_t nodes = raya_nodes(torus), box = (1 + kCapacity) * kWords;
+    constexpr std::uint32_t kWords = LinkTraffic::kWords, kBox = LinkTraffic::kBox;
+    const std::uint32_t nodes = raya_nodes(torus);
     const NodeShare share(torus);
-    LinkExchange links(session, share, kCapacity, {"verify", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
+    LinkExchange links(session, share, LinkTraffic::kCapacity,
+                       {"verify", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
     links.clear();
-    NodeStatus status(nodes);
-    Words out(links.outboxes().size()), in(out.size()), expected(out.size());
-    Words sent(links.sent().size()), expected_sent(sent.size());
-    std::uint32_t packets_sent = 0;
-    for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-        for (std::uint32_t node = 0; node < nodes && torus.sides[link / 2] > 1; ++node) {
-            const std::uint32_t number = link * nodes + node;
-            const std::uint32_t packets = number % every ? 0 : 1 + number % kCapacity;
-            status.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX + link] = packets;
-            const std::size_t at = std::size_t{number} * box;
-            out[at] = expected[at] = packets;
-            expected_sent[number] = packets > 0;
-            for (std::uint32_t w = 0; w < packets * kWords; ++w)
-                out[at + kWords + w] = expected[at + kWords + w] = number << 12 | (w + 1);
-            packets_sent += packets;
-        }
-    for (std::size_t at = 0; at < in.size(); ++at) in[at] = at % box ? kPoison : 0;  // empty, independent of clear()
-    session.write("inboxes", links.inboxes(), in);
-    session.write("outboxes", links.outboxes(), out);
-    auto status_buffer = session.buffer<std::uint32_t>("status", status.words.size());
-    session.write("status", status_buffer, status.words);
+    LinkTraffic traffic(torus, every, links.outboxes().size());
+    session.write("inboxes", links.inboxes(), traffic.in);
+    session.write("outboxes", links.outboxes(), traffic.out);
+    auto status_buffer = session.buffer<std::uint32_t>("status", traffic.status.words.size());
+    session.write("status", status_buffer, traffic.status.words);
     if (kernels) links.use_kernel(kernels->get<ExchangeKernel>(), kernels->options().group_size, status_buffer);
     std::vector<std::uint64_t> words(std::size_t{nodes} * RAYA_LINKS);
-    links.exchange(status, words);
+    links.exchange(traffic.status, words);
+    Words in(traffic.in.size()), sent(links.sent().size()), &expected = traffic.expected;
     session.read("inboxes", links.inboxes(), in);
     session.read("sent boxes", links.sent(), sent);
     // Words after a box's packets are undefined.
-    for (std::size_t at = 0; at < in.size(); at += box)
-        for (std::size_t w = 1; w < box; ++w)
+    for (std::size_t at = 0; at < in.size(); at += kBox)
+        for (std::size_t w = 1; w < kBox; ++w)
             if (w < kWords || w >= (1 + expected[at]) * kWords) in[at + w] = expected[at + w] = 0;
     const std::string what =
         fmt::format("exchange on {}", sides_text({torus.sides[0], torus.sides[1], torus.sides[2]}));
-    if (auto verdict = difference(expected, in, what, box, "inbox")) return *verdict;
-    if (auto verdict = difference(expected_sent, sent, what + ", flags of sent boxes", nodes, "link")) return *verdict;
-    return passed(fmt::format("{} packets over {} links", packets_sent, RAYA_LINKS * nodes));
+    if (auto verdict = difference(expected, in, what, kBox, "inbox")) return *verdict;
+    if (auto verdict = difference(traffic.expected_sent, sent, what + ", flags of sent boxes", nodes, "link"))
+        return *verdict;
+    return passed(fmt::format("{} packets over {} links", traffic.packets_sent, RAYA_LINKS * nodes));
 }
 
 Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies) {

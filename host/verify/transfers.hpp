@@ -1,4 +1,5 @@
-// Checks of transfers: bus, ring, links, and the buffer copies that implement them, each against a model on the host.
+// Checks of transfers over the bus, the ring and links, and of the buffer copies that implement them. A model on the
+// host computes the expected contents.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,29 +12,30 @@
 
 namespace raya {
 
-/// Checks one broadcast and one gather.
+/// Checks one broadcast and one gather over the bus.
 Verdict check_bus(Session& session);
 
-/// Checks blocks of `words` words from every PE to another PE, at five distances, and from each PE to all.
+/// Checks that blocks of `words` words arrive when every PE sends one to the PE at a given distance, for five
+/// distances, and when each PE in turn broadcasts one to all PEs.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words);
 
-/// Checks 12 rotations, in both directions, of `pes` blocks of `words` words.
+/// Checks 12 rotations (circular shifts over the ring) of `pes` blocks of `words` words, in both directions.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words);
 
-/// Fills some outboxes, exchanges once, and compares all inboxes and the flags of sent boxes. `every`: one box in this
-/// many has packets. `kernels`: exchange with the kernel that it builds; null: with copies.
+/// Fills one of every `every` outboxes with packets, exchanges once, and compares all inboxes and the flags of
+/// transferred outboxes. `kernels`: exchange with the kernel built from these; null: exchange with buffer copies.
 Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every, Kernels* kernels = nullptr);
 
-/// Copy of `count` words of each of `blocks` blocks, between layouts of different pitch.
+/// Copy of the first `count` words of each of `blocks` blocks, between two layouts of blocks with different strides.
 struct BlockCopy {
     Session::Blocks from, to;
     std::size_t count, blocks;
 };
 
-/// Size in words of check_copies()' two buffers.
+/// Size of each of the two buffers of check_copies(), in words.
 inline constexpr std::size_t kCopiedWords = 4096;
 
-/// Checks each copy; the remaining words of the destination must not change.
+/// Checks each copy, and that the remaining words of the destination do not change.
 Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies);
 
 }  // namespace raya

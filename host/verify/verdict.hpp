@@ -1,4 +1,5 @@
-// Result of a check, details of a failure, and the text form of 32-bit words in the files of known answers.
+// Verdict of a check, details of a failure, and the text form of 32-bit words in the files of known answers and
+// pictures.
 #pragma once
 #include <fmt/core.h>
 
@@ -14,17 +15,17 @@ enum class Outcome { kPass, kFail, kSkip };
 
 /// Details of a failed check. Unknown members are empty.
 struct Fault {
-    std::string where{};                  // the first wrong operation, ray, word or pixel
-    std::string expected{}, got{};        // its bits and their meaning
+    std::string where{};                  // first wrong operation, ray, word or pixel
+    std::string expected{}, got{};        // bits and their meaning
     std::string options{};                // build options of the kernel
-    std::vector<std::string> remedies{};  // what to try, most promising first
+    std::vector<std::string> remedies{};  // remedies to try, most promising first
 };
 
-/// Outcome of a check.
+/// Outcome of a check with its explanation.
 struct Verdict {
     Outcome outcome = Outcome::kPass;
-    std::string result;  // one line: what was compared, the reason for a skip, or what is wrong
-    Fault fault{};       // for kFail
+    std::string result;  // one line: what was compared, why the check was skipped, or what is wrong
+    Fault fault{};       // if the outcome is kFail
 };
 
 inline Verdict passed(std::string result) { return {Outcome::kPass, std::move(result)}; }
@@ -39,12 +40,12 @@ inline Verdict with_remedies(Verdict verdict, const std::string& options, const 
     return verdict;
 }
 
-/// Fill value of result buffers before a launch. No check expects it, so a kernel that writes nothing fails even where
-/// an earlier kernel left the right results in the same memory.
+/// Fill value of result buffers before a launch. No check expects this value, so a kernel that writes nothing fails,
+/// even if an earlier kernel has left correct results in the same memory.
 inline constexpr std::uint32_t kPoison = 0xdeadbeef;
 
-/// Reads a word written as 8 hexadecimal digits without trailing zeros: "3f8" is 0x3f800000. Throws std::logic_error
-/// for any other text.
+/// Parses a word written as 8 hexadecimal digits without trailing zeros: "3f8" is 0x3f800000. Throws std::logic_error
+/// for invalid text.
 inline std::uint32_t word_of(std::string digits) {
     if (digits.empty() || digits.size() > 8 || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
         throw std::logic_error("'" + digits + "' is not 1 to 8 hexadecimal digits");

@@ -18,7 +18,8 @@ bool contains_any(const std::string& message, const std::vector<const char*>& te
                        [&](const char* text) { return message.find(text) != std::string::npos; });
 }
 
-// Remedies for a check that threw, chosen by the message; `by_device`: a DeviceError.
+// Returns remedies for a check that threw an exception, chosen by its message. `by_device`: the exception is a
+// DeviceError.
 std::vector<std::string> remedies_for(const std::string& message, bool by_device) {
     const std::string newer = "a newer driver, or another OpenCL implementation for this device (raya devices)";
     if (contains_any(message, {"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE",
@@ -58,7 +59,7 @@ Verdict verdict_of(const std::function<Verdict()>& body) {
     }
 }
 
-// "      label         text"; further lines of the text are aligned below its first.
+// Returns lines "      label         text". The further lines of `text` are aligned below its first line.
 std::string indented(const std::string& label, const std::string& text) {
     constexpr int kLabel = 14;
     if (text.empty()) return {};
@@ -157,7 +158,7 @@ const char* depth_name(Depth depth) {
 
 Verification::Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs)
     : device_(device), info_(device_info(device)), settings_(settings), sink_(sink), runs_(runs) {
-    check_patches(settings.sources);  // one that does not apply would look like a detected fault
+    check_patches(settings.sources);  // otherwise a patch that does not apply would look like a detected fault
 }
 
 void Verification::check(const std::string& layer, const std::string& name,

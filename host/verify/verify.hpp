@@ -1,4 +1,5 @@
-// Checks of a device with its driver and compiler against known answers, from the number layer up to whole images.
+// Checks of a device, its driver and its compiler: computes numbers, intersections, transfers and images on the device
+// and compares them with known results.
 #pragma once
 #include <functional>
 #include <string>
@@ -12,7 +13,7 @@
 
 namespace raya {
 
-/// "PASS", "FAIL", "SKIP".
+/// Returns "PASS", "FAIL" or "SKIP".
 const char* outcome_name(Outcome outcome);
 
 struct Check {
@@ -21,84 +22,87 @@ struct Check {
     Verdict verdict;
 };
 
-/// Runs and times `body`. An exception becomes a failed check with its message, so that the remaining checks run:
-/// drivers reject kernels, and with wrong arithmetic the torus may lose packets, which it reports as an internal error.
+/// Runs and times `body`. If `body` throws, the check fails with the exception's message, and the remaining checks
+/// still run. Examples: a driver rejects a kernel; the torus loses packets because of wrong arithmetic and reports an
+/// internal error.
 Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body);
 
-/// Remedies for errors of the compiler or driver, except those that this run already applies.
+/// Returns remedies for errors of the compiler or driver, except those that are already in effect.
 std::vector<std::string> compiler_remedies();
 
-/// Number of checks with this outcome.
+/// Returns the number of checks with this outcome.
 std::size_t count_of(const std::vector<Check>& checks, Outcome outcome);
 
-/// "PASS  number    e6m15, 16 lanes  0.41 s  310 answers"; a failure adds indented lines with its details.
+/// Returns a line such as "PASS  number    e6m15, 16 lanes  0.41 s  310 answers"; for a failure, indented lines with
+/// its details follow.
 std::string check_lines(const Check& check);
 
-/// An object with layer, name, status, seconds and result; a failure also has where, expected, got, build_options and
-/// remedies.
+/// Returns an object with members layer, name, status, seconds and result; for a failure also where, expected, got,
+/// build_options and remedies.
 Json to_json(const Check& check);
 
 /// Inverse of to_json(Check).
 Check check_of(const Json& json);
 
 enum class Depth {
-    kBrief,  // few kernels and few rays: for simulators, and for compilers that take a minute a kernel
-    kQuick,  // one number of lanes, the common formats, a dozen images: seconds
-    kFull    // every format, number of lanes and group size: minutes
+    kBrief,  // few kernels and rays: for simulators, and for compilers that take a minute per kernel
+    kQuick,  // one number of lanes, common formats, a dozen images: takes seconds
+    kFull    // every format, number of lanes and group size: takes minutes
 };
 
-/// Member "kind" of a report, which identifies it.
+/// Value of the member "kind", which identifies the report.
 inline constexpr const char* kVerifyReportKind = "raya verify";
 
-/// "quick"
+/// Returns text such as "quick".
 const char* depth_name(Depth depth);
 
 struct VerifySettings {
     Depth depth = Depth::kQuick;
     KernelSources sources{};
     std::string only{};       // run only checks whose "LAYER NAME" contains this text; empty: all
-    std::uint32_t lanes = 0;  // the only number of lanes: 1, 4, 8 or 16; 0: the device's default, with kFull all
-    std::size_t done = 0;     // skip this many checks at the beginning
+    std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default, with kFull all
+    std::size_t done = 0;     // number of checks to skip at the beginning
 };
 
-/// Callbacks at the start (layer, name) and at the end of every check.
+/// Callbacks at the start of every check, with its layer and name, and at its end.
 struct CheckSink {
     std::function<void(const std::string&, const std::string&)> started{};
     std::function<void(const Check&)> finished{};
 };
 
-/// Checks `device` layer by layer, from the number layer to the images, so that the first failure is nearest to the
-/// cause. Throws DeviceError if the device's properties cannot be read, std::logic_error for patches that do not apply.
+/// Checks `device` layer by layer, from the number layer to images, so that the first failure is the closest to the
+/// cause. Throws DeviceError if the device's properties cannot be read, std::logic_error if a patch of the kernel
+/// sources does not apply.
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink = {});
 
-/// "LAYER NAME" of every check that verify() would run, in the same order.
+/// Returns "LAYER NAME" of every check that verify() would run, in the same order.
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);
 
-/// Device, settings and results of a run; the layers register their checks with check().
+/// Device, settings and results of a run of verify(). The functions below, one per layer, call check() for each check.
 class Verification {
   public:
-    /// `runs`: run the checks; false: only collect their names.
+    /// `runs`: true to run the checks, false to collect only their names.
     Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs = true);
 
     const DeviceInfo& device() const { return info_; }
     Depth depth() const { return settings_.depth; }
     bool full() const { return depth() == Depth::kFull; }
 
-    /// Runs one check in its own session: a failed command may make a context unusable.
+    /// Runs one check in a session of its own, because a failed command may make an OpenCL context unusable.
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
 
     const KernelSources& sources() const { return settings_.sources; }
-    /// Sources and options of a renderer's kernels; 0 lanes: given_lanes().
+    /// Returns the sources and options of a renderer's kernels. `lanes` 0: given_lanes().
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
 
-    /// VerifySettings::lanes: the only number of lanes to check, 0: not set.
+    /// Returns VerifySettings::lanes: the only number of lanes to check; 0: not set.
     std::uint32_t given_lanes() const { return settings_.lanes; }
-    /// given_lanes(), or the device's default.
+    /// Returns given_lanes() if set, else the device's default.
     std::uint32_t own_lanes() const { return settings_.lanes ? settings_.lanes : default_lanes(info_); }
-    /// Every number of lanes to check.
+    /// Returns every number of lanes to check.
     std::vector<std::uint32_t> lanes() const;
 
-    /// Remedies for failures that may depend on the number of lanes; empty for one lane.
+    /// Returns remedies for failures that may depend on the number of lanes; empty for one lane.
     std::vector<std::string> lanes_remedies(std::uint32_t lanes) const;
 
     std::vector<Check> take_checks() { return std::move(checks_); }
@@ -111,10 +115,10 @@ class Verification {
     CheckSink sink_;
     bool runs_;
     std::vector<Check> checks_;
-    std::vector<std::string> names_;  // of checks_ and of the skipped settings_.done before them
+    std::vector<std::string> names_;  // of all checks, including the settings_.done skipped ones
 };
 
-// The layers; each relies on those before it.
+// The layers. Each layer relies on the layers before it.
 void verify_numbers(Verification& verification);
 void verify_geometry(Verification& verification);
 void verify_machines(Verification& verification);

@@ -1,13 +1,14 @@
-// Checks of hits: the nearest hits of given rays, found by testing all objects and, if the job has the structure that
-// RAYA_ACCEL names, by the ring machine's search. The job's words lie in global memory. The host compares the results.
+// Checks of hits. Finds the nearest hits of given rays by testing all objects and, unless RAYA_ACCEL is
+// RAYA_ACCEL_NONE, by the ring machine's search in the job's acceleration structure. The job's words must lie in global
+// memory. The host compares the results.
 #include "kernels/checks/rays.clh"
 #include "kernels/shading/search.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void hits_of_all(__global const uint* restrict job,
                  __global const float* restrict rays,
-                 __global uint* restrict objects,    // [ray]: number, RAYA_NO_OBJECT without a hit
-                 __global uint* restrict distances)  // [ray]: bits of t; of the limit without a hit
+                 __global uint* restrict objects,    // [ray]: object number, RAYA_NO_OBJECT without a hit
+                 __global uint* restrict distances)  // [ray]: bits of t; without a hit those of the ray's limit
 {
     const uint first = first_ray();
     const hit h = closest_hit(job, &((job_words)job)->objects, load_ray(rays, first), 0);
@@ -16,7 +17,7 @@ void hits_of_all(__global const uint* restrict job,
 }
 
 #if RAYA_ACCEL != RAYA_ACCEL_NONE
-// `shadow`: any hit suffices.
+// Returns the hits that the search finds. If `shadow` is 1, any hit suffices.
 RAYA_KERNEL_BODY hit searched_hit(words job, const ray* r, int shadow) {
     tree t;
     ray_pool pool;

@@ -8,13 +8,15 @@
 #define RAYA_GROUP 1  // L: work-items in a work-group of `turn_round`, 1..1024
 #endif
 
-// The owner of a pixel and its number in the owner's share, both ways. A work-item takes one pixel.
+// Finds the owner of each pixel and the pixel's index in the owner's share, and converts the index back to a pixel. One
+// work-item per pixel.
 __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [case]
                           __global const raya_pixel* restrict pixels,      // [case]
                           const uint cases,
                           __global uint* restrict results)                 // [case][6]: owner, size of its share,
-                                                                           // number in it, its pixel (row, column),
-                                                                           // neighbours (a bit for each side)
+                                                                           // index in it, row and column of the pixel
+                                                                           // with that index, sides with a neighbour
+                                                                           // (bit s: side s)
 {
     const uint i = get_global_id(0);
     if (i >= cases) return;
@@ -35,12 +37,13 @@ __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [c
     to[5] = sides;
 }
 
-// The first link of a packet's route and of a return's route, and the ends of its node's links. A work-item takes one
-// pair of nodes.
+// Finds the first link of the route of a ray and of a return, and the node at the other end of each link. One work-item
+// per pair of nodes.
 __kernel void find_ways(__global const raya_torus* restrict toruses,  // [case]
                         __global const uint* restrict nodes,          // [case][2]: where the packet is, where it goes
                         const uint cases,
-                        __global uint* restrict results)              // [case][2 + RAYA_LINKS]
+                        __global uint* restrict results)              // [case][2 + RAYA_LINKS]: raya_next_link(),
+                                                                      // raya_return_link(), raya_link_end() per link
 {
     const uint i = get_global_id(0);
     if (i >= cases) return;
@@ -53,8 +56,8 @@ __kernel void find_ways(__global const raya_torus* restrict toruses,  // [case]
 }
 
 // Exercises local memory, barriers and atomics as the trace kernel uses them. Every work-group copies its words to
-// local memory, reverses them and adds 1 `times` times, and writes them; its work-items draw the numbers 0 .. words - 1
-// from a shared counter.
+// local memory, reverses their order and adds 1 to each, `times` times, and writes them to `to`. Then its work-items
+// draw the numbers 0 .. words - 1 from a shared counter.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void turn_round(__global const uint* restrict from,  // [group][words]
                 const uint words,

@@ -1,8 +1,8 @@
-// Checks of the number layer: every operation on rows of operands.
+// Checks of the number layer: applies every operation to rows of operands.
 //
-// A work-group is one work-item, which takes the next V rows; their number is a multiple of V. Arrays are column-major:
-// operand k of row i at k * rows + i, the bits of result k of row i likewise. Every operation is done on every row; the
-// host compares those that the row is for (host/verify/numbers.hpp).
+// A work-group is one work-item, which processes the next V rows; `rows` is a multiple of V. Arrays are column-major:
+// operand k of row i is at k * rows + i, and so are the bits of result k. Every operation is applied to every row. The
+// host compares only the results of the operations for which the row was made (host/verify/numbers.hpp).
 #include "kernels/checks/rows.clh"
 #include "kernels/number/power.clh"
 
@@ -13,7 +13,7 @@ RAYA_KERNEL_BODY void do_operations(real a, real b, real c, __global uint* to, u
     store_bits(to + 3 * rows, 1, num_div(a, b));
     store_bits(to + 4 * rows, 1, num_sqrt(a));
     store_bits(to + 5 * rows, 1, num_mad(a, b, c));
-    store_bits(to + 6 * rows, 1, num_add(num_mul(a, b), c));  // two roundings: not to be contracted to num_mad
+    store_bits(to + 6 * rows, 1, num_add(num_mul(a, b), c));  // two roundings: must not be contracted to num_mad
     store_bits(to + 7 * rows, 1, num_max(a, b));
     store_bits(to + 8 * rows, 1, num_floor(a));
     store_bits(to + 9 * rows, 1, num_round(a));
@@ -32,7 +32,8 @@ void operations(__global const float* restrict operands,  // [3][rows]: a, b, c;
     do_operations(a, b, c, results + first, rows);
 }
 
-// Operations without known answers; a kernel of its own, as compiling it takes time.
+// The remaining operations, for which there are no known answers. They are a separate kernel because compiling them
+// takes time.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void functions(__global const float* restrict operands,  // as above
                const uint rows,

@@ -1,7 +1,8 @@
-// operations: a benchmark of the operations of the number layer; its results have no meaning.
+// operations: a benchmark of the operations of the number layer. Its results have no meaning.
 //
-// Every work-item repeats one operation `rounds` times on eight independent chains of V lanes, so that it measures
-// throughput, not latency. The results are stored so that no compiler removes the work.
+// Every work-item repeats one operation `rounds` times in each of RAYA_CHAINS independent chains of V lanes. The chains
+// are independent so that the benchmark measures throughput, not latency. The results are stored so that compilers
+// cannot remove the work.
 #include "number.clh"
 #include "kernels/shared/chains.h"
 
@@ -9,7 +10,7 @@
 #define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
 #endif
 
-// Unrolled by macros: compilers would keep an array indexed in a loop in memory.
+// The chains are unrolled by macros, because compilers would keep an array that is indexed in a loop in memory.
 #define RAYA_ALL_CHAINS(step) step(0) step(1) step(2) step(3) step(4) step(5) step(6) step(7)
 #define RAYA_REPEAT(step) \
     for (uint i = 0; i < rounds; ++i) { RAYA_ALL_CHAINS(step) }
@@ -21,7 +22,7 @@
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void operations(const uint kind,                    // 0 add, 1 multiply, 2 multiply-accumulate, 3 divide, 4 square root
-                const uint rounds,                  // repetitions of each chain
+                const uint rounds,                  // number of operations in each chain
                 const float start,                  // operand, about 1
                 __global float* restrict results)   // [work-item][V]
 {

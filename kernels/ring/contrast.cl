@@ -2,11 +2,11 @@
 // the threshold or more in red, green or blue, each clamped to 0..1 (Kohata & Ito 1993, anti-aliasing). The difference
 // is a number of the format, rounded once.
 //
-// The host rotates the blocks of pixels as for the filter, and launches mark_contrasts after each rotation that brings
-// neighbours.
+// The host rotates the blocks of pixels as for the filter (filter.cl) and launches mark_contrasts after each rotation
+// that brings neighbours to PEs.
 //
-// One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has
-// arrived in its memory, and nothing else.
+// One work-group is one PE; its work-items process the PE's pixels in turn. A PE reads only its own block and the block
+// that it has received.
 #include "kernels/ring/arrived.clh"
 
 static inline real clamped(real a) { return choose(a > 1.0f, num_all(1.0f), num_max(a, num_all(0.0f))); }
@@ -15,12 +15,13 @@ static inline mask differs(real a, real b, real threshold) {
     return num_abs(num_sub(clamped(a), clamped(b))) >= threshold;
 }
 
-// mark |= differs, for the PE's pixels whose neighbour on `side` is in the arrived block.
+// Sets the marks of the PE's pixels that differ from their neighbour on `side`, if the neighbour is in the arrived
+// block.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void mark_contrasts(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
                     const uint side,                          // RAYA_LEFT..RAYA_BELOW
                     const uint distance,                      // the block comes from PE (i + distance) mod P
-                    const uint begin,                         // number in its share of the block's first pixel
+                    const uint begin,                         // index of the block's first pixel in its owner's share
                     const uint band,                          // pixels in the block
                     const uint capacity,                      // pixels in a PE's memory; 0: do nothing
                     const uint first_pe,                      // number of the PE that is work-group 0

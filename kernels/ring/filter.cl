@@ -1,22 +1,23 @@
-// The 3 x 3 filter: every pixel becomes the mean of its neighbourhood, in two steps (Kohata & Ito 1993, anti-aliasing):
+// The 3 x 3 filter: every pixel becomes the mean of its 3 x 3 neighbourhood (Kohata & Ito 1993, anti-aliasing):
 //
-//     rows:     sum = (own + left) + right          of the pixels, each brought by rotations
-//     columns:  sum = (own + above) + below         of those sums
-//     pixel = sum / 9                               at the border divided by the number of pixels: 6, 4, ...
+//     rows:     sum = (own + left) + right          of the pixels
+//     columns:  sum = (own + above) + below         of the row sums
+//     pixel = sum / 9                               at the image's border: sum / number of pixels summed (6, 4, ...)
 //
-// Sums and quotient are numbers of the format. The host copies `own` to `sum`, rotates the blocks, and launches
-// add_neighbours after each rotation that brings neighbours; take_means comes last.
+// Sums and quotient are rounded to the number format. For each of the two sums the host copies `own` to `sum`, rotates
+// the blocks, and launches add_neighbours after each rotation that brings neighbours to PEs. At the end it launches
+// take_means.
 //
-// One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has
-// arrived in its memory, and nothing else.
+// One work-group is one PE; its work-items process the PE's pixels in turn. A PE reads only its own block and the block
+// that it has received.
 #include "kernels/ring/arrived.clh"
 
-// sum += neighbour, for the PE's pixels whose neighbour on `side` is in the arrived block.
+// Adds the neighbour on `side` to the sum of each of the PE's pixels, if the neighbour is in the arrived block.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void add_neighbours(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
                     const uint side,                          // RAYA_LEFT..RAYA_BELOW
                     const uint distance,                      // the block comes from PE (i + distance) mod P
-                    const uint begin,                         // number in its share of the block's first pixel
+                    const uint begin,                         // index of the block's first pixel in its owner's share
                     const uint band,                          // pixels in the block
                     const uint capacity,                      // pixels in a PE's memory; 0: do nothing
                     const uint first_pe,                      // number of the PE that is work-group 0
@@ -38,7 +39,7 @@ void add_neighbours(__global const uint* restrict broadcast,  // the job's words
     }
 }
 
-// sum / number of pixels of the neighbourhood that lie in the image
+// Divides each sum by the number of pixels of the neighbourhood that lie in the image.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void take_means(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
                 const uint capacity,                      // pixels in a PE's memory; 0: do nothing

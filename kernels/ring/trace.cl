@@ -1,9 +1,9 @@
-// trace: every PE traces points of its own pixels, without communication (Kohata & Ito 1993, ray
-// tracing, step 2, and supersampling).
+// trace: every PE traces sample points of its own pixels, without communication (Kohata & Ito 1993, ray tracing, step
+// 2, and supersampling).
 //
-// One work-group is one PE. It copies the broadcast words to its own memory; then each of its work-items traces V ray
-// trees at once, one in each lane. A lane takes the pixel's next point, or the PE's next pixel, as soon as its last
-// tree is done:
+// One work-group is one PE. It copies the broadcast words to its local memory. Then each of its work-items traces V ray
+// trees at once, one in each lane. As soon as its tree is done, a lane takes the next point of its pixel or, after the
+// last point, the PE's next pixel:
 //
 //     copy the job's words to local memory, barrier
 //     while a lane has a pixel:
@@ -15,9 +15,10 @@
 //         continue with the reflected ray, else with the deepest refracted ray on the stack; else the tree is done
 //         end the launch if a lane has done its work, and save the trees for the next one  (ring/saved_trees.clh)
 //
-// A point's colour is summed in the order of its ray tree, a pixel's in the order of its points, so the bits do not
-// depend on V, group size, mapping or device.
-// Limits: a PE's share < 2^32 pixels; the cost of one pixel < 2^64 cycles; its events < 2^32 each.
+// The contributions to a point are added in the order of its ray tree, and the points of a pixel in their order. So the
+// image's bits do not depend on V, group size, mapping or device.
+//
+// Limits: a PE's share < 2^32 pixels; modelled cycles of one pixel < 2^64; events of each kind of one pixel < 2^32.
 #include "kernels/ring/saved_trees.clh"
 #include "kernels/shading/camera.clh"
 #include "kernels/shading/shade.clh"
@@ -27,7 +28,8 @@
 #define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
 #endif
 
-// Starts the tree of a point in the lanes `fresh`, `row` down and `column` to the right of the first pixel's own point.
+// In the lanes `fresh`, starts the ray tree of the point that lies `row` pixels below and `column` pixels to the right
+// of the sample point of row 0, column 0.
 static inline void start_tree(words scene, tree* t, mask fresh, real row, real column) {
     const job_words job = (job_words)scene;
     const vec zero = vec_of(num_const(0.0f), num_const(0.0f), num_const(0.0f));
@@ -40,7 +42,8 @@ static inline void start_tree(words scene, tree* t, mask fresh, real row, real c
     count_event(t, RAYA_PRIMARY, fresh);
 }
 
-// Lanes whose tree is done take the next point of their pixel, or store the pixel and take the PE's next one.
+// In lanes whose tree is done, starts the tree of the pixel's next point or, after the last point, stores the pixel and
+// takes the PE's next one.
 static inline void next_points(words scene, tree* t, pixel_store* store, tree_pixels* p, volatile __local uint* next) {
     const mask idle = mask_not(t->walking), traced = idle & (p->pixel.all != RAYA_NO_PIXEL);
     add_points(t, store, p, traced);
@@ -53,7 +56,8 @@ static inline void next_points(words scene, tree* t, pixel_store* store, tree_pi
     start_tree(scene, t, fresh, point_rows(store, p), point_columns(store, p));
 }
 
-// Traces the trees until no pixels are left or a lane has done its `work`. Returns true if anything is left to do.
+// Traces the trees until no pixels are left or a lane has done `work` tests and steps. Returns true if this work-item
+// or PE has work left.
 static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree_pixels* pixels,
                               volatile __local uint* next, uint work) {
     ray_pool pool;
@@ -70,8 +74,8 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
     }
 }
 
-// As trace_trees(). If it `resumes`, it first restores the trees of the last launch from `from`; it saves those that
-// are left to `to`.
+// As trace_trees(), but if `resumes` is 1, first restores the trees that the last launch saved, from `from`. Saves
+// unfinished trees to `to`.
 RAYA_KERNEL_BODY int trace_share(words scene, pixel_store* store, volatile __local uint* next, uint work,
                                  save_cursor from, save_cursor to, int resumes) {
     tree trees[RAYA_TREES];
@@ -93,25 +97,26 @@ RAYA_KERNEL_BODY int trace_share(words scene, pixel_store* store, volatile __loc
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void trace(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h), the same for all PEs
            const uint word_count,                    // number of words
-           const uint block,                         // number in the share of the first pixel of a PE's block
+           const uint block,                         // index in the share of the first pixel of a PE's block
            const uint capacity,                      // pixels in a block
-           const uint end,                           // pixels of each share up to `end` - 1 are traced; they lie in the
-                                                     // block
-           const uint points,                        // RAYA_POINTS_*: their points that are traced
+           const uint end,                           // the pixels of each share before `end` are traced; they lie in
+                                                     // the block
+           const uint points,                        // RAYA_POINTS_*: which sample points are traced
            const uint first_pe,                      // number of the PE that is work-group 0
-           const uint work,                          // limit of a launch: tests and steps of a lane's rays, or marks
-                                                     // examined
-           __global const uchar* restrict marks,     // [PE][capacity]: not 0 where a pixel gets new points; unused for
+           const uint work,                          // maximum work of a launch: tests and steps of a lane's rays, or
+                                                     // marks examined
+           __global const uchar* restrict marks,     // [PE][capacity]: not 0 if the pixel is supersampled; unused with
                                                      // RAYA_POINTS_OWN
-           __local raya_trace_progress* shared,      // by the work-items of a PE
+           __local raya_trace_progress* shared,      // [1]: shared by the work-items of a PE
            __local uint4* memory,                    // if RAYA_WORDS_LOCAL is 1, word_count words, in whole rows
-           __global float* restrict pixels,          // [PE][3][capacity]: linear rgb; read where points are new
-           __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels traced now
+           __global float* restrict pixels,          // [PE][3][capacity]: linear rgb; also read in supersampling
+           __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels of this pass
            __global ulong* restrict events,          // [PE][work-item][RAYA_EVENTS], added to
-           __global raya_trace_progress* restrict progress,  // [PE]: of the last launch, then of this one
+           __global raya_trace_progress* restrict progress,  // [PE]: on entry of the last launch, on return of this one
            __global uint* restrict saved)            // state of unfinished trees (kernels/ring/saved_trees.clh)
 {
-    // An argument, not a __local variable: PoCL 3.1 lost pixels if a function that took its address was not inlined.
+    // A kernel argument, not a __local variable of the kernel: PoCL 3.1 lost pixels when the address of a __local
+    // variable was passed to a function that is not inlined.
     volatile __local raya_trace_progress* mine = shared;
     const uint group = get_group_id(0), item = get_local_id(0);
     const int resumes = progress[group].left > 0;
@@ -144,7 +149,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
     for (uint e = 0; e < RAYA_EVENTS; ++e) counted[e] += sum_of(store.totals[e]);
     if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);
-    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);  // all have read progress[group]
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);  // after this all work-items have read progress[group]
     if (item) return;
     progress[group].next = min((uint)mine->next, store.end);
     progress[group].left = mine->left;

@@ -1,4 +1,4 @@
-// The acceleration structures of the ring machine: values of RAYA_ACCEL.
+// Values of RAYA_ACCEL: the acceleration structure that the ring machine's kernels are built for.
 #ifndef RAYA_SHARED_ACCEL_H
 #define RAYA_SHARED_ACCEL_H
 

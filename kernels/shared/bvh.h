@@ -1,50 +1,51 @@
-// The BVH (bounding volume hierarchy) over a scene's finite objects: its layout behind a job's words.
+// Layout of the BVH (bounding volume hierarchy) of a scene's finite objects. It follows the job's words (job.h) in
+// memory.
 //
-// The BVH consists of rows of 16 words; up to sixteen lanes load a row at once. A node is RAYA_BVH_NODE rows, one
-// column for each child: the child's box, and a link to the child. In fp32 a child is another node or a leaf of objects
-// of one kind:
+// The BVH is an array of rows of 16 words; V lanes load V words of a row at once. A node consists of RAYA_BVH_NODE
+// rows. Column c of these rows describes child c: its bounding box and a link to it. In fp32 a child is another node or
+// a leaf. All objects of a leaf are of one kind:
 //
-//     spheres, cones     one in each column, RAYA_BVH_SPHERES or RAYA_BVH_CONES rows
-//     faces              polygons of three or four corners, one in each column: RAYA_BVH_FACES rows, RAYA_BVH_TRIANGLES
-//                        where none has four
-//     a polygon          of more corners: a row for the polygon, then its corners, one in each column
+//     spheres, cones     one object in each column, RAYA_BVH_SPHERES or RAYA_BVH_CONES rows
+//     faces              polygons of three or four corners, one in each column: RAYA_BVH_FACES rows, or
+//                        RAYA_BVH_TRIANGLES rows if all are triangles
+//     one polygon        of more than four corners: one row of its data, then its corners, one in each column
 //
-// In a reduced format an object test costs ten times as much as in fp32, a box test no more. So there a link leads to
-// another node or, by its number, to a single object, and V rays test one object each. A polygon of more than 16
-// corners still has a leaf.
+// In a reduced format an object test costs ten times as much as in fp32, but a box test costs the same. So in these
+// formats a child is another node or a single object, whose number the link contains, and V rays are tested at once,
+// each against its own object. Only polygons of more than 16 corners have leaves.
 //
-// Unused columns of a node hold a box that no ray meets. Columns of a leaf beyond its last object repeat the first.
+// Unused columns of a node hold a box that no ray meets. Unused columns of a leaf repeat its first object.
 #ifndef RAYA_SHARED_BVH_H
 #define RAYA_SHARED_BVH_H
 #include "kernels/shared/portable.h"
 
 typedef struct {
-    // Largest coordinate of a ray's origin for which every hit lies in the boxes of its object. A ray from farther away
-    // must be tested against all objects. Below 0: every ray must.
+    // If no coordinate of a ray's origin exceeds `reach` in absolute value, each of its hits lies in all boxes that
+    // contain the object hit. Other rays must be tested against all objects; if `reach` is negative, all rays.
     float reach;
     raya_u32 root;      // link to the root; RAYA_NO_TREE without objects
-    raya_u32 apart;     // separate objects: finite, in no leaf, tested for every ray
-    raya_u32 apart_at;  // where their numbers start, ascending: distance from the job's first word
-    raya_u32 rows_at;   // where row 0 starts: distance from the job's first word, a multiple of 16
+    raya_u32 apart;     // number of separate objects: finite objects in no leaf, tested for every ray
+    raya_u32 apart_at;  // offset of their numbers (ascending), in words from the job's first word
+    raya_u32 rows_at;   // offset of row 0, in words from the job's first word: a multiple of 16
 } raya_bvh;
 RAYA_SHARED_SIZE(raya_bvh, 4 * 5);
 
-#define RAYA_BVH_WIDTH 16  // children of a node, objects of a leaf, words of a row
+#define RAYA_BVH_WIDTH 16  // words of a row; maximum number of children of a node and of objects in a leaf
 
-enum {                  // rows of a node
+enum {                  // first row of each field of a node
     RAYA_BVH_LOW = 0,   // lowest x, y, z of the boxes
     RAYA_BVH_HIGH = 3,  // highest x, y, z of the boxes
     RAYA_BVH_LINKS = 6,
     RAYA_BVH_NODE = 7
 };
-enum {  // rows of a leaf of spheres: the words of their objects (kernels/shared/job.h), and their numbers
+enum {  // first row of each field of a leaf of spheres: the words of a sphere (job.h), then its object number
     RAYA_BVH_CENTRE = 0,
     RAYA_BVH_SQUARE = 3,
     RAYA_BVH_NUMBERS = 4,
     RAYA_BVH_SPHERES = 5
 };
-enum {  // rows of a leaf of faces: x, y, z of their first three corners, their planes, their numbers, and x, y, z of
-        // their last corners: fourth or third
+enum {  // first row of each field of a leaf of faces: x, y, z of corners 1 to 3; plane; object number; and, unless all
+        // are triangles, x, y, z of corner 4 (of a triangle: corner 3 again)
     RAYA_BVH_CORNERS = 0,
     RAYA_BVH_PLANE = 9,
     RAYA_BVH_FACE_NUMBERS = 13,
@@ -53,14 +54,14 @@ enum {  // rows of a leaf of faces: x, y, z of their first three corners, their 
     RAYA_BVH_FACES = 17
 };
 #define RAYA_BVH_MOST_CORNERS 4
-enum {  // words of a polygon's first row
+enum {  // words in the first row of a polygon's leaf
     RAYA_BVH_OUTLINE_NUMBER = 0,
     RAYA_BVH_OUTLINE_CORNERS = 1,  // number of corners
     RAYA_BVH_OUTLINE_PLANE = 2,
-    RAYA_BVH_OUTLINE_LOW = 6,  // x, y, z: bounding box of the corners
+    RAYA_BVH_OUTLINE_LOW = 6,  // lowest x, y, z of the corners; RAYA_BVH_OUTLINE_HIGH: highest
     RAYA_BVH_OUTLINE_HIGH = 9
 };
-enum {  // rows of a leaf of cones: the words of their objects, and their numbers
+enum {  // first row of each field of a leaf of cones: the words of a cone (job.h), then its object number
     RAYA_BVH_BASE = 0,
     RAYA_BVH_RADIUS = 3,
     RAYA_BVH_AXIS = 4,
@@ -71,15 +72,16 @@ enum {  // rows of a leaf of cones: the words of their objects, and their number
     RAYA_BVH_CONES = 11
 };
 
-// Rows of each coordinate of a polygon's corners. Behind the polygon's first row come x of all corners, then y, then z.
-// The first corner is repeated behind the last one, in all columns up to the end; there is at least one column more
-// than edges rounded up to whole rows.
+// Returns the number of rows that hold one coordinate of a polygon's corners. After the first row of the leaf come the
+// x of all corners, then the y, then the z. The columns after the last corner repeat the first corner. There is one row
+// more than the corners need, so that a test of V edges at once can read the next corner of every edge.
 RAYA_SHARED_FUNCTION raya_u32 raya_outline_rows(raya_u32 corners) {
     return (corners + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH + 1;
 }
 
-// A link: the kind of its target in bits 29..31. For an object, the other bits are its number. Else bits 25..28 are a
-// leaf's objects - 1, bits 0..24 the target's first row.
+// A link is one word. Bits 29..31 are the kind of its target. If the target is an object (RAYA_LINK_OBJECT), bits 0..28
+// are the object's number. Else bits 25..28 are the number of objects in the leaf - 1, and bits 0..24 are the target's
+// first row.
 #define RAYA_LINK_ROW 0x01ffffffu
 #define RAYA_LINK_OBJECTS_SHIFT 25u
 #define RAYA_LINK_KIND_SHIFT 29u
@@ -93,7 +95,7 @@ enum {
     RAYA_LINK_CONES,
     RAYA_LINK_OBJECT
 };
-#define RAYA_NO_TREE 0xffffffffu  // root of a tree without objects
+#define RAYA_NO_TREE 0xffffffffu  // raya_bvh.root of a BVH without objects
 
 RAYA_SHARED_FUNCTION raya_u32 raya_link(raya_u32 kind, raya_u32 objects, raya_u32 row) {
     return kind << RAYA_LINK_KIND_SHIFT | (objects - 1) << RAYA_LINK_OBJECTS_SHIFT | row;

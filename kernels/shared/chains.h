@@ -1,4 +1,5 @@
-// Independent chains of operations in each work-item of number/operations.cl; the host multiplies by it to count them.
+// Number of independent chains of operations in each work-item of number/operations.cl. The host needs it to compute
+// operations per second.
 #ifndef RAYA_SHARED_CHAINS_H
 #define RAYA_SHARED_CHAINS_H
 #define RAYA_CHAINS 8

@@ -1,26 +1,27 @@
-// The mapping: which PE owns which pixel, in closed form both ways (the pixels of a share: share_pixels.h). Host and
-// kernels share these formulas; they exist nowhere else.
+// The mapping of pixels to PEs: the owner of a pixel and the share of a PE (the pixels that it owns), both in closed
+// form. share_pixels.h enumerates the pixels of a share. Host and kernels share these formulas; they exist nowhere
+// else.
 //
-// The slot mappings. Pixel (row j, column x) lies in slot c = (x - j p) mod W of the sheared image: the
-// cyclic mapping with offset p (Kohata & Ito 1993, cyclic mapping; p = 0 is their column split). The fold
-// maps slots to PEs where P != W:
+// The slot mappings implement the cyclic mapping with offset p (Kohata & Ito 1993, cyclic mapping; p = 0 is their
+// column split). Pixel (row j, column x) lies in slot c = (x - j p) mod W. The fold assigns slots to PEs; it matters if
+// P != W:
 //
 //   RAYA_FOLD_CYCLIC   P <= W   PE i owns the slots i, i + P, i + 2P, ...
 //                      P >  W   the PEs c, c + W, c + 2W, ... share slot c, row by row in turn
 //   RAYA_FOLD_BLOCK    P <= W   PE i owns the slots c with floor(c P / W) = i
 //                      P >  W   the PEs floor(c P / W) to floor((c + 1) P / W) - 1 share slot c, each a run of rows
 //
-// The other mappings, by the PE that owns pixel (j, x):
+// The other mappings, with the number of the PE that owns pixel (j, x):
 //
-//   RAYA_ROWS     j mod P: scan lines in turn
+//   RAYA_ROWS     j mod P: interleaved scan lines
 //   RAYA_BLOCKS   floor(j P / H): contiguous scan lines
 //   RAYA_GRID     (j mod A) B + (x mod B), P = A B: an array of A rows of B PEs (CAP 16 x 16, Pixel Machine 8 x 8)
-//   RAYA_TILES    t mod P: tiles of w x h pixels in turn, t = (j div h)(W div w) + (x div w); w divides W, h divides H
-//   RAYA_RANDOM   (scrambled number j W + x) mod P (scramble.h); shares differ by at most one pixel
+//   RAYA_TILES    t mod P: tiles of w x h pixels, t = (j div h)(W div w) + (x div w); w divides W, h divides H
+//   RAYA_RANDOM   raya_scramble(j W + x, W H, seed) mod P (scramble.h); share sizes differ by at most 1
 //
-// Every share is a lattice of slots (or columns) and rows, a list of tiles, or a list of scrambled numbers, so pixel k
-// of PE i has a closed form as well. A PE may own nothing: P > H with rows, or more PEs than tiles. Limits: 1 <= W, H
-// <= 16384, 1 <= P <= W H, 0 <= p < W. Then j p < 2^28 and c P < 2^42, which takes 64 bits.
+// A share is a lattice of slots (or columns) and rows, every P-th tile, or every P-th scrambled number. So pixel k of
+// PE i has a closed form too. A PE may own no pixel: if P > H with RAYA_ROWS, or with more PEs than tiles. Limits: 1 <=
+// W, H <= 16384, 1 <= P <= W H, 0 <= p < W. So j p < 2^28 fits in 32 bits; c P < 2^42 needs 64 bits.
 #ifndef RAYA_SHARED_MAPPING_H
 #define RAYA_SHARED_MAPPING_H
 #include "kernels/shared/portable.h"
@@ -38,16 +39,16 @@
 typedef struct {
     raya_u32 width, height;  // W, H: pixels
     raya_u32 pes;            // P
-    raya_u32 parameter;      // slots: p, the shift of a row against the row above. grid: raya_pair(A, B). tiles:
-                             // raya_pair(w, h). random: the seed. Else 0
+    raya_u32 parameter;      // slot mappings: p, in pixels. RAYA_GRID: raya_pair(A, B). RAYA_TILES:
+                             // raya_pair(w, h). RAYA_RANDOM: the seed. Else 0
     raya_u32 kind;           // RAYA_FOLD_* for a slot mapping, or RAYA_ROWS .. RAYA_RANDOM
 } raya_mapping;
 RAYA_SHARED_SIZE(raya_mapping, 20);
 
-// The pixels of one PE. Tiles and random: given by pe and size. The others: the slots first_slot + m slot_step
-// (m < slots) of the rows first_row, first_row + row_step, ...
+// The share of one PE. With RAYA_TILES and RAYA_RANDOM only `pe` and `size` are used. With the other mappings it is the
+// slots (or columns) first_slot + m slot_step, 0 <= m < slots, of the rows first_row, first_row + row_step, ...
 typedef struct {
-    raya_u32 pe, size;  // size: pixels
+    raya_u32 pe, size;  // number of the PE; number of its pixels
     raya_u32 first_slot, slot_step, slots;
     raya_u32 first_row, row_step;
 } raya_share;
@@ -63,7 +64,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_second_of(raya_u32 pair) { return pair & 0xff
 
 RAYA_SHARED_FUNCTION int raya_has_slots(raya_mapping m) { return m.kind <= RAYA_FOLD_BLOCK; }
 
-// Returns the shift of a row against the row above, in slots. Without a shear slots are columns.
+// Returns the shift of each row relative to the row above, in slots. If it is 0, slots are columns.
 RAYA_SHARED_FUNCTION raya_u32 raya_shear(raya_mapping m) { return raya_has_slots(m) ? m.parameter : 0; }
 
 RAYA_SHARED_FUNCTION raya_u32 raya_slot_of(raya_mapping m, raya_u32 row, raya_u32 column) {
@@ -76,7 +77,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_tile_of(raya_mapping m, raya_u32 row, raya_u3
     return row / h * (m.width / w) + column / w;
 }
 
-// raya_owner for the slot mappings.
+// As raya_owner(), for the slot mappings only.
 RAYA_SHARED_FUNCTION raya_u32 raya_slot_owner(raya_mapping m, raya_u32 row, raya_u32 column) {
     const raya_u32 slot = raya_slot_of(m, row, column);
     if (m.kind == RAYA_FOLD_CYCLIC) {
@@ -102,7 +103,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_owner(raya_mapping m, raya_u32 row, raya_u32 
     return raya_scramble(row * m.width + column, m.width * m.height, m.parameter) % m.pes;
 }
 
-// raya_share_of for the slot mappings.
+// As raya_share_of(), for the slot mappings only.
 RAYA_SHARED_FUNCTION raya_share raya_slot_share(raya_mapping m, raya_u32 pe) {
     raya_share s = {pe, 0, pe % m.width, 1, 1, 0, 1};
     raya_u32 rows = m.height;
@@ -129,10 +130,10 @@ RAYA_SHARED_FUNCTION raya_share raya_slot_share(raya_mapping m, raya_u32 pe) {
     return s;
 }
 
-// Returns the pixels that a PE owns; the inverse of raya_owner.
+// Returns the share of a PE: the pixels whose raya_owner() it is.
 RAYA_SHARED_FUNCTION raya_share raya_share_of(raya_mapping m, raya_u32 pe) {
     if (raya_has_slots(m)) return raya_slot_share(m, pe);
-    raya_share s = {pe, 0, 0, 1, m.width, pe, m.pes};  // as for RAYA_ROWS
+    raya_share s = {pe, 0, 0, 1, m.width, pe, m.pes};  // the share with RAYA_ROWS, modified below for the others
     const raya_u32 first = raya_first_of(m.parameter), second = raya_second_of(m.parameter);
     const raya_u32 pixels = m.width * m.height;
     if (m.kind == RAYA_ROWS) s.size = raya_steps_below(pe, m.pes, m.height) * m.width;

@@ -5,7 +5,7 @@
 
 enum { RAYA_LEFT, RAYA_RIGHT, RAYA_ABOVE, RAYA_BELOW, RAYA_SIDES };
 
-// Returns false where the neighbour would lie outside the image.
+// Returns true if the pixel's neighbour on `side` lies in the image.
 RAYA_SHARED_FUNCTION int raya_has_neighbour(raya_mapping m, raya_pixel pixel, raya_u32 side) {
     if (side == RAYA_LEFT) return pixel.column > 0;
     if (side == RAYA_RIGHT) return pixel.column + 1 < m.width;
@@ -13,7 +13,7 @@ RAYA_SHARED_FUNCTION int raya_has_neighbour(raya_mapping m, raya_pixel pixel, ra
     return pixel.row + 1 < m.height;
 }
 
-// Returns the pixel on that side; there must be one.
+// Returns the pixel's neighbour on `side`, which must lie in the image.
 RAYA_SHARED_FUNCTION raya_pixel raya_neighbour(raya_pixel pixel, raya_u32 side) {
     if (side == RAYA_LEFT) pixel.column -= 1;
     if (side == RAYA_RIGHT) pixel.column += 1;
@@ -22,19 +22,20 @@ RAYA_SHARED_FUNCTION raya_pixel raya_neighbour(raya_pixel pixel, raya_u32 side) 
     return pixel;
 }
 
-// The points of a pixel that are traced: its own, or four new ones half a pixel away from it (Kohata & Ito 1993,
-// supersampling).
+// Sample points of a pixel that a pass traces: its own point, or the four new points of supersampling (Kohata & Ito
+// 1993, supersampling).
 enum {
-    RAYA_POINTS_OWN,       // one: the sample point of kernels/README.md, Camera
-    RAYA_POINTS_AXES,      // four: to the left, right, above, below
-    RAYA_POINTS_DIAGONALS  // four: to the upper left, upper right, lower left, lower right; half a pixel on both axes
+    RAYA_POINTS_OWN,       // one point: the pixel's own sample point (kernels/README.md, Camera)
+    RAYA_POINTS_AXES,      // four points, half a pixel to the left, right, above, below
+    RAYA_POINTS_DIAGONALS  // four, half a pixel away on both axes: upper left, upper right, lower left, lower right
 };
 
 #define RAYA_NEW_POINTS 4u
 
 RAYA_SHARED_FUNCTION raya_u32 raya_points(raya_u32 points) { return points == RAYA_POINTS_OWN ? 1u : RAYA_NEW_POINTS; }
 
-// Return the offset of point n < raya_points(points) from the pixel's own point, in pixels to the right and down.
+// Return the offset, to the right or down, of point n from the pixel's own sample point, in pixels; n <
+// raya_points(points).
 RAYA_SHARED_FUNCTION float raya_point_right(raya_u32 points, raya_u32 n) {
     if (points == RAYA_POINTS_DIAGONALS) return n & 1u ? 0.5f : -0.5f;
     return points == RAYA_POINTS_OWN || n > 1u ? 0.0f : n == 1u ? 0.5f : -0.5f;

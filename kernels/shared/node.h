@@ -1,11 +1,12 @@
-// The memory of a torus node: its part of the scene, as 32-bit words. A header, then sections of fixed strides:
+// The memory of a torus node: its part of the scene, as 32-bit words. It consists of a header and these sections:
 //
-//   raya_node | surfaces | lights | raya_voxel_memory of each of its voxels | planes | for each voxel: spheres, from a
-//   multiple of four words on, where their surfaces start, cones, polygons with their outlines, and the numbers of its
-//   objects in the whole scene
+//   raya_node | surfaces | lights | raya_voxel_memory of each of its voxels | planes | for each of its voxels: spheres
+//   (aligned to four words), offsets of their surfaces, cones, polygons with their corners, and the scene-wide numbers
+//   of the voxel's objects
 //
-// "at" words are distances from the node's first word. A node holds the surfaces of its objects only. Every voxel has
-// its own copy of an object that touches it; planes are infinite, so all voxels share one copy of each.
+// Members named *_at are offsets in words from the node's first word. A node holds only the surfaces of its own
+// objects. An object that several voxels list is copied to each of them. All voxels of a node share one copy of the
+// planes, which are infinite.
 #ifndef RAYA_SHARED_NODE_H
 #define RAYA_SHARED_NODE_H
 #include "kernels/shared/grid.h"
@@ -13,23 +14,23 @@
 #include "kernels/shared/torus.h"
 
 typedef struct {
-    raya_job job;  // job.objects: the planes only, which are all that a ray outside the box can hit
+    raya_job job;  // job.objects holds only the planes: rays outside the box can hit nothing else
     raya_torus torus;
     raya_grid grid;
     raya_u32 number;     // the node's number
     raya_u32 voxels;     // number of its voxels
-    raya_u32 window[4];  // pixels whose rays may enter the box at its voxels: first row, end row, first column, end
-                         // column; the ends are excluded
-    raya_u32 voxels_at;  // raya_voxel_memory of its voxels, in the order of their numbers in the node
+    raya_u32 window[4];  // pixels whose rays may enter the box at the node's voxels: first row, end row, first column,
+                         // end column; the ends are excluded
+    raya_u32 voxels_at;  // raya_voxel_memory of its voxels, in the order of raya_local_voxel()
 } raya_node;
 RAYA_SHARED_SIZE(raya_node, sizeof(raya_job) + 4 * (7 + 10 + 7));
 
-// The objects of a voxel. Their numbers in the whole scene lie at numbers_at: spheres, then polygons, then cones. A
-// plane's number is the scene's count of spheres + its own among the planes.
+// The objects of a voxel. Their scene-wide object numbers are stored at numbers_at: those of the spheres, then
+// polygons, then cones. Plane i has the scene-wide number first_plane + i.
 typedef struct {
     raya_objects objects;
     raya_u32 numbers_at;
-    raya_u32 first_plane;  // number of the first plane in the whole scene
+    raya_u32 first_plane;  // scene-wide number of the first plane: the number of spheres in the scene
 } raya_voxel_memory;
 RAYA_SHARED_SIZE(raya_voxel_memory, 4 * 10);
 

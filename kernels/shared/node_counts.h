@@ -1,43 +1,45 @@
-// Local memory that the work-items of a node share while they process its queue and move its packets: slots taken and
-// in use, and counters.
+// Layout of the local memory that the work-items of a node share while they process the node's queue and move its
+// packets: counters of queue slots, packets and events.
 #ifndef RAYA_SHARED_NODE_COUNTS_H
 #define RAYA_SHARED_NODE_COUNTS_H
 #include "kernels/shared/events.h"
 #include "kernels/shared/packet.h"
 
 enum {
-    RAYA_COUNT_NEXT,      // slot of the next packet that no work-item has taken
-    RAYA_COUNT_RESERVED,  // slots in use or reserved
-    RAYA_COUNT_USED,      // slots in use
+    RAYA_COUNT_NEXT,      // number of the queue's packets that work-items have taken so far
+    RAYA_COUNT_RESERVED,  // queue slots in use or reserved
+    RAYA_COUNT_USED,      // queue slots in use
     RAYA_COUNT_PROGRESS,  // packets processed
-    RAYA_COUNT_WORK,      // work of this launch, which ends when it reaches its limit
-    RAYA_COUNT_EVENTS,    // events, low and high word of each kind
-    RAYA_COUNT_MADE = RAYA_COUNT_EVENTS + 2 * RAYA_EVENTS,  // packets made, of each kind
-    RAYA_COUNT_ENDED = RAYA_COUNT_MADE + RAYA_KINDS,        // packets ended, of each kind
+    RAYA_COUNT_WORK,      // work done in this launch; at its limit the launch takes no more packets
+    RAYA_COUNT_EVENTS,    // events of each kind: low and high word
+    RAYA_COUNT_MADE = RAYA_COUNT_EVENTS + 2 * RAYA_EVENTS,  // packets of each kind that were made
+    RAYA_COUNT_ENDED = RAYA_COUNT_MADE + RAYA_KINDS,        // packets of each kind that ended
     RAYA_COUNT_WORDS = RAYA_COUNT_ENDED + RAYA_KINDS
 };
 
-// Goals of packets that are routed: a link (0 .. RAYA_LINKS - 1), or
+// Goals of packets in the kernel `route`: the outbox of a link (0 .. RAYA_LINKS - 1), or one of these.
 enum {
-    RAYA_TO_ROOT = RAYA_LINKS,  // towards the root, as returns go
+    RAYA_TO_ROOT = RAYA_LINKS,  // the outbox of the link towards the root (returns)
     RAYA_STAYS,                 // this node's queue
     RAYA_GONE,                  // none: the slot holds no packet
     RAYA_GOALS
 };
 
-// Goals of packets that have arrived over a link.
+// Goals of packets in the kernel `accept`, which have arrived over a link.
 enum {
     RAYA_TAKEN,       // the queue
-    RAYA_LEFT_THERE,  // the inbox: the queue has no free slots for it
+    RAYA_LEFT_THERE,  // the packet stays in the inbox: the queue has no free slots for it
     RAYA_NOTHING,     // none: the slot holds no packet
     RAYA_ACCEPT_GOALS
 };
 
-// The work of trace_voxel, in object tests of a work-item: 1 for each batch of V packets; and, for each group of them
-// that it processes together in one voxel, the voxel's objects + this number.
+// Overhead of processing packets in one voxel, in units of one object test. trace_voxel adds to RAYA_COUNT_WORK 1 for
+// each batch of V packets and, for each voxel in which packets of the batch are processed together, the voxel's number
+// of objects + this number.
 #define RAYA_WORK_OF_PROCESSING(lights) (8 + 4 * (lights))
 
-// Words of local memory that the L work-items of a node share, V lanes each (kernels/torus/moves.clh).
+// Words of local memory that a kernel needs for the work-items of a node. `group`: L, work-items; `lanes`: V
+// (kernels/torus/moves.clh).
 #define RAYA_VOTE_WORDS(voters) (((voters) + 31) / 32)
 #define RAYA_INJECT_WORDS(group, lanes) (RAYA_COUNT_WORDS + 1 + RAYA_VOTE_WORDS((group) * (lanes)))
 #define RAYA_ROUTE_WORDS(group) (RAYA_GOALS + 1 + RAYA_GOALS * RAYA_VOTE_WORDS(group))

@@ -1,11 +1,11 @@
-// Makes the shared headers valid C++ and OpenCL C: sized types and declarations under one name.
+// Types and macros that make the shared headers valid in both C++ and OpenCL C.
 #ifndef RAYA_SHARED_PORTABLE_H
 #define RAYA_SHARED_PORTABLE_H
 
-#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)  // clang without a driver defines only the second
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)  // plain clang defines only the second
 typedef uint raya_u32;
 typedef ulong raya_u64;
-#define RAYA_SHARED_SIZE(type, bytes)  // checked once, on the host
+#define RAYA_SHARED_SIZE(type, bytes)  // the host checks the sizes
 #define RAYA_SHARED_FUNCTION static inline
 #else
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Integer ratios whose products need more than 32 bits, as mappings use them.
+// Integer ratios for the mappings (mapping.h). Products are computed in 64 bits.
 #ifndef RAYA_SHARED_RATIOS_H
 #define RAYA_SHARED_RATIOS_H
 #include "kernels/shared/portable.h"

@@ -1,11 +1,11 @@
-// The pixels of a PE's share in their order: pixel k of a share and the number of a pixel in it, the two inverse to
-// each other, and runs of pixels without a division for each. The formulas follow from those of mapping.h.
+// The order of the pixels in a PE's share (mapping.h): raya_pixel_of() returns pixel k of a share, raya_index_of() is
+// its inverse. raya_pixel_run enumerates pixels without a division for each.
 #ifndef RAYA_SHARED_SHARE_PIXELS_H
 #define RAYA_SHARED_SHARE_PIXELS_H
 #include "kernels/shared/mapping.h"
 
-// Returns pixel k of a share, k < raya_share_size. The order is row by row, tile by tile (each row by row), or by
-// scrambled number.
+// Returns pixel k of a share, k < raya_share_size(). Pixels are ordered row by row; with RAYA_TILES tile by tile and in
+// a tile row by row; with RAYA_RANDOM by their scrambled numbers.
 RAYA_SHARED_FUNCTION raya_pixel raya_pixel_of(raya_mapping m, raya_share s, raya_u32 k) {
     raya_pixel pixel;
     if (m.kind == RAYA_TILES) {
@@ -25,12 +25,12 @@ RAYA_SHARED_FUNCTION raya_pixel raya_pixel_of(raya_mapping m, raya_share s, raya
     return pixel;
 }
 
-// A pixel of a share, and the pixels that follow it at equal distances in its row.
+// A pixel of a share, and how to find the pixels that follow it in the share at equal distances in the same row.
 typedef struct {
     raya_pixel pixel;
-    raya_u32 number;  // in the share
-    raya_u32 left;    // how many follow
-    raya_u32 step;    // columns from one to the next, modulo the width
+    raya_u32 number;  // k: index of the pixel in the share
+    raya_u32 left;    // number of pixels that follow in the run
+    raya_u32 step;    // distance from one to the next, in columns, modulo the width
 } raya_pixel_run;
 
 RAYA_SHARED_FUNCTION raya_pixel_run raya_pixel_run_of(raya_mapping m, raya_share s, raya_u32 k) {
@@ -55,11 +55,11 @@ RAYA_SHARED_FUNCTION raya_pixel_run raya_pixel_run_at(raya_pixel_run run, raya_m
     return run;
 }
 
-// Returns the number of a pixel in its owner's share; the inverse of raya_pixel_of.
+// Returns the index k of a pixel in its owner's share: the inverse of raya_pixel_of().
 RAYA_SHARED_FUNCTION raya_u32 raya_index_of(raya_mapping m, raya_share s, raya_pixel pixel) {
     if (m.kind == RAYA_TILES) {
         const raya_u32 w = raya_first_of(m.parameter), h = raya_second_of(m.parameter);
-        const raya_u32 turn = raya_tile_of(m, pixel.row, pixel.column) / m.pes;  // number among the owner's tiles
+        const raya_u32 turn = raya_tile_of(m, pixel.row, pixel.column) / m.pes;  // index among the owner's tiles
         return (turn * h + pixel.row % h) * w + pixel.column % w;
     }
     if (m.kind == RAYA_RANDOM)

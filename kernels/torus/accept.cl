@@ -1,28 +1,30 @@
-// accept: moves the packets that have arrived over the links out of the inboxes. Rays go into the node's queue if it
-// has the free slots that they need (raya_slots_for_packet). Returns go straight to the outbox of the link towards the
-// root, in the root to the host. A packet without free slots stays in its inbox; the link carries no more until that is
-// empty.
+// accept: takes packets that have arrived over the links out of the inboxes. Rays go into the node's queue if it has
+// the free slots that they need (raya_slots_for_packet()). Returns go directly to the outbox of the link towards the
+// root or, in the root, to the buffer that the host reads. A packet for which there is no free slot stays in its inbox.
+// The link transfers nothing until the inbox is empty.
 //
-// One work-group is one node. It empties one inbox after another, L packets at a time; the first one rotates with the
-// supersteps:
+// One work-group is one node. It processes one inbox after another, L packets at a time, and starts with a different
+// one in each superstep:
 //
 //     for each link, from `turn` mod 6 on, while `work` is left:
 //         move the rays that fit to the end of the queue, close the gaps in the inbox           (empty_inbox)
 //         move the returns that fit to the outbox towards the root, close the gaps in the inbox (pass_returns)
-//         note what stays in the node's status
+//         write the numbers of packets that stay to the node's status
 //
-// A launch that has done its `work` starts no other inbox; the next one (`again`) continues with those that are left.
+// A launch that has done its `work` starts no further inbox. The next launch (`again` = 1) continues with the remaining
+// ones.
 #include "kernels/torus/moves.clh"
 
-// The queue of the node, while rays are appended to it.
+// The queue of the node, to which rays are appended.
 typedef struct {
     __global raya_packet* packets;
     uint used, capacity;  // packets
-    uint new_packets;     // maximum that a hit may turn into (raya_max_new_packets)
+    uint new_packets;     // raya_max_new_packets() of the scene
     uint tight;           // 1: one free slot suffices for any ray
 } open_queue;
 
-// Moves the rays that fit from an inbox to the queue. Returns how many stay, at the inbox's front. Has barriers.
+// Moves the rays that fit from an inbox to the queue. The others move to the front of the inbox. Returns their number.
+// All work-items must call it, because it has barriers.
 static inline uint empty_inbox(__global uint* inbox, open_queue* queue, vote_words votes) {
     __global raya_packet* const rays = rays_in(inbox);
     const uint item = get_local_id(0), waiting = inbox[0];
@@ -36,7 +38,7 @@ static inline uint empty_inbox(__global uint* inbox, open_queue* queue, vote_wor
         vote(votes, goal);
         node_barrier();
         const uint rank = votes_before(votes, goal);
-        // What stays moves to a slot that this loop has read already.
+        // This slot has already been read by an earlier iteration or this one.
         if (goal == RAYA_LEFT_THERE) rays[left + rank] = packet;
         packet.head.state &= ~RAYA_STATE_FRESH;
         if (goal == RAYA_TAKEN) queue->packets[queue->used + taken + rank] = packet;
@@ -50,8 +52,9 @@ static inline uint empty_inbox(__global uint* inbox, open_queue* queue, vote_wor
     return left;
 }
 
-// Moves returns from an inbox to `to`, which holds `used` of at most `capacity`. Returns their number; `left` returns
-// stay, at the inbox's front. Adds those that the model charges as messages to `charged`. Has barriers.
+// Moves as many returns as fit from an inbox to `to`, which has space for `capacity` returns and holds `used`. Returns
+// the number of moved returns. The other `left` returns move to the front of the inbox. Adds the number of moved
+// returns that the model charges as messages to `charged`. All work-items must call it, because it has barriers.
 static inline uint pass_returns(__global uint* inbox, __global raya_head* to, uint used, uint capacity, uint* left,
                                 volatile __local uint* charged) {
     __global raya_head* const returns = returns_in(inbox);
@@ -74,23 +77,23 @@ static inline uint pass_returns(__global uint* inbox, __global raya_head* to, ui
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
-void accept(__global const uint* restrict memories,     // nodes' words, one after another (kernels/shared/node.h)
-            __global const uint* restrict starts,       // [node]: where its words start
+void accept(__global const uint* restrict memories,     // the words of all nodes (kernels/shared/node.h)
+            __global const uint* restrict starts,       // [nodes + 1]: offset of each node's words
             __global const raya_run* restrict run,
             const uint tight,                           // 1: one free slot suffices for any ray
             const uint turn,                            // number of the superstep, which decides the first link
             const uint first_node,                      // slot of the node that is work-group 0
             __global const uint* restrict inbox_slots,  // [link][node]: slot of the inbox of the link that leads there
-            __global const uint* restrict sent,         // [link][node]: 1 where its outbox of rays has been copied
-            __global const uint* restrict return_sent,  // [link][node]: ... of returns
-            const uint work,                            // limit of a node's work in a launch, batches of L packets, > 0
+            __global const uint* restrict sent,         // [link][node]: 1 if the outbox of rays has been copied
+            __global const uint* restrict return_sent,  // [link][node]: 1 if the outbox of returns has been copied
+            const uint work,                            // maximum work of a node in a launch: batches of L packets, > 0
             const uint again,                           // 1: continues where the last launch ended
             __local uint* local_words,                  // RAYA_ACCEPT_WORDS
             __global raya_packet* restrict queues,      // [node][queue]
             __global uint* restrict inboxes,            // of rays (kernels/shared/traffic.h)
             __global uint* restrict return_inboxes,
             __global uint* restrict return_outboxes,
-            __global raya_head* restrict returns,       // [host]: those that have reached the root
+            __global raya_head* restrict returns,       // [run->host]: returns that have reached the root
             __global uint* restrict status,             // [node][RAYA_STATUS_WORDS]
             __global ulong* restrict ended)             // [node][RAYA_KINDS], added to
 {
@@ -105,7 +108,7 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
     const uint before = status[RAYA_STATUS_QUEUE], done = again ? RAYA_LINKS - status[RAYA_STATUS_LEFT] : 0;
     open_queue queue = {queues + (size_t)slot * run->queue, before, run->queue,
                         raya_max_new_packets(header->job.lights), tight};
-    // The host has read or copied the returns that were there.
+    // 1: the returns that this launch finds there have been copied, in the root read by the host.
     const int gone = !again && (root || return_sent[(size_t)home * nodes + slot]);
     const uint home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
     const uint home_before = gone ? 0 : status[home_status];
@@ -141,7 +144,7 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
     status[RAYA_STATUS_QUEUE] = queue.used;
     status[RAYA_STATUS_QUEUE_MAX] = max(status[RAYA_STATUS_QUEUE_MAX], queue.used);
     status[RAYA_STATUS_LEFT] = RAYA_LINKS - i;
-    // The host has read the status before this kernel; counts from here on are for its next read.
+    // The host has read the status before this superstep's first launch of accept, so its counts start anew.
     const uint progress = again ? status[RAYA_STATUS_PROGRESS] : 0;
     status[RAYA_STATUS_PROGRESS] = progress + queue.used - before + home_used - home_before;
     status[RAYA_STATUS_CYCLES] = status[RAYA_STATUS_CYCLES + 1] = 0;

@@ -1,9 +1,10 @@
-// compose: adds up the contributions of each pixel. They reach the root in any order; the host has sorted them into the
-// order of the pixel's ray tree:
+// compose: adds the contributions of each pixel. They have reached the root in any order, and the host has sorted them
+// into the order of the pixel's ray tree:
 //
-//     pixel = c1 w1, then c2 w2 + pixel, and so on, each step rounded once
+//     pixel = 0; for each contribution: pixel = colour * weight + pixel, rounded once
 //
-// as the ring machine adds them (kernels/README.md, Shading). Work-item i of n takes the pixels i, i + n, ... One lane.
+// The ring machine adds them in the same way (kernels/README.md, Shading). Work-item i of n takes the pixels i, i + n,
+// ... The kernel is built for one lane.
 #include "kernels/geometry/vec.clh"
 #include "kernels/shared/loop_canary.clh"
 
@@ -13,7 +14,7 @@
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void compose(__global const float* restrict contributions,  // [contribution][4]: red, green, blue, weight
-             __global const uint* restrict starts,          // [pixels + 1]: where those of each pixel start
+             __global const uint* restrict starts,          // [pixels + 1]: index of each pixel's first contribution
              const uint pixels,
              __global float* restrict image,                // [pixels][3]: linear red, green, blue
              __global uint* restrict cut)                   // [1]: set to 1 if the device has ended loops early

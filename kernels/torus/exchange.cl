@@ -1,14 +1,14 @@
-// exchange: copies the outboxes to the inboxes at the other ends of their links, all mailboxes of rays or of returns in
-// one launch. It replaces buffer copies (host/torus/link_exchange.cpp) on devices that take longer to start a copy than
-// to move a mailbox.
+// exchange: copies outboxes to the inboxes at the other ends of their links. One launch copies all mailboxes of rays,
+// or all of returns. It replaces buffer copies (host/torus/link_exchange.cpp) on devices that take longer to start a
+// copy than to move a mailbox.
 //
-// One work-group is one outbox: work-group g that of link g / nodes and slot g mod nodes. If the outbox holds packets
-// and the inbox at the link's other end is empty, it sets `sent` and copies, else it clears `sent`:
+// Work-group g copies the outbox of link g / nodes of the node in slot g mod nodes. If the outbox holds packets and the
+// inbox at the link's other end is empty, it sets `sent` to 1 and copies; else it sets `sent` to 0:
 //
-//     work-item i copies units i, i + L, ... of header and packets, 8 words each
+//     work-item i copies the units i, i + L, ... of 8 words of the header and the packets
 //
-// Links that lead to another rank's device or back to their own node are skipped. The host moves the packets of the
-// former and sets their `sent`.
+// The kernel skips links that lead to another rank's device or back to the same node. The host transfers the packets of
+// links to other ranks and sets `sent` of these links.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/shared/traffic.h"
 
@@ -19,15 +19,16 @@
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void exchange(__global const uint* restrict ends,      // [link][node]: slot of the node at the link's other end;
                                                        // RAYA_NO_SLOT: skipped
-              const uint nodes,                        // on the device
-              const uint inboxes_of_link,              // on the device, for each link
+              const uint nodes,                        // number of nodes on the device
+              const uint inboxes_of_link,              // number of inboxes on the device per link
               const uint capacity,                     // of a mailbox, packets
               const uint packet_words,                 // words of a packet: 8 or 16
-              const uint outbox_status,                // index in a node's status of the counts of its outboxes
+              const uint outbox_status,                // index in a node's status of the counts of its
+                                                       // outboxes (RAYA_STATUS_OUTBOX or _RETURN_OUTBOX)
               const uint inbox_status,                 // ... of its inboxes
-              __global const uint* restrict outboxes,  // (kernels/shared/traffic.h)
+              __global const uint* restrict outboxes,  // mailboxes (kernels/shared/traffic.h)
               __global uint* restrict inboxes,
-              __global uint* restrict sent,            // [link][node]: 1 where an outbox has been copied
+              __global uint* restrict sent,            // [link][node]: 1 if the outbox has been copied
               __global uint* restrict status)          // [node][RAYA_STATUS_WORDS]
 {
     const uint box = get_group_id(0), link = box / nodes, slot = box % nodes, item = get_local_id(0), end = ends[box];

@@ -1,34 +1,36 @@
-// inject: nodes make packets of primary rays, up to a limit of their queues.
+// inject: nodes make the packets of primary rays, as many as the limit below allows.
 //
-// One work-group is one node. If the root makes all rays, it takes all pixels in turn and the other nodes do nothing.
-// Else every node makes the rays that enter the box at one of its voxels: it makes those of the window of pixels that
-// the host has given it, and discards those that enter elsewhere. Rays that miss the box belong to node row mod nodes.
-// A discarded ray costs work too and is counted (RAYA_DISCARDED).
+// One work-group is one node. If the root makes all primary rays, it processes all pixels and the other nodes do
+// nothing. Else a ray that enters the box belongs to the node that holds its first voxel, and a ray that misses the box
+// to node (row mod nodes). A node makes the rays of all pixels in its window (kernels/shared/node.h) and in its share
+// of rows, and discards those that belong to other nodes. Discarded rays cost work too, so they are counted
+// (RAYA_DISCARDED).
 //
 //     from the node's next pixel on, L x V pixels of a row at a time:
 //         make their rays and find their first voxels                      (shading/camera.clh, grid/walk.clh)
-//         count the node's own; if not all of them fit, keep the first that do
-//         append them to the queue; the next pixel is the first whose ray did not fit
+//         append the node's own rays to the queue, as many as fit
+//         the next pixel is the first whose ray did not fit
 //
-// Rays are made until an eighth of the queue is in use, and never in the slots that a ray's tree needs, so that there
-// are free slots for packets that arrive and for those that hits turn into. A launch ends after its `work` too; the
-// next one (`again`) continues there.
+// A node makes rays until an eighth of its queue is in use, and always leaves the slots free that the tree of one ray
+// needs. So there are free slots for packets that arrive and for packets that hits turn into. A launch also ends when
+// it has done its `work`. The next launch (`again` = 1) continues at the next pixel.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/torus/primaries.clh"
 
 #define RAYA_STEP (RAYA_GROUP * RAYA_LANES)
 
-// The queue that a node appends primary rays to, and the state that its work-items share.
+// The queue to which a node appends primary rays, and the state that its work-items share.
 typedef struct {
     __global raya_packet* packets;  // the queue
-    uint most;                      // maximum number of packets in it
+    uint most;                      // number of packets up to which rays are appended
     shared_words shared;            // RAYA_COUNT_WORDS
-    shared_words next;              // next pixel of the row
-    shared_words own;               // RAYA_VOTE_WORDS(L V): a bit for each lane's pixel, set for the node's own rays
-    uint work, spent;               // of this launch, in batches of up to L V pixels, or rows
+    shared_words next;              // [1]: next pixel of the row
+    shared_words own;               // RAYA_VOTE_WORDS(L V): a bit for each lane's ray, 1 if it is the node's own
+    uint work, spent;               // limit and work of this launch so far: batches of up to L V pixels, and rows
 } injection;
 
-// Votes for the lanes with own rays: lane l of work-item i has bit i V + l. With one work-item no votes are needed.
+// Sets the bits of the lanes whose rays are the node's own. Lane l of work-item i has bit i V + l. With one work-item
+// no bits are needed.
 static inline void vote_own(const injection* to, const primaries* p) {
 #if RAYA_GROUP > 1
     const uint bit = get_local_id(0) * RAYA_LANES;
@@ -36,7 +38,7 @@ static inline void vote_own(const injection* to, const primaries* p) {
 #endif
 }
 
-// Returns how many of the node's rays are in the lanes of the work-items before this one.
+// Returns how many of the node's own rays are in lanes of work-items before this one.
 static inline uint own_before(const injection* to) {
     uint number = 0;
 #if RAYA_GROUP > 1
@@ -51,8 +53,9 @@ static inline void clear_votes(const injection* to) {
     for (uint i = get_local_id(0); i < RAYA_VOTE_WORDS(RAYA_STEP); i += RAYA_GROUP) to->own[i] = 0;
 }
 
-// Appends the lanes' own rays, of pixels `first` to `end` - 1 of the row, to the queue from slot `at` on, as many as
-// fit. Returns the number in the row of the first pixel whose ray did not fit, `end` if all did.
+// Appends the node's own rays among the lanes' rays to the queue, from slot `at` on, as many as fit. The lanes hold the
+// pixels first .. end - 1 of the row. Returns the index in the row of the first pixel whose ray did not fit; `end` if
+// all fit.
 static inline uint put_primaries(const primaries* p, const injection* to, uint at, uint first, uint end) {
     lanes_index own, meets;
     own.truth = p->own;
@@ -76,7 +79,8 @@ static inline uint put_primaries(const primaries* p, const injection* to, uint a
     return waits;
 }
 
-// Returns how many rays of the lanes are not the node's. Only pixels before `next` count; the others are made again.
+// Returns how many rays of the lanes belong to other nodes. Only pixels before `next` count, because the rays of the
+// others will be made again.
 static inline uint discarded(const primaries* p, uint first, uint next) {
     lanes_index own;
     own.truth = p->own;
@@ -85,8 +89,8 @@ static inline uint discarded(const primaries* p, uint first, uint next) {
     return number;
 }
 
-// Makes rays of the row from its pixel `at` on until the queue has `most` packets or the work is done. Returns the next
-// pixel. Has barriers.
+// Makes the rays of the row from its pixel `at` on until the queue has `most` packets or the launch has done its work.
+// Returns the index of the next pixel. All work-items must call it, because it has barriers.
 static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, injection* to) {
     const uint item = get_local_id(0);
     shared_words used = to->shared + RAYA_COUNT_USED, next = to->next;
@@ -108,11 +112,11 @@ static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, 
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
-void inject(__global const uint* restrict memories,  // parameters without a comment: as for trace_voxel
+void inject(__global const uint* restrict memories,  // parameters without a comment: as in trace_voxel
             __global const uint* restrict starts,
             __global const raya_run* restrict run,
             const uint first_node,
-            const uint work,                         // limit of a node's work in a launch, > 0
+            const uint work,                         // maximum work of a node in a launch: batches and rows, > 0
             const uint again,
             __local uint* local_words,               // RAYA_INJECT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
                                                      // of a node

@@ -1,20 +1,20 @@
-// route: moves packets from the queue to the outboxes. Rays in voxels of other nodes go to the outbox of the link on
-// their route; returns go to that of the link towards the root, in the root to the host (Yoshitani & Yamazaki, method:
-// the communication task).
+// route: moves packets from the queue to the outboxes (Yoshitani & Yamazaki, method: the communication task). A ray
+// whose next voxel belongs to another node goes to the outbox of the next link on its route. A return goes to the
+// outbox of the link towards the root or, in the root, to the buffer that the host reads.
 //
 // One work-group is one node. L packets at a time, in the order of the queue:
 //
 //     find each packet's goal: the outbox of a link, the outbox towards the root, or this node's queue
-//     a packet whose outbox is full stays in the queue until the next superstep
+//     a packet whose outbox is full stays in the queue
 //     close the gaps in the queue
 //
-// A launch ends after `work` batches of L packets; the next one (`again`) continues with those that are left. The last
-// launch closes the gap between them and the packets that stay.
+// A launch ends after `work` batches of L packets. The next launch (`again` = 1) continues with the remaining packets.
+// Packets that stay move to the front of the queue; the last launch sets the queue's new length.
 //
-// Routes are those of raya_next_link and raya_return_link (kernels/shared/torus.h).
+// Routes are those of raya_next_link() and raya_return_link() (kernels/shared/torus.h).
 #include "kernels/torus/moves.clh"
 
-// Returns the goal of a packet of this node.
+// Returns the goal of a packet in this node's queue (kernels/shared/node_counts.h).
 static inline uint goal_of(const node* n, const raya_head* packet) {
     const uint kind = raya_state_kind(packet->state);
     if (kind == RAYA_KIND_NONE) return RAYA_GONE;
@@ -26,8 +26,8 @@ static inline uint goal_of(const node* n, const raya_head* packet) {
     return raya_next_link(n->torus, n->number, raya_node_of(n->torus, to.at[0], to.at[1], to.at[2]));
 }
 
-// Adds the goals of L packets to those `used` so far. Packets whose outbox was full have voted twice, so the caller
-// limits each count to the outbox's capacity.
+// Adds the votes of L packets to the slots `used` of each goal. A packet whose outbox was full has voted for it too, so
+// a count may exceed the outbox's capacity, and the caller limits it.
 static inline void count_votes(volatile __local uint* used, vote_words votes, uint goal) {
 #if RAYA_GROUP == 1
     ++used[goal];
@@ -37,18 +37,18 @@ static inline void count_votes(volatile __local uint* used, vote_words votes, ui
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
-void route(__global const uint* restrict memories,   // as for trace_voxel
+void route(__global const uint* restrict memories,   // as in trace_voxel
            __global const uint* restrict starts,
            __global const raya_run* restrict run,
            const uint first_node,
-           const uint work,                          // limit of a node's work in a launch, batches, > 0
+           const uint work,                          // maximum work of a node in a launch: batches of L packets, > 0
            const uint again,                         // 1: continues where the last launch ended
            __local uint* local_words,                // RAYA_ROUTE_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
                                                      // of a node
            __global raya_packet* restrict queues,    // [node][queue]
            __global uint* restrict outboxes,         // of rays (kernels/shared/traffic.h)
            __global uint* restrict return_outboxes,
-           __global raya_head* restrict returns,     // [host]: those that have reached the root
+           __global raya_head* restrict returns,     // [run->host]: returns that have reached the root
            __global uint* restrict status,           // [node][RAYA_STATUS_WORDS]
            __global ulong* restrict ended)           // [node][RAYA_KINDS], added to
 {
@@ -88,7 +88,7 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
         vote(votes, goal);
         node_barrier();
         const uint place = used[goal] + votes_before(votes, goal);
-        // Packets that stay move to a slot that this loop has read already.
+        // The slot `place` has already been read by an earlier iteration or this one.
         if (goal == RAYA_STAYS) queue[place] = packet;
         if (goal == RAYA_TO_ROOT) homeward[place] = packet.head;
         if (goal == RAYA_TO_ROOT && packet.head.state & RAYA_STATE_CHARGED) shared_add(charged, 1);

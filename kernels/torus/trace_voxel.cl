@@ -1,33 +1,34 @@
-// trace_voxel: every node tests the ray packets in its queue against the objects of the voxels that they are in
+// trace_voxel: every node tests each ray packet in its queue against the objects of the voxel that the ray is in
 // (Yoshitani & Yamazaki, method).
 //
 // One work-group is one node. Its work-items take V packets of the queue at a time, one in each lane:
 //
-//     for each voxel of this node that holds packets of the lanes:
-//         reserve slots for the packets that these may turn into (raya_slots_for_ray); packets without free slots wait
-//             for the next superstep
+//     for each voxel of this node that packets of the lanes are in:
+//         reserve slots for the packets that these packets may turn into (raya_slots_for_ray()); packets for which
+//             there are no free slots wait for the next superstep
 //         test the rays of these lanes against the voxel's objects                        (geometry/)
 //         a ray is done if its nearest hit lies before it leaves the voxel, or if it has left the box: it turns into a
 //             return packet and the packets of its secondary rays (torus/shade_packets.clh), or into a return packet
 //             with the background
-//         a shadow ray ends at a hit, and turns into a return packet at its light; the last one of a ray turns into a
-//             return packet either way (raya_run.return_a_ray)
-//         all others move to the next voxel                                               (grid/walk.clh)
+//         a shadow ray ends at any hit; at its light it turns into a return packet. If raya_run.return_a_ray is 1, the
+//             last shadow ray of a ray always turns into a return packet
+//         all other rays move to the next voxel                                               (grid/walk.clh)
 //
-// Wide rays must be tested against all objects: they start so far away that rounding could move a hit across a voxel's
-// side (kernels/grid/walk.clh). They visit all voxels in the order of their numbers, store where their nearest hit was
-// found, and are shaded there.
+// Wide rays (is_wide() in kernels/grid/walk.clh) must be tested against all objects. They visit all voxels in the order
+// of voxel numbers. Their packets record the voxel of the nearest hit, where they are shaded at the end.
 //
-// A node that has done its `work` takes no more packets. Those that are left lie in the queue's first slots; the next
-// launch (`again`) processes them, with the result of a single launch.
-// Limits: packets of a node < 2^31; events of one kind, in a node and a superstep, < 2^64; where costs are recorded,
-// cycles for one packet in one voxel < 2^32.
+// A node that has done its `work` takes no more packets. The remaining packets are in the queue's first slots, because
+// the node takes packets from the end of the queue. The next launch (`again` = 1) processes them. The result is that of
+// a single launch.
+//
+// Limits: packets of a node < 2^31; events of one kind, per node and superstep, < 2^64; if costs are recorded
+// (RAYA_COSTS), cycles per packet and launch < 2^32.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/torus/outcome.clh"
 #include "kernels/torus/shade_packets.clh"
 
-// Reserves slots for the packets that those of the lanes m may turn into. Returns the lanes that got them; `reserved`
-// is the number of slots.
+// Reserves slots for the packets that the packets of the lanes m may turn into. Returns the lanes for which there were
+// enough free slots. Sets `reserved` to the number of slots reserved. Shadow rays need none.
 static inline mask reserve(const node* n, const flight* f, mask m, uint* reserved) {
     lanes_index chosen, level;
     chosen.truth = m & mask_not(is_shadow(f));
@@ -74,7 +75,8 @@ static inline void move_packets(flight* f, mask m, index place) {
     }
 }
 
-// Processes the packets of the lanes m, all in the voxel `place` of this node or all outside the box.
+// Processes the packets of the lanes m. All are in the voxel `place` of this node, or outside the box if `place` is
+// RAYA_NO_VOXEL.
 static inline void process(const node* n, flight* f, mask m, uint place) {
     const uint before = f->appended;
     uint reserved;
@@ -108,7 +110,7 @@ static inline void process(const node* n, flight* f, mask m, uint place) {
 }
 
 #if RAYA_COSTS
-// Records the costs of the packets of the slots up to `end` - 1.
+// Records the costs of the flight's packets, which are in the slots f->first .. end - 1.
 static inline void record_costs(const flight* f, uint end, __global raya_processed* processed) {
     for (uint lane = 0; lane < RAYA_LANES && f->first + lane < end; ++lane) {
         __global raya_processed* t = processed + f->first + lane;
@@ -120,8 +122,8 @@ static inline void record_costs(const flight* f, uint end, __global raya_process
 }
 #endif
 
-// Processes the packets of the queue's slots first .. end - 1, at most V, that are in voxels of this node or outside
-// the box.
+// Processes the packets in the queue's slots first .. end - 1, at most V. Skips packets that are in other nodes'
+// voxels.
 RAYA_KERNEL_BODY void process_slots(const node* n, flight* f, uint first, uint end) {
     load_flight(f, first, end);
     lanes_index waiting;
@@ -138,21 +140,21 @@ RAYA_KERNEL_BODY void process_slots(const node* n, flight* f, uint first, uint e
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void trace_voxel(__global const uint* restrict memories,  // the words of all nodes (kernels/shared/node.h)
-                 __global const uint* restrict starts,    // [nodes + 1]: where each node's words start
+                 __global const uint* restrict starts,    // [nodes + 1]: offset of each node's words
                  __global const raya_run* restrict run,   // (kernels/shared/traffic.h)
                  const uint first_node,                   // slot of the node that is work-group 0
-                 const uint tight,                        // 1: rays need slots for the packets that they turn into at
-                                                          // once, not for their tree
-                 const uint work,                         // limit of a node's RAYA_COUNT_WORK in a launch, > 0
+                 const uint tight,                        // 1: a ray needs free slots only for the packets of one
+                                                          // hit, not for its whole tree
+                 const uint work,                         // maximum RAYA_COUNT_WORK of a node in a launch, > 0
                  const uint again,                        // 1: continues where the last launch ended
                  __local uint* local_words,               // RAYA_COUNT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the
                                                           // words of a node
                  __global raya_packet* restrict queues,   // [node][queue]
                  __global uint* restrict status,          // [node][RAYA_STATUS_WORDS]
                  __global ulong* restrict events,         // [node][RAYA_EVENTS], added to
-                 __global ulong* restrict made,           // [node][RAYA_KINDS]: packets, added to
+                 __global ulong* restrict made,           // [node][RAYA_KINDS]: number of packets made, added to
                  __global ulong* restrict ended,          // [node][RAYA_KINDS], added to
-                 __global raya_processed* restrict processed) // [node][queue], where RAYA_COSTS is 1; else not touched
+                 __global raya_processed* restrict processed) // [node][queue]; unused if RAYA_COSTS is 0
 {
     const uint slot = node_slot(first_node), item = get_local_id(0);
     status += (size_t)slot * RAYA_STATUS_WORDS;
@@ -171,7 +173,8 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
     processed += (size_t)slot * run->queue;
 #endif
     while (shared_add(&f.shared[RAYA_COUNT_WORK], 0) < work) {
-        // The newest packets first: among them are the deepest rays, which need the fewest slots.
+        // Packets are taken from the end of the queue. The newest packets are there, among them the deepest rays, whose
+        // trees need the fewest slots.
         const uint taken = shared_add(&f.shared[RAYA_COUNT_NEXT], RAYA_LANES);
         if (taken >= count) break;
         count_shared(f.shared, RAYA_COUNT_WORK, 1);

@@ -1,5 +1,5 @@
-// Rays aimed at objects, most of them at silhouettes, edges, rims and points, where a kernel's rounding decides whether
-// there is a hit.
+// Random rays aimed at objects, most of them at silhouettes, edges, rims and corners, where rounding decides whether a
+// kernel finds a hit.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -16,7 +16,8 @@
 
 namespace raya {
 
-/// The legal rays of a format: coordinates of origins up to `reach`, | |D|^2 - 1 | up to RAYA_STRETCH.
+/// Bounds of rays that are not wide in a format: coordinates of origins up to `reach`, | |D|^2 - 1 | up to
+/// RAYA_STRETCH.
 struct RayBounds {
     NumberFormat format;
     double reach = 0;
@@ -29,7 +30,8 @@ struct RayBounds {
     }
 };
 
-/// Scales the scene by `scale` and each object further by a random factor, 2^-9 to 2; turns some cones along axes.
+/// Scales the scene by `scale` and each object by another random factor, 2^-9 to 2. Aligns some cones with coordinate
+/// axes.
 inline Scene of_all_sizes(Scene scene, SplitMix& random, double scale) {
     const auto size = [&] { return std::exp2(random.uniform(-9, 1)); };
     scene.view.from *= scale;
@@ -49,7 +51,8 @@ inline Scene of_all_sizes(Scene scene, SplitMix& random, double scale) {
     return scene;
 }
 
-/// The target of a ray: a point of an object, and a direction in which rays there graze it; 0: any.
+/// The target of a ray: a point of an object, and a direction in which a ray through the point grazes the object.
+/// `tangent` is 0 if any direction may do.
 struct Aim {
     Vec3 point{0}, tangent{0};
 };
@@ -66,7 +69,7 @@ inline Aim aim_at(SplitMix& random, const Sphere& s) {
     return {s.centre + std::abs(s.radius) * normal, perpendicular(random, normal)};
 }
 
-/// On an edge or at its start; along the plane.
+/// The point lies on an edge or at a corner; `tangent` lies in the plane.
 inline Aim aim_at(SplitMix& random, const Polygon& p) {
     const std::size_t i = below(random, static_cast<std::uint32_t>(p.vertices.size()));
     const Vec3 start = p.vertices[i], side = p.vertices[(i + 1) % p.vertices.size()] - start;
@@ -74,7 +77,7 @@ inline Aim aim_at(SplitMix& random, const Polygon& p) {
             perpendicular(random, newell_normal(p.vertices).normalized())};
 }
 
-/// On the side, the rim or the axis; rays graze the side.
+/// The point lies on the side, on a rim or on the axis; `tangent` lies along the side or around the axis.
 inline Aim aim_at(SplitMix& random, const Cone& c) {
     static constexpr std::array<double, 4> kEnds = {0, 1, 1e-3, 1 - 1e-3};
     const Vec3 axis = (c.apex - c.base).normalized(), out = perpendicular(random, axis);
@@ -94,7 +97,8 @@ inline Aim aim_at(SplitMix& random, const Scene& scene, std::size_t number) {
     return aim_at(random, scene.cones[number - scene.polygons.size()]);
 }
 
-/// Returns the distance from a point along a direction to the border of the cube of origins.
+/// Returns the distance from a point along a direction to the border of the cube of allowed origins (coordinates up to
+/// `reach`).
 inline double way_out(const RayBounds& bounds, const Vec3& from, const Vec3& direction) {
     double way = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
@@ -114,7 +118,7 @@ inline Vec3 random_start(SplitMix& random, const RayBounds& bounds, const Aim& a
             return aim.point + random.uniform(0, way) * away;
         case 2:
             return aim.point + way * std::exp2(random.uniform(-12, 0)) * away;
-        default: {  // a corner of the cube of origins
+        default: {  // a corner of the cube of allowed origins
             Vec3 corner;
             for (int axis = 0; axis < 3; ++axis) corner[axis] = (below(random, 2) == 0 ? 1 : -1) * bounds.reach;
             return grazes ? aim.point + way * away : corner;
@@ -122,8 +126,8 @@ inline Vec3 random_start(SplitMix& random, const RayBounds& bounds, const Aim& a
     }
 }
 
-/// Returns a direction towards the aim, up to a few units in the last place, as long or short as RAYA_STRETCH allows,
-/// or of length 1.
+/// Returns a ray towards the aim, with an error of a few units in the last place. Its direction has length 1 or any
+/// other length that RAYA_STRETCH allows.
 inline reference::Ray random_aimed_ray(SplitMix& random, const RayBounds& bounds, Aim aim) {
     if (below(random, 2) == 0) aim.point = bounds.rounded(aim.point);
     const double stretch = bounds.format.is_fp32() ? 0x1p-18 : 16 * bounds.unit();  // RAYA_STRETCH

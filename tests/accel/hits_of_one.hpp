@@ -1,4 +1,4 @@
-// Hits of single objects of a scene by rays aimed at them.
+// Finds the hits of single objects of a scene by rays that are aimed at them.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -17,21 +17,21 @@ inline PackedJob job_in(const Scene& scene, const NumberFormat& format) {
     return pack_job(scene, settings);
 }
 
-/// A hit as the kernel computed it, with its ray.
+/// A hit that a kernel has found, with its ray.
 struct FoundHit {
-    std::uint32_t object;  // number in the job
+    std::uint32_t object;  // object number in the job
     reference::Ray ray;
     double t;
     Vec3 point() const { return ray.origin + t * ray.direction; }
 };
 
-/// Rays and their objects, sixteen rays for each entry of `objects`.
+/// Rays, and the objects that they are aimed at: sixteen rays for each entry of `objects`.
 struct AimedRays {
-    std::vector<std::uint32_t> objects;  // numbers in the job
+    std::vector<std::uint32_t> objects;  // object numbers in the job
     std::vector<reference::Ray> rays;
 };
 
-/// Returns `turns` times sixteen rays for each finite object.
+/// Returns 16 * `turns` rays aimed at each finite object.
 inline AimedRays aim_at_all(SplitMix& random, const Scene& scene, const RayBounds& bounds, int turns) {
     AimedRays aimed;
     const std::vector<int> numbers = object_numbers(scene);

@@ -1,4 +1,4 @@
-// Partitions of random scenes and their lists.
+// Partitions (grid registrations) of random scenes, and access to their object lists.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace raya {
 
-/// For the last one no bounds are known: every object is in every list.
+/// Number formats of the tests. For the last one no error bounds are known, so every object is in every list.
 inline const std::vector<std::string> kFormats = {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10", "e7m20t", "e5m6"};
 
 inline bool lists(const Partition& p, std::uint32_t voxel, std::uint32_t object) {
@@ -23,7 +23,7 @@ inline std::size_t lists_with(const Partition& p, std::uint32_t object) {
     return static_cast<std::size_t>(std::count(p.objects.begin(), p.objects.end(), object));
 }
 
-/// Numbers of the finite objects.
+/// Returns the object numbers of the finite objects, ascending.
 inline std::vector<std::uint32_t> finite_numbers(const PackedJob& job) {
     const raya_objects all = job.header().objects;
     std::vector<std::uint32_t> numbers;
@@ -36,7 +36,8 @@ inline Partition partition_of(const Scene& scene, const std::string& format, con
     return partition(job_in(scene, parse_format(format)), parse_format(format), divisions);
 }
 
-/// Half of the error that the partition allows for a ray from the edge of the reach; tests of the walk allow a quarter.
+/// Returns half of the error that the partition allows for a ray whose origin is at `reach`. (The tests of the
+/// traversal allow a quarter.)
 inline double walk_error(const raya_grid& grid) {
     double largest = grid.reach;
     for (std::uint32_t axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(double{grid.low[axis]})});
@@ -49,7 +50,7 @@ inline Divisions random_divisions(SplitMix& random) {
     return {x, y, along()};
 }
 
-/// Returns a scale up to the largest and down to the smallest coordinates and sizes of the format.
+/// Returns a random scale of a scene, up to the largest and down to the smallest sizes that the format can represent.
 inline double random_scale(SplitMix& random, const NumberFormat& format) {
     const double room = format.exponent_bits == 5 ? 2 : format.exponent_bits == 6 ? 8 : 16;
     return std::exp2(random.uniform(-room, room));

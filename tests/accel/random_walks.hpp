@@ -1,4 +1,4 @@
-// Random grids and rays for the walk: typical ones, and those that are hard for walks.
+// Random grids and rays for tests of the grid traversal: typical cases and edge cases.
 #pragma once
 #include <array>
 #include <cmath>
@@ -18,13 +18,13 @@ inline std::uint32_t below(SplitMix& random, std::uint32_t end) {
     return static_cast<std::uint32_t>(random.next() % end);
 }
 
-/// Boxes of all sizes and proportions, around the origin and far from it.
+/// Returns a grid of random size, proportions and divisions, around the origin or far from it.
 inline raya_grid random_grid(SplitMix& random) {
     static const std::vector<Divisions> kinds = {{1, 1, 1},   {1, 7, 3}, {64, 64, 64}, {2, 2, 2},   {4, 4, 4},
                                                  {16, 1, 16}, {5, 8, 3}, {1, 1, 200},  {30, 20, 10}};
     const Divisions divisions = kinds[below(random, static_cast<std::uint32_t>(kinds.size()))];
     const double scale = std::exp2(random.uniform(-20, 20));
-    const double away = below(random, 3) == 0 ? random.uniform(0, 1000) : 1;  // from the origin, in box sizes
+    const double away = below(random, 3) == 0 ? random.uniform(0, 1000) : 1;  // distance from the origin, in box sizes
     raya_grid grid{};
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const double side = scale * (below(random, 5) == 0 ? random.uniform(1e-3, 1) : 1);
@@ -36,7 +36,8 @@ inline raya_grid random_grid(SplitMix& random) {
     return grid;
 }
 
-/// The point of the grid at the given planes; between two of them for a fraction.
+/// Returns the point with the grid coordinates `planes`: an integer is a plane between voxels, a fraction lies between
+/// two planes.
 inline Vec3 grid_point(const raya_grid& grid, const Vec3& planes) {
     Vec3 p;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -68,7 +69,8 @@ inline Vec3 axis_direction(SplitMix& random) {
     return d;
 }
 
-/// A direction whose components are +-1, +-0 or tiny, one of them at least 1.
+/// Returns a normalised direction. Before normalisation, at least one component is +-1; the others are +-1, +-0 or
+/// tiny.
 inline Vec3 awkward_direction(SplitMix& random) {
     static constexpr std::array<double, 9> kSizes = {0, -0.0, 1, 1, 1e-4, 1e-10, 1e-19, 1e-21, 1e-30};
     Vec3 d = axis_direction(random);
@@ -77,8 +79,8 @@ inline Vec3 awkward_direction(SplitMix& random) {
     return d.normalized();
 }
 
-/// Rays of every kind: from inside, from outside and from far away; parallel to axes; along edges and faces of voxels;
-/// through corners.
+/// Returns a random ray of one of these kinds: from inside, from outside or from far away; parallel to an axis; along
+/// edges or faces of voxels; through corners of voxels.
 inline reference::Ray random_walk_ray(SplitMix& random, const raya_grid& grid) {
     const Vec3 inside = random_place(random, grid), corner = random_corner(random, grid);
     const Vec3 other = below(random, 2) == 0 ? random_place(random, grid) : random_corner(random, grid);
@@ -107,7 +109,7 @@ inline reference::Ray random_walk_ray(SplitMix& random, const raya_grid& grid) {
             const Vec3 d = fp32(awkward_direction(random));
             return {fp32((below(random, 2) == 0 ? corner : inside) - random.uniform(0, 2) * size * d), d};
         }
-        default: {  // grazes a face
+        default: {  // nearly parallel to faces of voxels
             Vec3 d = random_direction(random);
             d[static_cast<int>(below(random, 3))] *= std::exp2(random.uniform(-30, -10));
             d = fp32(d.normalized());
@@ -116,7 +118,7 @@ inline reference::Ray random_walk_ray(SplitMix& random, const raya_grid& grid) {
     }
 }
 
-/// The maximum number of voxels on a ray.
+/// Returns an upper bound of the number of voxels on a ray.
 inline std::uint32_t most_voxels(const raya_grid& g) { return g.divisions[0] + g.divisions[1] + g.divisions[2] + 1; }
 
 }  // namespace raya

@@ -1,5 +1,5 @@
-// The voxels that a ray crosses, in double precision, found by halving the box down to single voxels. The oracle of
-// kernels/grid/walk.clh.
+// The oracle of kernels/grid/walk.clh: finds the voxels that a ray crosses, in double precision, by recursive bisection
+// of the box.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace raya {
 
-/// Voxels first .. end - 1 along each axis.
+/// A cuboid of voxels: first .. end - 1 along each axis.
 struct VoxelBlock {
     std::array<std::uint32_t, 3> first, end;
 };
@@ -30,13 +30,14 @@ inline VoxelBlock one_voxel(const raya_grid& g, std::uint32_t voxel) {
     return b;
 }
 
-/// The part of a ray in a block: t from in to out, empty if in > out.
+/// The interval of t in which a ray is in a block: in <= t <= out, empty if in > out.
 struct Passage {
     double in = 0, out = std::numeric_limits<double>::infinity();
     bool empty() const { return in > out; }
 };
 
-/// Returns t >= 0 at which the ray is in the block, its planes moved outward by `slack` (inward if it is negative).
+/// Returns the interval of t >= 0 in which the ray is in the block, after the block's planes have been moved outward by
+/// `slack` (inward if it is negative).
 inline Passage passage(const raya_grid& g, const VoxelBlock& block, const reference::Ray& ray, double slack) {
     Passage p;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -54,7 +55,8 @@ inline Passage passage(const raya_grid& g, const VoxelBlock& block, const refere
     return p;
 }
 
-/// Adds the voxels that the ray crosses more than `slack` inside their planes, in no particular order.
+/// Adds the voxels of the block that the ray crosses at a distance of more than `slack` from their planes, in no
+/// particular order.
 inline void add_crossed(const raya_grid& g, const VoxelBlock& block, const reference::Ray& ray, double slack,
                         std::vector<std::uint32_t>& voxels) {
     if (passage(g, block, ray, -slack).empty()) return;

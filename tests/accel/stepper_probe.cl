@@ -1,5 +1,5 @@
-// Test kernel: the grid walk of the ring machine's lanes (kernels/grid/stepper.clh), voxel by voxel; buffers as in
-// walk_probe.cl.
+// Test kernel: traces given rays through a grid by kernels/grid/stepper.clh and records every voxel. Buffers are those
+// of walk_probe.cl.
 #include "kernels/checks/rays.clh"
 #include "kernels/grid/stepper.clh"
 

@@ -1,5 +1,5 @@
-// BVH traversal: rays aimed at silhouettes, edges, rims and points, and rays along axes, have the same hits as by
-// testing all objects, bit for bit.
+// BVH traversal finds the same hits as testing all objects, bit for bit, for rays aimed at silhouettes, edges, rims and
+// corners, and for rays along axes.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -15,7 +15,7 @@ namespace {
 
 const std::vector<std::string> kKernelFormats = {"fp32", "e6m15", "e5m10", "e8m12", "e6m15t"};
 
-// Adds a flat polygon of many corners, every second one nearer to its middle.
+// Adds a star-shaped planar polygon of many corners.
 void add_star(Scene& scene, SplitMix& random) {
     const Vec3 middle = random_direction(random), normal = random_direction(random);
     const Vec3 u = perpendicular(random, normal), v = normal.cross(u);
@@ -39,7 +39,8 @@ Scene crowd(SplitMix& random, int of_each) {
     return scene;
 }
 
-// Returns aimed rays, every fourth turned along an axis, every third with a limit of the scene's size.
+// Returns aimed rays. A quarter of the directions are replaced by an axis direction, and a third of the limits by a
+// random limit up to 2 * bounds.reach.
 Rays rays_at(SplitMix& random, const Scene& scene, const RayBounds& bounds, int turns) {
     Rays rays;
     for (const reference::Ray& aimed : aim_at_all(random, scene, bounds, turns).rays) {

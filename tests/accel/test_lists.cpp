@@ -1,4 +1,4 @@
-// The words of a grid, traversed as kernels do, give the lists of the partition.
+// Reading the words of a grid as the kernels do yields the object lists of the partition.
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -11,7 +11,8 @@ namespace {
 
 raya_grid_words grid_of(const PackedJob& job) { return record_at<raya_grid_words>(job.words(), job.header().accel_at); }
 
-/// Returns the numbers of the objects in a voxel word's list. Checks that every sphere's row holds its words.
+/// Returns the object numbers in the list of a voxel word. Checks that every sphere's row holds the words of the
+/// sphere.
 std::vector<std::uint32_t> objects_behind(const PackedJob& job, std::uint32_t word) {
     const raya_grid_words grid = grid_of(job);
     const raya_objects objects = job.header().objects;
@@ -50,7 +51,7 @@ void check_lists(const PackedJob& job, const Partition& p) {
     }
 }
 
-/// Spheres and other objects in one place, so that all are in every list.
+/// Returns a scene with spheres and other objects in one place, so that every list contains all of them.
 Scene heap(std::size_t spheres, std::size_t others) {
     Scene scene = empty_scene();
     SplitMix random(spheres * 1000 + others);

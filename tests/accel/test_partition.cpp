@@ -1,4 +1,4 @@
-// The partition: each object is in the lists of all voxels where a kernel can find a hit of it, and in few others.
+// The partition registers each object in all voxels in which a kernel can find a hit of the object, and in few others.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -12,7 +12,8 @@
 namespace raya {
 namespace {
 
-// Spheres at the two ends of a cube's diagonal, so that objects between them do not change the box.
+// Returns a scene with spheres at two opposite corners of a cube, so that objects added between them do not change the
+// grid's box.
 Scene cornered_scene() {
     Scene scene = empty_scene();
     scene.view.from = Vec3(1);
@@ -28,7 +29,7 @@ Vec3 middle_of(const raya_grid& g, const std::array<std::uint32_t, 3>& voxel) {
     return middle;
 }
 
-// Voxels that the surface of a sphere passes through.
+// Returns the number of voxels that intersect the surface of a sphere.
 std::size_t touched_voxels(const raya_grid& g, const Sphere& s) {
     std::size_t touched = 0;
     for (std::uint32_t v = 0; v < raya_voxels(g); ++v) {
@@ -81,7 +82,7 @@ TEST_CASE("an object well inside a voxel is registered only there") {
             if (kind.name == "plane") continue;
             Scene scene = cornered_scene(), object;
             kind.add(object, random);
-            // Within about 2 of its place, scaled by 0.05: less than half a voxel.
+            // The object lies within about 2 units of its place, scaled by 0.05: less than half a voxel.
             const Vec3 middle = middle_of(grid, voxel);
             for (const Sphere& s : object.spheres) scene.spheres.push_back({middle, 0.1 * s.radius, 0});
             for (Polygon q : object.polygons) {
@@ -118,7 +119,7 @@ TEST_CASE("spheres are registered in the voxels of their surfaces and in few oth
     }
 }
 
-// Rounding may put the walk on the other side of the plane where the ray touches the sphere.
+// Rounding may put the traversal on the other side of the plane at the point where the ray touches the sphere.
 TEST_CASE("an object that ends just before a plane is registered on both sides") {
     Scene scene = cornered_scene();
     for (std::uint64_t seed = 0; seed < 50; ++seed) {

@@ -1,5 +1,6 @@
-// Registration: every hit that a kernel computes, in any format, lies in its object's region and in voxels that list
-// the object. RAYA_REGISTRATION_CASES=200 asks for more scenes of each kind and format than the default.
+// Every hit that a kernel computes, in any format, lies in its object's hit region (host/accel/hit_regions.hpp) and in
+// voxels that list the object. The environment variable RAYA_REGISTRATION_CASES sets the number of scenes of each kind
+// and format.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -20,7 +21,7 @@ std::uint64_t cases_wanted() {
     return given ? std::strtoull(given, nullptr, 10) : 20;
 }
 
-// Returns true if there are voxels within `error` of the point and all of them list the object.
+// Returns true if at least one voxel lies within `error` of the point and all such voxels list the object.
 bool listed_about(const Partition& p, const Vec3& point, double error, std::uint32_t object) {
     std::array<std::vector<std::uint32_t>, 3> at;
     for (std::uint32_t axis = 0; axis < 3; ++axis)
@@ -36,7 +37,7 @@ bool listed_about(const Partition& p, const Vec3& point, double error, std::uint
     return !at[0].empty() && !at[1].empty() && !at[2].empty();
 }
 
-// Checks that hits lie in their objects' regions and in voxels that list their objects.
+// Checks that hits lie in the regions of their objects and in voxels that list the objects. Returns the number of hits.
 std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scene, const NumberFormat& format,
                        int turns) {
     const PackedJob job = job_in(scene, format);
@@ -84,7 +85,8 @@ TEST_CASE("every hit lies in voxels that list its object") {
     CHECK(hits > 80 * cases);
 }
 
-// A ray nearly parallel to a cylinder, half a unit beside it: b is 0, and a c is so small that it is flushed to 0.
+// The ray is nearly parallel to a cylinder, at a distance of half a unit. In the quadratic, b is 0 and a c is so small
+// that it is flushed to 0.
 TEST_CASE("a discriminant that is flushed to 0 is not a hit of a cone") {
     const NumberFormat format = parse_format("e6m15");
     KernelRunner runner("tests/accel/hits_probe.cl", {4, true, format});

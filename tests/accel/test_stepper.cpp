@@ -1,5 +1,5 @@
-// Compares the walk of the ring machine's lanes (stepper.clh) with walk.clh: the same voxels at the same t, bit for
-// bit, until the ray leaves the box.
+// Compares the traversal by stepper.clh with that by walk.clh: both visit the same voxels and leave them at the same t,
+// bit for bit, until the ray leaves the box.
 #include <catch2/catch.hpp>
 
 #include "host/scene/packer.hpp"
@@ -10,11 +10,11 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kGrids = 40, kRays = 1024;  // in each grid
+constexpr std::size_t kGrids = 40, kRays = 1024;  // rays per grid
 
 struct Walks {
-    std::vector<std::uint32_t> voxels;  // [ray][most], RAYA_NO_VOXEL behind the last
-    std::vector<float> leaves;          // [ray][most]
+    std::vector<std::uint32_t> voxels;  // [ray][most]: voxel numbers, RAYA_NO_VOXEL after the last
+    std::vector<float> leaves;          // [ray][most]: t at which the ray leaves each voxel
 };
 
 std::vector<std::uint32_t> words_of(const raya_grid& grid) {
@@ -50,8 +50,8 @@ Walks stepped_walks(KernelRunner& runner, const raya_grid& grid, const std::vect
     return {runner.read(voxels), runner.read(leaves)};
 }
 
-/// Returns the number of voxels that steps visit. They skip voxels that a ray touches with length 0 where it leaves the
-/// box through an edge.
+/// Returns the number of voxels that stepper.clh must visit, given the voxels that walk.clh visits. stepper.clh skips
+/// the last voxels if the ray crosses them with length 0, as where it leaves the box through an edge.
 std::size_t end_of_walk(const Walks& w, std::size_t ray, std::uint32_t most) {
     std::size_t count = 0;
     while (count < most && w.voxels[ray * most + count] != RAYA_NO_VOXEL) ++count;

@@ -1,4 +1,4 @@
-// The BVH: invariants of every tree.
+// Invariants of every BVH that is built.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,9 +17,9 @@ BvhItem item_at(SplitMix& random, std::uint32_t number, double size, int way) {
     BvhItem item{{}, number, kinds[number % kinds.size()]};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double at = way == 0   ? random.uniform(-1, 1)
-                          : way == 1 ? 0.25                                               // all in one place
-                          : way == 2 ? std::pow(2.0, -double(number % 60)) * (axis == 0)  // ever closer
-                                     : number % 7;                                        // on few places
+                          : way == 1 ? 0.25                                               // all items in one place
+                          : way == 2 ? std::pow(2.0, -double(number % 60)) * (axis == 0)  // closer and closer together
+                                     : number % 7;                                        // in few places
         item.box.low[axis] = static_cast<float>(at - size);
         item.box.high[axis] = static_cast<float>(at + size * random.uniform(0.5, 2));
     }
@@ -39,7 +39,7 @@ bool fits(const Bounds& outer, const Boxed* first, const Boxed* end) {
     return true;
 }
 
-/// Checks a subtree and collects its items' numbers. Returns its depth in nodes.
+/// Checks the invariants of a subtree and collects the numbers of its items. Returns its depth in nodes.
 std::uint32_t check_child(const Bvh& tree, const BvhChild& child, std::multiset<std::uint32_t>& numbers) {
     if (child.kind != RAYA_LINK_NODE) {
         REQUIRE(child.items >= 1);

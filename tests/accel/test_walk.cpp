@@ -1,5 +1,5 @@
-// Compares the walk of rays through grids with a reference that does not walk: voxels in order, none missed, none far
-// from the ray.
+// Compares the grid traversal (walk.clh) with a reference that uses bisection: voxels are visited in order, none is
+// missed, and none is far from the ray.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,12 +14,12 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kWalkedGrids = 50, kWalkedRays = 2048;  // in each grid
+constexpr std::size_t kWalkedGrids = 50, kWalkedRays = 2048;  // rays per grid
 
 struct VoxelWalks {
-    std::vector<std::uint32_t> wide, voxels;  // [ray], [ray][most]
-    std::vector<float> leaves;                // [ray][most]
-    std::vector<float> resumed_leaves;        // [ray][most]: of walks resumed in each voxel
+    std::vector<std::uint32_t> wide, voxels;  // [ray]; [ray][most]
+    std::vector<float> leaves;                // [ray][most]: t at which the ray leaves each voxel
+    std::vector<float> resumed_leaves;        // [ray][most]: as `leaves`, if the traversal is resumed in the voxel
     std::vector<std::uint32_t> resumed_nexts;
 };
 
@@ -48,7 +48,7 @@ VoxelWalks walk(KernelRunner& runner, const raya_grid& grid, const std::vector<f
     return {runner.read(wide), runner.read(voxels), runner.read(leaves), runner.read(again), runner.read(nexts)};
 }
 
-/// The result of a walk.
+/// The voxels that a ray visits, in order, and t at which it leaves them.
 struct Path {
     std::vector<std::uint32_t> voxels;
     std::vector<float> leaves;
@@ -63,7 +63,8 @@ Path path_of(const VoxelWalks& walks, std::size_t ray, std::uint32_t most) {
     return path;
 }
 
-/// The largest allowed distance of a ray from its voxel: a quarter of what host/accel/partition.cpp allows for.
+/// Returns the maximum allowed distance of a ray from its voxel: a quarter of the error that host/accel/partition.cpp
+/// allows for.
 double walk_error(const raya_grid& grid, const reference::Ray& ray) {
     double box = 0, origin = 0;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -74,7 +75,7 @@ double walk_error(const raya_grid& grid, const reference::Ray& ray) {
     return 4 * 0x1p-24 * (origin + box);
 }
 
-/// Returns true if each step leads to a neighbour in the direction of the ray and t never decreases.
+/// Returns true if each step leads to a neighbouring voxel in the direction of the ray and t never decreases.
 bool steps_forward(const raya_grid& grid, const reference::Ray& ray, const Path& path) {
     for (std::size_t i = 1; i < path.voxels.size(); ++i) {
         const VoxelBlock from = one_voxel(grid, path.voxels[i - 1]), to = one_voxel(grid, path.voxels[i]);
@@ -89,7 +90,7 @@ bool steps_forward(const raya_grid& grid, const reference::Ray& ray, const Path&
     return true;
 }
 
-/// Returns true if the ray is never farther than `error` from the voxel that the walk is in.
+/// Returns true if the ray is within `error` of the traversal's current voxel at all t.
 bool keeps_near(const raya_grid& grid, const reference::Ray& ray, const Path& path, double error) {
     const Passage box = passage(grid, all_voxels(grid), ray, -error);
     for (std::size_t i = 0; i < path.voxels.size(); ++i) {
@@ -100,7 +101,8 @@ bool keeps_near(const raya_grid& grid, const reference::Ray& ray, const Path& pa
     return true;
 }
 
-/// Returns true if all voxels that the ray crosses by more than `error` are on its path.
+/// Returns true if the path contains all voxels that the ray crosses at a distance of more than `error` from their
+/// planes.
 bool misses_none(const raya_grid& grid, const reference::Ray& ray, const Path& path, double error) {
     std::vector<std::uint32_t> crossed;
     add_crossed(grid, all_voxels(grid), ray, error, crossed);
@@ -108,7 +110,8 @@ bool misses_none(const raya_grid& grid, const reference::Ray& ray, const Path& p
     return std::all_of(crossed.begin(), crossed.end(), [&](std::uint32_t v) { return visited.count(v) == 1; });
 }
 
-/// A ray may visit the box only if it comes near the box before its limit, and must if it crosses it before then.
+/// States if a ray enters the grid. It may do so only if it comes near the box before its limit, and must if it
+/// certainly crosses the box before its limit.
 enum class Entry { kMust, kMay, kMustNot };
 
 Entry entry(const raya_grid& grid, const reference::Ray& ray, double limit, double error) {
@@ -125,7 +128,7 @@ double random_limit(SplitMix& random, const raya_grid& grid, const reference::Ra
     return fp32(box.in * kShares[below(random, kShares.size())]);
 }
 
-/// A grid, rays through it and their limits.
+/// A random grid, random rays, and the limits of the rays.
 struct WalkCase {
     explicit WalkCase(std::uint64_t seed) {
         SplitMix random(seed);
@@ -234,7 +237,7 @@ TEST_CASE("a ray is wide only if it starts beyond the reach or its direction is 
     }
 }
 
-// Kernels make only such directions, but a ray that is reflected several times may be wide.
+// All rays that kernels make start with such directions. After several reflections a ray may be wide.
 TEST_CASE("rays of normalised directions are never wide, those reflected once hardly ever") {
     const raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
     constexpr std::size_t kCount = 1 << 16;

@@ -1,4 +1,4 @@
-// Test kernels: the walk of given rays (kernels/checks/rays.clh) through a grid (kernels/grid/walk.clh), voxel by
+// Test kernels: trace given rays (kernels/checks/rays.clh) through a grid by kernels/grid/walk.clh and record every
 // voxel.
 #include "kernels/checks/rays.clh"
 #include "kernels/grid/walk.clh"
@@ -7,9 +7,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void walks(__global const raya_grid* restrict grid,
            __global const float* restrict rays,
            const uint most,               // maximum number of voxels on a ray
-           __global uint* restrict wide,    // [ray]: 0 or 1
-           __global uint* restrict voxels,  // [ray][most]: voxels of the walk in order, then RAYA_NO_VOXEL
-           __global float* restrict leaves) // [ray][most]: t at which it leaves each of them
+           __global uint* restrict wide,    // [ray]: 1 if the ray is wide, else 0
+           __global uint* restrict voxels,  // [ray][most]: voxel numbers in the order of traversal, then RAYA_NO_VOXEL
+           __global float* restrict leaves) // [ray][most]: t at which the ray leaves each voxel
 {
     const uint first = first_ray();
     const raya_grid g = *grid;
@@ -25,14 +25,14 @@ void walks(__global const raya_grid* restrict grid,
     }
 }
 
-// Resumes each ray's walk in each of its voxels.
+// Resumes each ray's traversal in each of the voxels that `walks` has recorded.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void resumes(__global const raya_grid* restrict grid,
              __global const float* restrict rays,
              const uint most,
              __global const uint* restrict voxels,  // [ray][most], results of `walks`
              __global float* restrict leaves,       // [ray][most]: t at which the ray leaves each voxel
-             __global uint* restrict nexts)         // [ray][most]: the voxel after each
+             __global uint* restrict nexts)         // [ray][most]: the voxel that follows each voxel
 {
     const uint first = first_ray();
     const raya_grid g = *grid;
@@ -51,11 +51,11 @@ void resumes(__global const raya_grid* restrict grid,
         }
 }
 
-// Normalised directions, and those reflected once at normalised normals.
+// Applies is_wide() to rays with normalised directions, and to these rays after one reflection at a normalised normal.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void made_directions(__global const raya_grid* restrict grid,
-                     __global const float* restrict arms,  // [ray][6]: towards the direction, towards the normal
-                     __global uint* restrict wide)         // [ray][2]: 0 or 1
+                     __global const float* restrict arms,  // [ray][6]: a direction and a normal, not normalised
+                     __global uint* restrict wide)         // [ray][2]: 1 if the ray, the reflected ray is wide; else 0
 {
     const uint first = first_ray();
     const vec zero = {num_all(0.0f), num_all(0.0f), num_all(0.0f)};

@@ -10,9 +10,9 @@ namespace raya {
 
 class TemporaryFolder {
   public:
-    /// Its name starts with `name`. Throws std::system_error if the folder cannot be created.
+    /// Creates the folder. Its name starts with `name`. Throws std::system_error if the folder cannot be created.
     explicit TemporaryFolder(const std::string& name) {
-        const std::string open_end(6, 'X');  // mkdtemp fills it in
+        const std::string open_end(6, 'X');  // mkdtemp replaces it
         std::string made = (std::filesystem::temp_directory_path() / (name + "-" + open_end)).string();
         if (::mkdtemp(made.data()) == nullptr)
             throw std::system_error(errno, std::generic_category(), "cannot create a temporary folder: " + made);

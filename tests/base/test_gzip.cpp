@@ -1,4 +1,4 @@
-// Text compressed piece by piece is unpacked unchanged.
+// Text that is compressed in pieces decompresses to the same text.
 #include <catch2/catch.hpp>
 #include <stdexcept>
 #include <string>
@@ -22,7 +22,7 @@ TEST_CASE("gzip unpacks the appended text, whatever its pieces", "[report]") {
     for (int i = 0; i < 40; ++i) {
         CAPTURE(kSeed, i);
         const std::uint64_t pieces = random.next() % 20, longest = std::uint64_t{1} << (random.next() % 19);
-        const bool noise = random.next() % 2 == 0;  // or text that compresses well
+        const bool noise = random.next() % 2 == 0;  // false: text that compresses well
         std::string text;
         GzipText file;
         for (std::uint64_t piece = 0; piece < pieces; ++piece) {
@@ -33,7 +33,7 @@ TEST_CASE("gzip unpacks the appended text, whatever its pieces", "[report]") {
             text += part;
         }
         const std::string bytes = file.finish();
-        const bool same = gunzip(bytes) == text;  // not shown: up to megabytes
+        const bool same = gunzip(bytes) == text;  // a bool, because texts have up to megabytes
         CHECK(same);
         CHECK(bytes.size() < text.size() + text.size() / 100 + 100);
         if (!noise && text.size() > 100'000) CHECK(bytes.size() < text.size() / 100);

@@ -1,4 +1,4 @@
-// An interruption ends the process with its signal, prints a message, and leaves no partly written file.
+// An interrupted process ends with the signal, prints a message, and leaves no partly written file.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,11 +22,11 @@ namespace raya {
 namespace {
 
 struct End {
-    int status = 0;  // of waitpid()
+    int status = 0;  // as waitpid() returns it
     std::string output;
 };
 
-/// Runs `work` in a child process; returns its status and its output on stderr.
+/// Runs `work` in a child process; returns the child's status and its output on stderr.
 template <class Work>
 End in_child_process(const Work& work) {
     std::array<int, 2> ends{};
@@ -34,7 +34,7 @@ End in_child_process(const Work& work) {
     const pid_t child = ::fork();
     if (child == 0) {
         ::dup2(ends[1], STDERR_FILENO);
-        // Replaces Catch's handlers by the defaults that a program starts with.
+        // Restores the default handlers, with which a program starts, instead of Catch's.
         for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_DFL);
         work();
         ::_exit(99);
@@ -49,7 +49,7 @@ End in_child_process(const Work& work) {
     return end;
 }
 
-/// Interrupts the process when one of its files reaches `bytes`: in the middle of a write, always at the same byte.
+/// Calls `interrupt` when one of the process's files reaches `bytes`: during a write, always at the same byte.
 void interrupt_at(rlim_t bytes, void (*interrupt)(int)) {
     std::signal(SIGXFSZ, interrupt);
     const rlimit limit{bytes, RLIM_INFINITY};
@@ -70,7 +70,7 @@ TEST_CASE("an interruption in the middle of a file removes its written part", "[
         CHECK(WIFSIGNALED(end.status));
         CHECK(WTERMSIG(end.status) == SIGINT);
         CHECK(end.output == "raya: interrupted\n");
-        CHECK(folder.entries() == 1);  // the old one
+        CHECK(folder.entries() == 1);  // the old file
         std::ifstream old(folder / "old");
         CHECK(std::string(std::istreambuf_iterator<char>(old), {}) == "as it was");
     }

@@ -1,4 +1,4 @@
-// raya's JSON documents compared with those of nlohmann/json, and errors of damaged ones.
+// raya's JSON documents compared with those of nlohmann/json, and the errors for invalid documents.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>

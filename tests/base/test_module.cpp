@@ -1,4 +1,4 @@
-// Loadable modules: existing ones, missing ones and missing functions.
+// Loadable modules: existing and missing modules, and missing functions.
 #include <catch2/catch.hpp>
 
 #include "host/base/module.hpp"

@@ -1,4 +1,4 @@
-// Reading whole files, and refusing everything else.
+// Reading whole files, and errors for everything that is not a readable file.
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Messages by level of verbosity.
+// Messages at each level of verbosity.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -12,7 +12,7 @@
 namespace raya {
 namespace {
 
-/// The output of `action` on stderr at a level.
+/// The output of `action` on stderr at verbosity `level`.
 template <class Action>
 std::string output_at(int level, Action&& action) {
     const ScratchFolder folder;

@@ -1,4 +1,4 @@
-// Files are written completely or not at all: every failure leaves the folder as it was.
+// Files are written completely or not at all: after every failure the folder is unchanged.
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -26,7 +26,7 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Limits the size of this process's files to `bytes` during its lifetime, to simulate a full disk.
+/// While it exists, limits the size of this process's files to `bytes`, to simulate a full disk.
 class FileSizeLimit {
   public:
     explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -46,7 +46,8 @@ class FileSizeLimit {
     void (*handler_)(int);
 };
 
-/// Drops root's privileges by becoming `nobody`, so that permissions apply. Does nothing for other users.
+/// While it exists, gives up root's privileges by becoming `nobody`, so that permissions apply. Does nothing for other
+/// users.
 class WithoutRoot {
   public:
     WithoutRoot() : changed_(::geteuid() == 0 && ::seteuid(kNobody) == 0) {}

@@ -1,4 +1,4 @@
-// Labelled commands, their range checks and their profile. These tests fail without an OpenCL device.
+// Labelled commands, their range checks and their profile. Without an OpenCL device these tests fail.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
@@ -37,12 +37,12 @@ std::vector<cl_uint> contents(Session& session, const Buffer<cl_uint>& buffer) {
 
 TEST_CASE("copies rotate the blocks of a ring exactly", "[cl]") {
     Session session(choose_device(""));
-    constexpr std::size_t kPes = 7, kBlock = 13;  // odd sizes: not aligned
+    constexpr std::size_t kPes = 7, kBlock = 13;  // odd sizes, so that blocks are not aligned
     const std::vector<cl_uint> before = counting(kPes * kBlock, 1000);
     Buffer<cl_uint> from = session.buffer<cl_uint>("from", before.size());
     Buffer<cl_uint> to = session.buffer<cl_uint>("to", before.size());
     session.write("load", from, before);
-    for (std::size_t turn = 0; turn < kPes; ++turn) {  // every block to the right-hand neighbour
+    for (std::size_t turn = 0; turn < kPes; ++turn) {  // moves every block to the next PE
         session.copy("rotate", from, 0, to, kBlock, (kPes - 1) * kBlock);
         session.copy("rotate", from, (kPes - 1) * kBlock, to, 0, kBlock);
         std::swap(from, to);
@@ -85,8 +85,8 @@ TEST_CASE("block copies beyond a block or a buffer are refused before any comman
     const auto copy = [&](Session::Blocks from, Session::Blocks to, std::size_t count, std::size_t blocks) {
         session.copy_blocks("c", a, from, b, to, count, blocks);
     };
-    CHECK_THROWS_AS(copy({1, 4}, {0, 5}, 4, 3), std::out_of_range);  // the source's next block
-    CHECK_THROWS_AS(copy({0, 4}, {2, 5}, 4, 3), std::out_of_range);  // the target's
+    CHECK_THROWS_AS(copy({1, 4}, {0, 5}, 4, 3), std::out_of_range);  // reaches into the source's next block
+    CHECK_THROWS_AS(copy({0, 4}, {2, 5}, 4, 3), std::out_of_range);  // reaches into the target's next block
     CHECK_THROWS_AS(copy({5, 4}, {0, 5}, 0, 3), std::out_of_range);
     CHECK_THROWS_AS(copy({0, 4}, {0, 5}, 4, 4), std::out_of_range);  // more blocks than the source has
     CHECK_THROWS_AS(copy({0, 2}, {0, 5}, 2, 5), std::out_of_range);  // more blocks than the target has
@@ -96,8 +96,8 @@ TEST_CASE("block copies beyond a block or a buffer are refused before any comman
     CHECK_THROWS_WITH(session.copy_blocks("band", a, {0, 4}, b, {2, 5}, 4, 3), Contains("'band'") && Contains("'b'"));
     // pitch x blocks beyond 2^64
     CHECK_THROWS_AS(session.copy_blocks("band", a, {0, std::size_t{1} << 63}, b, {0, 5}, 1, 2), std::out_of_range);
-    copy({4, 4}, {0, 5}, 0, 3);  // of no elements
-    copy({0, 4}, {0, 5}, 4, 0);  // of no blocks
+    copy({4, 4}, {0, 5}, 0, 3);  // blocks of no elements
+    copy({0, 4}, {0, 5}, 4, 0);  // no blocks
     CHECK(session.profile().commands().empty());
 }
 
@@ -227,7 +227,7 @@ TEST_CASE("transfers of any size through pinned memory move the same bytes", "[c
     session.fill("clear", buffer, 0);
     std::vector<cl_uint> expected(buffer.size());
     for (int i = 0; i < 200; ++i) {
-        // some sizes are a multiple of the half, or one more or less
+        // Some sizes differ from a multiple of half the staging memory by at most 1.
         const std::size_t most = i % 8 ? 1000 : 3 * kHalf,
                           edge = i % 16 ? 0 : kHalf * (random.next() % 4) + random.next() % 3;
         const std::size_t count = edge ? edge - 1 : random.next() % (most + 1),
@@ -255,7 +255,7 @@ TEST_CASE("an asynchronous read returns the contents at its place in the queue, 
     SplitMix random(kSeed);
     for (const Transfers transfers : {Transfers::kDirect, Transfers::kStaged}) {
         Session session(choose_device(""), Timing::kOn, transfers);
-        // Fills several halves of plain memory without waiting.
+        // Fills the halves of the plain staging memory several times without waiting.
         constexpr std::size_t kWords = kPlainHalf / sizeof(cl_uint);
         Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", kWords);
         Readback<cl_uint> readback = session.readback<cl_uint>("words", 4 * kWords);

@@ -1,4 +1,4 @@
-// Choice of a device, its properties, and texts of errors. These tests fail without an OpenCL device.
+// Choice of a device, its properties, and error texts. Without an OpenCL device these tests fail.
 #include <catch2/catch.hpp>
 #include <cctype>
 #include <string>
@@ -55,7 +55,7 @@ TEST_CASE("there is an OpenCL device, and every device has valid properties", "[
         CHECK(info.native_float_width >= 1);
         CHECK(info.preferred_float_width >= 1);
         CHECK(info.max_allocation_bytes <= info.global_memory_bytes);
-        // Minimum requirements of OpenCL 1.2 for the full profile.
+        // Minimum values that OpenCL 1.2 requires of the full profile.
         CHECK(info.local_memory_bytes >= 32 * 1024);
         CHECK(info.max_allocation_bytes >= 128 * 1024 * 1024);
         CHECK(info.profiling);
@@ -80,7 +80,7 @@ TEST_CASE("a device is chosen by name across all platforms", "[cl]") {
     CHECK(device_index("ARC 3", kDevices) == 3);
     CHECK(device_index("language PTHREAD", kDevices) == 1);
     CHECK(device_index("3", kDevices) == 3);
-    CHECK(device_index("380", kDevices) == 3);  // no such number, so a part of a name
+    CHECK(device_index("380", kDevices) == 3);  // not a device number, so part of a name
 }
 
 TEST_CASE("a device is chosen by type, version and driver, and in turn from a list", "[cl]") {
@@ -88,7 +88,7 @@ TEST_CASE("a device is chosen by type, version and driver, and in turn from a li
     devices[1].version = "OpenCL 3.0 PoCL HSTR: skylake-avx512";
     devices[3].driver = "23.17";
     CHECK(device_index("CPU", devices) == 1);
-    CHECK(device_index("gpu", devices) == 2);  // the first usable one
+    CHECK(device_index("gpu", devices) == 2);  // the first usable GPU
     CHECK(device_index("avx512", devices) == 1);
     CHECK(device_index("23.17", devices) == 3);
     const std::vector<std::size_t> expected = {1, 3, 2, 1, 3};
@@ -96,7 +96,7 @@ TEST_CASE("a device is chosen by type, version and driver, and in turn from a li
         CHECK(device_index("cpu,Arc 380,2", devices, turn) == expected[turn]);
     for (std::size_t turn = 0; turn < 5; ++turn) {
         CHECK(device_index("cpu", devices, turn) == 1);
-        CHECK(device_index("", devices, turn) == 2 + turn % 2);  // the GPUs in turn
+        CHECK(device_index("", devices, turn) == 2 + turn % 2);  // both GPUs in turn
     }
     CHECK_THROWS_WITH(device_index("cpu,radeon", devices, 1), Contains("'radeon'") && !Contains("'cpu"));
     CHECK_THROWS_AS(device_index("other", devices), DeviceError);

@@ -1,4 +1,4 @@
-// Observed sessions: builds, arguments of launches, and the offset of the device's clock.
+// Observed sessions: the observer receives builds, launch arguments and the offset of the device's clock.
 #include <catch2/catch.hpp>
 
 #include "host/cl/commands.hpp"
@@ -28,7 +28,7 @@ TEST_CASE("an observed session records builds, and the arguments of the given nu
     REQUIRE(commands.size() == 4);
     const auto& arguments = commands[1].arguments;
     REQUIRE(arguments.size() == 4);
-    CHECK((arguments[0].name == "to" || arguments[0].name == "0"));  // not every driver stores names
+    CHECK((arguments[0].name == "to" || arguments[0].name == "0"));  // some drivers do not store argument names
     CHECK(arguments[0].value == "numbers, 8 x 4 bytes");
     CHECK(arguments[1].value == "8");
     CHECK(arguments[2].value == "0.5");

@@ -1,4 +1,4 @@
-// Programs and typed kernels. These tests fail without an OpenCL device.
+// Programs and typed kernels. Without an OpenCL device these tests fail.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -98,12 +98,12 @@ TEST_CASE("the error of a failed build contains log, options, device and program
         text = error.what();
     }
     CHECK_THAT(text, Contains("'broken'") && Contains("clBuildProgram") && Contains("CL_BUILD_PROGRAM_FAILURE"));
-    CHECK_THAT(text, Contains("undeclared_name"));  // only the log has it
+    CHECK_THAT(text, Contains("undeclared_name"));  // only the build log contains this name
     CHECK_THAT(text, Contains("-DRAYA_A=1 -DRAYA_B=2"));
     CHECK_THAT(text, Contains(session.device().platform) && Contains(session.device().name));
 }
 
-/// The number of programs in PoCL's cache, which is a folder of this test program (tests/kernel_cache.hpp).
+/// The number of programs in PoCL's cache. The cache folder belongs to this test program (tests/kernel_cache.hpp).
 long cached_programs() {
     long cached = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(std::getenv("POCL_CACHE_DIR")))
@@ -111,7 +111,7 @@ long cached_programs() {
     return cached;
 }
 
-// A kernel cache that outlives a run must not hide a kernel that no longer builds.
+// A kernel cache that is kept between runs must not hide that a kernel no longer builds.
 TEST_CASE("a failed build is not cached, and fails again", "[cl]") {
     const auto build = [](const std::string& value) {
         const Session session(choose_device(""));

@@ -1,4 +1,4 @@
-// A session that ends early leaves no running commands.
+// A session that ends because of an exception leaves no running commands.
 #include <catch2/catch.hpp>
 #include <stdexcept>
 #include <string>
@@ -8,8 +8,8 @@
 using namespace raya;
 
 TEST_CASE("a session that an exception ends waits for the device's running commands", "[cl]") {
-    // PoCL compiles the kernel at this launch. The kernel then runs millions of iterations, and nothing else waits for
-    // it.
+    // PoCL compiles the kernel at this launch. Then the kernel runs millions of iterations, for which nothing else
+    // waits.
     const std::string source =
         "kernel void slow(global uint* a, const uint turns) {\n"
         "    uint x = a[0];\n"
@@ -31,7 +31,7 @@ TEST_CASE("a session that an exception ends waits for the device's running comma
         session.launch("empty", slow, 0, 1, a, kTurns);
     };
     CHECK_THROWS_AS(fail(), std::invalid_argument);
-    // A separate queue does not wait for the session's commands.
+    // This separate queue does not wait for the session's commands.
     const auto context = memory.getInfo<CL_MEM_CONTEXT>();
     const cl::CommandQueue other(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
     other.enqueueReadBuffer(memory, CL_TRUE, 0, sizeof got, &got);

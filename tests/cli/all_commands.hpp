@@ -1,4 +1,4 @@
-// The parser and the texts of all commands, in this process.
+// Makes the parser and the CommandText of all commands in the test's own process.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <memory>

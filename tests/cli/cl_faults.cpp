@@ -1,17 +1,17 @@
-// Fault injection into OpenCL: preloaded into raya (LD_PRELOAD), the library changes one kind of call.
+// Fault injection into OpenCL: a library that is preloaded into raya (LD_PRELOAD) and changes one kind of call.
 //   RAYA_FAULT="clCreateBuffer 3 -4"          the third clCreateBuffer and all later ones return -4 and do nothing
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 lost"   every third clEnqueueCopyBuffer completes without copying;
-//                                             clEnqueueCopyBufferRect likewise
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third one writes to its target offset plus its size (minus, at the
-//                                             end of the buffer): into the memory of another PE
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third and all later ones raise SIGSEGV
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflow"   overflow the stack
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflows"  overflow the stacks of two other threads at once
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   end the program with exit code 1
-//   RAYA_FAULT="clFinish 1 slow"              the first and all later ones take 2.5 seconds longer
-//   RAYA_FAULT="clGetDeviceInfo 4100 8"       the query 0x1004 = CL_DEVICE_MAX_WORK_GROUP_SIZE returns 8
-//   RAYA_FAULT="clGetKernelWorkGroupInfo 4528 8"  0x11B0 = CL_KERNEL_WORK_GROUP_SIZE likewise, for every kernel
-//   RAYA_FAULT="new 1000000 0"                the host's allocations of 1,000,000 bytes or more fail
+//                                             also for clEnqueueCopyBufferRect
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third copy is misdirected into the memory of another PE: to its
+//                                             target offset plus its size (at the end of the buffer: minus its size)
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third call raises SIGSEGV
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflow"   the third call overflows the stack of its thread
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflows"  the third call starts two threads that overflow their stacks
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   the third call ends the program with exit code 1
+//   RAYA_FAULT="clFinish 1 slow"              the first and all later calls take 2.5 seconds longer
+//   RAYA_FAULT="clGetDeviceInfo 4100 8"       the query 0x1004 (CL_DEVICE_MAX_WORK_GROUP_SIZE) returns 8
+//   RAYA_FAULT="clGetKernelWorkGroupInfo 4528 8"  the query 0x11B0 (CL_KERNEL_WORK_GROUP_SIZE) returns 8
+//   RAYA_FAULT="new 1000000 0"                allocations by operator new of 1,000,000 bytes or more fail
 #include <CL/cl.h>
 #include <dlfcn.h>
 
@@ -31,7 +31,7 @@ namespace {
 
 struct Fault {
     std::string call;
-    int at = 0;          // number of the call from 1; query; bytes of `new`
+    int at = 0;          // first faulty call, from 1; or the query; or minimum bytes
     std::string action;  // "lost", "astray", "crash", "overflow", "overflows", "exit", "slow" or empty
     cl_int error = CL_SUCCESS;
 
@@ -48,14 +48,15 @@ const Fault& wanted() {
     return fault;
 }
 
-/// Recurses without end, in frames of 16 KB.
+/// Overflows the stack: recurses without end, with frames of 16 KB.
 int overflow(int depth) {
     volatile char frame[16384];
     frame[0] = static_cast<char>(depth);
     return depth == 0 ? 0 : overflow(depth + 1) + frame[0];
 }
 
-/// Returns the error that the call returns instead of doing its work; CL_SUCCESS if the call does its work.
+/// Injects the fault into this call. Returns the error that the call must return without doing its work, or CL_SUCCESS
+/// if the call must do its work.
 cl_int fault_of(const char* call) {
     const Fault& fault = wanted();
     static std::atomic<int> calls{0};
@@ -73,7 +74,7 @@ cl_int fault_of(const char* call) {
     return fault.error;
 }
 
-/// Returns true if this copy is lost or goes astray, as `action` says.
+/// Returns true if this copy must be corrupted by `action`: "lost" or "astray".
 bool corrupts_copy(const char* call, const char* action) {
     const Fault& fault = wanted();
     static std::atomic<int> calls{0};
@@ -85,14 +86,14 @@ Function* real(const char* name) {
     return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
-/// Calls the driver's function or returns the injected error.
+/// Calls the driver's function, or returns the injected error.
 template <class Function, class... Args>
 cl_int command(const char* name, Args... args) {
     const cl_int error = fault_of(name);
     return error != CL_SUCCESS ? error : real<Function>(name)(args...);
 }
 
-/// Same for functions that return an object, and the error by a pointer.
+/// Same for functions that return an object, and the error through a pointer.
 template <class Function, class... Args>
 auto object(const char* name, cl_int* error, Args... args) -> decltype(real<Function>(name)(args..., error)) {
     const cl_int fault = fault_of(name);
@@ -101,14 +102,14 @@ auto object(const char* name, cl_int* error, Args... args) -> decltype(real<Func
     return nullptr;
 }
 
-/// Returns the target offset of a copy that goes astray; unchanged if the buffer has space for no other.
+/// Returns the target offset of a misdirected copy; the original offset if the buffer is too small for another.
 size_t displaced_offset(cl_mem buffer, size_t offset, size_t size) {
     size_t bytes = 0;
     clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr);
     return offset + 2 * size <= bytes ? offset + size : offset >= size ? offset - size : offset;
 }
 
-/// Replaces the answer to the query if the fault says so.
+/// Replaces the answer to the query if the fault is for this query.
 void replace_answer(const char* call, cl_uint query, size_t size, void* value) {
     const Fault& fault = wanted();
     if (fault.call != call || static_cast<int>(query) != fault.at || value == nullptr) return;
@@ -116,7 +117,7 @@ void replace_answer(const char* call, cl_uint query, size_t size, void* value) {
     std::memcpy(value, &answer, std::min(size, sizeof answer));
 }
 
-/// Enqueues, instead of a copy, a read of one byte that is discarded: the event completes and has its times.
+/// Enqueues a read of one byte, which is discarded, instead of a copy. Its event completes and has profiling times.
 cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, const cl_event* wait_list,
                             cl_event* event) {
     static char nowhere;
@@ -126,10 +127,10 @@ cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, 
 
 }  // namespace
 
-// Sanitizers replace the allocator.
+// Not with the address sanitizer, which replaces operator new itself.
 #ifndef __SANITIZE_ADDRESS__
 void* operator new(std::size_t bytes) {
-    constexpr std::size_t kNeverFails = 1000;  // bytes; allocations of `Fault` itself are smaller
+    constexpr std::size_t kNeverFails = 1000;  // bytes; excludes allocations by `Fault` itself
     if (bytes > kNeverFails && wanted().call == "new" && bytes >= static_cast<std::size_t>(wanted().at))
         throw std::bad_alloc();
     if (void* memory = std::malloc(bytes != 0 ? bytes : 1)) return memory;

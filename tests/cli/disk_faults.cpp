@@ -1,14 +1,13 @@
-// Fault injection into writes: a library preloaded into raya (LD_PRELOAD).
-//   RAYA_FULL_DISK="1000000 /folder"    the files in this folder take 1,000,000 bytes together, then write() fails with
-//                                       ENOSPC. As on a real disk, the last write with free space left is a short one.
-//   RAYA_FULL_DISK="write /folder"      a write() there writes half its bytes and then blocks
-//   RAYA_FULL_DISK="rename /folder"     a rename() there blocks
-//   RAYA_WRITE_FAULT="17 28"            the 17th of raya's own writing calls fails with errno 28 (ENOSPC)
-//   RAYA_WRITE_FAULT="17 short"         the 17th writes half its bytes
-//   RAYA_WRITE_CALLS=FILE               appends a line to FILE for each of these calls: its name, and "fails" for the
-//                                       one that fails
-// Mounting a small file system instead needs root and does not work in every container.
-// The count includes calls on regular files by raya and the C++ library, not by drivers.
+// Fault injection into file writes: a library that is preloaded into raya (LD_PRELOAD).
+//   RAYA_FULL_DISK="1000000 /folder"    the files in this folder have space for 1,000,000 bytes together, then write()
+//                                       fails with ENOSPC. As on a real disk, the write that fills it is short.
+//   RAYA_FULL_DISK="write /folder"      a write() to a file there writes half its bytes and then blocks
+//   RAYA_FULL_DISK="rename /folder"     a rename() of a file there blocks
+//   RAYA_WRITE_FAULT="17 28"            the 17th of raya's writing calls (below) fails with errno 28 (ENOSPC)
+//   RAYA_WRITE_FAULT="17 short"         the 17th of raya's writing calls writes half its bytes
+//   RAYA_WRITE_CALLS=FILE               appends a line to FILE for each writing call: its name, and "fails" if it fails
+// Writing calls are calls on regular files by raya and the C++ library, not by drivers.
+// The alternative, a small mounted file system, needs root and does not work in every container.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -70,8 +69,8 @@ Function* real(const char* name, Function*) {
 }
 
 struct WriteFault {
-    long at = 0;  // 0: no call fails
-    int error = 0;
+    long at = 0;    // number of the failing call from 1; 0: none
+    int error = 0;  // errno of the failing call
     bool is_short = false;
 
     WriteFault() {
@@ -104,7 +103,8 @@ bool is_of_raya(const void* caller) {
     return module != nullptr && (raya::is_raya(module) || raya::begins_with(module, "libstdc++"));
 }
 
-/// Counts the call and returns true if it fails. Only some calls can write short or be interrupted (man 2 of each).
+/// Counts the call and returns true if it must fail. A short write or EINTR is injected only into calls for which their
+/// manual pages (section 2) document it.
 bool next_fails(const char* call, bool can_be_short, bool can_be_interrupted) {
     static std::atomic<long> calls{0};
     const WriteFault& fault = write_fault();
@@ -115,12 +115,12 @@ bool next_fails(const char* call, bool can_be_short, bool can_be_interrupted) {
     return now;
 }
 
-/// Same for a call by raya; calls by other libraries succeed.
+/// Same, but neither counts a call by another library than raya's nor lets it fail.
 bool fails(const char* call, const void* caller, bool can_be_short, bool can_be_interrupted) {
     return is_of_raya(caller) && next_fails(call, can_be_short, can_be_interrupted);
 }
 
-/// Returns true for a regular file, except the one that stderr is redirected to.
+/// Returns true if the descriptor is a regular file, but not the file to which stderr is redirected.
 bool is_file(int descriptor) {
     struct stat status {
     }, messages{};
@@ -151,7 +151,7 @@ ssize_t write_some(int descriptor, const void* bytes, std::size_t count) {
     return written;
 }
 
-/// Writes for the FILE stdout: the C library would bypass the preloaded write().
+/// The write function of stdout (fopencookie): the C library's own would bypass the preloaded write().
 ssize_t write_stdout(void*, const char* bytes, std::size_t count) {
     static auto* const next = real("write", &::write);
     if (is_file(STDOUT_FILENO) && next_fails("stdout", false, true)) return 0;
@@ -216,7 +216,7 @@ int open64(const char* path, int flags, ...) {
 int close(int descriptor) {
     const bool fails_now = is_written(descriptor) && fails("close", CALLER, false, true);
     const int error = errno;
-    const int closed = real("close", &::close)(descriptor);  // Linux closes the descriptor even if it reports an error
+    const int closed = real("close", &::close)(descriptor);  // Linux closes it even if it returns an error
     if (!fails_now) return closed;
     errno = error;
     return -1;

@@ -13,7 +13,7 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-/// Options of a run whose device fails as `fault` says; syntax in cl_faults.cpp.
+/// Returns the options of a run with this injected fault: a value of RAYA_FAULT (cl_faults.cpp).
 inline RunOptions failing_device(const std::string& fault) {
     return {.variables = {{"LD_PRELOAD", RAYA_CL_FAULTS},
                           {"RAYA_FAULT", fault},

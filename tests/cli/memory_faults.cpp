@@ -1,12 +1,14 @@
-// Fault injection into allocations: preloaded into raya (LD_PRELOAD), the library makes one allocation fail.
-//   RAYA_MEMORY_SITES=FILE      writes at exit a line for each allocation site: its number, its count, its return
-//                               addresses; and "elsewhere" with the number of allocations of other libraries
-//   RAYA_MEMORY_FAULT=1f2e      the first allocation at the site of that number fails
-//   RAYA_MEMORY_FAULT==17       the 17th allocation in raya fails
-//   RAYA_MEMORY_FAULT=+17       the 17th allocation elsewhere fails
-// When one fails, the file named by RAYA_MEMORY_FAILED is created: it shows whether a run reached the fault.
-// A site is the innermost return addresses in raya and its modules. Between them and the allocation may be only
-// libraries that allocate for their caller: the C and C++ libraries, fmt, zlib.
+// Fault injection into allocations: a library that is preloaded into raya (LD_PRELOAD) and makes one allocation fail.
+//   RAYA_MEMORY_SITES=FILE      writes, when the process exits, a line for each allocation site: its number, its
+//                               count, its return addresses; and a line "elsewhere" with the number of allocations
+//                               by other libraries
+//   RAYA_MEMORY_FAULT=1f2e      the first allocation at the site with number 1f2e fails
+//   RAYA_MEMORY_FAULT==17       the 17th allocation by raya fails
+//   RAYA_MEMORY_FAULT=+17       the 17th allocation by other libraries fails
+//   RAYA_MEMORY_FAILED=FILE     creates FILE when an allocation fails, so that the test knows whether it did
+// A site is identified by the innermost return addresses in raya and its modules. An allocation counts as raya's if
+// only libraries that allocate for their caller are between these addresses and the allocation: the C and C++
+// libraries, fmt, zlib and xxHash.
 #include <fcntl.h>
 #include <unistd.h>
 #include <unwind.h>
@@ -29,13 +31,13 @@ void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 
 namespace {
 
-constexpr std::size_t kDepth = 3;  // return addresses of a site; one would not distinguish the callers of a template
+constexpr std::size_t kDepth = 3;  // return addresses of a site; with one, callers of a template are not distinguished
 constexpr std::size_t kSlots = 1 << 16;
 
 using Site = std::array<std::uintptr_t, kDepth>;
 
 struct Slot {
-    std::atomic<std::uint64_t> number{0};  // 0: free
+    std::atomic<std::uint64_t> number{0};  // 0: the slot is free
     std::atomic<std::uint64_t> count{0};
     Site site{};
 };
@@ -43,7 +45,7 @@ struct Slot {
 std::array<Slot, kSlots> slots;
 std::atomic<std::uint64_t> in_raya{0}, elsewhere{0};
 std::atomic<bool> failed{false};
-__thread bool busy __attribute__((tls_model("initial-exec"))) = false;  // set while this library allocates
+__thread bool busy __attribute__((tls_model("initial-exec"))) = false;  // true in this library's own allocations
 
 enum class Module { kOwn, kRaya, kSupport, kOther };  // kOwn: this library; kSupport: allocates for its caller
 
@@ -72,7 +74,7 @@ _Unwind_Reason_Code add_frame(_Unwind_Context* context, void* data) {
 }
 
 std::uint64_t number_of(const Site& site) {
-    std::uint64_t hash = 14695981039346656037ull;  // FNV-1a, by 64-bit words
+    std::uint64_t hash = 14695981039346656037ull;  // FNV-1a over 64-bit words
     for (const std::uintptr_t address : site) hash = (hash ^ address) * 1099511628211ull;
     return hash | 1;
 }
@@ -94,9 +96,9 @@ bool fails_now() {
     return true;
 }
 
-/// The fault in RAYA_MEMORY_FAULT.
+/// The value of RAYA_MEMORY_FAULT.
 struct Fault {
-    char kind = '\0';  // '=': count in raya, '+': count elsewhere, ' ': site, 0: no fault
+    char kind = '\0';  // '=': n-th in raya, '+': n-th elsewhere, ' ': site, 0: no fault
     std::uint64_t number = 0;
 
     Fault() {

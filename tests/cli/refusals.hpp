@@ -1,4 +1,4 @@
-// Checks of runs that raya refuses: exit code, message, empty stdout, no files.
+// Checks of runs that end with an error: exit code, message, empty stdout, no files.
 #pragma once
 #include <catch2/catch.hpp>
 #include <string>
@@ -21,7 +21,7 @@ inline void check_refused(const ScratchFolder& outputs, const Arguments& argumen
     CHECK(outputs.entries() == 0);
 }
 
-/// Arguments of a render of `scene` that writes every kind of file into `outputs`.
+/// Returns the arguments of a render of `scene` that writes one file of each kind into `outputs`.
 inline Arguments render_into(const ScratchFolder& outputs, const std::string& scene, const Arguments& options = {}) {
     Arguments arguments = {
         "render", scene, "-o", outputs / "x.pfm", "--cost", outputs / "x-cost.pfm", "--report", outputs / "x.json"};

@@ -1,4 +1,4 @@
-// Renders a scene of scenes/ by the program, with image, cost image and report.
+// Runs `raya render` on a scene in scenes/, with image, cost image and report.
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -11,12 +11,12 @@
 
 namespace raya {
 
-inline constexpr int kTestWidth = 20, kTestHeight = 12;  // pixels, unless --size is among the options
+inline constexpr int kTestWidth = 20, kTestHeight = 12;  // default --size, in pixels
 
 class RenderFiles {
   public:
-    /// Renders the scene and ends the test case if that fails. Defaults: 20 x 12 pixels, 20 PEs, and 4 lanes, so that
-    /// few kernels are built.
+    /// Renders the scene. If the render fails, the test case ends. Defaults: 20 x 12 pixels, 20 PEs, and 4 lanes (the
+    /// same in all tests, so that fewer kernels are built).
     explicit RenderFiles(const std::string& scene, std::vector<std::string> options = {},
                          const std::string& extension = ".pfm", const std::string& cost_extension = ".pfm")
         : image_(folder_ / ("image" + extension)),

@@ -1,4 +1,4 @@
-// The keys and types of a report, for comparison.
+// Lists the keys of a report and the types of their values, for comparison with the expected ones.
 #pragma once
 #include <set>
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace raya {
 
-/// Adds "path type" for every value below `json`; all elements of an array share one path.
+/// Adds "PATH TYPE" to `keys` for every value in `json`. All elements of an array have the same path.
 inline void list_keys(const Document& json, const std::string& path, std::set<std::string>& keys) {
     if (!json.is_structured()) {
         const bool whole = json.is_number_unsigned();
@@ -24,7 +24,7 @@ inline std::set<std::string> keys_of(const Document& report) {
     return keys;
 }
 
-/// The keys of a load object, each with the prefix `path`.
+/// Returns the expected keys of a load object. `path`: prefix of the keys.
 inline std::set<std::string> load_keys(const std::string& path) {
     std::set<std::string> keys;
     for (const char* key : {"unit string", "mean number", "max count", "min count", "imbalance number",
@@ -33,7 +33,7 @@ inline std::set<std::string> load_keys(const std::string& path) {
     return keys;
 }
 
-/// The keys of every report, in the form of keys_of().
+/// Returns the keys that every report has, in the form of list_keys().
 inline std::set<std::string> fixed_keys() {
     std::set<std::string> keys = {"kind string",
                                   "raya string",

@@ -1,4 +1,4 @@
-// Runs the built program in a process of its own, as a user does. Tests see what it prints and its exit code.
+// Runs the built program in a separate process, as a user does, and returns its output and exit code.
 #pragma once
 #include <fcntl.h>
 #include <grp.h>
@@ -32,29 +32,29 @@
 namespace raya {
 
 struct RunOutcome {
-    std::string command;        // for messages of failed tests
+    std::string command;        // command line, for messages of failed tests
     int code = 0;               // exit code; 128 + signal number if a signal ended the program
     double after_signal_s = 0;  // seconds from the signal to the end of the process
     std::string out, err;
-    /// stderr without the lines about compiling, which depend on the cache and on the machine's load.
+    /// Returns stderr without the lines about compiling, which depend on the cache and on the computer's load.
     std::string messages() const { return std::regex_replace(err, std::regex("raya: compiling kernels [^\n]*\n"), ""); }
-    /// Command, exit code, stdout and stderr, for messages of failed tests.
+    /// Returns command, exit code, stdout and stderr, for messages of failed tests.
     std::string describe() const { return command + "\nexit code " + std::to_string(code) + "\n" + out + "\n" + err; }
 };
 
 /// Environment, limits and redirections of a run.
 struct RunOptions {
-    std::vector<std::pair<std::string, std::string>> variables{};  // environment variables added to this process's
-    bool as_nobody = false;    // root runs the program as user nobody, so that file permissions apply
+    std::vector<std::pair<std::string, std::string>> variables{};  // [name, value], added to this environment
+    bool as_nobody = false;    // if root runs the test: run as user nobody, so that permissions apply
     rlim_t largest_file = 0;   // RLIMIT_FSIZE in bytes, 0: no limit; a longer write fails with EFBIG
     rlim_t memory = 0;         // RLIMIT_AS in bytes, 0: no limit
     std::string error_file{};  // file that stderr is written to; empty: RunOutcome::err
     std::string program = RAYA_PROGRAM;
-    int signal = 0;           // sent to the program unless it has ended
-    int signal_after_ms = 0;  // delay once the program handles the signal and `signal_when` is true
-    std::function<bool()> signal_when{};
-    int signal_count = 1;    // timeout(1) sends its signal twice
-    std::string out_file{};  // file that stdout is written to; empty: RunOutcome::out
+    int signal = 0;                       // signal number, sent to the program unless it has ended; 0: none
+    int signal_after_ms = 0;              // delay from when the program handles the signal and `signal_when` is true
+    std::function<bool()> signal_when{};  // polled; empty: always true
+    int signal_count = 1;                 // how often it is sent; timeout(1) sends it twice
+    std::string out_file{};               // file that stdout is written to; empty: RunOutcome::out
 };
 
 namespace run_program_detail {
@@ -75,7 +75,7 @@ inline std::string contents(std::FILE* file) {
     return text;
 }
 
-/// Returns pointers into the texts, with a null at the end, for exec.
+/// Returns pointers to the texts and a final null pointer, for exec().
 inline std::vector<char*> pointers(std::vector<std::string>& texts) {
     std::vector<char*> all;
     for (std::string& text : texts) all.push_back(text.data());
@@ -88,7 +88,7 @@ inline std::vector<std::string> environment(const RunOptions& options) {
     for (char** variable = environ; *variable != nullptr; ++variable) {
         const std::string_view text = *variable;
         bool replaced = false;
-        for (const auto& [name, value] : options.variables)  // RAYA_KERNEL_LOG would add writes to those that fail
+        for (const auto& [name, value] : options.variables)  // RAYA_KERNEL_LOG would add writes
             replaced = replaced || text.starts_with(name + "=") ||
                        (name == "LD_PRELOAD" && text.starts_with("RAYA_KERNEL_LOG="));
         if (!replaced) all.emplace_back(text);
@@ -97,7 +97,7 @@ inline std::vector<std::string> environment(const RunOptions& options) {
     return all;
 }
 
-/// Redirects the standard stream to `file`, which may be a terminal.
+/// Redirects descriptor `stream` to `file`, which may be a terminal.
 inline void open_stream(const std::string& file, int stream) {
     if (file.empty()) return;
     const int opened = ::open(file.c_str(), O_WRONLY | O_NOCTTY);
@@ -112,7 +112,7 @@ inline void leave_root() {
 
 inline void limit_files(rlim_t bytes) {
     if (bytes == 0) return;
-    std::signal(SIGXFSZ, SIG_IGN);  // survives exec: writes fail with EFBIG
+    std::signal(SIGXFSZ, SIG_IGN);  // inherited by the program: its writes beyond the limit fail with EFBIG
     const rlimit limit{bytes, bytes};
     if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
 }
@@ -122,8 +122,8 @@ inline void limit_memory(rlim_t bytes) {
     if (bytes != 0 && ::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(126);
 }
 
-/// Returns true if the child runs raya and has a handler for the signal (SigCgt of proc(5)). Until it runs raya, it has
-/// the handlers of this process.
+/// Returns true if the child runs raya and has a handler for the signal (SigCgt in proc(5)). Before its exec of raya,
+/// the child has the handlers of this process.
 inline bool catches(pid_t child, int signal) {
     const std::string folder = "/proc/" + std::to_string(child);
     std::error_code ended;
@@ -138,13 +138,14 @@ inline bool catches(pid_t child, int signal) {
     return false;
 }
 
-/// Polls without reaping the child.
+/// Returns true if the child has ended. Does not reap it.
 inline bool has_ended(pid_t child) {
     siginfo_t found{};
     return ::waitid(P_PID, static_cast<id_t>(child), &found, WEXITED | WNOHANG | WNOWAIT) != 0 || found.si_pid != 0;
 }
 
-/// Sends the signal when `options` say. The child has not been reaped, so its process ID is still valid.
+/// Waits until the time that `options` define, and sends the signal. The caller has not reaped the child, so the
+/// child's process ID is valid.
 inline void send_signal(pid_t child, const RunOptions& options) {
     using namespace std::chrono;
     if (options.signal == 0) return;
@@ -159,8 +160,8 @@ inline void send_signal(pid_t child, const RunOptions& options) {
 
 }  // namespace run_program_detail
 
-/// Runs raya with these arguments and empty stdin, without a shell, and waits for its end. Throws std::runtime_error if
-/// raya cannot be started.
+/// Runs raya with these arguments and empty stdin, without a shell, and waits until it ends. Throws std::runtime_error
+/// if raya cannot be started.
 inline RunOutcome run_raya(std::vector<std::string> arguments, const RunOptions& options = {}) {
     namespace detail = run_program_detail;
     RunOutcome outcome;
@@ -170,7 +171,7 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const RunOptions&
     std::vector<std::string> variables = detail::environment(options);
     const std::vector<char*> argv = detail::pointers(arguments), envp = detail::pointers(variables);
     const detail::File input = detail::temporary_file(), out = detail::temporary_file(), err = detail::temporary_file();
-    // Opened before the fork, so that user nobody can run it without access to the build folder.
+    // Opened before the fork and run by its descriptor: user nobody may have no access to the build folder.
     const int program = ::open(options.program.c_str(), O_RDONLY | O_CLOEXEC);
     const pid_t child = program < 0 ? -1 : ::fork();
     if (child == 0) {
@@ -199,7 +200,7 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const RunOptions&
     return outcome;
 }
 
-/// Returns the path of a scene in scenes/.
+/// Returns the path of scenes/NAME.nff.
 inline std::string scene_file(const std::string& name) { return RAYA_SOURCE_DIR "/scenes/" + name + ".nff"; }
 
 inline std::string file_contents(const std::filesystem::path& path) {
@@ -208,7 +209,7 @@ inline std::string file_contents(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Replaces each run of white space by one blank, so that help compares equal at any width.
+/// Replaces each sequence of white space by one blank, so that help texts of different widths compare equal.
 inline std::string squeezed(const std::string& text) {
     std::string all;
     std::istringstream tokens(text);
@@ -216,8 +217,8 @@ inline std::string squeezed(const std::string& text) {
     return all;
 }
 
-/// Returns true if a line of the text matches the regular expression. Matches line by line, because std::regex recurses
-/// once per character and overflows the stack on long texts.
+/// Returns true if a line of the text matches the regular expression. Matches each line separately, because std::regex
+/// recurses once per character and would overflow the stack on a long text.
 inline bool has_line(const std::string& text, const std::string& pattern) {
     const std::regex regex(pattern);
     std::istringstream lines(text);

@@ -1,4 +1,4 @@
-// render --antialias: its report, the mask image, and refused options.
+// render --antialias: the report, the mask image, and refused options.
 #include <algorithm>
 #include <array>
 
@@ -26,7 +26,7 @@ Loads sum_of(Loads a, const Loads& b) {
     return a;
 }
 
-/// Number of launches of the commands with this label.
+/// Returns the number of launches of commands with this label.
 std::uint64_t launches_of(const Document& report, const std::string& label) {
     std::uint64_t launches = 0;
     for (const Document& command : report["measured"]["commands"])
@@ -34,7 +34,8 @@ std::uint64_t launches_of(const Document& report, const std::string& label) {
     return launches;
 }
 
-/// A rotation is two copies: all blocks but one by one place, and the last block from one end to the other.
+/// Checks that each rotation is two copies: one moves all blocks except the last by one PE, the other moves the last
+/// block to the other end.
 void check_rotations(const Document& report) {
     const Document& ring = report["communication"];
     const std::uint64_t rotations = ring["rotations"], pes = report["machine"]["pes"],
@@ -69,12 +70,12 @@ TEST_CASE("render --antialias filter: the counts of the report are consistent", 
     const Document report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
     CHECK(report["antialias"] == Document{{"method", "filter"}, {"exchange", "ring"}, {"band_pixels", kTestHeight}});
     CHECK(report["communication"]["rotations"] ==
-          2 + 2 * 3);  // a column per PE: neighbours are 1 PE to the side, 3 PEs up and down
+          2 + 2 * 3);  // one column per PE, offset 3: neighbours are 1 PE left and right, 3 PEs up and down
     check_rotations(report);
     for (const char* part : {"rays", "tests", "shading", "load"}) CHECK(report[part] == plain[part]);
     CHECK(report["image"]["hash"] != plain["image"]["hash"]);
     CHECK(report["machine"]["pe_memory_used_bytes"] ==
-          plain["machine"]["pe_memory_used_bytes"].get<int>() + 2 * 12 * kTestHeight);  // sums, and a block in transit
+          plain["machine"]["pe_memory_used_bytes"].get<int>() + 2 * 12 * kTestHeight);  // sums, a block in transit
     for (const char* label : {"filter.sum_rows", "filter.sum_columns"}) CHECK(launches_of(report, label) == 2);
     CHECK(launches_of(report, "filter.take_means") == 1);
     CHECK_THAT(files.run().out, Catch::Contains("ring    8 rotations, " + std::to_string(8 * 20 * 3 * 12) + " words"));
@@ -87,7 +88,7 @@ TEST_CASE("render --exchange bus: the report counts and charges the transfers, a
     };
     const Document ring = RenderFiles("planes", options("ring")).report();
     const RenderFiles bus("planes", options("bus")), broadcast("planes", options("bus-broadcast"));
-    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // words of a PE, which has one column
+    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // words of a PE's pixels, one column
     for (const RenderFiles* files : {&bus, &broadcast}) {
         const Document report = files->report();
         const Document& words = report["communication"];
@@ -95,7 +96,7 @@ TEST_CASE("render --exchange bus: the report counts and charges the transfers, a
         CHECK(report["image"]["hash"] == ring["image"]["hash"]);
         CHECK(report["load"] == ring["load"]);
         CHECK(words["rotations"] == 0);
-        CHECK(words["transfers"] == (sends ? 4 * kTestWidth : 0));  // one per side; a broadcast serves all sides
+        CHECK(words["transfers"] == (sends ? 4 * kTestWidth : 0));  // one per neighbour; a broadcast serves all
         CHECK(words["pe_broadcasts"] == (sends ? 0 : kTestWidth));
         const std::uint64_t moves = sends ? words["transfers"] : words["pe_broadcasts"];
         CHECK(words[sends ? "transfer_words" : "pe_broadcast_words"] == moves * kBlock);
@@ -208,7 +209,7 @@ TEST_CASE("render --antialias: refuses a PE memory that is too small, with the n
     const auto refused = [&](const Arguments& options, const Arguments& message) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), options), 2, message);
     };
-    // bytes per pixel: 24 for the filter, 13 for supersampling; and the broadcast words
+    // The PE's memory holds 24 bytes per pixel for the filter, 13 for supersampling, and the broadcast scene.
     refused({"--antialias", "filter", "--size", "256", "--pes", "1"},
             {"planes.nff with --antialias filter", "needs 153", " KB in every PE", "the SPA has 32 KB", "more PEs",
              "--machine grande"});

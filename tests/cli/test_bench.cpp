@@ -1,4 +1,4 @@
-// raya bench: its report, the comparison with an earlier report, and exit codes.
+// raya bench: the report, the comparison with an earlier report, and exit codes.
 #include <fstream>
 
 #include "host/version.hpp"
@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-/// Arguments of a bench with one small row, which takes well under a second.
+/// Returns the arguments of a bench with one small row, which takes less than a second.
 Arguments small_bench(const Arguments& more) {
     Arguments arguments = {"bench", "--size",   "32",   "--pes",     "32", "--lanes",
                            "4",     "--format", "fp32", "--samples", "3"};
@@ -18,7 +18,8 @@ Arguments small_bench(const Arguments& more) {
     return arguments;
 }
 
-/// Writes a copy of base.json with a row `factor` times as fast, or with another hash. Returns its path.
+/// Writes a copy of base.json in which the rate of the row is multiplied by `factor`, or the hash replaced. Returns the
+/// path of the copy.
 std::string changed(const ScratchFolder& folder, const std::string& name, double factor, const std::string& hash = {}) {
     Document json = json_of(folder / "base.json");
     for (const char* part : {"best", "median"})
@@ -64,27 +65,27 @@ TEST_CASE("bench --report, --compare: a later run is compared with the rows of t
     CHECK(row["mrays_per_s"]["best"].get<double>() ==
           Approx(row["rays"].get<double>() / row["ms"]["best"].get<double>() * 1e-3));
     CHECK_THAT(row["build_options"].get<std::string>(), Catch::Contains("-DRAYA_LANES=4"));
-    // No run is slower than a baseline that is a thousand times slower.
+    // The baseline is a thousand times slower than this computer, so no run is reported as slower.
     const RunOutcome second = run_raya(small_bench({"--compare", changed(folder, "slow.json", 1e-3)}));
     INFO(second.describe());
     CHECK(second.code == 0);
     CHECK(second.messages().empty());
     CHECK_THAT(second.out,
                Catch::Contains("faster") && Catch::Contains("1 row compared, none slower by more than 10 %"));
-    // Every run is slower than a baseline that is a thousand times faster.
+    // The baseline is a thousand times faster, so every run is reported as slower.
     const RunOutcome third = run_raya(small_bench(
         {"--compare", changed(folder, "fast.json", 1e3), "--tolerance", "50", "--report", folder / "now.json"}));
     INFO(third.describe());
     CHECK(third.code == 4);
-    // -99.9 %, or rounded to -100.0 % if other programs disturbed the run.
+    // -99.9 %; printed as -100.0 % if other programs slowed the run down.
     CHECK_THAT(third.out, Catch::Contains("SLOWER") && (Catch::Contains("-99.") || Catch::Contains("-100.0 %")));
     CHECK_THAT(third.err, Catch::Contains("fast.json: of 1 row 1 slower by more than 50 %, 0 with a different image"));
-    CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // written although the comparison failed
+    CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // written although the run is slower
     const RunOutcome fourth = run_raya(small_bench({"--compare", changed(folder, "other.json", 1e-3, "0123456789")}));
     INFO(fourth.describe());
     CHECK(fourth.code == 4);
     CHECK_THAT(fourth.out, Catch::Contains("OTHER IMAGE: ") && Catch::Contains(", was 01234567"));
-    // Other rows have no baseline.
+    // Rows with other options have no baseline.
     const RunOutcome fifth = run_raya(small_bench({"--compare", base, "--bounces", "1"}));
     INFO(fifth.describe());
     CHECK(fifth.code == 2);

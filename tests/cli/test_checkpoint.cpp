@@ -1,4 +1,4 @@
-// render --checkpoint and --resume: resumed renders, and files that they must not overwrite.
+// render --checkpoint and --resume: resumed renders, and files that a checkpoint must not overwrite.
 #include <filesystem>
 
 #include "host/base/whole_file.hpp"
@@ -22,7 +22,7 @@ TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][c
     REQUIRE(run_raya(render_of(folder)).code == 0);
     const std::string picture = file_contents(folder / "x.pfm");
     const Arguments checkpoint = {"--checkpoint", folder / "s.rst", "--checkpoint-every", "0"};
-    // Interrupted later at each try, until a checkpoint exists.
+    // Interrupts the render, each time after a longer delay, until a checkpoint exists.
     bool interrupted = false;
     for (int ms = 40; ms <= 2000 && !interrupted; ms += ms / 2) {
         fs::remove(folder / "x.pfm");
@@ -77,7 +77,7 @@ TEST_CASE("render --checkpoint: refuses a file that is not a checkpoint, and lea
         INFO(run.describe());
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Catch::Contains("--checkpoint " + file) && Catch::Contains(message));
-        CHECK_THAT(run.err, !Catch::Contains("remove"));  // the file may be a scene
+        CHECK_THAT(run.err, !Catch::Contains("remove"));  // must not advise to remove it: it may be a scene
         CHECK(file_contents(file) == before);
         CHECK(folder.entries() == 1);
     };

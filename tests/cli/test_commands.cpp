@@ -1,4 +1,4 @@
-// Output of commands that succeed.
+// The output of commands that succeed.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace raya {
 namespace {
-/// Runs raya, which must succeed without messages.
+/// Runs raya and checks that it succeeds without messages.
 RunOutcome succeed(const Arguments& arguments) {
     RunOutcome run = run_raya(arguments);
     INFO(run.describe());
@@ -145,7 +145,7 @@ TEST_CASE("render --profile: prints launches and times of every labelled command
     const auto commands = files.report()["measured"]["commands"];
     for (const auto& command : commands) CHECK_THAT(out, Catch::Contains(command["label"].get<std::string>()));
     CHECK_THAT(out, Catch::Contains("kernel build "));
-    CHECK(lines_that_start_with(out, "roof").size() == 1);  // trace is the only kernel
+    CHECK(lines_that_start_with(out, "roof").size() == 1);  // one line per kernel; trace is the only one
 }
 
 TEST_CASE("generate: every kind of scene can be rendered", "[cli]") {
@@ -182,8 +182,8 @@ TEST_CASE("bench: prints a row per format and number of lanes, one image hash pe
         CHECK(rows[i][1] == (i < lanes.size() ? "fp32" : "e6m15"));
         CHECK(rows[i][2] == lanes[i % lanes.size()]);
         CHECK(std::stod(rows[i][4]) > 0);                                 // Mrays/s of the best sample
-        CHECK(rows[i][4] == rows[i][5]);                                  // one sample is the best and the median
-        CHECK((rows[i].back() == rows[0].back()) == (i < lanes.size()));  // hash
+        CHECK(rows[i][4] == rows[i][5]);                                  // with one sample, best and median are equal
+        CHECK((rows[i].back() == rows[0].back()) == (i < lanes.size()));  // same image hash as in row 0
     }
     CHECK(lines_that_start_with(out, "Gop/s").size() == 1);
     CHECK(lines_that_start_with(

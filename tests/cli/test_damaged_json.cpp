@@ -1,5 +1,5 @@
-// Every reader of JSON with every kind of damage: a refusal or a warning in one line with file and line, never an
-// internal error.
+// Damaged JSON files: every reader refuses them or warns, in one line with file name and line number, and never ends
+// with an internal error.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -23,7 +23,7 @@ struct Damage {
     std::string text, reason;
 };
 
-// Damage that the parser finds, and therefore every reader.
+// Returns damage that the JSON parser detects, and therefore every reader.
 std::vector<Damage> unreadable() {
     const auto deep = [](std::size_t levels) { return std::string(levels, '['); };
     return {{"", "x.json:1: not valid JSON (byte 1)"},
@@ -45,7 +45,7 @@ std::vector<Damage> unreadable() {
             {"{'kind': 1}", "x.json:1: not valid JSON"}};
 }
 
-// Valid JSON that is not a report.
+// Returns valid JSON texts that are not reports.
 std::vector<std::string> wrong_kinds() {
     return {"null",
             "3",

@@ -107,7 +107,7 @@ TEST_CASE("devices: lists a driver with two ICD entries once, and numbers equal 
         return std::count(run.out.begin(), run.out.end(), '\n');
     };
     const auto one = devices("pthread");
-    CHECK(devices("pthread basic") == one + 2);  // a row and a version line
+    CHECK(devices("pthread basic") == one + 2);  // one table row and one version line more
     CHECK(devices("pthread pthread") == one + 2);
     const ScratchFolder outputs;
     const auto render = [&](const char* device) {
@@ -143,9 +143,10 @@ TEST_CASE("render, devices, bench: without OpenCL they end with the remedy", "[c
 }
 
 TEST_CASE("render: a driver that crashes ends with 3, and the message names the failed call", "[cli]") {
-    if (kSanitized) return;  // the sanitizer handles SIGSEGV
+    if (kSanitized) return;  // the address sanitizer handles SIGSEGV itself
     const ScratchFolder outputs;
-    // In the calling thread and in two threads of the driver at once. After a stack overflow a handler has no stack.
+    // A crash or stack overflow in the calling thread, and stack overflows in two driver threads at once. After a stack
+    // overflow the signal handler needs a stack of its own.
     for (const char* crash : {"crash", "overflow", "overflows"}) {
         CAPTURE(crash);
         check_refused(outputs,
@@ -164,7 +165,7 @@ TEST_CASE("render --group: refuses a group that the kernel does not allow, with 
                   failing_device("clGetKernelWorkGroupInfo 4528 8"));
 }
 
-/// Returns the image file of a render with groups of that size on the PoCL device of that name.
+/// Returns the bytes of the image of a render with groups of `group` work-items on the PoCL device `device`.
 std::string image_of(const std::string& group, const std::string& device, const Arguments& more) {
     const ScratchFolder outputs;
     Arguments arguments = {"render", scene_file("centre"), "-o", outputs / "x.pfm", "--size", "16", "--lanes", "16"};
@@ -176,7 +177,7 @@ std::string image_of(const std::string& group, const std::string& device, const 
     return run.code == 0 ? file_contents(outputs / "x.pfm") : "";
 }
 
-// PoCL puts the private memory of a whole group on the stack of its thread.
+// PoCL keeps the private memory of a whole work-group on the stack of one thread, so large groups may overflow it.
 TEST_CASE("render --group: the largest group with the most lanes renders the same image", "[cli]") {
     const Arguments grande = {"--machine", "grande"};
     CHECK(image_of("1024", "pthread", grande) == image_of("1", "pthread", grande));
@@ -241,7 +242,7 @@ TEST_CASE("render: names an unwritable PoCL cache first, and finds a folder if n
     CHECK_THAT(run.err, Catch::Contains("raya: warning: ") && Catch::Contains("PoCL keeps its kernels in"));
 }
 
-/// Mounts a file system of `bytes` at `folder` for its lifetime, if this process may.
+/// Mounts a file system of `bytes` at `folder` for the object's lifetime, if the process has the permission.
 class SmallFileSystem {
   public:
     SmallFileSystem(const fs::path& folder, int bytes)

@@ -1,5 +1,5 @@
-// Every option of every command with odd values: a refusal in one line that names the option, no internal error.
-// Thousands of cases, therefore in this process.
+// Every option of every command with unusual values: raya accepts the value, or refuses it in one line that names the
+// option, and has no internal error. The parser runs in this process, because there are thousands of cases.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -17,7 +17,7 @@ constexpr const char* kNoDevice = "no-such-device";
 const Arguments kOddValues = {"x", "-1", "1e400", "99999999999999999999", "nan", "\x1b[31m"};
 
 struct Command {
-    Arguments path;  // "generate", "balls"
+    Arguments path;  // {"generate", "balls"}
     CommandText text;
 };
 
@@ -26,7 +26,7 @@ std::vector<Command> all_commands() {
     for_each_command(text_of_all_commands(), [&](const CommandText& command, const std::string& path) {
         std::istringstream tokens(path);
         commands.push_back({Arguments(std::istream_iterator<std::string>(tokens), {}), command});
-        commands.back().path.erase(commands.back().path.begin());  // raya
+        commands.back().path.erase(commands.back().path.begin());  // removes "raya"
     });
     return commands;
 }
@@ -40,14 +40,14 @@ struct ExposedApp : CLI::App {
     using CLI::App::final_callback_;
 };
 
-/// Returns the program's refusal of these arguments, "" if it accepts them. `runs`: runs the command's callback.
-/// Exceptions other than UserError end the test.
+/// Returns the message with which the program refuses the arguments; "" if it accepts them. `runs`: also runs the
+/// command's callback. Exceptions other than UserError end the test.
 std::string refusal(const Arguments& arguments, bool runs) {
     const std::shared_ptr<CLI::App> program = make_full_parser();
     if (!runs)
         for (CLI::App* at = program.get(); at != nullptr;) {
             at->callback(
-                [owner = at->*(&ExposedApp::final_callback_)] {});  // it owns the variables that the options fill
+                [owner = at->*(&ExposedApp::final_callback_)] {});  // the callback owns the variables of the options
             const auto next = at->get_subcommands([&](const CLI::App* one) {
                 return std::find(arguments.begin(), arguments.end(), one->get_name()) != arguments.end();
             });

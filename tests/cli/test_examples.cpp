@@ -1,4 +1,4 @@
-// The examples in help: the parser accepts each, and the quick ones are run.
+// The examples in help: the parser accepts every example, and the fast ones run successfully.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the arguments of each call of raya in a shell's line.
+/// Returns the arguments of each call of raya in a shell command line.
 std::vector<Arguments> calls_in(std::string line) {
     for (const char* sign : {"<(", ")", "|", "&&", ">"})
         for (std::size_t at = 0; (at = line.find(sign, at)) != std::string::npos; at += std::string(sign).size() + 2)
@@ -29,9 +29,9 @@ std::vector<Arguments> calls_in(std::string line) {
     return calls;
 }
 
-struct Accepted {};  // thrown where the command would run
+struct Accepted {};  // thrown instead of running the command
 
-/// Returns the parser's refusal, empty if it accepts the call.
+/// Returns the message with which the parser refuses the call; empty if it accepts it.
 std::string refusal_of(const Arguments& call) {
     const std::shared_ptr<CLI::App> program = make_full_parser();
     program->parse_complete_callback([] { throw Accepted{}; });
@@ -54,7 +54,7 @@ Arguments outputs_of(const Arguments& call) {
     return files;
 }
 
-/// Returns true for examples that take long, need other software, or are for another shell.
+/// Returns true for examples that are not run: they take long, need other software, or are for another shell.
 bool is_skipped(const std::string& path, const std::string& line) {
     if (path == "raya study") return !contains(line, " --size 64 ");
     for (const char* part : {"raya study all", "mpirun", "man -l", "raya bench", "source <("})

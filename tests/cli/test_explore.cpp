@@ -1,4 +1,4 @@
-// raya explore: its page and refused options.
+// raya explore: the page, and refused options.
 #include <catch2/catch.hpp>
 
 #include "tests/base/scratch_folder.hpp"
@@ -35,7 +35,7 @@ TEST_CASE("explore: writes a page and prints the mapping that it opens with", "[
         run_raya(small({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block", "--quiet"}));
     CHECK(again.code == 0);
     CHECK(again.out.empty());
-    CHECK(file_contents(page) == html);  // the page is reproducible
+    CHECK(file_contents(page) == html);  // a second run writes the same page
 }
 
 TEST_CASE("explore: refuses wrong options with the reason, and writes no file", "[cli]") {

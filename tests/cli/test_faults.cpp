@@ -1,4 +1,4 @@
-// Faults during a render: message, exit code, and no file, complete or partial.
+// Faults during a render: message, exit code, and no output file, neither complete nor partial.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -31,11 +31,11 @@ TEST_CASE("render: a device that runs out of memory ends with buffer, error and 
                       {"allocating buffer '", "bytes)", name, " has too little memory", "fewer pixels"},
                       failing_device(std::string("clCreateBuffer ") + fault));
     }
-    // Drivers that allocate a buffer at its first use fail at the launch.
+    // Drivers that allocate a buffer only at its first use fail at the kernel launch.
     check_refused(outputs, small_render(outputs), 3,
                   {"CL_MEM_OBJECT_ALLOCATION_FAILURE", "trace", "remedy: the device has too little memory"},
                   failing_device("clEnqueueNDRangeKernel 1 -4"));
-    // More than the device allows for one buffer: raya checks that before it calls the driver.
+    // A buffer larger than the device allows: raya refuses it before it calls the driver.
     check_refused(
         outputs,
         render_into(outputs, scene_file("planes"), {"--size", "16384", "--machine", "grande", "--antialias", "filter"}),
@@ -59,7 +59,8 @@ TEST_CASE("render: a device that is lost ends with the command and the error", "
 
 TEST_CASE("render --profile: without memory for the peak measurement it prints no roofline and still succeeds",
           "[cli]") {
-    // The n-th buffer fails: first those of the render, which then fails, then those of the peak measurement.
+    // Lets the n-th buffer and all later ones fail. For small n this is a buffer of the render, which then fails; for
+    // larger n a buffer of the peak measurement.
     int lost_renders = 0, lost_peaks = 0;
     for (int n = 1; n < 60; n += thorough() ? 1 : 4) {
         const ScratchFolder outputs;
@@ -72,7 +73,7 @@ TEST_CASE("render --profile: without memory for the peak measurement it prints n
         CHECK(outputs.entries() == 3);
         const bool lost = run.out.find("no roofline: ") != std::string::npos;
         CHECK(lost == (run.out.find("% of roof") == std::string::npos));
-        if (!lost) break;  // all buffers have failed once
+        if (!lost) break;  // n exceeds the number of buffers
         ++lost_peaks;
         CHECK_THAT(run.out, Catch::Contains("CL_MEM_OBJECT_ALLOCATION_FAILURE"));
     }
@@ -106,7 +107,7 @@ TEST_CASE("render: a failed allocation anywhere in raya ends with a message", "[
         CHECK_THAT(run.err, Catch::Contains("raya: out of memory on the host"));
         return outputs.entries();
     };
-    // Before main(), while the options are declared, while they are parsed, in the render.
+    // These allocations happen before main(), while options are declared, while they are parsed, and in the render.
     for (const char* number : {"1", "100", "1000", "10000", "20000"}) CHECK(outputs_of(number) == 0);
 }
 
@@ -146,7 +147,7 @@ TEST_CASE("render --device: a device that has gone is named, with the available 
                   {.variables = {{"POCL_DEVICES", "pthread"}}});
 }
 
-// An image of 3 MB; kernels and reports are far smaller.
+// Returns the arguments of a render to an image file of 3 MB. Kernel and report files are far smaller.
 Arguments large_render(const std::string& image) {
     return {"render", scene_file("planes"), "-o", image, "--size", "512", "--lanes", "4", "--quiet"};
 }
@@ -157,7 +158,7 @@ TEST_CASE("render: a file size limit ends with the reason and leaves no file", "
                   {.largest_file = 1 << 20});
 }
 
-/// Options of a run in which `outputs` takes that many bytes, see disk_faults.cpp.
+/// Returns the options of a run in which the folder `outputs` has space for `bytes` bytes (disk_faults.cpp).
 RunOptions full_disk(const ScratchFolder& outputs, const std::string& bytes) {
     return {.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
                           {"RAYA_FULL_DISK", bytes + " " + std::filesystem::canonical(outputs.path()).string()},
@@ -166,7 +167,7 @@ RunOptions full_disk(const ScratchFolder& outputs, const std::string& bytes) {
 
 TEST_CASE("render: a full disk ends with the reason and leaves no file", "[cli]") {
     const ScratchFolder outputs;
-    // Before the first byte, in the middle, and one byte before the end of the image, a colour PFM.
+    // The disk is full before the first byte of the image (a colour PFM), in the middle, and before its last byte.
     const std::string header = "PF\n512 512\n-1.0\n";
     const std::size_t whole = header.size() + 12 * 512 * 512;
     for (const std::size_t free_bytes : {std::size_t{0}, std::size_t{1} << 20, whole - 1}) {
@@ -175,7 +176,7 @@ TEST_CASE("render: a full disk ends with the reason and leaves no file", "[cli]"
                       {"x.pfm", "No space left on device", "free some space there or name a file on another disk"},
                       full_disk(outputs, std::to_string(free_bytes)));
     }
-    // The same run succeeds if the image fills the disk exactly.
+    // The run succeeds if the image exactly fits.
     const RunOutcome run = run_raya(large_render(outputs / "x.pfm"), full_disk(outputs, std::to_string(whole)));
     INFO(run.describe());
     CHECK(run.code == 0);
@@ -194,10 +195,10 @@ TEST_CASE("render: a full disk leaves an older file unchanged", "[cli]") {
 
 TEST_CASE("render: SIGINT and SIGTERM end a long render at once, without a file", "[cli]") {
     const ScratchFolder outputs;
-    // Minutes of work: one lane, a slow format.
+    // A render that takes minutes: a large image, one lane, a slow format.
     const Arguments minutes = {"--size", "4096", "--lanes", "1", "--machine", "grande", "--format", "e8m21"};
     for (const int signal : {SIGINT, SIGTERM}) {
-        for (const int after_ms : {0, 1500}) {  // while the kernel is built; while it runs
+        for (const int after_ms : {0, 1500}) {  // while the kernel is built, and while it runs
             CAPTURE(signal, after_ms);
             check_refused(outputs, render_into(outputs, scene_file("spheres"), minutes), 128 + signal,
                           {"raya: interrupted\n"}, {.signal = signal, .signal_after_ms = after_ms});

@@ -1,5 +1,5 @@
-// No output of a command overwrites its input or another output, under any name: all commands, all pairs of file
-// options. The parser runs in this process; it refuses before any callback runs.
+// No output of a command overwrites its input or another output, also under another name of the file. Tests all pairs
+// of file options of all commands. The parser runs in this process and refuses before any command's callback runs.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Path = std::vector<std::string>;  // of a command: {"generate", "random"}
+using Path = std::vector<std::string>;  // command path: {"generate", "random"}
 
 void for_each_command(CLI::App& command, const Path& path, const std::function<void(CLI::App&, const Path&)>& see) {
     see(command, path);
@@ -47,7 +47,8 @@ TEST_CASE("file options: every option with a file or folder declares its use", "
     CHECK(files > 35);
 }
 
-/// Returns arguments that give two options of a command these values, and its other required options any.
+/// Returns arguments that set `two_options` of a command to `two_values`, and its other required options to arbitrary
+/// valid values.
 Arguments arguments_for(CLI::App& command, const Path& path, const Arguments& two_options, const Arguments& two_values,
                         const ScratchFolder& others) {
     Arguments arguments = path;
@@ -69,8 +70,8 @@ void check_refused_by_parser(const Arguments& arguments, const Arguments& option
     std::string message = "nothing";
     try {
         make_full_parser()->parse(
-            Arguments(arguments.rbegin(), arguments.rend()));  // CLI11 takes the last argument first
-    } catch (const UserError& error) {                         // exit code 2
+            Arguments(arguments.rbegin(), arguments.rend()));  // CLI11 expects the arguments in reverse
+    } catch (const UserError& error) {                         // raya would exit with code 2
         message = error.what();
     }
     for (const std::string& option : options) CHECK_THAT(message, Catch::Contains(option));
@@ -85,7 +86,7 @@ std::vector<Arguments> pairs_of(CLI::App& command, FileUse one, FileUse other) {
     return pairs;
 }
 
-/// Calls `see` with two names of one file, which exists if `exists` says so.
+/// Calls `see` with two names of the same file, for several kinds of names. `exists`: the file exists.
 void for_each_two_names(bool exists, const std::function<void(const Arguments&)>& see) {
     Arguments others = {"file", "./file", "sub/../file", "folder_link/file", "link", "link2"};
     if (exists) others.push_back("hard");
@@ -152,7 +153,7 @@ TEST_CASE("file options: no command overwrites kernels that it reads, or an inpu
     CHECK(file_contents(folder / "fig7.csv") == "content");
 }
 
-/// Runs raya, which must refuse the arguments and leave `file`, a scene, unchanged.
+/// Runs raya and checks that it refuses the arguments and does not change `file`, a scene.
 void check_unchanged(const std::string& file, const Arguments& arguments, const Arguments& message) {
     const std::string before = file_contents(file);
     const RunOutcome run = run_raya(arguments);

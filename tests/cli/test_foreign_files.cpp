@@ -1,4 +1,4 @@
-// Security: raya loads no modules and no kernel cache that other users may write.
+// Security: raya loads no module and no kernel cache in which other users can write.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ constexpr uid_t kNobody = 65534;
 
 const fs::path kBuild = fs::path(RAYA_PROGRAM).parent_path();
 
-/// Copies raya into `program_in` and its modules into `modules_in`, below `folder`.
+/// A copy of raya in `program_in` and of its modules in `modules_in`, two subfolders of a scratch folder.
 struct Installation {
     Installation(const fs::path& folder, const char* program_in, const char* modules_in)
         : top(folder),
@@ -43,7 +43,7 @@ struct Installation {
              .program = program});
     }
 
-    /// Runs as one of two ranks, which do not find each other: raya loads the MPI module first.
+    /// Runs raya as one of two ranks. It loads the MPI module, then fails because the other rank does not exist.
     RunOutcome run_as_rank() const {
         return run_raya(
             {"devices"},
@@ -67,7 +67,7 @@ TEST_CASE("modules: are loaded from one folder of an installation only", "[cli][
     const ScratchFolder folder;
     CHECK(Installation(folder / "flat", ".", ".").run().code == 0);
     CHECK(Installation(folder / "prefix", "bin", "lib/raya").run().code == 0);
-    // Folders that earlier versions searched too, and where another user may put files.
+    // Modules in folders that earlier versions searched, where another user may put files, are not loaded.
     for (const auto& [program, modules] : {std::pair{"sub", "."}, {"sub", "lib/raya"}, {"bin", "bin"}, {"bin", "."}}) {
         CAPTURE(program, modules);
         const ScratchFolder scratch;
@@ -97,7 +97,7 @@ TEST_CASE("modules: refused if others may write or replace them", "[cli][module]
     check_mode(flat, flat.top, 01777, flat.top.string() + "' (mode 1777)");
     check_mode(prefix, prefix.modules, 0757, prefix.modules.string() + "' (mode 0757)");
     check_mode(prefix, prefix.top / "lib", 0777, (prefix.top / "lib").string() + "' (mode 0777)");
-    ::chmod((prefix.top / "lib").c_str(), 01777);  // sticky: others may not replace lib/raya
+    ::chmod((prefix.top / "lib").c_str(), 01777);  // sticky bit: others cannot replace lib/raya
     CHECK(prefix.run().code == 0);
     for (const char* name : {"raya_pictures.so", "raya_mpi.so"}) {
         ::chmod((flat.modules / name).c_str(), 0777);
@@ -114,13 +114,13 @@ TEST_CASE("modules: group write permission is accepted if the owner is the group
     const ScratchFolder folder;
     const Installation flat(folder / "flat", ".", ".");
     ::chmod(flat.top.c_str(), 0775);
-    CHECK(flat.run().code == 0);  // root's group
+    CHECK(flat.run().code == 0);  // root's group may write
     constexpr gid_t kNoNumber = 54'321;
     REQUIRE(::chown(flat.top.c_str(), 0, kNoNumber) == 0);
     CHECK(flat.run().code == 0);
     REQUIRE(::chown(flat.top.c_str(), 0, kNobody) == 0);
     flat.check_refused("(mode 0775)");
-    REQUIRE(::chown(flat.top.c_str(), 0, 1) == 0);  // group of the user daemon
+    REQUIRE(::chown(flat.top.c_str(), 0, 1) == 0);  // now group 1, that of the user daemon
     flat.check_refused("(mode 0775)");
 }
 
@@ -130,15 +130,15 @@ TEST_CASE("modules: those of the program's owner and of root are loaded, those o
     const ScratchFolder folder;
     ::chmod(folder.path().c_str(), 0755);
     const Installation prefix(folder / "prefix", "bin", "lib/raya");
-    CHECK(prefix.run(true).code == 0);  // root's, run by another user
+    CHECK(prefix.run(true).code == 0);  // files of root, run by another user
     for (const auto& entry : fs::recursive_directory_iterator(prefix.modules))
         REQUIRE(::chown(entry.path().c_str(), kNobody, 0) == 0);
     prefix.check_refused("' belongs to user nobody");
-    REQUIRE(::chown(prefix.program.c_str(), kNobody, 0) == 0);  // whoever runs the program trusts its owner
+    REQUIRE(::chown(prefix.program.c_str(), kNobody, 0) == 0);  // whoever runs a program trusts its owner
     CHECK(prefix.run().code == 0);
 }
 
-/// Runs raya as nobody with chosen places for the kernel cache.
+/// Runs raya as user nobody, with given folders for the kernel cache.
 struct CacheRun {
     ScratchFolder temporary;
     std::vector<std::pair<std::string, std::string>> variables;
@@ -162,7 +162,7 @@ struct CacheRun {
                         "4", "-q"});
     }
 
-    /// The private cache folder that raya makes in TMPDIR.
+    /// Returns the path of the private cache folder that raya creates in TMPDIR, with `end` appended.
     fs::path own(const std::string& end = "") const {
         return temporary / ("raya-pocl-cache-" + std::to_string(::geteuid() == 0 ? kNobody : ::geteuid()) + end);
     }
@@ -227,7 +227,7 @@ TEST_CASE("kernel cache: PoCL's default folder is used if only this user may wri
 TEST_CASE("kernel cache: raya skips private folders that it does not own", "[cli][cache]") {
     const CacheRun run;
     fs::create_directory(run.own());
-    ::chmod(run.own().c_str(), 0777);  // root owns it: stands for another user
+    ::chmod(run.own().c_str(), 0777);  // owned by root, who is another user for nobody
     if (::geteuid() != 0) ::chmod(run.own().c_str(), 0755);
     fs::create_directory_symlink(run.temporary.path(), run.own("-1"));
     std::ofstream(run.own("-2")) << "x";
@@ -251,7 +251,7 @@ TEST_CASE("kernel cache: without a safe folder the message names those that were
         CHECK_THAT(outcome.err, Contains(run.own().string()) && Contains("name another folder in POCL_CACHE_DIR") &&
                                     !Contains("no OpenCL device found"));
     };
-    check_none(CacheRun(0777));  // not sticky: others may replace its files
+    check_none(CacheRun(0777));  // without sticky bit: others can replace its files
     const CacheRun taken;
     for (const char* end : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
         std::ofstream(taken.own(end)) << "x";

@@ -1,4 +1,4 @@
-// render --frames: frame numbers, cameras, and which frames are rendered again.
+// render --frames: frame numbers, cameras, and the frames that are rendered again.
 #include <fmt/core.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -93,7 +93,7 @@ TEST_CASE("--camera-path: each line is a camera; a wrong line is refused with it
         CHECK_THROWS_WITH(read_camera_path(path, view), Catch::Contains(message));
     }
     CHECK_THROWS_WITH(read_camera_path(folder / "none.txt", view), Catch::Contains("--camera-path"));
-    // 0xbf alone is not valid UTF-8.
+    // A byte 0xbf alone is not valid UTF-8.
     for (const char* name : {"", "from ", "angle ", "from 1,2,", "up \xbf"}) {
         write_whole_file(path, name + std::string(5'000'000, name[0] == 'u' ? '\xbf' : '1') + "x\n");
         try {
@@ -109,7 +109,7 @@ TEST_CASE("--camera-path: each line is a camera; a wrong line is refused with it
     CHECK(read_camera_path(path, view)[0].from == Vec3(0, 0, 9));
 }
 
-/// A small sequence in its own folder.
+/// A sequence of small frames in a new folder.
 class Sequence {
   public:
     Arguments arguments(const Arguments& more = {}) const {
@@ -119,7 +119,7 @@ class Sequence {
         return all;
     }
 
-    /// Runs it and returns the number of rendered frames.
+    /// Renders the sequence with `more` options and returns how many frames raya rendered.
     int rendered(const Arguments& more) const {
         const RunOutcome run = run_raya(arguments(more));
         INFO(run.describe());
@@ -144,7 +144,7 @@ TEST_CASE("render --frames: frames equal single renders, and existing ones are s
     REQUIRE(s.rendered({"--frames", "1:4"}) == 4);
     CHECK(s.folder().entries() == 5);
     Arguments single = s.arguments();
-    single.resize(single.size() - 2);  // no turn
+    single.resize(single.size() - 2);  // without --turn
     REQUIRE(run_raya(single).code == 0);
     CHECK((file_contents(s.file("t.ppm")) == s.bytes(1)));
     CHECK((s.bytes(2) != s.bytes(1)));
@@ -155,10 +155,10 @@ TEST_CASE("render --frames: frames equal single renders, and existing ones are s
 
     CHECK(s.rendered({"--frames", "1:4"}) == 0);
     CHECK(s.rendered({"--frames", "2:3/4"}) == 0);
-    CHECK(s.rendered({"--frames", "0:3"}) == 4);  // the same numbers have other cameras
-    CHECK(s.rendered({"--frames", "1:4"}) == 3);  // frame 4 is unchanged; 1 to 3 had other cameras
+    CHECK(s.rendered({"--frames", "0:3"}) == 4);  // another sequence: its frames have other cameras
+    CHECK(s.rendered({"--frames", "1:4"}) == 3);  // frame 4 was not replaced; 1 to 3 were
     CHECK(s.record()["frames"].size() == 5);
-    CHECK(s.rendered({"--frames", "1:8"}) == 7);  // frame 1 has the same camera
+    CHECK(s.rendered({"--frames", "1:8"}) == 7);  // only frame 1 has the same camera
 }
 
 TEST_CASE("render --frames: renders again the frames whose file or settings changed, and only those", "[cli][frames]") {
@@ -212,7 +212,7 @@ TEST_CASE("render --frames: an interrupted sequence continues with the missing f
     const Sequence whole;
     const Arguments frames = {"--frames", "1:60"};
     REQUIRE(whole.rendered(frames) == 60);
-    // Interrupted later at each try, until some frames exist.
+    // Interrupts the render, each time after a longer delay, until some frames exist.
     std::optional<Sequence> stopped;
     int left = 60;
     for (int ms = 60; left == 60 && ms <= 5000; ms += ms / 2) {
@@ -280,7 +280,7 @@ TEST_CASE("FrameRecord: merges its frames with those that others wrote meanwhile
     other.write();
     for (const FrameRecord& record : {other, FrameRecord(folder / "t-frames.json")}) {
         CHECK(record.find(1, "one", {}) != nullptr);
-        CHECK(record.find(2, "other", {}) != nullptr);  // written last
+        CHECK(record.find(2, "other", {}) != nullptr);  // the entry that was written last
     }
 }
 

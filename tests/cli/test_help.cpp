@@ -1,4 +1,4 @@
-// Help: the same from `help` and `--help`, as wide as the terminal, every option below a heading.
+// Help: `help` and `--help` print the same text, as wide as the terminal, with every option below a heading.
 #include <pty.h>
 #include <sys/wait.h>
 
@@ -20,7 +20,7 @@ std::string help_of(Arguments arguments, const std::string& columns = "") {
     return run.out;
 }
 
-/// Returns what raya prints on a terminal of that many columns.
+/// Returns the output of raya on a terminal with `columns` columns.
 std::string on_terminal(Arguments arguments, unsigned short columns) {
     winsize size{};
     size.ws_col = columns;
@@ -55,7 +55,7 @@ TEST_CASE("help COMMAND: prints the same as COMMAND --help", "[cli][help]") {
     CHECK(help_of({"help", "help"}) == help_of({"help", "--help"}));
     CHECK_THAT(help_of({"help", "study"}),
                Catch::StartsWith("Usage: raya study STUDY") && Catch::Contains("Load of each PE, column split"));
-    CHECK_THAT(help_of({"help", "page"}), !Catch::Contains("script"));  // an implementation detail of pages
+    CHECK_THAT(help_of({"help", "page"}), !Catch::Contains("script"));  // scripts are an implementation detail
 }
 
 TEST_CASE("help: refuses unknown commands, with the closest name", "[cli][help]") {
@@ -110,7 +110,7 @@ TEST_CASE("help: every option is below a heading; \"General options\" is the las
             CHECK(std::count(general.begin(), general.end(), name) == 1);
         const bool short_help = std::count(general.begin(), general.end(), "--help-all") == 1;
         CHECK(short_help == !command.short_help.empty());
-        CHECK(general.size() == (path == "raya" || short_help ? 4 : 3));  // --version, --help-all
+        CHECK(general.size() == (path == "raya" || short_help ? 4 : 3));  // the fourth: --version or --help-all
     });
 }
 
@@ -120,7 +120,7 @@ TEST_CASE("help: commands with more than 25 options have a short help of at most
         CHECK((command.options.size() > 25) == !command.short_help.empty());
         if (command.short_help.empty()) return;
         Arguments words = tokens_of(path);
-        words.erase(words.begin());  // raya
+        words.erase(words.begin());  // removes "raya"
         Arguments all = words;
         words.emplace_back("--help");
         all.emplace_back("--help-all");

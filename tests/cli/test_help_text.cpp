@@ -1,4 +1,4 @@
-// help_text() of a small command line at several widths.
+// help_text() of a small example program at several widths.
 #include <catch2/catch.hpp>
 #include <sstream>
 #include <stdexcept>

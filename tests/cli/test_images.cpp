@@ -1,4 +1,4 @@
-// The image files of a render: their attributes, and reproducible bytes.
+// The image files of a render: attributes, and reproducible bytes.
 #include <OpenImageIO/imageio.h>
 #include <unistd.h>
 
@@ -49,7 +49,7 @@ TEST_CASE("render: PNG and EXR have the settings as attributes", "[cli]") {
         CHECK(text("raya:mapping") == "cyclic");
         CHECK(text("raya:offset") == "3");
         CHECK(text("raya:format") == "e6m15");
-        CHECK(std::stod(text("raya:u")) == Approx(u).margin(0.5e-6));  // six decimal places
+        CHECK(std::stod(text("raya:u")) == Approx(u).margin(0.5e-6));  // printed with six decimal places
     }
 }
 
@@ -64,7 +64,7 @@ TEST_CASE("render: no file contains a date, host or program name", "[cli]") {
         for (const std::string word : {"DateTime", "capDate", "tIME", "HostComputer", "Software", "owner"})
             CHECK_FALSE(contains(bytes, word));
         const std::string name = host.data();
-        if (name.size() >= 6) CHECK_FALSE(contains(bytes, name));  // a shorter one could occur among the pixels
+        if (name.size() >= 6) CHECK_FALSE(contains(bytes, name));  // pixels may contain a shorter name by chance
     }
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("render: scales a scene that exceeds the range of the format, and repo
         };
         const Document as_is = report_of(plain), beyond = report_of(large), below = report_of(tiny);
         CHECK(as_is["machine"]["length_exponent"] == 0);
-        CHECK((beyond["machine"]["length_exponent"] < 0) == (machine == std::string("spa")));  // the others: fp32
+        CHECK((beyond["machine"]["length_exponent"] < 0) == (machine == std::string("spa")));  // others use fp32
         CHECK((below["machine"]["length_exponent"] > 0) == (machine == std::string("spa")));
         CHECK(beyond["image"]["hash"] == as_is["image"]["hash"]);
         CHECK(below["image"]["hash"] == as_is["image"]["hash"]);

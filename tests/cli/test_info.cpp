@@ -1,4 +1,4 @@
-// raya info: its figures equal those of renders, and it needs no device.
+// raya info: the figures equal those of renders, and the command needs no device.
 #include <fmt/core.h>
 
 #include "host/base/whole_file.hpp"
@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-/// Hides all OpenCL drivers, so that any use of a device fails.
+/// Options of a run without OpenCL drivers, so that any use of a device fails.
 const RunOptions kNoDriver{.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}};
 
 Document info_of(const std::string& scene, Arguments options = {}) {
@@ -35,7 +35,7 @@ const Document& need_of(const Document& machine, const std::string& accel) {
     return machine;
 }
 
-/// A render with these options: its report if it succeeds, otherwise its messages.
+/// A render with given options: the report if it succeeds, otherwise the messages.
 struct RenderedScene {
     RenderedScene(const ScratchFolder& folder, const std::string& scene, Arguments options) {
         options.insert(options.begin(), {"render", scene, "-o", folder / "x.pfm", "--report", folder / "x.json",
@@ -47,7 +47,7 @@ struct RenderedScene {
     Document report;
 };
 
-/// Compares info's figures for one machine and accelerator with a render.
+/// Compares the figures of raya info for one machine and accelerator with those of a render.
 void check_against_render(const Document& machine, const Document& need, const RenderedScene& rendered) {
     INFO(rendered.run.describe());
     CAPTURE(need.dump());
@@ -78,7 +78,7 @@ void check_against_render(const Document& machine, const Document& need, const R
 TEST_CASE("info: figures equal those of renders, for every machine and accelerator", "[cli][slow]") {
     const ScratchFolder folder;
     const std::string random = folder / "random.nff";
-    REQUIRE(run_raya({"generate", "random", "2000", "-o", random}).code == 0);  // more than 32 KB
+    REQUIRE(run_raya({"generate", "random", "2000", "-o", random}).code == 0);  // more than the 32 KB of a PE
     for (const std::string& scene : {random, scene_file("centre")}) {
         CAPTURE(scene);
         const Document info = info_of(scene, {"--size", "16", "--bounces", "1"});
@@ -207,7 +207,7 @@ TEST_CASE("info: refuses invalid machines and options", "[cli]") {
     check_refused(none, {"info", none / "no.nff"}, 2, {"no.nff: cannot read the scene"});
     const RunOutcome run = run_raya({"info", scene, "--offset", "3"}, kNoDriver);
     CHECK(run.code == 0);
-    CHECK_THAT(run.out, Catch::Contains("cap: --offset 3"));  // the other machines accept it
+    CHECK_THAT(run.out, Catch::Contains("cap: --offset 3"));  // only the row of cap has the error
 }
 
 }  // namespace

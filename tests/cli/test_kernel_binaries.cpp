@@ -1,4 +1,4 @@
-// Kernel binaries next to the program: used only if they match and no other user may write them.
+// Kernel binaries next to the program: raya uses them only if they match and no other user can write them.
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-/// A copy of the program, without modules.
+/// A copy of the program without its modules.
 struct Copy {
     ScratchFolder folder, outputs;
 
@@ -65,7 +65,7 @@ TEST_CASE("render --cache-kernels: the next render uses the binary and makes the
     CHECK(copy.hash() == right);
     CHECK_FALSE(used_binary(copy.render({}, "off")));
     CHECK(copy.hash() == right);
-    CHECK_FALSE(used_binary(copy.render({"--bounces", "1"})));  // another OpenCL program
+    CHECK_FALSE(used_binary(copy.render({"--bounces", "1"})));  // other options need another OpenCL program
 }
 
 TEST_CASE("kernel binaries: damaged ones and those that others may write are not used", "[cli]") {
@@ -80,8 +80,12 @@ TEST_CASE("kernel binaries: damaged ones and those that others may write are not
     std::ofstream(binary) << "no binary";
     CHECK_FALSE(used_binary(copy.render({})));
     CHECK(copy.hash() == right);
-    copy.render({"--cache-kernels"});  // writes it again
+    copy.render({"--cache-kernels"});  // writes the binary again
     CHECK(used_binary(copy.render({})));
+    fs::remove(binary);
+    fs::create_directory(binary);  // cannot be read as a file
+    CHECK_FALSE(used_binary(copy.render({})));
+    CHECK(copy.hash() == right);
 }
 
 TEST_CASE("RAYA_BINARIES: refuses values other than off", "[cli]") {

@@ -1,4 +1,4 @@
-// A driver that loses copies or writes them elsewhere: raya verify detects it in the checks of copies and of images.
+// A driver that loses or misdirects copies: the checks of copies and of images in raya verify detect it.
 #include <algorithm>
 #include <sstream>
 #include <utility>
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-/// Names of the checks whose lines begin so, for example with "FAIL  LAYER ".
+/// Returns the names of the checks whose lines begin with `beginning`, such as "FAIL  LAYER ".
 Arguments checks_with(const RunOutcome& run, const std::string& beginning) {
     Arguments names;
     std::istringstream lines(run.out);

@@ -1,4 +1,4 @@
-// Closed and full stdout and stderr: lost output on stdout is exit code 2, lost output on stderr is ignored.
+// Closed and full stdout and stderr: if output on stdout is lost, the exit code is 2; lost output on stderr is ignored.
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/run_program.hpp"
 

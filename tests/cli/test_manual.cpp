@@ -1,4 +1,4 @@
-// Manual pages and completions of a small command line, with texts that man and shells would interpret.
+// Manual pages and completions of a small program, whose texts contain characters that man and shells interpret.
 #include <catch2/catch.hpp>
 
 #include "host/cli/command_text.hpp"

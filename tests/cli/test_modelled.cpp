@@ -1,4 +1,4 @@
-// The modelled times of a report, recomputed from its counts.
+// The modelled times of a report: they equal times computed here from the report's counts.
 #include <numeric>
 
 #include "tests/cli/render_files.hpp"
@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// 6 cycles per division, 8 per root, 3 per branch (host/model/budget.hpp).
+// Adds 6 cycles per division, 8 per square root and 3 per branch (host/model/budget.hpp).
 std::uint64_t cycles_of(const Document& budget) {
     return budget["multiply_accumulates"].get<std::uint64_t>() + 6 * budget["divisions"].get<std::uint64_t>() +
            8 * budget["roots"].get<std::uint64_t>() + budget["moves"].get<std::uint64_t>() +
@@ -35,8 +35,8 @@ TEST_CASE("report: modelled times follow from counted cycles and words", "[cli]"
     const Document &time = report["modelled_ms"], &words = report["communication"], &load = report["load"];
     INFO(time.dump());
     const bool filter = antialias == "filter", supersample = antialias == "supersample";
-    const double share = 3 * 12;          // pixels of the PE with the most: 3 of the 20 columns of 12
-    const double host = 140 / 196'608.0;  // ms per word
+    const double share = 3 * 12;          // pixels of the busiest PE: 3 of 20 columns, 12 rows
+    const double host = 140 / 196'608.0;  // ms per word between host and PEs
     CHECK(time["filter"] == about(filter ? 42e-4 * share : 0));
     CHECK(time["compare"] == about(supersample ? 121e-4 * share : 0));
     double busiest = load["trace"]["max"];

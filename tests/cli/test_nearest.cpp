@@ -1,4 +1,4 @@
-// The closest name to a misspelt one.
+// Suggestions for misspelt names.
 #include <catch2/catch.hpp>
 
 #include "host/cli/nearest.hpp"
@@ -9,7 +9,7 @@ namespace {
 TEST_CASE("nearest_name: the fewest edits, or the name with that prefix", "[parse]") {
     const std::vector<std::string> names = {"render", "devices", "generate", "bench", "study", "verify"};
     CHECK(nearest_name("rendr", names) == "render");
-    CHECK(nearest_name("redner", names) == "render");  // two letters swapped
+    CHECK(nearest_name("redner", names) == "render");  // two characters are swapped
     CHECK(nearest_name("gen", names) == "generate");
     CHECK(nearest_name("device", names) == "devices");
     CHECK(nearest_name("study", names) == "study");

@@ -1,4 +1,4 @@
-// raya page, and --page of the commands that write reports: equal pages, and refused reports.
+// raya page, and --page of the commands that write reports: both make equal pages, and raya page refuses other files.
 #include <catch2/catch.hpp>
 
 #include "tests/base/scratch_folder.hpp"
@@ -23,13 +23,14 @@ Arguments render_of_24(const ScratchFolder& folder, const Arguments& more = {}) 
         {"render", scene_file("planes"), "--size", "24x16", "--lanes", "4", "--quiet", "-o", folder / "c.pfm"}, more);
 }
 
-// Without a device, so that nothing can be run again.
+// Runs raya page without an OpenCL driver, so that it cannot repeat the command of the report.
 RunOutcome page_of_file(const std::string& report, const std::string& page, const Arguments& more = {}) {
     return run_raya(joined({"page", report, "-o", page}, more),
                     {.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}});
 }
 
-// Runs the command with --report and --page, makes the page again from the report, and returns it.
+// Runs the command with --report and --page, makes the page again from the report, checks that both pages are equal,
+// and returns the page.
 std::string check_page(const ScratchFolder& folder, const Arguments& command, int code = 0) {
     const std::string report = folder / "r.json", page = folder / "r.html", again = folder / "again.html";
     const RunOutcome run = run_raya(joined(command, {"--report", report, "--page", page}));

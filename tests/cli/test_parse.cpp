@@ -1,4 +1,4 @@
-// Parsing of option values: names, and numbers by the type of their variable.
+// Parsing of option values: keywords, and numbers of different types.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <optional>
@@ -15,12 +15,12 @@ using Catch::Equals;
 
 namespace {
 
-/// Returns the parser's refusal of "--it TEXT" for an option --it that sets `value`; "" if it accepts the text.
+/// Parses "--it TEXT" for an option --it that sets `value`. Returns the parser's error message; "": no error.
 template <class Value>
 std::string refusal_of_value(Value& value, const std::string& text) {
     CLI::App app;
-    add_value(app, "--it", value, "A value")->type_name("N");  // the placeholder in help must not matter
-    std::vector<std::string> arguments = {text, "--it"};       // CLI11 takes the last argument first
+    add_value(app, "--it", value, "A value")->type_name("N");  // the placeholder must have no effect
+    std::vector<std::string> arguments = {text, "--it"};       // CLI11 expects the arguments in reverse
     try {
         app.parse(arguments);
     } catch (const UserError& error) {
@@ -78,7 +78,7 @@ TEST_CASE("add_value: the type of the variable decides what a value may be, not 
     CHECK(plain == UINT64_MAX);
     std::vector<std::uint32_t> several;
     CHECK_THAT(refusal_of_value(several, "x"), Contains("not a whole number"));
-    int number = 0;  // the command checks its range
+    int number = 0;  // the command checks the range, not the parser
     CHECK(refusal_of_value(number, "-1").empty());
     CHECK(number == -1);
     std::optional<double> real;

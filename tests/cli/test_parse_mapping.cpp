@@ -1,4 +1,4 @@
-// Parsing of --mapping and --fold: every form, its canonical text, and refusals.
+// Parsing of --mapping and --fold: every form, its canonical text, and refused texts.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <string>

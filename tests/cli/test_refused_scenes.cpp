@@ -1,4 +1,4 @@
-// Scenes that the program refuses; the tests of the reader have the full table.
+// Scenes that the program refuses. The tests of the NFF reader (tests/scene) cover all errors.
 #include <filesystem>
 #include <fstream>
 

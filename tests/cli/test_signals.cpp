@@ -1,5 +1,5 @@
-// SIGINT, SIGTERM, SIGHUP and SIGQUIT in every phase of every command: the program ends by that signal within a second
-// and leaves no incomplete file.
+// SIGINT, SIGTERM, SIGHUP and SIGQUIT in every phase of every command: the signal ends the program within a second, and
+// the program leaves no incomplete file.
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -20,12 +20,12 @@ constexpr double kLimit_s = 1;
 struct Phase {
     std::string name;
     Arguments arguments;
-    std::function<bool()> reached;
-    int more_ms = 0;  // delay after `reached`
+    std::function<bool()> reached;  // true in this phase
+    int more_ms = 0;                // delay from when `reached` is true
     RunOptions run_options{};
 };
 
-/// Folders of one phase: outputs, inputs and kernel caches.
+/// The folders of one phase: outputs, inputs and kernel caches.
 struct Folders {
     ScratchFolder outputs, inputs, cache;
 
@@ -35,7 +35,7 @@ struct Folders {
     }
 };
 
-/// Returns true if the folder or one below it has a file whose name contains this text.
+/// Returns true if the folder or a folder below it has a file whose name contains `part`.
 bool has_file(const std::string& folder, const std::string& part) {
     std::error_code gone;
     for (const auto& entry : fs::recursive_directory_iterator(folder, gone))
@@ -43,7 +43,7 @@ bool has_file(const std::string& folder, const std::string& part) {
     return false;
 }
 
-/// Sends the signal and checks how the run ends. The best of three runs counts, since the machine may be loaded.
+/// Sends the signal and checks how the run ends. Takes the fastest of three runs, because the computer may be loaded.
 void check_signal(const Folders& folders, const Phase& phase, int signal) {
     RunOptions run_options = phase.run_options;
     run_options.signal = signal;
@@ -58,7 +58,7 @@ void check_signal(const Folders& folders, const Phase& phase, int signal) {
     CHECK(run.after_signal_s < kLimit_s);
     if (run_options.error_file.empty()) CHECK(run.err.ends_with("raya: interrupted\n"));
     CHECK_FALSE(has_file(folders.outputs.path(), ".tmp"));
-    CHECK_FALSE(has_file(folders.inputs.path(), ".tmp"));  // the folder of a study may already have complete files
+    CHECK_FALSE(has_file(folders.inputs.path(), ".tmp"));  // a study may have written complete files
     if (phase.arguments[0] != "manual") CHECK(folders.outputs.entries() == 0);
 }
 
@@ -69,7 +69,7 @@ void check_phases(const Folders& folders, const std::vector<Phase>& phases, cons
 
 const std::initializer_list<int> kSignals = {SIGQUIT, SIGINT, SIGTERM, SIGHUP};
 
-/// Every command that reads, while it waits for its input.
+/// Returns, for every command that reads input, the phase in which it waits for the input.
 std::vector<Phase> reading(const Folders& folders) {
     const std::string fifo = folders.fifo("never.nff"), out = folders.outputs / "x.ppm",
                       page = folders.outputs / "x.html";
@@ -81,14 +81,14 @@ std::vector<Phase> reading(const Folders& folders) {
     return phases;
 }
 
-/// Arguments of a long computation with one lane; a page has at most 2,000,000 pixels.
+/// Returns the arguments of a long computation: one lane, and not more than the 2,000,000 pixels that a page allows.
 Arguments long_work(const std::string& command, const Arguments& more) {
     Arguments arguments = {command, scene_file("spheres"), "--size", "1400", "--lanes", "1", "--format", "e8m21"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
 }
 
-/// Every command that uses a device, while it compiles (`builds`) or computes.
+/// Returns, for every command that uses a device, the phase in which it compiles kernels (`builds`) or computes.
 std::vector<Phase> computing(const Folders& folders, bool builds) {
     const std::string out = folders.outputs / "x.ppm", cache = folders.cache.path();
     std::vector<Arguments> calls = {long_work("render", {"-o", out, "--machine", "grande"}),
@@ -112,7 +112,7 @@ std::vector<Phase> computing(const Folders& folders, bool builds) {
     return phases;
 }
 
-/// Every command that writes a file, blocked in `call`: write() or rename().
+/// Returns, for every command that writes a file, the phase in which it is blocked in `call`: write() or rename().
 std::vector<Phase> writing(const Folders& folders, const std::string& call) {
     const std::string folder = fs::canonical(folders.outputs.path()).string(), x = folder + "/x";
     const Arguments small = {scene_file("planes"), "--size", "16", "--lanes", "4", "--format", "fp32"};
@@ -173,7 +173,7 @@ TEST_CASE("signals: during a write they leave no part of the file", "[cli][signa
     }
 }
 
-/// A full pipe without a reader.
+/// A full pipe that no process reads.
 class FullPipe {
   public:
     explicit FullPipe(const std::string& path) : pipe_(::open(path.c_str(), O_RDWR | O_NONBLOCK)) {

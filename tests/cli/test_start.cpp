@@ -1,4 +1,4 @@
-// Libraries that the program loads at its start, from the log of the dynamic loader.
+// The libraries that the program loads, from the log of the dynamic loader.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/// Returns the file names of all libraries that raya and its child processes load, from LD_DEBUG (ld.so(8)).
+/// Returns the file names of all libraries that raya and its child processes load, with LD_DEBUG (man 8 ld.so).
 Names libraries_of(const std::vector<std::string>& arguments, int code = 0) {
     const ScratchFolder logs;
     const RunOutcome run =
@@ -32,7 +32,7 @@ Names libraries_of(const std::vector<std::string>& arguments, int code = 0) {
     return names;
 }
 
-/// Returns the names that contain one of the parts.
+/// Returns those of `names` that contain one of `parts`.
 Names with(const Names& names, const std::vector<std::string>& parts) {
     Names found;
     std::copy_if(names.begin(), names.end(), std::inserter(found, found.end()), [&](const std::string& name) {
@@ -48,7 +48,7 @@ std::vector<std::string> render_of_4(const std::string& image) {
 TEST_CASE("--version: loads the OpenCL loader, three small libraries, those of C and C++, and no others", "[cli]") {
     Names names = libraries_of({"--version"});
     for (const std::string& sanitizer : with(names, {"libasan", "libubsan"})) names.erase(sanitizer);
-    if (kSanitized)  // less inlining: Imath is a dependency there
+    if (kSanitized)  // with less inlining, raya depends on Imath
         for (const std::string& imath : with(names, {"libImath"})) names.erase(imath);
     CHECK(names.size() <= 9);
     const std::vector<std::string> known = {"libOpenCL.", "libfmt.", "libxxhash.", "libz.",       "libstdc++.", "libm.",
@@ -59,7 +59,7 @@ TEST_CASE("--version: loads the OpenCL loader, three small libraries, those of C
 TEST_CASE("devices, renders to PFM and PPM: load neither OpenImageIO nor TBB nor MPI; a render to PNG does", "[cli]") {
     const ScratchFolder outputs;
     const std::vector<std::string> heavy = {"raya_", "OpenImageIO", "libtbb", "libmpi",
-                                            "libopen-"};  // libopen-*: Open MPI
+                                            "libopen-"};  // libopen-*: libraries of Open MPI
     CHECK(with(libraries_of({"devices"}), heavy).empty());
     for (const char* image : {"x.pfm", "x.ppm"}) CHECK(with(libraries_of(render_of_4(outputs / image)), heavy).empty());
     CHECK(with(libraries_of(render_of_4(outputs / "x.png")), {"raya_pictures", "OpenImageIO"}).size() >= 2);

@@ -1,4 +1,4 @@
-// "-" as a file name: stdin for a scene, stdout for one file; the summary then goes to stderr.
+// The file name "-": stdin for a scene, stdout for one output file. The summary then goes to stderr.
 #include <fcntl.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-/// Runs a command line in a shell in `folder` and returns its exit code.
+/// A folder in which a shell runs command lines.
 struct Shell {
     const ScratchFolder& folder;
 
@@ -190,7 +190,7 @@ TEST_CASE("-o -: a failed write to stdout is exit code 2", "[cli]") {
     CHECK(contains(file_contents(folder / "out.nff"), "s "));
 }
 
-/// A pseudoterminal; this process has the master end.
+/// A pseudoterminal, with its master end in this process.
 struct Terminal {
     Terminal() {
         REQUIRE(master >= 0);

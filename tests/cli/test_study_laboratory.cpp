@@ -1,4 +1,4 @@
-// raya study: the files of the load laboratory's studies, and refusals.
+// raya study: the files that the studies of tools/lab write, and refused options.
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -63,7 +63,7 @@ TEST_CASE("study: writes figures, tables, JSON and a document", "[cli]") {
     CHECK_THAT(markdown, Catch::Contains("## Main figures") && Catch::Contains("(fig8-all.svg)"));
 }
 
-// SimGrid's program is next to raya if it was built: a copy of raya in another folder has none.
+// raya searches the SimGrid program in its own folder, so a copy of raya in another folder does not find it.
 TEST_CASE("study simgrid: without SimGrid it says what to install, and study all skips it", "[cli]") {
     const ScratchFolder outputs, elsewhere;
     const RunOptions copy{.program = elsewhere / "raya"};

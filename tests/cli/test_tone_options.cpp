@@ -1,4 +1,4 @@
-// render --exposure, --gamma, --tone: they change the codes of 8-bit images, and report and image record them.
+// render --exposure, --gamma, --tone: they change the codes of 8-bit images; report and image file contain them.
 #include <OpenImageIO/imageio.h>
 
 #include "tests/cli/refusals.hpp"

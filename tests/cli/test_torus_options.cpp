@@ -1,4 +1,4 @@
-// Options of the torus: refusals and help.
+// Options of the torus machine: refused values, and help.
 #include "host/scene/nff.hpp"
 #include "kernels/shared/traffic.h"
 #include "tests/cli/refusals.hpp"
@@ -12,7 +12,7 @@ struct TorusRow {
     Arguments message;
 };
 
-/// Checks that renders on `machine` with these options are refused with these messages.
+/// Checks that raya refuses a render on `machine` with the options of each row, with the message of the row.
 void check_refused_on(const std::string& machine, const std::vector<TorusRow>& rows) {
     const ScratchFolder outputs;
     for (const TorusRow& row : quick_of(3, rows)) {

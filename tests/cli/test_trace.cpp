@@ -1,4 +1,4 @@
-// render --trace: traces follow the schema and agree with the report of the same run.
+// render --trace: traces conform to TraceSchema and agree with the report of the same run.
 #include <map>
 
 #include "host/report/trace_file.hpp"
@@ -31,7 +31,7 @@ TracedRun traced(const std::string& scene, const Arguments& options, const std::
     return t;
 }
 
-// Nanoseconds and number of commands by "label/kind".
+// [total nanoseconds, number] of the commands with the key "label/kind".
 using Sums = std::map<std::string, std::pair<std::int64_t, std::int64_t>>;
 
 Sums sums_of_trace(const Document& trace) {
@@ -67,7 +67,7 @@ void check(const TracedRun& t) {
     CHECK(t.trace["otherData"]["device_clock"].is_object());
 }
 
-// The host's step "render" contains all commands of the device.
+// Checks that the host's step "render" contains all commands of the device: both clocks agree.
 void check_clocks(const Document& trace) {
     const TraceSchema schema(trace);
     const auto steps = schema.slices_of(kTraceHost);

@@ -1,4 +1,4 @@
-// raya tune: wrong, failing, crashing and hanging candidates are dropped; renders use the stored values.
+// raya tune: it drops candidates that render a wrong image, fail, crash or hang; renders use the stored values.
 #include <set>
 
 #include "tests/cli/failing_device.hpp"
@@ -10,17 +10,17 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-/// Options of a run with a device of 4 native lanes and this cache folder.
+/// Returns the options of a run on a device with 4 native lanes, with `cache` as cache folder.
 RunOptions tuned_in(const ScratchFolder& cache) {
     RunOptions run_options = failing_device("clGetDeviceInfo 4154 4");
     run_options.variables.emplace_back("XDG_CACHE_HOME", cache.path());
     run_options.variables.emplace_back("RAYA_TUNED", "");
-    run_options.variables.emplace_back("RAYA_BUILD_OPTIONS", "-cl-opt-disable");  // compiles faster
+    run_options.variables.emplace_back("RAYA_BUILD_OPTIONS", "-cl-opt-disable");  // to compile faster
     return run_options;
 }
 
-// An injected fault for one value of each knob that is not the default: a failed build for 8 lanes, a wrong image for
-// groups of 2, a crash without local words, a hang for batches of 8.
+// Injected faults, one for a non-default value of each tuning parameter: 8 lanes do not compile, groups of 2 render a
+// wrong image, scene words in global memory crash, sphere batches of 8 hang.
 const SourcePatch kFaults = {"shading/tree.clh", "    t->sum = vec_choose(m, vec_mad(value, weight, t->sum), t->sum);",
                              R"(#if RAYA_LANES == 8
 #error "no eight lanes"
@@ -33,7 +33,7 @@ const SourcePatch kFaults = {"shading/tree.clh", "    t->sum = vec_choose(m, vec
 #endif
     t->sum = vec_choose(m, vec_mad(value, weight, t->sum), t->sum);)"};
 
-/// Returns the outcomes of the candidates with this value in a T4 report.
+/// Returns the outcomes, in a T4 report, of the candidates whose parameter `knob` has this value.
 std::set<std::string> ends_with(const Document& report, const std::string& knob, std::uint32_t value) {
     std::set<std::string> ends;
     for (const Document& one : report["results"])
@@ -50,7 +50,7 @@ TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; re
                                     run_options);
     INFO(run.describe());
     REQUIRE(run.code == 0);
-    CHECK_FALSE(contains(run.err, "raya: "));  // stderr has messages of compilers only
+    CHECK_FALSE(contains(run.err, "raya: "));  // stderr has only the compilers' messages
     const Document t4 = Document::parse(file_contents(report));
     using Ends = std::set<std::string>;
     CHECK(ends_with(t4, "lanes", 8) == Ends{"compile"});

@@ -1,4 +1,4 @@
-// -q and -v: they change messages, not results.
+// -q and -v: they change the messages, not the results.
 #include <algorithm>
 #include <sstream>
 
@@ -23,7 +23,7 @@ RunOutcome run_of(const Arguments& arguments) {
     return run;
 }
 
-/// Returns the lines of the summary without times, which differ between runs.
+/// Returns the lines of the summary without the times, which differ between runs.
 std::vector<std::string> without_times(const std::string& out) {
     std::vector<std::string> lines = lines_of(out);
     std::erase_if(lines, [](const std::string& line) { return line.starts_with("time "); });
@@ -60,7 +60,7 @@ TEST_CASE("render: announces the first compilation and its duration, also withou
     const std::vector<std::pair<std::string, std::string>> variables = {{"POCL_CACHE_DIR", cache.path()}};
     const Arguments arguments = {
         "render", scene_file("planes"), "-o", folder / "x.ppm", "--size", "16", "--lanes", "16", "--accel",
-        "bvh"};  // seconds to compile
+        "bvh"};  // takes seconds to compile
     const RunOutcome first = run_raya(arguments, {.variables = variables}),
                      second = run_raya(arguments, {.variables = variables});
     INFO(first.describe() + second.describe());
@@ -107,7 +107,7 @@ TEST_CASE("render -q: prints warnings and errors; -qq: only errors", "[cli][verb
 
 TEST_CASE("messages: escape control characters in file names", "[cli][verbosity]") {
     const ScratchFolder folder;
-    const std::string odd = "a\x1b[31m\a\xc2\x9b-\xc3\xa9", shown = "a\\x1b[31m\\x07\\x9b-\xc3\xa9";  // and e acute
+    const std::string odd = "a\x1b[31m\a\xc2\x9b-\xc3\xa9", shown = "a\\x1b[31m\\x07\\x9b-\xc3\xa9";  // last: e acute
     const std::string scene = folder / (odd + ".nff"), report = folder / (odd + ".json");
     std::filesystem::copy_file(scene_with_warning(folder), scene);
     const Arguments size = {"--size", "16", "--pes", "4", "--lanes", "4"};

@@ -1,4 +1,4 @@
-// raya verify: output, reports, exit codes and refusals.
+// raya verify: output, reports, exit codes and refused options.
 #include <catch2/catch.hpp>
 #include <filesystem>
 

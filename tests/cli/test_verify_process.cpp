@@ -1,4 +1,4 @@
-// Worker processes of raya verify: crashes of the driver, Ctrl-C, and the progress line.
+// The worker processes of raya verify: driver crashes, Ctrl-C, and the progress line.
 #include <fcntl.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ TEST_CASE("verify: a driver crash fails the running check, and the others contin
         CHECK_THAT(run.out, Catch::Contains(row.ending));
         CHECK(has_line(run.out, ".*: [0-9]+ checks passed, [0-9]+ failed, 0 skipped in [0-9.]+ s"));
         const auto device = Document::parse(file_contents(file))["devices"][0];
-        CHECK(device["failed"].get<int>() >= 3);  // copies of blocks; ring, bus and links move rows
+        CHECK(device["failed"].get<int>() >= 3);  // the checks of block copies, and of rows over ring, bus and links
         CHECK(device["passed"].get<int>() >= 11);
         for (const auto& check : device["checks"])
             if (check["status"] == "FAIL") CHECK((check["result"] == row.ending && check["where"] != ""));
@@ -53,7 +53,7 @@ TEST_CASE("--worker: refused from users", "[cli][verify]") {
     check_refused(outputs, {"verify", "--lines", "1"}, 2, {"no option --lines"});
 }
 
-/// Returns true if a process has this text in its command line.
+/// Returns true if the command line of any running process contains this text.
 bool is_running_with(const std::string& argument) {
     for (const auto& entry : fs::directory_iterator("/proc")) {
         std::ifstream file(entry.path() / "cmdline", std::ios::binary);
@@ -82,12 +82,12 @@ TEST_CASE("verify: SIGINT and SIGTERM end it and its worker process at once", "[
     }
 }
 
-/// Runs raya with a terminal as stderr and returns what it prints there.
+/// Runs raya with a terminal as stderr and returns the text on the terminal.
 std::string text_on_terminal(const Arguments& arguments, RunOptions run_options) {
     const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
     if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) return "no terminal";
     const std::string name = ::ptsname(terminal);
-    const int other_end = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // keeps the terminal open
+    const int other_end = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // keeps the terminal open after raya has ended
     run_options.error_file = name;
     run_raya(arguments, run_options);
     ::fcntl(terminal, F_SETFL, O_NONBLOCK);

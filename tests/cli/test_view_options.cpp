@@ -1,4 +1,4 @@
-// --from, --at, --up, --angle, --background, --light: the image equals that of a scene with the same values.
+// --from, --at, --up, --angle, --background, --light: the image equals the image of a scene with the same values.
 #include <fmt/core.h>
 
 #include "host/base/whole_file.hpp"
@@ -18,7 +18,7 @@ Vec3 random_vector(SplitMix& random, double low, double high) {
     return {random.uniform(low, high), random.uniform(low, high), random.uniform(low, high)};
 }
 
-/// Options with the view, background and lights of the scene.
+/// Returns options that set the view, background and lights to those of the scene.
 ViewOptions options_of(const Scene& scene) {
     ViewOptions v;
     v.from = text_of(scene.view.from);
@@ -102,7 +102,7 @@ TEST_CASE("change_view: refuses what the scene reader would refuse, with the opt
                Contains("parallel to the viewing direction"));
 }
 
-/// The options as arguments of a command line.
+/// Returns the options as command-line arguments.
 Arguments arguments_of(const ViewOptions& v) {
     Arguments arguments = {"--from",       v.from,      "--at",    v.at,
                            "--up",         v.up,        "--angle", fmt::format("{}", *v.angle),

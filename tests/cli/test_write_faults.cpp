@@ -1,5 +1,6 @@
-// Each of raya's writing calls fails once (disk_faults.cpp). raya repeats interrupted and short calls; otherwise it
-// ends with 2 and a message. The old file stays, or the new one is complete.
+// For each of raya's writing calls, a run in which this call fails (disk_faults.cpp). raya repeats interrupted and
+// short calls. After other errors it ends with exit code 2 and a message. Either the old file is unchanged or the new
+// one is complete.
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
@@ -15,20 +16,20 @@ namespace raya {
 namespace {
 
 namespace fs = std::filesystem;
-using Contents = std::map<std::string, std::string>;  // file contents by name
+using Contents = std::map<std::string, std::string>;  // [file name, contents]
 
 constexpr const char* kOld = "old content";
 
 struct WritingCommand {
     std::string name;
-    Arguments arguments;     // with the folder before each file
-    bool replaces = true;    // existing files
-    bool thorough = false;   // slow: only if thorough()
-    std::string input = "";  // file that it reads
-    bool prints = false;     // stdout is the same in each run
+    Arguments arguments;     // with the folder in each file name
+    bool replaces = true;    // it replaces existing files
+    bool thorough = false;   // slow: tested only if thorough()
+    std::string input = "";  // name of the file that it reads
+    bool prints = false;     // it prints the same on stdout in each run
 };
 
-/// The commands that write files into `folder`.
+/// Returns the commands that write files, with arguments that write them into `folder`.
 std::vector<WritingCommand> commands(const std::string& folder) {
     const auto file = [&](const std::string& name) { return folder + "/" + name; };
     const auto render = [&](const Arguments& more) {
@@ -74,7 +75,7 @@ Contents files_of(const fs::path& folder) {
     return files;
 }
 
-/// Returns true if a file is complete: equal to `expected`, except files with times.
+/// Returns true if the file is complete: equal to the one in `expected`, or, for files that contain times, well-formed.
 bool is_complete(const std::string& name, const std::string& content, const Contents& expected) {
     if (name.ends_with(".rst")) return content.starts_with("raya");
     if (!expected.contains(name)) return false;
@@ -85,12 +86,12 @@ bool is_complete(const std::string& name, const std::string& content, const Cont
 
 struct FaultRun {
     RunOutcome run;
-    Arguments calls;  // "write", "open fails", ...
+    Arguments calls;  // lines of RAYA_WRITE_CALLS: "write", "open fails"
     Contents files;
-    std::string printed;  // only of commands with `prints`
+    std::string printed;  // stdout, only for commands with `prints`
 };
 
-/// Runs command `index` in a new folder. `fault`: for RAYA_WRITE_FAULT; `old`: names of existing files.
+/// Runs command `index` in a new folder. `fault`: value of RAYA_WRITE_FAULT; `old`: files that exist before.
 FaultRun run_with(std::size_t index, const std::string& fault, const Contents& old, const std::string& saved) {
     const ScratchFolder folder, notes;
     const WritingCommand command = commands(folder.path().string())[index];
@@ -152,7 +153,8 @@ TEST_CASE("every command that writes: repeats a call that failed once, or keeps 
         const Contents old = all[index].replaces ? good.files : Contents{};
         std::size_t calls = 0;
         for (std::size_t call = 1; call <= good.calls.size(); ++call) {
-            // Of consecutive equal calls only the first two and the last fail, unless the test is thorough and quick.
+            // In a sequence of equal calls only the first two and the last fail, unless the test is thorough and the
+            // command is not slow.
             const auto is = [&](std::size_t at) { return at <= good.calls.size() ? good.calls[at - 1] : "end"; };
             const bool all_writes = thorough() && !all[index].thorough;
             if (!all_writes && call > 2 && is(call) == is(call - 1) && is(call) == is(call + 1)) continue;

@@ -8,7 +8,8 @@ namespace {
 
 using Document = nlohmann::ordered_json;
 
-// Prefix of a string value whose rest is written verbatim, for text that the library cannot write.
+// Marks a string value: the text after this prefix is written to the file verbatim, without quotes. For text that the
+// JSON library cannot write.
 constexpr const char* kRaw = "\x01raw";
 
 const char* const kRawValues[] = {"1e400",
@@ -77,7 +78,7 @@ const char* const kTexts[] = {"",
                               "iVBORw0KGgo=",
                               "474a384374e81c5144a0e5405232a750"};
 
-// A value of a document, by its container and its key or index.
+// Addresses a value of a document by its container and its index or key.
 struct Spot {
     Document* holder;  // null: the document itself
     std::string key;
@@ -128,7 +129,8 @@ void mutate_text(Document& value, Random& random) {
     value = text;
 }
 
-// Repeats an array's element at most twice, as long arrays make large pages.
+// Repeats a value: inserts up to two copies of an array's element (no more, because long arrays make large pages), or
+// one copy of an object's member under another name.
 void repeat(const Spot& spot, const Document& value, Random& random) {
     if (spot.holder->is_array())
         for (std::size_t n = random.below(3); n > 0; --n)

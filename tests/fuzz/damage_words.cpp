@@ -35,7 +35,7 @@ std::vector<Piece> lines_of(const std::string& text) {
     return pieces;
 }
 
-// Numbers at the limits of doubles, floats, integers and readers.
+// Numbers at the limits of double, float, the integer types and the readers.
 const char* const kNumbers[] = {"0",          "-0",
                                 "1",          "-1",
                                 "2",          "3",

@@ -18,16 +18,16 @@ namespace raya::fuzz {
     std::abort();
 }
 
-/// Requires that an error message contains the file's name and a reason, and is not too long.
+/// Requires that an error message contains the file's name and after it a reason, and has at most 2000 characters.
 inline void check_refusal(std::string_view message, std::string_view file) {
     const std::size_t at = message.find(file);
     if (at == std::string_view::npos) complain("an error message without the file's name", message);
     if (message.size() < at + file.size() + 4) complain("an error message without a reason", message);
-    constexpr std::size_t kLongest = 2000;  // characters; a message must not repeat the input
+    constexpr std::size_t kLongest = 2000;  // a message must not repeat the whole input
     if (message.size() > kLongest) complain("an error message that is too long", message);
 }
 
-/// As check_refusal(); the message must also name a line of the file: "FILE:LINE: " or "FILE, line LINE: ".
+/// Same as check_refusal(); the message must also contain a line number: "FILE:LINE: " or "FILE, line LINE: ".
 inline void check_refusal_with_line(std::string_view message, std::string_view file) {
     check_refusal(message, file);
     std::string_view rest = message.substr(message.find(file) + file.size());
@@ -38,7 +38,7 @@ inline void check_refusal_with_line(std::string_view message, std::string_view f
         complain("an error message without a line", message);
 }
 
-/// A folder in memory for readers that take a file's name.
+/// A temporary folder in /dev/shm, for readers that take a file name.
 class ScratchFolder {
   public:
     ScratchFolder() : folder_(in_memory()) {}

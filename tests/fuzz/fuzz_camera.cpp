@@ -1,4 +1,4 @@
-// Camera paths: any bytes are either read as valid cameras or refused with file and line.
+// Fuzz target for camera paths: the reader must either return valid cameras or throw an error with file and line.
 #include <algorithm>
 
 #include "host/cli/camera_path.hpp"

@@ -1,5 +1,5 @@
-// Checkpoints, as `raya render --resume` reads them: any bytes are either read as a checkpoint of this render, which is
-// equal after writing and reading, or refused.
+// Fuzz target for checkpoints as `raya render --resume` reads them: the reader must either return a checkpoint of this
+// render, which must not change if written and read again, or throw an error.
 #include "host/base/log.hpp"
 #include "host/cli/checkpoint_options.hpp"
 #include "host/error.hpp"
@@ -10,7 +10,7 @@ using namespace raya::fuzz;
 
 namespace {
 
-// The vector sizes of the corpus.
+// The vector sizes of the checkpoints in the corpus.
 RingState sizes() {
     RingState state;
     state.image.resize(3);

@@ -1,5 +1,5 @@
-// Frame records, as `raya render --frames` reads them: any bytes are either read as a record, which is equal after
-// writing and reading, or refused.
+// Fuzz target for frame records as `raya render --frames` reads them: the reader must either return a record, which
+// must not change if written and read again, or throw an error.
 #include "host/base/whole_file.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/error.hpp"

@@ -1,4 +1,5 @@
-// NFF: any bytes are either read as a scene, which is equal after writing and reading, or refused.
+// Fuzz target for NFF: the reader must either return a scene, which must not change if written and read again, or throw
+// an error.
 #include <algorithm>
 #include <vector>
 
@@ -15,8 +16,8 @@ using namespace raya::fuzz;
 
 const char* const kFile = "fuzz.nff";
 
-/// The packer cuts patches into n - 2 triangles of three different vertices each. Long outlines, which take cubic time,
-/// are skipped.
+/// Checks that the packer splits each patch into n - 2 triangles of three different vertices. Skips long outlines,
+/// because triangulation takes cubic time.
 void check_triangles(const Polygon& polygon) {
     constexpr std::size_t kMaxVertices = 32;
     const std::size_t n = polygon.vertices.size();
@@ -33,7 +34,7 @@ void check_round_trip(const Scene& scene) {
     if (!(parse_nff(written, kFile) == scene)) complain("changed by being written and read", written);
 }
 
-/// Reads with remarks: the result can be written as NFF, and a file without remarks is plain NFF.
+/// Checks lenient reading: the resulting scene can be written as NFF, and a file without remarks is plain NFF.
 void check_leniently(std::string_view text) {
     std::vector<NffRemark> remarks;
     const Scene scene = parse_nff(text, kFile, &remarks);
@@ -63,5 +64,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const UserError& error) {
         check_refusal_with_line(error.what(), kFile);
     }
-    return 0;  // any other exception ends the program and is a finding
+    return 0;  // any other exception ends the program: a finding
 }

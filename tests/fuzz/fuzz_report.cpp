@@ -1,4 +1,5 @@
-// Reports, as `raya page` and `raya bench --compare` read them: any bytes are either read or refused.
+// Fuzz target for reports as `raya page` and `raya bench --compare` read them: they must be either read or rejected
+// with an error.
 #include "host/cli/page.hpp"
 #include "host/error.hpp"
 #include "host/report/bench_compare.hpp"
@@ -23,7 +24,7 @@ void check_bench(const ScratchFolder& folder, std::string_view text) {
         const BenchReport report = read_bench_report(file);
         const std::string written = to_json(report).dump();
         const BenchReport again = read_bench_report(folder.write("again.json", written));
-        // Seconds are stored as milliseconds, which may round.
+        // Seconds are stored as milliseconds, so they may be rounded.
         if (to_json(read_bench_report(folder.write("again.json", to_json(again).dump()))).dump().size() + 64 <
             written.size())
             complain("changed by being written and read", written);

@@ -1,4 +1,5 @@
-// Tuned files, as `raya render` reads and `raya tune` extends them: any bytes are used, or ignored with a warning.
+// Fuzz target for tuned files as `raya render` reads and `raya tune` extends them: they must be either used or ignored
+// with a warning.
 #include "host/error.hpp"
 #include "host/tune/store.hpp"
 #include "host/version.hpp"
@@ -42,7 +43,7 @@ void check_choices(const std::string& file) {
     if (warnings > 1) complain("warned more than once", file);
 }
 
-/// Checks unusual device names, folders and environment variables.
+/// Checks device names, folders and environment variables with unusual values.
 void check_surroundings(const ScratchFolder& folder) {
     DeviceInfo odd = kDevice;
     odd.name = "--a  b/c(R)-- 1.0+x";

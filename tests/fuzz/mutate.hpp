@@ -1,4 +1,4 @@
-// Shared code of the custom mutators for libFuzzer: random choices, and mutations of any text.
+// Code shared by the custom libFuzzer mutators: random choices, and mutations of any text.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -27,24 +27,25 @@ class Random {
     std::minstd_rand engine_;
 };
 
-/// Applies libFuzzer's own mutations: flips, copies, dictionary words, values that the program compared with.
+/// Applies libFuzzer's own mutations: bit flips, copies, dictionary entries, operands of the program's comparisons.
 inline void mutate_bytes(std::string& text, std::size_t most = 4096) {
     const std::size_t size = text.size();
     text.resize(std::max(most, size + 64));
     text.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(text.data()), size, text.size()));
 }
 
-/// Stores text in libFuzzer's buffer of `most` bytes; returns its size.
+/// Copies the text to libFuzzer's buffer of `most` bytes, cut to that size; returns the number of bytes copied.
 inline std::size_t store(const std::string& text, std::uint8_t* data, std::size_t most) {
     const std::size_t size = std::min(text.size(), most);
     if (size > 0) std::memcpy(data, text.data(), size);
     return size;
 }
 
-/// Damages words and lines: removes, repeats, swaps and replaces them. `words`: the format's keywords.
+/// Mutates tokens and lines of a text: removes, repeats, swaps and replaces them. `words`: the format's keywords.
 void damage_words(std::string& text, const std::vector<std::string>& words, Random& random);
 
-/// Damages values of a JSON text: removes, repeats or renames them, or changes value or kind. False: not JSON.
+/// Mutates values of a JSON text: removes, repeats or renames them, or changes their value or type. Returns false if
+/// the text is not JSON.
 bool damage_json(std::string& text, Random& random);
 
 }  // namespace raya::fuzz

@@ -1,4 +1,4 @@
-// Mutates camera paths: damages words and lines.
+// Mutates the tokens and lines of camera paths.
 #include "tests/fuzz/mutate.hpp"
 
 using namespace raya::fuzz;

@@ -1,4 +1,5 @@
-// Mutates checkpoints: damages header or values and recomputes the hash, so that the reader gets past it.
+// Mutates the header or the values of checkpoints and recomputes the hash, so that the reader does not stop at a wrong
+// hash.
 #include <algorithm>
 
 #include "host/base/encoding.hpp"

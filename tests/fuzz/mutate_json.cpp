@@ -1,4 +1,4 @@
-// Mutates JSON files: damages values, and sometimes bytes.
+// Mutates the values of JSON files, and sometimes their bytes.
 #include "tests/fuzz/mutate.hpp"
 
 using namespace raya::fuzz;

@@ -1,4 +1,4 @@
-// Mutates NFF scenes: a grammar generates valid scenes, which are then damaged.
+// Mutates NFF scenes. A grammar generates valid scenes, which are then mutated.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -100,7 +100,8 @@ class Grammar {
         return "c " + vector() + blank() + radius + "\n" + vector() + blank() + other + "\n";
     }
 
-    // Corners on an ellipse in a random plane, some pulled inwards; rounding makes them slightly non-planar.
+    // The corners lie on an ellipse in a random plane; some are moved inwards. Rounding makes the polygon slightly
+    // non-planar.
     std::string polygon(bool patch) {
         const std::size_t corners = 3 + random_.below(random_.one_in(8) ? 20 : 5);
         double axes[3][3];

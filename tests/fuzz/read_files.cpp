@@ -1,4 +1,5 @@
-// Runs a fuzz target on each file of the given folders and files, as libFuzzer does, without clang.
+// Runs a fuzz target on each of the given files and on each file in the given folders, as libFuzzer does. Needs no
+// clang.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -26,7 +27,7 @@ int main(int count, char** arguments) {
         std::ifstream file(path, std::ios::binary);
         const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
         if (!file) return std::fprintf(stderr, "%s cannot be read\n", path.c_str()), 2;
-        std::fprintf(stderr, "%s\n", path.c_str());  // the last line names the file of a finding
+        std::fprintf(stderr, "%s\n", path.c_str());  // after a crash, the last line names the file
         LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
     }
     std::printf("%zu files\n", files.size());

@@ -14,13 +14,13 @@ template <class T>
 std::vector<T> read_values(OIIO::ImageInput& input, const OIIO::TypeDesc& type) {
     const OIIO::ImageSpec& spec = input.spec();
     std::vector<T> values(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
-    const int subimage = 0, level = 0, first_channel = 0, end_channel = -1;  // -1: all channels
+    const int subimage = 0, level = 0, first_channel = 0, end_channel = -1;  // -1: after the last channel
     if (!input.read_image(subimage, level, first_channel, end_channel, type, values.data()))
         throw std::runtime_error(input.geterror());
     return values;
 }
 
-/// Sets `width` and `height` from the file.
+/// Reads the file's channels as floats. Sets `width` and `height` to the image's size.
 std::vector<float> read_floats(const std::filesystem::path& path, int channels, int& width, int& height) {
     const auto input = OIIO::ImageInput::open(path.string());
     if (!input) throw std::runtime_error(OIIO::geterror());

@@ -1,4 +1,4 @@
-// pixel_hash: a known value, and sensitivity to every bit.
+// pixel_hash(): a known value, and a change with every flipped bit.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -17,7 +17,7 @@ Image ramp(int width, int height) {
 }
 
 TEST_CASE("pixel_hash: is XXH3 of the little-endian words", "[image]") {
-    // XXH3_128bits() of the bytes 01 00 00 00  01 00 00 00  00 00 00 3f  00 00 80 3f  00 00 00 c0, high half first
+    // XXH3_128bits() of the bytes 01 00 00 00  01 00 00 00  00 00 00 3f  00 00 80 3f  00 00 00 c0, upper half first
     CHECK(pixel_hash(Image{1, 1, {0.5f, 1.0f, -2.0f}}) == "ede5021099dc7fb9e634093e89f01db8");
 }
 
@@ -40,7 +40,7 @@ TEST_CASE("pixel_hash: depends on the last bit of every float", "[image]") {
     const std::uint32_t seed = 20260;
     CAPTURE(seed);
     std::mt19937 random(seed);
-    const Image image = ramp(160, 120);  // several blocks of XXH3
+    const Image image = ramp(160, 120);  // several blocks of the hash function XXH3
     const std::string hash = pixel_hash(image);
     for (int n = 0; n < 40; ++n) {
         const std::size_t at = n == 0 ? image.rgb.size() - 1 : random() % image.rgb.size();

@@ -1,4 +1,4 @@
-// Image files: their bytes, and reading back what was written.
+// Image files: their bytes, and reading back of written images.
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// An image of different values, some negative, above 1, -0, infinite or denormal.
+/// Returns an image with values that are negative, above 1, -0, infinite or denormal, among others.
 Image awkward_image() {
     Image image{5, 3, {}};
     for (int i = 0; i < 45; ++i) image.rgb.push_back(static_cast<float>(i - 5) * 0.37f);
@@ -73,7 +73,7 @@ TEST_CASE("EXR, PFM: preserve grey images; EXR has a float channel Y", "[image_i
 
 TEST_CASE("PFM: little-endian floats, bottom row first", "[image_io]") {
     const ScratchFolder folder;
-    write_image(folder / "grey.pfm", GreyImage{1, 2, {1.0f, -2.0f}}, {});  // 1 above -2
+    write_image(folder / "grey.pfm", GreyImage{1, 2, {1.0f, -2.0f}}, {});  // the upper pixel is 1, the lower -2
     CHECK(contents(folder / "grey.pfm") == std::string("Pf\n1 2\n-1.0\n\x00\x00\x00\xc0\x00\x00\x80\x3f", 20));
     write_image(folder / "rgb.pfm", Image{2, 1, {1, 0, 0, 0, 0, 1}}, {});
     CHECK(contents(folder / "rgb.pfm").substr(0, 16) == std::string("PF\n2 1\n-1.0\n\x00\x00\x80\x3f", 16));
@@ -107,7 +107,7 @@ TEST_CASE("TIFF: the codes of the PNG, with either extension", "[image_io]") {
     }
 }
 
-/// The sampling factors of the three components in the frame header (SOF0) of a JPEG file.
+/// Returns the sampling factors of the three components, from the frame header (SOF0) of a JPEG file.
 std::string sampling_factors(const std::string& jpeg) {
     const std::size_t frame = jpeg.find("\xff\xc0");
     REQUIRE(frame != std::string::npos);
@@ -129,7 +129,7 @@ TEST_CASE("JPEG: within 4 codes of the PNG, without chroma subsampling", "[image
     double worst = 0;
     for (std::size_t i = 0; i < png.rgb.size(); ++i)
         worst = std::max(worst, std::abs(double(srgb_code(jpeg.rgb[i])) - srgb_code(png.rgb[i])));
-    CHECK(worst > 0);  // it is lossy
+    CHECK(worst > 0);  // JPEG is lossy
     CHECK(worst <= 4);
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("8-bit files: have the codes of the tone; PNG has its gamma", "[image_
     const std::string png = contents(folder / "a.png");
     const std::size_t gamma = png.find("gAMA");
     REQUIRE(gamma != std::string::npos);
-    CHECK(png.substr(gamma + 4, 4) == std::string("\x00\x00\xb1\x8f", 4));  // 45455 = 100,000 / 2.2
+    CHECK(png.substr(gamma + 4, 4) == std::string("\x00\x00\xb1\x8f", 4));  // 45455 = 100,000 / 2.2, big-endian
     CHECK_THAT(png, !Contains("sRGB"));
     for (const char* name : {"a.exr", "a.pfm"}) {
         write_image(folder / name, image, {}, tone);
@@ -197,8 +197,8 @@ TEST_CASE("srgb_code: rounds the sRGB curve to the nearest code", "[image_io]") 
         const float linear = static_cast<float>(i) / 100'000;
         const double exact = 255 * srgb_curve(linear);
         CAPTURE(linear, exact);
-        // Half a code, and the gap between the branches of the curve with the constants of IEC 61966-2-1 (< 1e-5
-        // codes).
+        // Tolerance: half a code for the rounding, and 1e-5 codes for the gap between the linear and the power branch
+        // of the curve, which do not meet exactly with the constants of IEC 61966-2-1.
         REQUIRE(std::abs(srgb_code(linear) - exact) <= 0.5 + 1e-5);
     }
 }
@@ -281,7 +281,7 @@ TEST_CASE("write_image: refuses a file that it cannot write, and leaves no part 
     check_image_name(folder / "new.png", kImageExtensions);
     CHECK_THROWS_WITH(write_image(folder / "missing/a.exr", awkward_image(), {}), Contains("does not exist"));
     CHECK_THROWS_WITH(write_image(folder / "full.png", awkward_image(), {}), Contains("No space left on device"));
-    Image wide{1'000'001, 1, {}};  // libpng's limit: 1,000,000
+    Image wide{1'000'001, 1, {}};  // libpng's limit is 1,000,000
     wide.rgb.resize(3'000'003);
     CHECK_THROWS_WITH(write_image(folder / "wide.png", wide, {}), Contains("wide.png") && Contains(".ppm"));
     CHECK(folder.entries() == 1);

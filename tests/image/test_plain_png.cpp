@@ -1,4 +1,4 @@
-// PNG files written without a library, read with one.
+// PNG files that raya writes without a library, read with OpenImageIO.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -16,7 +16,7 @@ TEST_CASE("plain_png: has the codes of all pixels", "[image]") {
     const ScratchFolder folder;
     for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {1, 3}, {37, 21}, {300, 200}}) {
         Image image{width, height, {}};
-        for (int i = 0; i < 3 * width * height; ++i)  // ramps and steps, also outside 0..1
+        for (int i = 0; i < 3 * width * height; ++i)  // ramps and steps, with values outside 0..1
             image.rgb.push_back(static_cast<float>(i % 97) / 80 - 0.1f + (random() % 5 == 0 ? 0.4f : 0.0f));
         write_whole_file(folder / "x.png", plain_png(image));
         const Image read = read_image(folder / "x.png");

@@ -1,4 +1,4 @@
-// Previews: their size, and pixels as means.
+// Previews: their size, and pixels that are means of the image's pixels.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -71,7 +71,7 @@ TEST_CASE("preview_of: keeps the mean brightness", "[image]") {
         return std::accumulate(i.rgb.begin(), i.rgb.end(), 0.0) / static_cast<double>(i.rgb.size());
     };
     CHECK(small.width == 256);
-    CHECK(mean(small) == Approx(mean(image)).epsilon(2e-3));  // some pixels are means of one more column than others
+    CHECK(mean(small) == Approx(mean(image)).epsilon(2e-3));  // some preview pixels average more columns
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// From linear colours to codes: exposure, tone curve and gamma.
+// The conversion of linear colours to 8-bit codes: exposure, tone curve and gamma.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -12,7 +12,7 @@ namespace {
 
 using Codes = std::array<std::uint8_t, 3>;
 
-/// Combinations of exposure, curve and gamma.
+/// Returns combinations of exposure, curve and gamma.
 std::vector<Tone> some_tones() {
     std::vector<Tone> tones;
     for (const double exposure : {0.0, -2.0, 1.0, 0.3})
@@ -22,7 +22,7 @@ std::vector<Tone> some_tones() {
     return tones;
 }
 
-/// Colours dark and bright, some with a component of 0.
+/// Returns a dark or bright random colour; some have a component of 0.
 std::array<float, 3> random_colour(SplitMix& random) {
     std::array<float, 3> rgb{};
     const double scale = std::exp2(random.uniform(-10, 4));

@@ -1,4 +1,5 @@
-// Compares the numbers that a kernel finds along a ray with the reference's, and excuses differences due to rounding.
+// Compares the numbers that a kernel computes for a ray with those of the reference, and excuses larger differences
+// that rounding explains.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,23 +10,24 @@
 
 namespace raya {
 
-/// The result along a ray: first the object's number (-1: none), then any numbers.
+/// The result for a ray: the number of the object hit (-1: none), then other numbers.
 using Found = std::vector<double>;
 
 inline void append(Found& found, const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) found.push_back(v[axis]);
 }
 
-/// Counts of compared rays. A ray may differ by more than the limits only if a ray moved sideways by at most `reach`
-/// does so in the reference as well: it grazes an edge, an outline or a shadow, or its distance is ill-conditioned.
+/// Compares rays and counts them. A ray's result may differ from the reference by more than the limits only if moving
+/// the ray sideways by `reach` changes the reference's result as much. Then the ray grazes an edge, an outline or a
+/// shadow, or its distance is ill-conditioned.
 struct Agreement {
     double reach = 0;  // scene units
     std::size_t rays = 0;
-    std::size_t grazing = 0;  // beyond a limit, but excused
+    std::size_t grazing = 0;  // number of rays whose results differ by more than a limit
     double largest = 0;       // largest difference within the limits, as a fraction of its limit
 
-    /// Returns true if `actual` is within `limits` (one for each number) of the reference, or excused. `find(ray)`
-    /// returns the reference's result.
+    /// Returns true if `actual` differs from the reference by at most `limits` (one per number), or if a larger
+    /// difference is excused. `find(ray)` returns the reference's result.
     template <class Find>
     bool accepts(const Find& find, const reference::Ray& ray, const Found& actual, const Found& limits) {
         ++rays;
@@ -40,7 +42,7 @@ struct Agreement {
         if (expected.size() != actual.size()) return false;
         double share = 0;
         for (std::size_t i = 0; i < expected.size(); ++i) {
-            if (!(std::abs(actual[i] - expected[i]) <= limits[i])) return false;  // NaN is never within
+            if (!(std::abs(actual[i] - expected[i]) <= limits[i])) return false;  // false for NaN
             if (limits[i] > 0) share = std::max(share, std::abs(actual[i] - expected[i]) / limits[i]);
         }
         largest = std::max(largest, share);

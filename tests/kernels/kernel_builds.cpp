@@ -1,6 +1,6 @@
-// kernel_builds TO [GROUP [KERNELS]]: writes to the folder TO the source of every kernel file, as host/cl passes it to
-// a GPU's driver, and builds.json with the build options. For tools/gpu_check, which has no device. GROUP: work-items
-// of a group, 0 for raya's default on a GPU; KERNELS: a folder like kernels/.
+// kernel_builds TO [GROUP [KERNELS]]: writes the source of every kernel file to the folder TO, as host/cl passes it to
+// a GPU's driver, and the build options to TO/builds.json. For tools/gpu_check, which compiles without a device. GROUP:
+// work-items per work-group, 0 for raya's default on a GPU. KERNELS: a folder to use instead of kernels/.
 #include <fmt/core.h>
 
 #include <cstdio>
@@ -24,7 +24,7 @@ struct Build {
     KernelOptions options;
 };
 
-// The properties that current GPUs report.
+// Returns the properties of a typical current GPU.
 DeviceInfo a_gpu() {
     DeviceInfo device;
     device.name = "a GPU";
@@ -37,17 +37,17 @@ DeviceInfo a_gpu() {
 
 const std::vector<std::pair<std::string, std::uint32_t>> kWalks = {{" grid", RAYA_ACCEL_GRID},
                                                                    {" bvh", RAYA_ACCEL_BVH}};
-constexpr std::uint32_t kDepth = 5;  // of a BVH of 16^5 objects
+constexpr std::uint32_t kDepth = 5;  // depth of a BVH of up to 16^5 objects
 
 KernelOptions with_walk(KernelOptions options, std::uint32_t accel) {
-    options.words_local = false;  // scenes large enough for one seldom fit in local memory
+    options.words_local = false;  // scenes that need a grid or BVH rarely fit in local memory
     options.accel = accel;
     options.stack = accel == RAYA_ACCEL_BVH ? (RAYA_BVH_WIDTH - 1) * kDepth : 0;
     return options;
 }
 
-// Builds of the kernels that compute in `all.format`, in all variants of their code: acceleration structures, kinds of
-// objects, and arithmetic that the device does not support.
+// Returns builds of the kernels that compute in `all.format`, for all variants of their code: with and without
+// acceleration structures and kinds of objects, and for devices without exact arithmetic.
 std::vector<Build> builds_in(const std::string& format, const KernelOptions& all) {
     KernelOptions spheres = all, check = all;
     spheres.polygons = spheres.patches = spheres.cones = false;

@@ -1,4 +1,4 @@
-// Builds test kernels for all numbers of lanes, with and without the compiler's optimiser.
+// Builds and runs test kernels for all numbers of lanes, with and without compiler optimisation.
 #pragma once
 #include <fmt/core.h>
 
@@ -16,12 +16,12 @@
 
 namespace raya {
 
-/// A base class that makes the session before other bases use it.
+/// A base class that owns the session, so that the session exists before the other base class uses it.
 struct OwnSession {
     Session session{choose_device("")};
 };
 
-/// A variant of a kernel's build. All variants of a format must give the same bits.
+/// Build options of a kernel. All variants with the same format must give the same bits.
 struct Variant {
     std::uint32_t lanes = 1;
     bool optimised = true;
@@ -34,7 +34,7 @@ struct Variant {
     }
 };
 
-/// All variants in fp32; the others are compared with the first.
+/// All variants in fp32. Tests compare each with the first.
 inline const std::vector<Variant>& variants() {
     static const std::vector<Variant> all = {{1, true},  {4, true},  {8, true},  {16, true},
                                              {1, false}, {4, false}, {8, false}, {16, false}};
@@ -44,8 +44,8 @@ inline const std::vector<Variant>& variants() {
 /// Builds and runs a file of test kernels on the default device.
 class KernelRunner : private OwnSession, public CheckRunner {
   public:
-    /// Builds a file, a path from the project's root. Throws std::runtime_error if it is missing, DeviceError if it
-    /// does not build.
+    /// Builds `file`, a path relative to the project's root. Throws std::runtime_error if the file is missing,
+    /// DeviceError if the build fails.
     KernelRunner(const std::string& file, const Variant& variant)
         : CheckRunner(session, build(session, file, variant), variant.lanes) {}
 
@@ -56,7 +56,7 @@ class KernelRunner : private OwnSession, public CheckRunner {
         KernelOptions options;
         options.lanes = variant.lanes;
         options.format = variant.format;
-        options.words_local = false;  // the probes pass the job's words in global memory
+        options.words_local = false;  // test kernels take the job's words in global memory
         KernelSources sources;
         sources.patches = variant.patches;
         sources.more_options = variant.more_options;

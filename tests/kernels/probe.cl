@@ -1,4 +1,5 @@
-// Test kernels for the geometry and shading headers on given rays (kernels/checks/rays.clh), in addition to hits.cl.
+// Test kernels that apply the geometry and shading headers to given rays (kernels/checks/rays.clh). They add to the
+// kernels of hits.cl.
 #include "kernels/checks/hits.cl"
 #include "kernels/shading/shade.clh"
 
@@ -11,7 +12,7 @@ static inline void store_ray(__global float* to, uint stride, const tree_ray* r)
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void find_places(__global const uint* restrict job,
                  __global const float* restrict rays,
-                 __global uint* restrict leaving,  // [ray]: 0 or 1
+                 __global uint* restrict leaving,  // [ray]: 1 if the ray leaves the object, else 0
                  __global float* restrict places)  // [ray][6][3]: P, P+, P-, G, N, colour; undefined for a miss
 {
     const uint first = first_ray();
@@ -30,7 +31,7 @@ void find_places(__global const uint* restrict job,
     store_vec(to + 15, 18, surface_colour(job, struck, &p));
 }
 
-// One step of a ray tree: shades the given rays, of `level` and weight 1/2.
+// Does one step of a ray tree: traces and shades the given rays, as rays of the given level and weight 1/2.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void shade_once(__global const uint* restrict job,
                 __global const float* restrict rays,

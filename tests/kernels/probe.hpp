@@ -1,4 +1,4 @@
-// The kernels of probe.cl as functions of a scene and rays.
+// Functions that run the kernels of probe.cl on a scene and rays.
 #pragma once
 #include <array>
 #include <bit>
@@ -12,15 +12,15 @@
 
 namespace raya {
 
-/// The words of a scene; the probes use neither camera, image nor cycles.
+/// Returns the job's words of a scene. The kernels of probe.cl use neither camera, image size nor cycles.
 inline std::vector<std::uint32_t> job_words(const Scene& scene) {
     JobSettings settings;
     settings.image = {16, 16};
     return pack_job(scene, settings).words();
 }
 
-/// Returns the number in the scene of each object of the job. A patch of more than three corners is several polygons of
-/// the job.
+/// Returns, for each object of the job, its object number in the scene. They differ because a patch of more than three
+/// corners becomes several polygons of the job.
 inline std::vector<int> object_numbers(const Scene& scene) {
     std::vector<int> numbers;
     const std::size_t first_polygon = scene.spheres.size() + scene.planes.size();
@@ -33,10 +33,10 @@ inline std::vector<int> object_numbers(const Scene& scene) {
     return numbers;
 }
 
-/// The default limit of rays; a miss returns it as the distance.
+/// The default limit of rays. Kernels return the limit as the distance of a miss.
 inline constexpr float kFarLimit = 0x1p60F;
 
-/// [ray][7]: origin, direction, limit.
+/// Returns the rays as an array [ray][7]: origin, direction, limit.
 inline std::vector<float> ray_words(const std::vector<reference::Ray>& rays, float limit = kFarLimit) {
     std::vector<float> words;
     for (const reference::Ray& ray : rays) {
@@ -48,7 +48,7 @@ inline std::vector<float> ray_words(const std::vector<reference::Ray>& rays, flo
 }
 
 struct ProbedHits {
-    std::vector<std::uint32_t> objects;  // numbers in the job
+    std::vector<std::uint32_t> objects;  // object numbers in the job
     std::vector<float> distances;
 };
 
@@ -63,7 +63,7 @@ inline ProbedHits closest_hits(KernelRunner& runner, const std::vector<std::uint
 struct ProbedPlaces {
     enum Which : std::size_t { kPoint, kOuter, kInner, kGeometric, kNormal, kColour };
     std::vector<std::uint32_t> leaving;
-    std::vector<float> places;  // [ray][6][3]
+    std::vector<float> places;  // [ray][6][3]: as find_places in probe.cl
 
     Vec3 vector(std::size_t ray, Which which) const {
         const float* from = &places[ray * 18 + which * 3];
@@ -83,7 +83,7 @@ inline ProbedPlaces find_places(KernelRunner& runner, const std::vector<std::uin
     return {runner.read(leaving), runner.read(places)};
 }
 
-/// A ray of the ray tree.
+/// A ray of the ray tree as shade_once stores it.
 struct ProbedRay {
     Vec3 origin, direction;
     double weight;
@@ -92,8 +92,8 @@ struct ProbedRay {
 struct ProbedSteps {
     static constexpr std::size_t kStateWords = 3 + RAYA_EVENTS;
     static constexpr std::size_t kNumberWords = 17;
-    std::vector<std::uint32_t> state;  // [ray][kStateWords]
-    std::vector<float> numbers;        // [ray][kNumberWords]
+    std::vector<std::uint32_t> state;  // [ray][kStateWords]: as shade_once in probe.cl
+    std::vector<float> numbers;        // [ray][kNumberWords]: as shade_once in probe.cl
 
     bool walking(std::size_t ray) const { return state[ray * kStateWords] != 0; }
     std::uint32_t level(std::size_t ray) const { return state[ray * kStateWords + 1]; }
@@ -123,7 +123,7 @@ inline ProbedSteps shade_once(KernelRunner& runner, const std::vector<std::uint3
     return {runner.read(state), runner.read(numbers)};
 }
 
-/// The bits of numbers, for exact comparison.
+/// Returns the bits of the numbers, for exact comparison.
 inline std::vector<std::uint32_t> bits(const std::vector<float>& numbers) {
     std::vector<std::uint32_t> words;
     words.reserve(numbers.size());

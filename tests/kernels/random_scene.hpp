@@ -1,4 +1,4 @@
-// Seeded scenes of one kind of object, and seeded rays through them.
+// Seeded random scenes of one kind of object, and seeded random rays through them.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace raya {
 
-/// Bound of the coordinates of all objects and of the rays' origins.
+/// Maximum absolute coordinate of all objects and ray origins.
 inline constexpr double kSceneReach = 3;
 
 inline double whole_uniform(SplitMix& random, int below) { return std::floor(random.uniform(0, below)); }
@@ -31,7 +31,8 @@ inline Vec3 random_direction(SplitMix& random) {
     }
 }
 
-/// A flat star-shaped outline around a centre: it does not cross itself and is concave where its arms differ in length.
+/// Returns a planar star-shaped outline around a random centre. It does not cross itself; it may be concave, because
+/// the distances of its corners from the centre are random.
 inline std::vector<Vec3> random_outline(SplitMix& random, int corners) {
     const Vec3 normal = random_direction(random), centre = random_point(random, 1.5);
     const Vec3 u = normal.cross(random_direction(random)).normalized(), v = normal.cross(u);
@@ -44,7 +45,8 @@ inline std::vector<Vec3> random_outline(SplitMix& random, int corners) {
     return outline;
 }
 
-/// Surfaces of every kind: matte, gloss, glass, glass that does not reflect, and a checker, for flat objects only.
+/// Returns surfaces of every kind: matte, glossy, glass, glass that does not reflect, and a checker, which only flat
+/// objects can have.
 inline std::vector<Surface> every_surface() {
     Surface matte, gloss, glass, clear, checker;
     matte.colour = {0.9, 0.3, 0.1};
@@ -72,7 +74,8 @@ inline void add_polygon(Scene& scene, SplitMix& random) {
     scene.polygons.push_back({random_outline(random, corners), {}, flat_surface(random)});
 }
 
-/// Its shading normals deviate by up to more than a right angle, so that some face away from the visible side.
+/// Adds a patch. Some of its shading normals deviate from the geometric normal by more than a right angle, so they face
+/// away from the visible side.
 inline void add_patch(Scene& scene, SplitMix& random) {
     Polygon patch{random_outline(random, 3 + static_cast<int>(whole_uniform(random, 3))), {}, flat_surface(random)};
     const Vec3 normal = newell_normal(patch.vertices).normalized();
@@ -83,7 +86,8 @@ inline void add_patch(Scene& scene, SplitMix& random) {
     scene.polygons.push_back(patch);
 }
 
-/// `taper`: the apex radius over the base radius; below 0: a random one for each cone, some of them pointed.
+/// Adds a cone. `taper`: ratio of the apex radius to the base radius; if negative, a random ratio, sometimes 0. `sign`:
+/// -1 if only the inside is visible, else 1.
 inline void add_cone(Scene& scene, SplitMix& random, double sign, double taper) {
     const Vec3 base = random_point(random, 1.5), axis = random_direction(random);
     const double r0 = random.uniform(0.2, 0.9), chosen = std::max(0.0, random.uniform(-0.4, 1.5));
@@ -91,7 +95,7 @@ inline void add_cone(Scene& scene, SplitMix& random, double sign, double taper) 
     scene.cones.push_back({base, sign * r0, base + random.uniform(0.4, 1.5) * axis, sign * r1, round_surface(random)});
 }
 
-/// A kind of object, and the function that adds one to a scene.
+/// A kind of object and a function that adds such an object to a scene.
 struct ObjectKind {
     std::string name;
     void (*add)(Scene& scene, SplitMix& random);
@@ -129,7 +133,7 @@ inline Scene random_scene(const ObjectKind& kind, std::uint64_t seed, int object
     return scene;
 }
 
-/// Three objects of every kind.
+/// Returns a scene with three objects of every kind.
 inline Scene mixed_scene(std::uint64_t seed) {
     SplitMix random(seed);
     Scene scene = empty_scene();
@@ -138,7 +142,8 @@ inline Scene mixed_scene(std::uint64_t seed) {
     return scene;
 }
 
-/// Rays from random origins towards the middle, as fp32 numbers, so that kernel and reference trace the same rays.
+/// Returns rays from random origins towards the middle of the scene. Their numbers are rounded to fp32, so that kernel
+/// and reference trace the same rays.
 inline std::vector<reference::Ray> random_rays(std::uint64_t seed, std::size_t count) {
     SplitMix random(seed);
     std::vector<reference::Ray> rays;

@@ -1,4 +1,5 @@
-// Compares closest hits of the kernels with the reference, for every kind of object and every variant of the build.
+// Compares the nearest hits that kernels find with those of the reference, for every kind of object and every build
+// variant.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -17,10 +18,11 @@ namespace {
 
 constexpr std::size_t kRays = 10'000;
 
-// A coordinate is rounded by 2^-25 of the scene's extent, 3e-8, and a hit passes through some thirty roundings: 9e-7.
+// The rounding error of a coordinate is at most 2^-25 of the scene's extent, 3e-8, and a hit takes about thirty
+// roundings: 9e-7 in all.
 constexpr double kDistanceLimit = 1e-6;  // of the scene's extent
 
-// The fraction of the rays that may differ by more because they graze an edge or an outline. A margin of 1e-6 of the
+// The maximum fraction of rays that may differ by more because they graze an edge or an outline. A band of 1e-6 of the
 // extent around the outlines of twenty objects covers about 1e-4 of the view.
 constexpr double kMostGrazing = 0.001;
 
@@ -79,7 +81,7 @@ TEST_CASE("closest hits agree with the reference, with the same bits in all vari
 TEST_CASE("on a tie the lowest object number wins", "[kernels]") {
     constexpr std::uint64_t kSeed = 21;
     const Scene once = mixed_scene(kSeed);
-    Scene twice = empty_scene();  // every object twice, side by side in the list
+    Scene twice = empty_scene();  // every object occurs twice, with consecutive numbers
     const auto doubled = [](const auto& objects, auto& to) {
         for (const auto& object : objects) to.insert(to.end(), 2, object);
     };

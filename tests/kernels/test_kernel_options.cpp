@@ -1,4 +1,4 @@
-// Build options of the kernels: -D values, defaults, and rejected values.
+// Build options of the kernels: -D options, default values, and values that are refused.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
@@ -94,7 +94,7 @@ TEST_CASE("lanes, group sizes and bounces out of range are refused", "[ring]") {
 TEST_CASE("lanes and group size follow the device", "[ring]") {
     CHECK(default_lanes(a_device("cpu", 16, 4096)) == 16);
     CHECK(default_lanes(a_device("cpu", 8, 4096)) == 8);
-    CHECK(default_lanes(a_device("cpu", 2, 4096)) == 4);  // more work between branches pays on narrow vectors too
+    CHECK(default_lanes(a_device("cpu", 2, 4096)) == 4);  // more than the vector width: more work per branch
     CHECK(default_lanes(a_device("gpu", 1, 1024)) == 1);
     CHECK(default_group_size(a_device("cpu", 16, 4096)) == 1);
     CHECK(default_group_size(a_device("gpu", 1, 1024)) == 128);

@@ -1,4 +1,4 @@
-// Kernel sources: includes are expanded once, and #line keeps the file and number of every line.
+// Kernel sources: each file is included once, and #line directives keep the file and number of every line.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Kernels: every DescribedKernel agrees with its kernel's file, and a file is built once.
+// Every DescribedKernel agrees with its kernel in the kernel file, and each file is built once.
 #include <catch2/catch.hpp>
 
 #include "host/cl/kernels.hpp"
@@ -21,7 +21,7 @@ struct ParameterName<Uint<Name>> {
     static constexpr const char* kText = Uint<Name>::kName;
 };
 
-// False if the driver reports that it keeps no names of parameters.
+// Returns false if the driver reports that it does not store parameter names.
 bool keeps_name(const cl::Kernel& kernel, cl_uint index) {
     std::size_t size = 0;
     return clGetKernelArgInfo(kernel(), index, CL_KERNEL_ARG_NAME, 0, nullptr, &size) !=
@@ -30,11 +30,11 @@ bool keeps_name(const cl::Kernel& kernel, cl_uint index) {
 
 struct NamedParameters {
     int described = 0;
-    int kept = 0;  // of those, the driver reports a name
+    int kept = 0;  // parameters whose names the driver reports
 };
 
-// Checks that named parameters have these names in the kernel's file, if the driver keeps names. PoCL 3.1 reports
-// _cl_distance for `distance`, as a built-in function has that name.
+// Checks that the parameters have the same names in the kernel file, if the driver stores names. PoCL 3.1 reports
+// `distance` as _cl_distance, because a built-in function is called distance.
 template <class... Params>
 void check_parameter_names(const Kernel<Params...>& kernel, NamedParameters& counts) {
     cl_uint index = 0;

@@ -1,4 +1,4 @@
-// Compares what the kernels compute at a hit with the reference: place, normals, side, colour.
+// Compares the hit points, normals, sides and colours that kernels compute with those of the reference.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t kPlaceRays = 4'000;
 
-constexpr double kPlaceLimit = 1e-6;          // of the scene's extent, as the distance of a hit
+constexpr double kPlaceLimit = 1e-6;          // of the scene's extent, as for the distance of a hit
 constexpr double kColourLimit = 1e-7;         // rounding of the scene's words
-constexpr double kMostPlacesGrazing = 0.002;  // edges and outlines as for hits, and the sides of checker squares
+constexpr double kMostPlacesGrazing = 0.002;  // as for hits, and sides of checker squares
 
 Found reference_place(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
@@ -33,19 +33,19 @@ Found reference_place(const Scene& scene, const reference::Ray& ray) {
     return found;
 }
 
-// Returns the largest curvature at the point. The radius of a cone goes to 0 at its apex, those of spheres are 0.2 or
-// more, and the normals of patches turn no faster than on such a sphere.
+// Returns an upper bound of the curvature at the point. The radius of a cone may go to 0 at its apex. The radii of
+// spheres are at least 0.2, and normals of patches turn no faster than on a sphere of that radius.
 double curvature(const Scene& scene, std::size_t object, const Vec3& point) {
     const std::size_t first_cone = scene.object_count() - scene.cones.size();
     if (object < first_cone) return 5;
     const Cone& cone = scene.cones[object - first_cone];
     const Vec3 along = cone.apex - cone.base;
-    const double share = (point - cone.base).dot(along) / along.length2();  // position between base and apex
+    const double share = (point - cone.base).dot(along) / along.length2();  // 0 at the base, 1 at the apex
     const double radius = std::abs(cone.base_radius + share * (cone.apex_radius - cone.base_radius));
     return std::max(5.0, 1 / radius);
 }
 
-// A normal turns by the error of the place times the curvature.
+// The error of a normal is the error of the hit point times the curvature.
 Found limits_of(const Scene& scene, std::size_t object, const Vec3& point) {
     const double place = kPlaceLimit * scene_extent(scene);
     Found limits{0, 0};
@@ -73,13 +73,13 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
         CHECK(agreement.accepts(find, rays[i], found, limits));
         leaving += places.leaving[i];
     }
-    CHECK(leaving > agreement.rays / 50);  // rays hit both sides
+    CHECK(leaving > agreement.rays / 50);  // rays hit both sides of objects
     CHECK(static_cast<double>(agreement.grazing) <= kMostPlacesGrazing * static_cast<double>(agreement.rays));
     return agreement.grazing;
 }
 
-// P+ = P + margin G and P- = P - margin G, rounded once; the margin is 2^-20 of the largest coordinate of P or the
-// scene.
+// Checks P+ = P + margin G and P- = P - margin G, each rounded once. The margin is 2^-20 times the largest coordinate
+// of P or of the scene.
 void check_starts(const Scene& scene, const ProbedHits& hits, const ProbedPlaces& places) {
     const auto extent = static_cast<float>(scene_extent(scene));
     for (std::size_t i = 0; i < hits.objects.size(); ++i) {

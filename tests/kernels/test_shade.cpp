@@ -1,4 +1,5 @@
-// Compares one step of the kernels' ray tree with the reference's formulas: light, reflection, refraction, counts.
+// Compares one step of the kernels' ray tree with the formulas of the reference: direct lighting, reflection,
+// refraction, event counts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,16 +19,18 @@ namespace {
 
 constexpr std::size_t kShadeRays = 4'000;
 constexpr std::uint64_t kSceneSeed = 51, kRaySeed = 52;
-constexpr double kWeight = 0.5;  // of the rays that probe.cl shades
+constexpr double kWeight = 0.5;  // weight of the rays that probe.cl shades
 constexpr std::uint32_t kLastLevel = 8;
 
-// If the normal turns by an angle, a reflected direction turns by twice the angle, a refracted one by up to 1.5 times.
-// The normal turns by the error of the place over the radius of curvature, 0.2 or more except near the tips of cones.
+// If the normal turns by an angle, the reflected direction turns by twice that angle and the refracted direction by at
+// most 1.5 times. The error of the normal is the error of the hit point divided by the radius of curvature, which is at
+// least 0.2 except near the tips of cones.
 constexpr double kDirectionLimit = 2 * kPlaceLimit * 4 / 0.2;
-// A highlight's power multiplies that by its exponent, 100 at most, and by Ks and the lights' weights, 0.1 in all.
+// A highlight multiplies that error by its exponent, at most 100, and by Ks, ray weight and light intensity, together
+// 0.1.
 constexpr double kSumLimit = 100 * 0.1 * kDirectionLimit;
 constexpr double kWeightLimit = 1e-7;
-constexpr double kMostShadesGrazing = 0.01;  // edges as for hits, edges of shadows, tips of cones, critical angles
+constexpr double kMostShadesGrazing = 0.01;  // as for hits, and edges of shadows, tips of cones, critical angles
 
 void append_ray(Found& found, const ProbedRay& ray) {
     append(found, ray.origin);
@@ -35,8 +38,8 @@ void append_ray(Found& found, const ProbedRay& ray) {
     found.push_back(ray.weight);
 }
 
-// The numbers of a step: object, shadow rays, shadow hits, reflected rays, refracted rays, sum, then the reflected and
-// the refracted ray if they were made. A miss has only object and sum.
+// The numbers of a step are: object, shadow rays, shadow hits, reflected rays, refracted rays, sum, then the reflected
+// ray and the refracted ray, if they were made. The numbers of a miss are object and sum.
 constexpr std::size_t kWholeNumbers = 5, kSumAt = 5, kRaysAt = 8, kRayNumbers = 7;
 
 Found limits_for(const Found& found, double extent) {
@@ -115,14 +118,14 @@ Found probed_step(const ProbedSteps& steps, std::size_t ray, int object) {
     return found;
 }
 
-// Returns the number of polygons of the job: a patch counts once for each of its triangles.
+// Returns the number of polygons of the job, in which each triangle of a patch is one polygon.
 std::size_t face_count(const Scene& scene) {
     return object_numbers(scene).size() - (scene.object_count() - scene.polygons.size());
 }
 
 std::size_t at(int kind) { return static_cast<std::size_t>(kind); }
 
-// Checks the counts and the state of the tree after one step from `level`.
+// Checks the event counts and the state of the ray tree after one step at `level`.
 void check_state(const Scene& scene, std::size_t faces, const ProbedSteps& steps, std::size_t ray, bool hit,
                  std::uint32_t level) {
     const bool reflected = steps.events(ray, at(RAYA_REFLECTED)) != 0,
@@ -197,7 +200,7 @@ TEST_CASE("a step at a deeper level differs only in its level, and the last leve
 TEST_CASE("a step gives the same bits in all variants", "[kernels]") {
     const std::vector<std::uint32_t> job = job_words(mixed_scene(kSceneSeed));
     const std::vector<float> rays = ray_words(random_rays(kRaySeed, kShadeRays));
-    std::map<std::uint32_t, ProbedSteps> first;  // by level
+    std::map<std::uint32_t, ProbedSteps> first;  // results of the first variant, by level
     for (const Variant& variant : variants()) {
         KernelRunner runner("tests/kernels/probe.cl", variant);
         for (const std::uint32_t level : {0u, 5u, kLastLevel}) {

@@ -10,8 +10,8 @@
 namespace raya {
 namespace {
 
-/// A ball of radius 1 about (0.3, -0.2, 0.1), of flat quadrangles between circles of latitude, and triangles at its
-/// poles.
+/// Returns a polygon mesh of a sphere of radius 1 around (0.3, -0.2, 0.1): planar quadrangles between circles of
+/// latitude, and triangles at the poles.
 Scene ball() {
     constexpr int kAround = 24, kDown = 12;
     const auto corner = [](int i, int j) {
@@ -34,7 +34,8 @@ Scene ball() {
     return scene;
 }
 
-/// Rays from around the ball at points of its edges, some of them corners, away from its rim; rounded to the format.
+/// Returns rays from outside the mesh to points on its edges, some of them corners, that are not near its silhouette.
+/// They are rounded to the format.
 Rays rays_at_edges(const Scene& scene, const NumberFormat& format, unsigned count) {
     SplitMix random(2013);
     const auto rounded = [&](double x) {

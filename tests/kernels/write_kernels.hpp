@@ -1,4 +1,4 @@
-// Writes a patched copy of the kernels, for separate programs that read it by --kernel-dir.
+// Writes a patched copy of the kernels for programs that read it with --kernel-dir.
 #pragma once
 #include <filesystem>
 #include <fstream>
@@ -11,8 +11,8 @@
 
 namespace raya {
 
-/// Writes all kernel files, patched, to the folder `to`, which it creates or overwrites. Returns its name. Throws as
-/// check_patches() does; std::runtime_error if a file cannot be written.
+/// Writes all kernel files, with the patches applied, to the folder `to`, which it creates or overwrites. Returns the
+/// folder's name. Throws like check_patches(), and std::runtime_error if a file cannot be written.
 inline std::string write_kernels(const std::filesystem::path& to, const std::vector<SourcePatch>& patches = {}) {
     const KernelSources sources{.patches = patches};
     check_patches(sources);

@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 FIGURES, INTERVALS = 1e-9, 1e-6
-# Columns of measured times and rates whose name does not contain "measured": {file name: column}, regular expressions.
+# Columns of measured times and rates whose name does not contain "measured": {pattern of file names: pattern of column names}.
 MEASURED = {
     r"accel(-growth|-scenes)?": r".*\(ms\)|.*\(ns\)|.*\(s\)|time( \+-)?|samples",
     r"formats": r".*\(ms\)|.*times.*",
@@ -32,7 +32,7 @@ def rows_of(path):
         return list(csv.reader(file))
 
 
-RENAMED = dict(rows_of(Path(__file__).with_name("golden_names.csv"))[1:])  # {recorded text: present text}
+RENAMED = dict(rows_of(Path(__file__).with_name("golden_names.csv"))[1:])  # {recorded text: current text}
 
 
 def renamed(text):
@@ -62,7 +62,7 @@ def compare_table(ours, theirs, stem):
     compared = skipped = 0
     differences = []
     for number, (a, b) in enumerate(zip(ours[1:], theirs[1:]), 1):
-        # Embree's reciprocals depend on the processor, and so do the origins of secondary rays.
+        # Embree's reciprocals, and therefore the origins of secondary rays, depend on the processor.
         if any(cell.startswith("measured") or cell == "Embree" for cell in b):
             skipped += len(b)
             continue
@@ -88,7 +88,7 @@ def main(out, golden, wanted):
         theirs = [{member: renamed(text) for member, text in c.items()} for c in recorded if c["study"] == study]
         for ours, their in zip(page["claims"], theirs):
             claims += 1
-            if "measured" in their["why"] and ours["words"] == their["words"]:  # a verdict on times
+            if "measured" in their["why"] and ours["words"] == their["words"]:  # a verdict on measured times
                 skipped += 1
                 continue
             for member in ("paper", "place", "words", "verdict"):

@@ -1,4 +1,4 @@
-"""Claims of the studies, on synthetic rows that give each of a claim's possible verdicts."""
+"""Claims of the studies, tested with synthetic rows for each possible verdict of a claim."""
 import re
 from pathlib import Path
 from types import SimpleNamespace
@@ -18,7 +18,7 @@ VERDICTS = {"yes": REPRODUCED, "no": NOT_REPRODUCED, "?": UNDECIDED}
 
 
 class FakeLaboratory:
-    """A laboratory with given cost images as views."""
+    """A laboratory whose views have the given cost images."""
 
     network = None
 
@@ -36,7 +36,7 @@ class FakeLaboratory:
 
 
 def along(p, slot, height=500, side=SIDE):
-    """A cost image with a higher cost in the pixels of one slot of offset p."""
+    """A cost image in which the pixels of one slot of offset p cost more."""
     return 1000 + height * (raya.owners(side, side, offset=p, pes=side) == slot % side).astype(np.uint64)
 
 
@@ -97,7 +97,7 @@ def test_a_load_that_is_not_flat_is_not_reproduced():
 
 
 def of_array(speed_16, speed_0, cap, pixel_machine):
-    """fig9's data of one view: speed-ups on 1..256 PEs, and of A x A arrays."""
+    """The data of fig9 for one view: speed-ups on 1..256 PEs and on A x A arrays."""
     pes = np.arange(1, 257)
     rows = pd.DataFrame({"p = 16, cyclic fold": pes * speed_16 / 256, "p = 0, cyclic fold": pes * speed_0 / 256})
     return rows, {8: pixel_machine, 16: cap * pixel_machine}
@@ -172,7 +172,7 @@ def test_whole_job(balance, word):
 
 
 def choice(near, count=20):
-    """A choice of an offset of 16 PEs, of which the best of 0..sqrt(P) takes about `near` % longer than the best of all."""
+    """A choice of the offset for 16 PEs. The best offset of 0..sqrt(P) takes about `near` % longer than the best of all offsets."""
     def longer(offset, confidence=0.95):
         random = np.random.default_rng(SEED)
         return estimate(near + random.normal(0, 0.1, count), confidence)
@@ -212,7 +212,7 @@ def test_turn(image, word):
 
 
 def smoothed(alone, with_first, rotations):
-    """table4's data of three offsets, of which the last should be the best, and of the filter on them."""
+    """The data of table4: three offsets, of which the last should be the best, and the filter with each of them."""
     def runs(some):
         return [SimpleNamespace(report={"communication": {"rotations": r, "rotation_words": 768 * r}}) for r in some]
 
@@ -230,7 +230,7 @@ def test_supersampling(alone, with_first, rotations, wanted):
 
 
 def divided(objects, best, falls):
-    """Rows of a scene whose figures have a minimum at `best` divisions and fall by the factors `falls` from 32 to 1024."""
+    """Rows of a scene. The figures fall to a minimum at `best` divisions, by the factors `falls` for each factor of 32 in the divisions."""
     power = np.arange(14)
     before, after = np.clip(np.log2(best) - power, 0, None) / 5, np.clip(power - np.log2(best), 0, None)
     columns = ("modelled (s)", "measured (ms)", "tests")
@@ -248,7 +248,7 @@ def test_divisions(bests, falls, wanted):
 
 
 def grown(even, random):
-    """Objects over time, and the share of its logarithm due to fewer voxels: one even scene, five random ones."""
+    """Rows with the given growth of objects / time and the fraction of its logarithm due to fewer voxels: one even scene, five random ones."""
     random_numbers = np.random.default_rng(SEED)
 
     def rows(over, share, count):
@@ -286,7 +286,7 @@ def test_two_dimensions(over, word):
 
 
 def test_every_claim_is_tested():
-    """Each claim function is called above; of some studies, the whole page is made from images."""
+    """Every claim function is called by the tests above; for some studies, the tests make the whole page from images."""
     within = {"imbalance": imbalance.fig8, "loads": loads.fig7, "turn": turn.turn}
     text = Path(__file__).read_text()
     for file in Path(objects.__file__).parent.glob("*.py"):

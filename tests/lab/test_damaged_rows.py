@@ -1,4 +1,4 @@
-"""A study with damaged rows ends with an error that names the place, and writes no file."""
+"""A study with invalid rows ends with an error that names the line or the comparison, and writes no file."""
 import json
 import os
 import subprocess
@@ -31,7 +31,7 @@ def run(lab, scenes):
                 [Comparison("u(16)", "", 0.118, rows["u"].iloc[-1])], tables=[Table("damaged", "u", rows)],
                 plots=[Plot("damaged", "u", "p", "u", [Series("u", rows["p"], rows["u"])])])
 '''
-# Damage to the rows -> parts of the error message.
+# {code that damages the rows: expected parts of the error message}
 DAMAGES = {"rows = rows.drop(columns='u')": ["damaged.py, line 15", "KeyError", "'u'"],
            "rows['u'] = rows['u'].where(rows['p'] < 16)": ["comparison 'u(16)'", "nan", "not a number"],
            "rows = rows[rows['p'] > 16]": ["damaged.py, line 15", "IndexError"],

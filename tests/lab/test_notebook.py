@@ -1,4 +1,4 @@
-"""docs/laboratory.ipynb runs and prints its recorded outputs."""
+"""The notebook docs/laboratory.ipynb runs and prints the outputs that it contains."""
 from pathlib import Path
 
 import pytest

@@ -1,4 +1,4 @@
-"""The laboratory's statistics: worked examples and simulations. Failures print the seed."""
+"""The laboratory's statistics: worked examples and simulations. Simulations print their seed if they fail."""
 import numpy as np
 import pytest
 
@@ -9,7 +9,7 @@ SEED, DRAWS = 20261124, 2000
 
 
 def covered(distribution, true_mean, count, confidence=0.95):
-    """The share of intervals, each of `count` values, that contain the mean."""
+    """The fraction of intervals, each computed from `count` values, that contain the true mean."""
     generator = np.random.default_rng(SEED)
     values = distribution(generator, (DRAWS, count))
     estimates = [s.estimate(row, confidence) for row in values]
@@ -42,13 +42,13 @@ def test_prediction_interval_contains_one_more_value(name, count):
     generator = np.random.default_rng(SEED)
     values = getattr(generator, name)(size=(DRAWS * 4, count + 1))
     bounds = np.quantile(values[:, 1:], [0.025, 0.975], axis=1, method="weibull")
-    assert np.allclose(bounds[:, 0], s.prediction(values[0, 1:]))  # the same rule, for all rows at once
+    assert np.allclose(bounds[:, 0], s.prediction(values[0, 1:]))  # the same computation for all rows at once
     part = np.mean((bounds[0] <= values[:, 0]) & (values[:, 0] <= bounds[1]))
     assert 0.93 <= part <= 0.97, f"{part} of {DRAWS * 4}, seed {SEED}"
 
 
 def test_estimate_of_a_worked_example():
-    # Student's t of 4 degrees of freedom at 0.975 is 2.776445 (any table); sd of 1..5 is sqrt(2.5).
+    # Student's t with 4 degrees of freedom at 0.975 is 2.776445 (from tables); the standard deviation of 1..5 is sqrt(2.5).
     e = s.estimate([1, 2, 3, 4, 5])
     assert (e.mean, e.count) == (3, 5)
     assert e.half == pytest.approx(2.776445 * (2.5 / 5) ** 0.5, rel=1e-6)
@@ -59,7 +59,7 @@ def test_estimate_of_a_worked_example():
 def test_estimate_of_one_value_has_no_interval():
     e = s.estimate([0.25])
     assert e.mean == 0.25 and np.isnan(e.half) and e.text() == "0.250"
-    assert not e.low > 0 and not e.high < 1  # so that it decides no claim
+    assert not e.low > 0 and not e.high < 1  # so the interval decides no claim
 
 
 def test_prediction_of_39_values_is_their_range():

@@ -1,4 +1,4 @@
-"""A driver crash in a study is reported, ends only that study, and the next one runs in a new process."""
+"""A crash of the driver in a study is reported and ends only that study. The next study runs in a new process."""
 from types import SimpleNamespace
 
 import pytest

@@ -1,4 +1,5 @@
-// The instruction budgets: events counted by hand, sums, and the accuracy of seeds and Newton steps.
+// The instruction budgets: cycles of events counted by hand, sums, and the accuracy of the seeds and Newton steps of
+// division and root.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -19,7 +20,7 @@ std::uint64_t cycles_of(const Operations& sum) {
            kBranchCycles * sum.branches;
 }
 
-/// log2 of the largest relative error of f over [1, 4), both binades of a root's table.
+/// log2 of the largest relative error of f over [1, 4), the two binades that the root's table covers.
 template <class Relative>
 double error_bits(Relative&& relative) {
     double worst = 0;
@@ -45,14 +46,14 @@ TEST_CASE("budgets are in the order of the events, and only primary hits, a coun
     }
 }
 
-// Division: seed 3, e = 1 - b y, y + e y, a y. Root: seed 3, x/2, y y, 3/2 - (x/2)(y y), y times that, x y. A
-// branch: 3.
+// Cycles of a division: seed 3, then one each for e = 1 - b y, y + e y and a y. Of a root: seed 3, then one each for
+// x/2, y y, 3/2 - (x/2)(y y), y times that, and x y. Of a branch: 3.
 TEST_CASE("cycles of each event agree with those counted by hand", "[machine]") {
     CHECK(kDivisionCycles == 6);
     CHECK(kRootCycles == 8);
     CHECK(kBranchCycles == 3);
     const auto cycles = cycles_of_events();
-    CHECK(cycles[RAYA_SPHERE_TESTS] == 12 + 3);        // three dot products' worth and a difference; one branch
+    CHECK(cycles[RAYA_SPHERE_TESTS] == 12 + 3);        // three dot products, a difference; one branch
     CHECK(cycles[RAYA_PLANE_TESTS] == 7 + 6 + 2 * 3);  // two dot products, a comparison; a division; two branches
     CHECK(cycles[RAYA_POLYGON_TESTS] == 24 + 6 + 2 + 2 + 5 * 3);  // corners, edges, plane; two moves; five branches
     CHECK(cycles[RAYA_CONE_TESTS] == 40 + 6 + 2 * 3);
@@ -96,8 +97,8 @@ TEST_CASE("the operations of an event are those of its budget", "[machine]") {
     }
 }
 
-// A pixel of the filter: 3 x (4 additions, 1 multiplication), as many moves, 4 branches of 3 cycles: 42.
-// A comparison: 4 sides x 3 colours x 6, one move, 16 branches: 121.
+// Cycles per pixel. Filter: 3 x (4 additions, 1 multiplication), as many moves, 4 branches of 3 cycles: 42. Contrast: 4
+// sides x 3 colours x 6, one move, 16 branches: 121.
 TEST_CASE("smoothing takes the same number of cycles for each pixel of a share", "[machine]") {
     for (const std::uint64_t pixels : {0ull, 1ull, 256ull, 1ull << 40}) {
         CAPTURE(pixels);
@@ -107,7 +108,7 @@ TEST_CASE("smoothing takes the same number of cycles for each pixel of a share",
 }
 
 TEST_CASE("a seed of 256 words and one Newton step have the accuracy that the budget assumes", "[machine]") {
-    // 8 bits of the significand select the word, which is that of the interval's middle.
+    // The top 8 bits of the significand select the table word, which is the value at the interval's middle.
     const auto reciprocal_seed = [](double b) {
         const int exponent = std::ilogb(b);
         const double significand = std::ldexp(b, -exponent);
@@ -117,7 +118,7 @@ TEST_CASE("a seed of 256 words and one Newton step have the accuracy that the bu
         const double y = reciprocal_seed(b);
         return y + (1 - b * y) * y;
     };
-    // The exponent's lowest bit and 7 of the significand: [1, 2) and [2, 4).
+    // The exponent's lowest bit and 7 bits of the significand select the word: 128 words each for [1, 2) and [2, 4).
     const auto root_seed = [](double x) {
         const double step = x < 2 ? 128 : 64;
         return word(1 / std::sqrt((std::floor(x * step) + 0.5) / step));

@@ -1,4 +1,4 @@
-// Loads, and the papers' measures of them.
+// Loads of PEs, and the papers' measures of them.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -37,7 +37,7 @@ TEST_CASE("one PE with all the work leaves the others idle", "[report]") {
     CHECK(load.efficiency == 0.25);
 }
 
-// Kohata & Ito 1993, Tables 2 and 3: 64,800 ms on one PE, 653 ms (p = 0) and 283 ms (p = 16) on 256.
+// Kohata & Ito 1993, Tables 2 and 3: 64,800 ms on one PE; 653 ms (p = 0) and 283 ms (p = 16) on 256 PEs.
 TEST_CASE("the loads of the paper's tables give its imbalance and speed-up", "[report]") {
     const auto with_busiest = [](std::uint64_t busiest) {
         constexpr std::uint64_t kSum = 64'800'000;  // microseconds

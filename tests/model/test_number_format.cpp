@@ -1,4 +1,4 @@
-// Number formats on the host: names, and rounding compared with MPFR.
+// Number formats on the host: their names, and rounding compared with MPFR.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::uint64_t kSeed = 22;
 
-/// Either sign, an exponent that may lie slightly outside the format's range, and a fraction often at or next to a tie.
+/// A random number of either sign. Its exponent may lie slightly outside the format's range, and its fraction is often
+/// on or next to a tie between two numbers of the format.
 double random_double(SplitMix& random, const NumberFormat& format) {
     const Range range = range_of(format);
     const double units = std::floor(random.uniform(0, std::ldexp(1, format.fraction_bits)));

@@ -1,4 +1,4 @@
-// The T805's time model: cycles of events and messages counted by hand, and links in both directions.
+// The T805's time model: cycles of events and messages counted by hand, and links with traffic in both directions.
 #include <catch2/catch.hpp>
 #include <cstdint>
 
@@ -11,21 +11,22 @@ namespace {
 
 const T805Work& work_of(std::size_t event) { return t805_work()[event]; }
 
-// Cycles of operations, each including 4 for its operand: addition 10, multiplication 15, division 20, root 123.
+// Cycles of arithmetic operations: addition 10, multiplication 15, division 20, root 123. Each includes 4 cycles for
+// its operand.
 std::uint32_t arithmetic(std::uint32_t additions, std::uint32_t multiplications, std::uint32_t divisions = 0,
                          std::uint32_t roots = 0) {
     return 10 * additions + 15 * multiplications + 20 * divisions + 123 * roots;
 }
 
-// 4 cycles for each word of a packet that is made, 8 for a move, 6 for a branch.
+// Cycles of control operations: 8 for a move, 6 for a branch, 4 for each word of a packet that is created.
 std::uint32_t control(std::uint32_t moves, std::uint32_t branches, std::uint32_t packet_words = 0) {
     return 8 * moves + 6 * branches + 4 * packet_words;
 }
 
 }  // namespace
 
-// A sum of n products is n multiply-accumulates in the budget, and here n multiplications and n - 1 additions, or n if
-// another term is added.
+// The budgets count a sum of n products as n multiply-accumulates. The T805 needs n multiplications and n - 1
+// additions, or n additions if another term is added.
 TEST_CASE("the T805's operations are the budgets', split into additions and multiplications", "[machine]") {
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
@@ -41,9 +42,9 @@ TEST_CASE("the T805's operations are the budgets', split into additions and mult
 
 TEST_CASE("cycles of each event on a T805 agree with those counted by hand", "[machine]") {
     const auto cycles = t805_cycles();
-    // 9 products; 3 differences, 2 of b, 3 of l, 3 of the discriminant; one branch
+    // 9 products; additions: 3 differences, 2 for b, 3 for l, 3 for the discriminant; one branch.
     CHECK(cycles[RAYA_SPHERE_TESTS] == arithmetic(11, 9) + control(0, 1));
-    // n.D: 3 products, 2 additions; d - n.O: 3 and 3; a comparison; a division; two branches
+    // n.D: 3 products, 2 additions; d - n.O: 3 products, 3 additions; a comparison; a division; two branches.
     CHECK(cycles[RAYA_PLANE_TESTS] == arithmetic(6, 6, 1) + control(0, 2));
     CHECK(cycles[RAYA_POLYGON_TESTS] == arithmetic(26 + 2, 12 + 0, 0) + control(2, 5));
     CHECK(cycles[RAYA_SHADOW] == arithmetic(7, 9, 1, 1) + control(4, 5, 16));
@@ -57,7 +58,8 @@ TEST_CASE("cycles of each event on a T805 agree with those counted by hand", "[m
     CHECK(cycles[RAYA_DISCARDED] == arithmetic(8 + 25, 12 + 18, 1 + 3, 1) + control(2 + 6 + 6, 1 + 4 + 1));
 }
 
-// A packet of 30 words takes 14 more stores. One return of 6 words per ray takes two stores less, and none per light.
+// A packet charged with 30 words takes 14 more stores. If a ray has one return of 6 words, the return takes two stores
+// less, and lights need no return.
 TEST_CASE("events that make packets take the stores of the charged words", "[machine]") {
     const auto moved = t805_cycles(), charged = t805_cycles({30, true});
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
@@ -77,7 +79,7 @@ TEST_CASE("a message takes 19 cycles of the processor and 2 for each word", "[ma
     CHECK(t805_message_cycles(1000, 16'000) == 51'000);
 }
 
-// 425,000 words a second in one direction, 600,000 in both directions together.
+// A link carries 425,000 words per second in one direction, 600,000 in both directions together.
 TEST_CASE("a link carries both directions at once until one of them ends", "[machine]") {
     CHECK(t805_link_ms(425, 0) == Approx(1).epsilon(1e-12));
     CHECK(t805_link_ms(0, 425) == Approx(1).epsilon(1e-12));
@@ -91,7 +93,7 @@ TEST_CASE("a link carries both directions at once until one of them ends", "[mac
         const std::uint64_t there = random.next() >> (24 + random.next() % 40), back = random.next() >> (24 + i % 40);
         const double time = t805_link_ms(there, back), more = static_cast<double>(std::max(there, back));
         CHECK(time == t805_link_ms(back, there));
-        // Between the larger amount at the full rate and at the shared rate.
+        // The time lies between that of the larger amount at the full rate and at the shared rate.
         CHECK(time >= more / 425 * (1 - 1e-12));
         CHECK(time <= more / 300 * (1 + 1e-12));
     }

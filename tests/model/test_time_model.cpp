@@ -30,18 +30,18 @@ Communication rotations(std::uint64_t count, std::uint64_t words_of_a_pe, std::u
 
 }  // namespace
 
-// 768 words take 0.128 ms at 6 Mword/s, the synchronisation 0.1845 ms: 0.3125 ms together, 10 ms / 32.
+// 768 words at 6 Mword/s take 0.128 ms, the synchronisation 0.1845 ms; the sum is 0.3125 ms = 10 ms / 32.
 TEST_CASE("rotations of a column of 256 pixels take the paper's time", "[machine]") {
     CHECK(time_of({load_with(0)}, rotations(1, 768)).communication_ms == Approx(0.3125).epsilon(1e-12));
     CHECK(time_of({load_with(0)}, rotations(34, 768)).communication_ms == Approx(10.625).epsilon(1e-12));
     CHECK(time_of({load_with(0)}, rotations(2, 768)).communication_ms == Approx(0.625).epsilon(1e-12));
     CHECK(time_of({load_with(0)}, rotations(10, 0)).communication_ms == Approx(1.845).epsilon(1e-12));
-    // half as many PEs, twice the words of each
+    // Half as many PEs, each with twice the words.
     CHECK(time_of({load_with(0, 128)}, rotations(34, 1536, 128)).communication_ms ==
           Approx(34 * (0.1845 + 0.256)).epsilon(1e-12));
 }
 
-// The bus carries one PE's words at a time: a transfer takes as long as a rotation of all PEs.
+// The bus carries one PE's words at a time: one transfer takes as long as a rotation of all PEs.
 TEST_CASE("transfers and broadcasts of PEs are sequential", "[machine]") {
     const auto ms = [](const Communication& c) { return time_of({load_with(0)}, c).communication_ms; };
     CHECK(ms({.transfers = 1, .transfer_words = 768}) == Approx(0.3125).epsilon(1e-12));
@@ -64,7 +64,7 @@ TEST_CASE("an image of 256 x 256 takes 140 ms to the host, and objects take the 
 TEST_CASE("the machine waits for the busiest PE of each phase", "[machine]") {
     CHECK(time_of({load_with(2'830'000)}).compute_ms == Approx(283).epsilon(1e-12));
     const std::vector<Load> phases = {load_of({5'000, 30'000, 10'000}), load_of({40'000, 0, 20'000})};
-    CHECK(time_of(phases).compute_ms == Approx(7).epsilon(1e-12));  // 3 + 4, though no PE has more than 4.5
+    CHECK(time_of(phases).compute_ms == Approx(7).epsilon(1e-12));  // 3 + 4; the busiest PE computes for 4.5 ms
     CHECK(time_of(phases, {}, 2.5).compute_ms == Approx(17.5).epsilon(1e-12));
     CHECK(time_of(phases, {}, 2.5).factor == 2.5);
 }

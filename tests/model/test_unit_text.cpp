@@ -1,4 +1,5 @@
-// Sizes, times and rates in a suitable unit. The texts of a required size and a smaller available size always differ.
+// Text of sizes, times and rates in a suitable unit. The texts of a required size and of a smaller available size
+// always differ.
 #include <catch2/catch.hpp>
 
 #include "host/model/unit_text.hpp"

@@ -1,12 +1,12 @@
-// Simulates, by patches of the layer, a device whose division errs by up to 2 units in the last place and whose square
-// root by up to 3.
+// Patches the number layer to simulate a device whose division has errors of up to 2 units in the last place and whose
+// square root of up to 3.
 #pragma once
 #include "tests/number/number_runs.hpp"
 
 namespace raya {
 
-/// Patches for builds that refine the device's results: normal results err, by an amount that the operands' bits
-/// choose.
+/// Returns patches for builds with RAYA_EXACT_DIVIDE=0. They add an error, which depends on the operands' bits, to
+/// results that are normal numbers.
 inline std::vector<SourcePatch> erring_device() {
     const std::string file = "number/divide.clh", before = "// The neighbour of z whose bits are";
     const std::string functions = R"(
@@ -22,7 +22,7 @@ static inline real err_by(real z, mask bits, int reach) {
             {file, "real z = sqrt(x);", "real z = err_by(sqrt(x), as_lanes_int(x), 3);"}};
 }
 
-/// A build of the format on the simulated device.
+/// Returns a build of the format for the simulated device.
 inline NumberBuild refined_build(const NumberFormat& format, std::uint32_t lanes = widest_lanes()) {
     return {.format = format, .lanes = lanes, .trusted = false, .sources = {.patches = erring_device()}};
 }

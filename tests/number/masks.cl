@@ -1,10 +1,10 @@
-// Test kernel of masks. A work-group is one work-item, which takes the next V rows of numbers; their number is a
-// multiple of V.
+// Test kernel for masks. A work-group is one work-item, which processes the next V rows of numbers. The number of rows
+// is a multiple of V.
 #include "kernels/checks/rows.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void masks(__global const float* restrict operands,  // [row][2]: a, b
-           __global uint* restrict results)          // [row][9], of m = a < b, in the order of the stores
+           __global uint* restrict results)          // [row][9]: results for the mask a < b, in the order of the stores
 {
     const uint first = get_group_id(0) * RAYA_LANES;
     const real a = load_lanes(operands + first * 2, 2), b = load_lanes(operands + first * 2 + 1, 2);

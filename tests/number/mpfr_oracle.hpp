@@ -1,4 +1,4 @@
-// Expected results of the number layer's operations from MPFR: the exact value, rounded once.
+// Computes expected results of the number layer's operations with MPFR: the exact result, rounded once.
 #pragma once
 #include <mpfr.h>
 
@@ -9,7 +9,7 @@
 
 namespace raya {
 
-/// The range of a format's exponents, biased as in IEEE 754 with no codes reserved for infinities, NaNs or denormals.
+/// The range of a format's (unbiased) exponents: that of IEEE 754, without infinities, NaNs or denormals.
 struct Range {
     int lowest, highest;  // the smallest number is 2^lowest, the largest below 2^(highest + 1)
 };
@@ -19,8 +19,8 @@ inline Range range_of(const NumberFormat& format) {
     return {1 - highest, highest};
 }
 
-/// The semantics of kernels/number/README.md in MPFR's operations, for reduced formats. fp32 has infinities and
-/// denormals of IEEE 754; its oracle is the host's arithmetic.
+/// Implements kernels/number/README.md for reduced formats with MPFR. The oracle of fp32 is the host's arithmetic,
+/// because fp32 has the infinities and denormals of IEEE 754.
 class MpfrOracle {
   public:
     explicit MpfrOracle(const NumberFormat& format)
@@ -56,7 +56,7 @@ class MpfrOracle {
         return fit();
     }
     float sqrt(float a) {
-        if (!(a > 0)) return 0;  // also of -0: +0
+        if (!(a > 0)) return 0;  // the root of -0 is +0
         take(a, 0);
         mpfr_sqrt(z_, a_, rounding_);
         return fit();
@@ -73,7 +73,7 @@ class MpfrOracle {
     }
 
   private:
-    static constexpr mpfr_prec_t kExact = 24;  // any fp32 number
+    static constexpr mpfr_prec_t kExact = 24;  // bits of precision that hold any fp32 number
 
     void take(float a, float b) {
         mpfr_set_flt(a_, a, MPFR_RNDN);
@@ -82,7 +82,7 @@ class MpfrOracle {
 
     float largest(bool negative) const { return static_cast<float>(negative ? -largest_ : largest_); }
 
-    // z is rounded, with an unlimited exponent; this applies the limits of the format's range.
+    // Returns z_, which is rounded but has an unlimited exponent, saturated or flushed to the format's range.
     float fit() const {
         const bool negative = mpfr_signbit(z_) != 0;
         if (mpfr_inf_p(z_)) return largest(negative);

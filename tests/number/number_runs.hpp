@@ -1,4 +1,4 @@
-// Runs of the number layer on the default device, and the sizes of its tests.
+// Runs the number layer on the default device, and defines the sizes of its tests.
 #pragma once
 #include <cstdint>
 #include <cstdlib>
@@ -9,34 +9,36 @@
 
 namespace raya {
 
-/// 16, or RAYA_NUMBER_LANES: some compilers take very long for wide kernels.
+/// Returns the largest number of lanes to test: 16, or the environment variable RAYA_NUMBER_LANES, because some
+/// compilers take very long for many lanes.
 inline std::uint32_t widest_lanes() {
     const char* text = std::getenv("RAYA_NUMBER_LANES");
     return text == nullptr ? 16 : static_cast<std::uint32_t>(std::stoul(text));
 }
 
-/// Rows of the random tests: RAYA_NUMBER_CASES, rounded up to a multiple of kMaxLanes.
+/// Returns the number of rows of random tests: the environment variable RAYA_NUMBER_CASES or else `usual`, rounded up
+/// to a multiple of kMaxLanes.
 inline std::size_t number_cases(std::size_t usual) {
     const char* text = std::getenv("RAYA_NUMBER_CASES");
     const std::size_t wanted = text == nullptr ? usual : std::stoul(text);
     return (wanted + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
 }
 
-/// Returns true if RAYA_NUMBER_CASES asks for more than the default number of rows.
+/// Returns true if RAYA_NUMBER_CASES asks for more than twice the default number of rows.
 inline bool is_long_run(std::size_t usual) { return number_cases(usual) > 2 * usual; }
 
-/// A build that uses the device's division, square root and fma.
+/// Returns a build that uses the device's division, square root and fma.
 inline NumberBuild number_build(const NumberFormat& format, std::uint32_t lanes = widest_lanes()) {
     return {.format = format, .lanes = lanes};
 }
 
-/// Results in the order of NumberRunner::run().
+/// Returns the results of NumberRunner::run() on the default device.
 inline NumberResults run_numbers(const NumberBuild& build, const NumberRows& rows, bool all) {
     Session session(choose_device(""));
     return NumberRunner(session, build).run(rows, all);
 }
 
-/// Returns a description of the wrong results with the first one; empty if all are as expected.
+/// Returns a description of the wrong results, with details of the first; empty if all results are as expected.
 inline std::string wrong_numbers(const NumberBuild& build, const NumberRows& rows,
                                  const std::vector<ExpectedNumbers>& expected) {
     Session session(choose_device(""));

@@ -1,4 +1,4 @@
-// Expected results of operations by an oracle: MpfrOracle, IeeeOracle, HostOracle.
+// Computes expected results of operations with an oracle, such as MpfrOracle or HostOracle.
 #pragma once
 #include <bit>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace raya {
 
-/// fp32 by the host's arithmetic; the project builds without contraction.
+/// The oracle of fp32: the host's arithmetic. The project is compiled without contraction to fma.
 struct HostOracle {
     float add(float a, float b) const { return a + b; }
     float sub(float a, float b) const { return a - b; }
@@ -22,7 +22,7 @@ struct HostOracle {
     float round(double value) const { return static_cast<float>(value); }
 };
 
-/// Returns the result of any operation except powers. Throws std::invalid_argument for those.
+/// Returns the expected result of an operation. Throws std::invalid_argument for powers.
 template <class Oracle>
 float oracle_result(Oracle& oracle, std::size_t operation, float a, float b, float c) {
     switch (operation) {
@@ -60,7 +60,7 @@ float oracle_result(Oracle& oracle, std::size_t operation, float a, float b, flo
 /// The operations that round.
 inline const std::vector<std::size_t> kRoundingOperations = {kAdd, kSub, kMul, kDiv, kSqrt, kMad, kMulAdd};
 
-/// Returns the expected results of `operations` in all rows.
+/// Returns the expected results of `operations` for all rows.
 template <class Oracle>
 std::vector<ExpectedNumbers> expected_by(Oracle& oracle, const NumberRows& rows,
                                          const std::vector<std::size_t>& operations = kRoundingOperations) {
@@ -74,7 +74,7 @@ std::vector<ExpectedNumbers> expected_by(Oracle& oracle, const NumberRows& rows,
     return expected;
 }
 
-/// As above by MPFR, in a reduced format.
+/// As above, with MPFR, for a reduced format.
 inline std::vector<ExpectedNumbers> expected_by_mpfr(const NumberFormat& format, const NumberRows& rows,
                                                      const std::vector<std::size_t>& operations = kRoundingOperations) {
     MpfrOracle oracle(format);

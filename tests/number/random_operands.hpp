@@ -1,4 +1,4 @@
-// Random operands that favour the hard cases of an exact operation: ties, cancellation, the ends of the range.
+// Random operands, many of them hard cases for correct rounding: ties, cancellation, the ends of the format's range.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,7 @@ class RandomOperands {
     float sign() { return below(2) == 0 ? -1.0F : 1.0F; }
     bool truth() { return below(2) == 0; }
 
-    // 0 .. 2^Y - 1.
+    // Returns the fraction bits of a number, 0 .. 2^Y - 1.
     std::uint32_t fraction() {
         const std::uint32_t all = (1u << format_.fraction_bits) - 1;
         const auto bit = [&] { return 1u << below(format_.fraction_bits); };
@@ -43,20 +43,20 @@ class RandomOperands {
             case 0:
                 return 0;  // power of two
             case 1:
-                return bit() | bit();  // few bits
+                return bit() | bit();  // one or two bits are 1
             case 2:
-                return all & ~(bit() | (truth() ? bit() : 0));  // few zeros
+                return all & ~(bit() | (truth() ? bit() : 0));  // one or two bits are 0
             case 3:
                 return truth() ? all : 1;  // next to a power of two
             case 4:
             case 5:
-                return (any >> cut | 1) << cut;  // any length: a product of two may end right at a tie
+                return (any >> cut | 1) << cut;  // trailing zeros: the product of two such numbers may be a tie
             default:
                 return any;
         }
     }
 
-    // A number of the format with this exponent, clamped to the range; sometimes zero.
+    // Returns a number of the format with the given exponent, clamped to the format's range; sometimes zero.
     float number(int exponent) {
         if (below(128) == 0) return 0 * sign();
         const int e = std::clamp(exponent, range_.lowest, range_.highest);
@@ -66,40 +66,41 @@ class RandomOperands {
 
     int exponent_of(double value) { return value == 0 ? any_exponent() : std::ilogb(value); }
 
-    // An exponent for b at which an operation with a has a hard case.
+    // Returns an exponent for the operand b, chosen so that many operations on a and b are hard cases.
     int partner(float a) {
         const int e = exponent_of(a), reach = format_.fraction_bits + 4;
         switch (below(6)) {
             case 0:
-                return e + within(-reach, reach);  // sums that round
+                return e + within(-reach, reach);  // sums that are rounded
             case 1:
-                return e + within(-1, 1);  // sums that cancel
+                return e + within(-1, 1);  // differences with cancellation
             case 2:
-                return (truth() ? range_.lowest : range_.highest) - e + within(-2, 2);  // products at the ends
+                return (truth() ? range_.lowest : range_.highest) - e + within(-2, 2);  // products near the ends
             case 3:
-                return e - (truth() ? range_.lowest : range_.highest) + within(-2, 2);  // quotients at the ends
+                return e - (truth() ? range_.lowest : range_.highest) + within(-2, 2);  // quotients near the ends
             default:
                 return any_exponent();
         }
     }
 
-    // The multiply-accumulate's third operand, placed by the exact product, which a double holds.
+    // Returns the third operand of a multiply-accumulate, chosen relative to the product a b, which a double holds
+    // exactly.
     float addend(float a, float b) {
         const double product = static_cast<double>(a) * b;
         const int e = exponent_of(product), y = format_.fraction_bits;
         switch (below(8)) {
             case 0:
-                return of_format(-product);  // cancels all that it can
+                return of_format(-product);  // cancels the product's leading bits
             case 1:
-                return of_format(-product + std::ldexp(within(-2, 2), e - y));  // all but a few units
+                return of_format(-product + std::ldexp(within(-2, 2), e - y));  // the same, except for a few units
             case 2:
-                return of_format(to_tie(product));  // a tie, or next to one
+                return of_format(to_tie(product));  // the sum is a tie or next to one
             case 3:
-                return number(e - within(y, 3 * y + 10));  // tiny compared with the product
+                return number(e - within(y, 3 * y + 10));  // much smaller than the product
             case 4:
-                return number(e + within(y, 3 * y + 10));  // the product tiny compared with it
+                return number(e + within(y, 3 * y + 10));  // much larger than the product
             case 5:
-                return number(e + y + 1);  // product about half a unit
+                return number(e + y + 1);  // the product is about half a unit of it
             case 6:
                 return number(e + within(-y - 2, y + 2));
             default:
@@ -107,7 +108,7 @@ class RandomOperands {
         }
     }
 
-    // Returns the distance from the product to the middle between two numbers of the format.
+    // Returns the number that must be added to the product to get a tie: the middle between two numbers of the format.
     double to_tie(double product) {
         const int e = exponent_of(product), y = format_.fraction_bits;
         const double unit = std::ldexp(1, e - y);

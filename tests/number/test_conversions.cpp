@@ -1,4 +1,4 @@
-// Operations that are exact in every format, and conversions to a format: of fp32 numbers and of whole numbers.
+// Tests operations that are exact in every format, and conversions of fp32 numbers and integers to a format.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kSeed = 17;
 constexpr std::size_t kRows = 20'000;
 
-/// Appends `rows` to `all` and the expected results of `operations` in them to `expected`.
+/// Appends `rows` to `all`, and the expected results of `operations` for these rows to `expected`.
 void append(NumberRows& all, std::vector<ExpectedNumbers>& expected, const NumberFormat& format, const NumberRows& rows,
             const std::vector<std::size_t>& operations) {
     for (ExpectedNumbers& of : expected_by_mpfr(format, rows, operations)) {
@@ -27,7 +27,7 @@ void append(NumberRows& all, std::vector<ExpectedNumbers>& expected, const Numbe
 }  // namespace
 
 TEST_CASE("exact operations are exact, conversions round once", "[number][conversions]") {
-    // Any normal fp32 numbers and infinity; whole numbers.
+    // `wide`: normal fp32 numbers and infinity. `whole`: integers.
     NumberRows wide = RandomOperands({8, 23, false}, kSeed).rows(kRows), whole;
     wide.a[0] = INFINITY;
     wide.a[1] = -INFINITY;

@@ -1,4 +1,4 @@
-// Cases with evident results, without an oracle: ties, carries, cancellation, the ends of the range, zeros.
+// Hand-written cases with known results, without an oracle: ties, carries, cancellation, the ends of the range, zeros.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -21,7 +21,7 @@ struct Case {
 
 double two_to(int exponent) { return std::ldexp(1, exponent); }
 
-/// The numbers of which a format's cases consist. `unit` is the distance from 1 to the next number.
+/// The numbers of a format from which its cases are made.
 struct Landmarks {
     explicit Landmarks(const NumberFormat& format)
         : unit(two_to(-format.fraction_bits)),
@@ -30,14 +30,14 @@ struct Landmarks {
           smallest(two_to(range_of(format).lowest)),
           largest(two_to(range_of(format).highest) * (2 - unit)) {}
 
-    double unit;      // 2^-Y
-    double base;      // a power of two so large that parts of its step are in the format too
-    double step;      // from base to the next number
+    double unit;      // 2^-Y: the distance from 1 to the next number
+    double base;      // a power of two so large that fractions of `step` are in the format too
+    double step;      // the distance from base to the next number
     double smallest;  // the smallest number above 0
     double largest;   // the largest number
 };
 
-/// Sums and differences.
+/// Returns cases of sums and differences.
 std::vector<Case> sums(const Landmarks& f) {
     const double b = f.base, s = f.step, above = 1 + f.unit, below = 1 - f.unit / 2, all_ones = b * (2 - f.unit);
     return {
@@ -73,7 +73,7 @@ std::vector<Case> sums(const Landmarks& f) {
     };
 }
 
-/// Products.
+/// Returns cases of products.
 std::vector<Case> products(const Landmarks& f) {
     const double above = 1 + f.unit, below = 1 - f.unit / 2, low = f.smallest, high = f.largest;
     return {
@@ -96,7 +96,7 @@ std::vector<Case> products(const Landmarks& f) {
     };
 }
 
-/// Quotients and roots.
+/// Returns cases of quotients and square roots.
 std::vector<Case> quotients(const Landmarks& f) {
     const double above = 1 + f.unit, below = 1 - f.unit / 2, low = f.smallest, high = f.largest;
     return {
@@ -120,11 +120,11 @@ std::vector<Case> quotients(const Landmarks& f) {
         {"root of 1 + u, just below a tie", kSqrt, above, 0, 0, 1, 1},
         {"root of 1 - u/2, just below a tie of finer steps", kSqrt, below, 0, 0, 1 - f.unit / 2, 1 - f.unit / 2},
         {"root of 4 (1 + 2 u), just below 2 (1 + u)", kSqrt, 4 + 8 * f.unit, 0, 0, 2 + 2 * f.unit, 2.0},
-        {"root of the smallest", kSqrt, low, 0, 0, std::sqrt(low), std::sqrt(low)},  // an even power of two
+        {"root of the smallest", kSqrt, low, 0, 0, std::sqrt(low), std::sqrt(low)},  // low is an even power of 2
     };
 }
 
-/// Multiply-accumulates.
+/// Returns cases of multiply-accumulates.
 std::vector<Case> accumulations(const Landmarks& f) {
     const double u = f.unit, above = 1 + u, low = f.smallest, high = f.largest, b = f.base, s = f.step;
     return {

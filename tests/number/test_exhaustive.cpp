@@ -1,4 +1,4 @@
-// All operations on every pair of numbers of the smallest formats, e5m4 and e5m4t.
+// Tests all operations on every pair of numbers of the smallest formats, e5m4 and e5m4t.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-/// All numbers of the format, including zeros of both signs.
+/// Returns all numbers of the format, including zeros of both signs.
 std::vector<float> all_numbers(const NumberFormat& format) {
     const Range range = range_of(format);
     std::vector<float> numbers = {0.0F, -0.0F};

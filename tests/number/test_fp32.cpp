@@ -1,4 +1,4 @@
-// fp32 in the number layer is IEEE 754's binary32; the oracle is the host's arithmetic.
+// In fp32 the number layer is binary32 of IEEE 754. The oracle is the host's arithmetic.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// Masks: choices, counts and reductions over lanes.
+// Masks: selection, counting and reductions over lanes.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-/// A number of any sign and fraction with an exponent from -40 to 40, so that all results are normal.
+/// Returns a number with a random sign and fraction, and an exponent from -40 to 40, so that all results are normal.
 float random_float(SplitMix& random) {
     const std::uint64_t word = random.next();
     const auto exponent = static_cast<std::uint32_t>(127 - 40 + (word >> 32) % 81);
@@ -26,7 +26,8 @@ float random_float(SplitMix& random) {
 TEST_CASE("masks choose, count and reduce correctly for every combination of lanes", "[number]") {
     constexpr std::uint64_t kSeed = 62;
     constexpr std::size_t kColumns = 9;
-    // Rows of 16: no lane true, all, each lane alone, each alone false, and random ones. True: a < b.
+    // Groups of 16 rows with the masks: no lane true, all true, exactly one true, exactly one false, and random ones. A
+    // lane is true if a < b.
     SplitMix random(kSeed);
     std::vector<bool> truth(16, false);
     truth.insert(truth.end(), 16, true);

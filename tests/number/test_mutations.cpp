@@ -1,5 +1,5 @@
-// Mutation tests of the number layer: each fault injected into a copy of the layer makes the comparison with the oracle
-// fail for the operation that it breaks.
+// Mutation tests of the number layer: each fault that is injected into a copy of the layer makes the comparison with
+// the oracle fail for the faulty operation.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -19,7 +19,7 @@ struct Mutation {
     const char* what;
     SourcePatch patch;
     NumberFormat format;
-    std::size_t operation;  // the one that must go wrong
+    std::size_t operation;  // the operation that must fail
     bool refines = false;
 };
 

@@ -1,5 +1,5 @@
-// Compares the operations of the reduced formats with MPFR on random operands, bit by bit. RAYA_NUMBER_CASES=1000000
-// asks for that many rows in each format, for more formats and for all numbers of lanes.
+// Compares the operations of reduced formats with MPFR on random operands, bit for bit. With RAYA_NUMBER_CASES=1000000
+// the test uses that many rows per format, more formats and all numbers of lanes.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -18,8 +18,8 @@ struct Size {
     int exponent_bits, fraction_bits;
 };
 
-/// Y = 4 .. 21 and every X, in both roundings: the smallest, the largest and the SPA's format; X = 8 and Y > 15, for
-/// which the layer has other code, together and apart.
+/// Returns formats with Y = 4 .. 21 and every X, in both roundings. They include the smallest and the largest format,
+/// the SPA's format, and formats with X = 8, with Y > 15 and with both, for which the layer has different code.
 std::vector<NumberFormat> tested_formats() {
     std::vector<Size> sizes = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
     if (is_long_run(kUsualRows)) sizes.insert(sizes.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
@@ -30,7 +30,8 @@ std::vector<NumberFormat> tested_formats() {
     return formats;
 }
 
-/// All numbers of lanes in a long run; else the largest, and also one lane for the most important formats.
+/// Returns all numbers of lanes in a long run; else the largest number and, for the most important formats, also one
+/// lane.
 std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
     if (is_long_run(kUsualRows)) return {1, 4, 8, 16};
     if (format == NumberFormat{6, 15, false} || format == NumberFormat{8, 21, false}) return {1, widest_lanes()};

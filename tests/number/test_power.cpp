@@ -1,5 +1,5 @@
-// x^n, log2 and 2^y stay within the error bounds that kernels/number/README.md derives, with the same bits for all
-// numbers of lanes.
+// The errors of x^n, log2(x) and 2^y are within the bounds of kernels/number/README.md, and results have the same bits
+// for all numbers of lanes.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -23,7 +23,8 @@ double result_of(const NumberResults& results, std::size_t operation, std::size_
     return std::bit_cast<float>(results[operation][row]);
 }
 
-/// x in (0, 4), a third of them just below 1; n in [0, 1000), many small; y in [-126, 0].
+/// Returns rows x, n, y with x in (0, 4), a third of them just below 1; n in [0, 1000), many of them small; y in [-126,
+/// 0].
 NumberRows power_rows(const NumberFormat& format) {
     SplitMix random(kPowerSeed);
     const double smallest = std::ldexp(1, range_of(format).lowest);
@@ -42,7 +43,7 @@ NumberRows power_rows(const NumberFormat& format) {
     return rows;
 }
 
-/// x from 0x1p-126 to 2, many near 1; n of highlights; y from 0 to -126.
+/// Returns rows x, n, y with x from 0x1p-126 to 2, many near 1; n as in highlights; y from 0 to -126.
 NumberRows fp32_rows() {
     std::vector<float> xs = {1, 2, std::nextafter(1.0F, 0.0F), std::sqrt(0.5F), 0x1p-126F, 1e-30F};
     for (int i = 1; i <= 500; ++i) xs.push_back(static_cast<float>(i) / 500);
@@ -59,7 +60,7 @@ NumberRows fp32_rows() {
     return rows;
 }
 
-/// The bounds of kernels/number/README.md, "Powers".
+/// The error bounds of kernels/number/README.md, section Powers.
 class PowerBounds {
   public:
     explicit PowerBounds(const NumberFormat& format)
@@ -68,14 +69,14 @@ class PowerBounds {
 
     double log(double value) const { return (gamma(7) + kLogSeries) * std::abs(value) + 6 * flush_; }
     double exp(double y) const { return (gamma(5) + kExpSeries) * std::exp2(y) + 2 * flush_; }
-    /// Error of n log2(x), with the error of log2 as above and a rounded product.
+    /// Returns the error bound of n log2(x): that of log2(x), as above, and that of the rounded product.
     double exponent(double n, double log_x) const {
         return (gamma(8) + kLogSeries) * std::abs(n * log_x) + (7 * n + 1) * flush_;
     }
 
   private:
-    // The largest difference from 1 of a product of k factors 1 + d, |d| <= unit (N. J. Higham, Accuracy and Stability
-    // of Numerical Algorithms, 3.1).
+    // Returns the maximum difference from 1 of a product of k factors 1 + d with |d| <= unit_ (N. J. Higham, Accuracy
+    // and Stability of Numerical Algorithms, 3.1).
     double gamma(int k) const { return k * unit_ / (1 - k * unit_); }
 
     static constexpr double kLogSeries = 2.5e-7, kExpSeries = 2.4e-7;
@@ -119,11 +120,11 @@ TEST_CASE("powers stay within their error bounds, with the same bits for all num
 }
 
 TEST_CASE("fp32 powers stay within their error bounds in all variants", "[number][power]") {
-    // num_log2: the relative error of the series is 8e-8, of the roundings 1.7e-7. num_exp2: that of the Taylor series
-    // is (ln 2 / 2)^7 / 7! at f = -1/2, 1.7e-7 of the result, and of the last additions 7e-8.
+    // Relative errors. num_log2: 8e-8 by the truncated series and 1.7e-7 by rounding. num_exp2: (ln 2 / 2)^7 / 7! at f
+    // = -1/2, which is 1.7e-7 of the result, by the truncated Taylor series, and 7e-8 by the last additions.
     constexpr double kLogError = 2.5e-7, kExpError = 2.4e-7;
-    // The product n log2(x) is rounded too, so the argument y of 2^y has a relative error of 3.1e-7; the largest value
-    // of |y| ln 2 2^y is 1 / e. Results below 2^-30 are 0.
+    // The product n log2(x) is rounded too, so the relative error of the argument y of 2^y is 3.1e-7. The maximum of
+    // |y| ln 2 2^y is 1 / e. Results below 2^-30 are 0, an error of at most 2^-30.
     const double kPowerError = (kLogError + 0x1p-24) / std::exp(1.0) + kExpError + 0x1p-30;
     const NumberRows rows = fp32_rows();
     const NumberResults first = run_numbers(number_build({}, 1), rows, true);

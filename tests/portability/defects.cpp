@@ -1,8 +1,9 @@
-// Known defects of OpenCL implementations, each with a minimal kernel: runs the kernels on a device and compares the
+// Tests a device for known defects of OpenCL implementations. Runs a minimal kernel for each defect and compares the
 // results with the right ones and with the known wrong ones.
-//   defects [DEVICE]     prints a line per kernel of tests/portability: right, an expected failure with its reason, or
-//                        WRONG; also if an expected failure no longer occurs
-// Each kernel runs in its own process, as some crash the compiler.
+// Usage: defects [DEVICE]
+//   Prints a line per kernel of tests/portability: right, an expected failure with its reason, or WRONG. An expected
+//   failure that no longer occurs is also reported.
+// Each kernel runs in its own process, because some kernels crash the compiler.
 // Exit code: 0 if all results are right or expected, 1 if one is WRONG.
 #include <fmt/core.h>
 #include <sys/wait.h>
@@ -23,9 +24,9 @@ namespace {
 using namespace raya;
 
 struct KnownFailure {
-    std::string platform, device;  // parts of their names; empty: any
-    cl_uint wrong = 0;             // the result of each work-item there
-    bool crashes = false;          // instead of a result, the process ends with a signal
+    std::string platform, device;  // substrings of their names; empty: any
+    cl_uint wrong = 0;             // the result of each work-item on this device
+    bool crashes = false;          // a signal ends the process, without a result
     std::string reason;
 };
 
@@ -35,10 +36,10 @@ struct Sides {
 };
 
 struct Defect {
-    std::string name;  // of the .cl file
+    std::string name;  // of the .cl file, without ".cl"
     cl_uint n = 0;
     std::size_t groups = 1, group_size = 1;
-    cl_uint right = 0;  // the right result of each work-item
+    cl_uint right = 0;  // the correct result of each work-item
     std::vector<KnownFailure> known;
 };
 
@@ -96,7 +97,7 @@ bool is_of(const KnownFailure& known, const DeviceInfo& device) {
            device.name.find(known.device) != std::string::npos;
 }
 
-/// Prints the line for a defect; returns true if the result is right or expected.
+/// Prints the output line for a defect; returns true if the result is right or an expected failure.
 bool report(const Defect& defect, Session& session) {
     std::vector<cl_uint> all;
     const cl_uint got = answer(defect, session, all);
@@ -117,7 +118,7 @@ bool report(const Defect& defect, Session& session) {
     return got == defect.right;
 }
 
-/// Prints the line for a defect whose process a signal has ended.
+/// Prints the output line for a defect whose process was ended by a signal.
 bool report_crash(const Defect& defect, int signal, const DeviceInfo& device) {
     for (const KnownFailure& known : defect.known) {
         if (!known.crashes || !is_of(known, device)) continue;
@@ -129,8 +130,8 @@ bool report_crash(const Defect& defect, int signal, const DeviceInfo& device) {
     return false;
 }
 
-/// Runs `body`, which returns an exit code, in a child process; returns its status as of waitpid(). The parent never
-/// uses OpenCL, as drivers do not survive a fork.
+/// Runs `body`, which returns an exit code, in a child process; returns the status of waitpid(). The parent never uses
+/// OpenCL, because drivers do not work after a fork.
 int run_in_child(const std::function<int()>& body) {
     std::fflush(stdout);
     const pid_t child = ::fork();

@@ -1,5 +1,5 @@
 // Counts the iterations of a loop of n.
-//   out    one number per work-item; right: n
+//   out    one number per work-item; expected: n
 // raya's kernels loop over objects, over pixels of a PE and over voxels. With this defect, the loops over more than
 // 65,535 spheres, or over more pixels of a PE in one launch, end early.
 __kernel void defect(

@@ -1,5 +1,5 @@
 // Counts the iterations of two nested loops of n.
-//   out    one number per work-item; right: n * n
+//   out    one number per work-item; expected: n * n
 // A limit on the iterations of a whole kernel, rather than of each loop, ends the loops early: pixels x rays x objects
 // exceed any such limit.
 __kernel void defect(

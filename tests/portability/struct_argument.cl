@@ -1,6 +1,6 @@
 // Reads an array inside a structure argument at an index that the compiler does not know.
-//   out    one number per work-item: 10, 20 or 30; right: n
-// raya's kernels read structures from buffers instead of arguments, as this crashes a compiler.
+//   out    one number per work-item: 10, 20 or 30; expected: 20 for work-item 0
+// raya's kernels read structures from buffers instead of arguments, because a structure argument crashes a compiler.
 typedef struct {
     uint side[3];
 } sides;

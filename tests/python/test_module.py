@@ -1,4 +1,4 @@
-"""The Python module `raya`: results of the command line as arrays. Failing random cases print their seed."""
+"""The Python module `raya` returns the results of the command line as arrays. Random cases print their seed if they fail."""
 import json
 import os
 import pickle
@@ -166,7 +166,7 @@ def test_session_can_be_reused(centre):
 
 
 def test_progress_is_reported_and_the_gil_is_released(centre):
-    """Another Python thread runs while the engine works."""
+    """Another Python thread can run while the engine renders."""
     shares, counted, done = [], [0], threading.Event()
 
     def count():
@@ -210,7 +210,7 @@ def test_ctrl_c_interrupts(centre):
 
     with pytest.raises(KeyboardInterrupt):
         raya.render(centre, size=256, progress=interrupt)
-    assert raya.render(centre, **SMALL).hash  # the session still works
+    assert raya.render(centre, **SMALL).hash  # the session can still render
 
 
 def test_skipped_parts_of_a_scene_give_warnings(tmp_path):
@@ -230,7 +230,7 @@ def test_every_public_function_has_a_docstring():
 
 
 def test_type_stubs_agree_with_the_module():
-    """host/python/raya/_engine.pyi has exactly the module's names and arguments."""
+    """The stub host/python/raya/_engine.pyi declares exactly the module's names and arguments."""
     import ast
     import inspect
 

@@ -1,5 +1,5 @@
-// Runs raya on ranks as a user does, under mpirun with a process per rank, and collects output, exit code and processes
-// that remain.
+// Runs raya under mpirun with one process per rank, and collects the output, the exit code and the processes that did
+// not end.
 #pragma once
 #include <catch2/catch.hpp>
 #include <functional>
@@ -11,12 +11,13 @@
 
 namespace raya {
 
-/// An MPI: its launcher, and a raya program with a module for it.
+/// An MPI library: its launcher, and a raya program with a module for it.
 struct Mpi {
     std::string launcher, program;
 };
 
-/// The MPI that raya was built with, and the other MPI if installed. If there is none, warns, and the test passes.
+/// Returns the MPI library that raya was built with and the other one, if installed. If none is installed, prints a
+/// warning and returns an empty list, so that the test passes.
 inline std::vector<Mpi> mpis_here() {
     std::vector<Mpi> all;
     for (const Mpi& mpi : {Mpi{RAYA_MPIRUN_OWN, RAYA_PROGRAM}, Mpi{RAYA_MPIRUN_OTHER, RAYA_OTHER_MPI "/raya"}})
@@ -25,17 +26,17 @@ inline std::vector<Mpi> mpis_here() {
     return all;
 }
 
-/// Fault injection: one process gets a signal some time after all ranks have started.
+/// Fault injection: one process receives a signal `after_ms` ms after all ranks have started.
 struct RanksFault {
     int signal = 0;                       // 0: no fault
-    std::optional<std::uint32_t> rank{};  // receives the signal; empty: mpirun does
+    std::optional<std::uint32_t> rank{};  // the rank that receives the signal; empty: mpirun
     int after_ms = 700;
 };
 
 struct RanksOutcome : RunOutcome {
-    double seconds = 0;        // from the fault (without one, the start) to the end of the last process
+    double seconds = 0;        // from the signal (or the start) to the end of the last process
     std::size_t left = 0;      // processes that did not end
-    std::size_t messages = 0;  // lines of raya on stderr
+    std::size_t messages = 0;  // lines on stderr that start with "raya:"
 };
 
 namespace run_ranks_detail {
@@ -48,13 +49,14 @@ struct RankProcess {
     std::uint32_t rank = 0;
 };
 
-/// The value of a variable in /proc's environ; empty if it is not set.
+/// The value of a variable in the text of /proc/PID/environ; empty if the variable is not set.
 inline std::string variable_of(const std::string& environment, const std::string& name) {
     const std::size_t at = ('\0' + environment).find('\0' + name + "=");
     return at == environment.npos ? "" : std::string(environment.c_str() + at + name.size() + 1);
 }
 
-/// Live processes with the mark in their environment; zombies have no environment.
+/// Live processes whose environment contains `mark`, with their environments. Zombies are omitted, because their
+/// environment is empty.
 inline std::vector<std::pair<pid_t, std::string>> marked(const std::string& mark) {
     std::vector<std::pair<pid_t, std::string>> found;
     std::error_code gone;
@@ -97,7 +99,8 @@ inline pid_t start(const Mpi& mpi, std::vector<std::string> arguments, std::vect
     ::_exit(127);
 }
 
-/// Sends the signal after `ranks` ranks have started; false if they have not within 30 s.
+/// Waits until `ranks` ranks run, then `f.after_ms` ms, and sends the signal. Returns false if the ranks do not start
+/// within 30 s or the signal cannot be sent.
 inline bool send_signal(const Mpi& mpi, const std::string& mark, pid_t launcher, std::size_t ranks,
                         const RanksFault& f) {
     const Clock::time_point deadline = Clock::now() + std::chrono::seconds(30);
@@ -121,8 +124,8 @@ inline std::size_t own_lines(const std::string& text) {
 
 }  // namespace run_ranks_detail
 
-/// `arguments` follow the launcher's name and include the program. A run that does not end within 60 s is killed and
-/// has the exit code 124.
+/// Runs the launcher with `arguments`, which include the program. A run that does not end within 60 s is killed and has
+/// exit code 124. Throws std::runtime_error if the signal could not be sent.
 inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& arguments, std::size_t ranks = 0,
                               const RanksFault& fault = {}, RunOptions around = {}) {
     namespace detail = run_ranks_detail;

@@ -1,4 +1,4 @@
-// Clock offsets of ranks to rank 0 lie within their stated uncertainty.
+// The measured offset of each rank's clock from rank 0's is correct within its stated uncertainty.
 #include <catch2/catch.hpp>
 #include <chrono>
 
@@ -8,7 +8,7 @@
 namespace raya {
 
 TEST_CASE("clocks that are hours apart are aligned within the stated uncertainty", "[ranks]") {
-    const std::int64_t ahead[] = {0, 5'000'000'000'000, -7'000'000'000'000, 12'345};  // nanoseconds, of each rank
+    const std::int64_t ahead[] = {0, 5'000'000'000'000, -7'000'000'000'000, 12'345};  // of each rank, ns
     std::mutex mutex;
     std::vector<std::pair<std::uint32_t, RankClock>> found;
     on_ranks(4, [&](Ranks& ranks) {

@@ -1,4 +1,4 @@
-// Memory of a rank: only the data of its own PEs and nodes.
+// The device memory of a rank holds only the data of the rank's own PEs or nodes.
 #include <catch2/catch.hpp>
 #include <mutex>
 
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-/// [rank]: bytes that a render allocates on its device.
+/// By rank: the bytes that a render allocates on the rank's device.
 template <class Renderer, class Settings>
 std::vector<std::uint64_t> bytes_of_ranks(std::uint32_t count, const Scene& scene, const Settings& settings) {
     std::vector<std::uint64_t> bytes(count);
@@ -77,8 +77,8 @@ TEST_CASE("torus: a rank's device holds its share of the nodes, plus an inbox fo
         const std::vector<std::uint64_t> of_ranks = bytes_of_ranks<TorusRenderer>(count, scene, settings);
         for (std::uint32_t rank = 0; rank < count; ++rank) {
             const NodeShare share(settings.torus, count, rank);
-            // Mailboxes take nearly all memory of these nodes. Half of them are inboxes, which grow by those of other
-            // ranks' links.
+            // Mailboxes take nearly all memory of these nodes, and half of the mailboxes are inboxes. A rank also holds
+            // an inbox for each link that enters its nodes from another rank.
             const double inboxes = static_cast<double>(share.inboxes()) / share.nodes();
             CAPTURE(count, rank, all, of_ranks[rank], inboxes);
             CHECK(static_cast<double>(of_ranks[rank]) < 1.05 * static_cast<double>(all) / count * (1 + inboxes) / 2);

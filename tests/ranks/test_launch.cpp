@@ -1,4 +1,4 @@
-// Detection of a launcher, and a rank's share of its host's threads.
+// Detection of an MPI launcher, and a rank's share of its host's threads.
 #include <catch2/catch.hpp>
 #include <map>
 

@@ -1,4 +1,5 @@
-// Ranks with one device each: different kinds of devices, memories too small for one device, and traces and reports.
+// Ranks with one device each: devices of different types, a scene too large for one device's memory, traces and
+// reports.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -52,7 +53,7 @@ TEST_CASE("a torus scene too large for one device is rendered on several ranks",
     const std::vector<std::string> torus = {"render",  scene,     "--machine", "torus",       "--size",
                                             "32",      "--queue", "64",        "--pe-memory", "100000000",
                                             "--quiet", "-o",      image,       "--report",    many};
-    // CL_DEVICE_MAX_MEM_ALLOC_SIZE: the words of all nodes take 1.4 MB.
+    // 4112 is CL_DEVICE_MAX_MEM_ALLOC_SIZE. The limit of 1 MB is less than the words of all nodes, 1.4 MB.
     const RunOptions small{
         .variables = {{"LD_PRELOAD", RAYA_CL_FAULTS}, {"RAYA_FAULT", "clGetDeviceInfo 4112 1000000"}}};
     const RunOutcome refused = run_raya(torus, small);

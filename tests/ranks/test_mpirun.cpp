@@ -1,4 +1,4 @@
-// Ranks as processes: a run under mpirun writes the files of a single process.
+// Ranks as processes: a run under mpirun writes the same files as a single process.
 #include <map>
 
 #include "tests/cli/refusals.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kCounts[] = {1, 2, 3, 4, 7, 8};
 
-/// A render's files by name; reports without the measured part.
+/// The contents of a render's files, by name; reports without the measured values.
 using Files = std::map<std::string, std::string>;
 
 Files files_in(const ScratchFolder& folder) {

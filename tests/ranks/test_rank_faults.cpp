@@ -1,5 +1,5 @@
-// Failures on one of several ranks or at the start: one message, the exit code of a single process if mpirun passes it
-// on and never 0, no output file, and no remaining process.
+// Failures on one rank, or on all ranks at the start. raya prints one message; the exit code is that of a single
+// process if mpirun forwards it, and never 0; no output file and no process remains.
 #include <sys/stat.h>
 
 #include "tests/cli/failing_device.hpp"
@@ -34,7 +34,7 @@ void check_ended(const ScratchFolder& outputs, const RanksOutcome& run, std::siz
     CHECK(outputs.entries() == 0);
 }
 
-/// Checks the exit code, and that the run prints one message with these parts.
+/// Checks the exit code, and that the run prints exactly one message, which contains the given parts.
 void check_message(const ScratchFolder& outputs, const RanksOutcome& run, int code, const Arguments& message) {
     INFO(run.describe());
     CHECK(run.code == code);
@@ -43,7 +43,7 @@ void check_message(const ScratchFolder& outputs, const RanksOutcome& run, int co
     check_ended(outputs, run, 1);
 }
 
-/// A script that runs a program, on one rank after a shell command.
+/// A script that runs a program and, on one rank, a shell command before it.
 class OneRank {
   public:
     OneRank() {
@@ -69,7 +69,7 @@ std::string preload(const std::string& library, const std::string& variable, con
     return "export LD_PRELOAD=" + library + " " + variable + "='" + value + "'";
 }
 
-// Takes longer than starting the ranks and signalling one.
+// Arguments of a render that takes longer than starting the ranks and signalling one of them.
 Arguments long_render(const ScratchFolder& outputs, const std::string& machine) {
     return {"render",
             scene_file("centre"),
@@ -151,7 +151,7 @@ TEST_CASE("mpirun: a failing device or driver on one rank ends all ranks", "[ran
             const RanksOutcome crash = run("clEnqueueNDRangeKernel 1 crash", ring);
             CHECK_THAT(crash.err, Catch::Contains(name));
             CHECK_THAT(crash.err, Catch::Contains("the OpenCL driver crashed (SIGSEGV)"));
-            check_ended(outputs, crash, 2);  // MPICH's mpirun returns its own code, and rank 0 is interrupted
+            check_ended(outputs, crash, 2);  // MPICH's mpirun returns its own code and interrupts rank 0
             check_ended(outputs, run("clEnqueueNDRangeKernel 1 exit", ring), 1);
         }
 }
@@ -169,7 +169,7 @@ TEST_CASE("mpirun: a rank out of memory ends all ranks", "[ranks][.mpirun]") {
                 outputs,
                 run_ranks(mpi, one.words(mpi, 3, rank, preload(RAYA_CL_FAULTS, "RAYA_FAULT", "new 1000000 0"), large)),
                 2, {"raya: rank " + std::to_string(rank) + " on ", "out of memory on the host"});
-        // The system's limit may affect raya, the driver or MPI.
+        // The memory limit may cause an error in raya, the driver or MPI.
         check_ended(outputs, run_ranks(mpi, one.words(mpi, 3, 0, "ulimit -v 400000", large)), 2);
     }
 }
@@ -185,8 +185,8 @@ TEST_CASE("mpirun: a full disk on rank 0 ends all ranks", "[ranks][.mpirun]") {
                       {"raya: rank 0 on ", "x.pfm", "No space left on device"});
 }
 
-// mpirun need not forward the output of an interrupted rank, so rank 0 writes to a file here. Open MPI kills a rank one
-// second after a signal, which is too early on a busy machine.
+// mpirun may drop the output of an interrupted rank, so rank 0 writes its messages to a file here. Open MPI kills a
+// rank one second after a signal, which is too early on a busy machine.
 TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.mpirun]") {
     const ScratchFolder outputs, messages;
     const OneRank one;

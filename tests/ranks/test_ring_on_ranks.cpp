@@ -1,4 +1,5 @@
-// The ring distributed over ranks: pixels, costs, marks, loads and counts are those of one rank, bit for bit.
+// The ring distributed over ranks: pixels, costs, supersampling marks, loads and counts equal those of one rank, bit
+// for bit.
 #include <catch2/catch.hpp>
 #include <mutex>
 
@@ -11,7 +12,7 @@
 namespace raya {
 namespace {
 
-/// Rank 0's result; every rank has its own session.
+/// Renders on `count` ranks, each with its own session; returns rank 0's result.
 RingResult render_on(std::uint32_t count, const Scene& scene, const RingSettings& settings) {
     RingResult result;
     on_ranks(count, [&](Ranks& ranks) {

@@ -1,4 +1,4 @@
-// The torus distributed over ranks: image, counts, loads, supersteps and traffic are those of one rank.
+// The torus distributed over ranks: image, counts, loads, supersteps and traffic equal those of one rank.
 #include <catch2/catch.hpp>
 
 #include "host/torus/node_share.hpp"

@@ -1,4 +1,5 @@
-// Ranks as threads of one process: messages are copied, and waits end when a rank fails.
+// Ranks as threads of one process. Messages are copied, and a rank that waits for a message gets a RankFailure when
+// another rank fails.
 #pragma once
 #include <condition_variable>
 #include <cstring>
@@ -97,10 +98,10 @@ class ThreadTransport final : public Transport {
     std::vector<Incoming> waits_;
 };
 
-/// Runs `work` on `count` concurrent ranks, `of_host` per host, and rethrows an exception of one of them. Throws
-/// std::logic_error if a sent message was not received.
+/// Runs `work` on `count` concurrent ranks, `of_host` ranks per host. If ranks throw, rethrows the first exception.
+/// Throws std::logic_error if a sent message was not received.
 inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& work, std::uint32_t of_host = 8) {
-    all_devices();  // PoCL 3.1 has no device for threads whose first query is concurrent with another one
+    all_devices();  // concurrent first queries fail: PoCL 3.1 then returns no device to some threads
     MessageStore box;
     std::exception_ptr thrown;
     std::mutex of_thrown;
@@ -110,7 +111,7 @@ inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& wor
             try {
                 Ranks ranks(std::make_unique<ThreadTransport>(box, rank, count, of_host));
                 work(ranks);
-            } catch (const RankFailure&) {  // another rank throws the cause
+            } catch (const RankFailure&) {  // another rank throws the exception that caused it
                 box.fail();
             } catch (...) {
                 const std::lock_guard lock(of_thrown);

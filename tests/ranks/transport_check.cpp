@@ -1,5 +1,6 @@
-// Checks every call of the MPI transport with known bytes, from empty messages to sizes beyond MPI's eager limit. Runs
-// under mpirun, also with Valgrind or sanitizers, which find little in a whole render inside an OpenCL driver.
+// Checks every call of the MPI transport with known bytes, for messages from empty to larger than MPI's eager limit.
+// Runs under mpirun, also with Valgrind or sanitizers: they find little in a whole render, most of which runs inside an
+// OpenCL driver.
 #include <fmt/core.h>
 
 #include <memory>
@@ -17,7 +18,7 @@ constexpr int kTags = 4;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The bytes that a rank sends with a tag; they differ between ranks, tags and neighbouring bytes.
+/// The bytes that `rank` sends to `to` with a tag. They differ between ranks, tags and neighbouring bytes.
 Bytes known_bytes(std::size_t size, std::uint32_t rank, std::uint32_t to, int tag) {
     Bytes bytes(size);
     for (std::size_t i = 0; i < size; ++i)
@@ -57,8 +58,8 @@ void check_gathers(Ranks& ranks, std::size_t size, Checks& checks) {
     checks.same(ranks.gather(span, sizes), ranks.first() ? expected : Bytes());
 }
 
-// Sends to both neighbours in a ring of ranks at once, with several tags that are received in reverse order. With two
-// ranks both neighbours are the same one; a single rank sends to itself.
+// Sends to both neighbours in a ring of ranks concurrently, with several tags that are received in reverse order. With
+// two ranks, both neighbours are the same rank; a single rank sends to itself.
 void check_neighbours(Ranks& ranks, std::size_t size, Checks& checks) {
     const std::uint32_t count = ranks.count(), own = ranks.rank();
     struct Message {
@@ -101,7 +102,7 @@ int check_all(Ranks& ranks) {
 }  // namespace
 }  // namespace raya
 
-// transport_check PROGRAM: the MPI module is looked up next to PROGRAM, which is raya.
+// Usage: transport_check PROGRAM. PROGRAM is raya; the MPI module is loaded from its folder.
 int main(int argc, char** argv) {
     constexpr double kPatience = 60;  // seconds
     if (argc > 1) raya::set_own_file(argv[1]);

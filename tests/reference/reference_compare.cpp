@@ -1,4 +1,4 @@
-// Compares an image with the reference, and finds the pixels in which the two may correctly differ.
+// Compares an image with the reference and finds the pixels that rounding may legitimately change.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -8,8 +8,8 @@
 namespace raya::reference {
 namespace {
 
-/// Returns the largest difference of any channel, clamped to 0..1; infinite if a value is not finite. Adds the squares
-/// to `squares`.
+/// Returns the largest difference of any channel, after clamping to 0..1; infinite if a value is not finite. Adds the
+/// squares of the channels' differences to `squares`.
 double channel_difference(const Colour& a, const Colour& b, double& squares) {
     double largest = 0;
     for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Intersection of rays with the four kinds of objects: kernels/README.md, Hits and Checker.
+// Intersection of rays with the four kinds of objects, as specified in kernels/README.md, sections Hits and Checker.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,14 +11,14 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-/// The two coordinates that remain when the largest component of the normal is dropped.
+/// Projects the point to two coordinates by dropping the axis of the normal's largest component.
 Imath::V2d flattened(const Vec3& point, const Vec3& normal) {
     const int axis = dropped_axis(normal);
     return {point[axis == 0 ? 1 : 0], point[axis == 2 ? 1 : 2]};
 }
 
-/// Tests whether the crossing number of a line from the point towards larger u is odd. Only the end of an edge with
-/// lower v belongs to it, so that a vertex is counted once.
+/// Returns true if the half line from the point towards larger u crosses an odd number of edges. An edge includes its
+/// end of lower v but not the other one, so that a vertex is counted once.
 bool inside_outline(const std::vector<Vec3>& vertices, const Vec3& normal, const Vec3& point) {
     const Imath::V2d p = flattened(point, normal);
     bool inside = false;
@@ -30,7 +30,8 @@ bool inside_outline(const std::vector<Vec3>& vertices, const Vec3& normal, const
     return inside;
 }
 
-/// The cone in the terms of kernels/README.md; radii count as positive.
+/// Axis a, height h, base radius r0 and slope k of a cone (kernels/README.md, Cone), computed from the radii's absolute
+/// values.
 struct ConeFrame {
     Vec3 axis;
     double height, base_radius, slope;
@@ -47,7 +48,7 @@ struct ConeFrame {
     }
 };
 
-/// The real roots of a t^2 + 2 b t + c in ascending order, in the form that does not cancel.
+/// Returns the real roots of a t^2 + 2 b t + c in ascending order, computed without cancellation.
 std::vector<double> quadratic_roots(double a, double b, double c) {
     if (a == 0) return b == 0 ? std::vector<double>{} : std::vector<double>{-c / (2 * b)};
     const double discriminant = b * b - a * c;
@@ -57,8 +58,9 @@ std::vector<double> quadratic_roots(double a, double b, double c) {
     return {std::min(q / a, c / q), std::max(q / a, c / q)};
 }
 
-/// Normal of a patch at a point, linear over the triangle of the point. That is the triangle with the largest minimum
-/// of the barycentric coordinates, so that a point on an edge has one even if rounding puts it outside of both.
+/// Returns the normal of a patch at a point, interpolated linearly over the triangle that contains the point. This
+/// function chooses the triangle in which the smallest barycentric coordinate of the point is largest. So a point on an
+/// edge gets a triangle even if rounding puts it outside of both.
 Vec3 interpolated_normal(const Polygon& patch, const Vec3& normal, const Vec3& point) {
     double best_inside = -kFar;
     Vec3 best(0, 0, 0);
@@ -80,8 +82,8 @@ Vec3 interpolated_normal(const Polygon& patch, const Vec3& normal, const Vec3& p
     return best.normalized();
 }
 
-/// Completes a hit of object `number` at distance t: turns the outward normals `geometric` and `shading`, sets the
-/// colour.
+/// Returns the hit of object `number` at distance t. Turns the outward normals `geometric` and `shading` against the
+/// ray and computes the colour.
 Hit finished(const Scene& scene, const Ray& ray, double t, int number, int surface, const Vec3& geometric,
              const Vec3& shading) {
     Hit hit;
@@ -104,7 +106,7 @@ Hit finished(const Scene& scene, const Ray& ray, double t, int number, int surfa
     return hit;
 }
 
-/// The outward normals of the object with this number at the ray's distance t, and its surface.
+/// Returns the hit of object `number` at distance t, with its normals and surface.
 Hit described(const Scene& scene, const Ray& ray, double t, int number) {
     const Vec3 point = ray.origin + t * ray.direction;
     std::size_t i = index(number);
@@ -162,7 +164,7 @@ std::optional<double> hit_polygon(const Polygon& polygon, const Ray& ray) {
 std::optional<double> hit_cone(const Cone& cone, const Ray& ray) {
     const ConeFrame frame(cone);
     const bool inside_only = cone.base_radius < 0 || cone.apex_radius < 0;
-    // Along and across the axis: |p + t q| = r + slope * dz * t, squared.
+    // Squares the equation |p + t q| = r + slope * dz * t, where p and q are perpendicular to the axis.
     const Vec3 from_base = ray.origin - cone.base;
     const double z0 = from_base.dot(frame.axis);
     const double dz = ray.direction.dot(frame.axis);

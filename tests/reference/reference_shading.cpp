@@ -1,4 +1,4 @@
-// Camera and shading: kernels/README.md, Camera and Shading.
+// Camera and shading, as specified in kernels/README.md, sections Camera and Shading.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,25 +9,25 @@
 namespace raya::reference {
 namespace {
 
-constexpr double kMarginShare = 1e-9;  // of the scene's size; about 10^7 roundings of double
+constexpr double kMarginShare = 1e-9;  // offset of secondary rays, relative to the scene's size: about 10^7 ulps
 
-// The codes of a History. Object numbers are written as 2 * number, + 1 on an odd checker square.
+// Codes in a History. A hit is coded as 2 * object number, + 1 on an odd checker square.
 constexpr int kMiss = -1, kLit = -2, kUnlit = -3, kTotalReflection = -4;
 
 double margin_of(const Scene& scene, const Options& options) {
     return options.margin ? *options.margin : kMarginShare * scene_extent(scene);
 }
 
-/// max(0, x)^shine, with 0^0 = 0.
+/// Returns max(0, x)^shine, with 0^0 = 0.
 double highlight(double x, double shine) { return x > 0 ? std::pow(x, shine) : 0; }
 
-/// One pixel's ray tree.
+/// Traces the ray tree of one pixel.
 class Tree {
   public:
     Tree(const Scene& scene, int bounces, double margin, Counts& counts, History* history)
         : scene_(scene), bounces_(bounces), margin_(margin), counts_(counts), history_(history) {}
 
-    /// The radiance along a ray after `bounces` bounces.
+    /// Returns the radiance along a ray of level `bounces` (0 for the primary ray).
     Colour seen(const Ray& ray, int bounces) {
         const std::optional<Hit> hit = closest_hit(scene_, ray);
         note(hit ? 2 * hit->object + hit->odd_square : kMiss);
@@ -43,7 +43,7 @@ class Tree {
 
     Vec3 in_front(const Hit& hit) const { return hit.point + margin_ * hit.geometric; }
 
-    /// The contribution of ambient light and of all lights that reach the hit.
+    /// Returns the direct lighting of a hit: ambient light and all lights that are not blocked.
     Colour lit(const Ray& ray, const Hit& hit) {
         const Surface& look = surface(hit);
         const Vec3 mirrored = reflected_direction(ray.direction, hit.shading);
@@ -68,7 +68,7 @@ class Tree {
         return blocked;
     }
 
-    /// The contribution of the reflected ray, then of the refracted ray.
+    /// Returns the contributions of the reflected and the refracted ray of a hit; both have the level `bounces`.
     Colour bounced(const Ray& ray, const Hit& hit, int bounces) {
         const Surface& look = surface(hit);
         double reflected_share = look.specular;
@@ -130,7 +130,7 @@ Ray primary_ray(const Scene& scene, const Options& options, double x, double y) 
     const View& view = scene.view;
     const auto length = [&](int pixels) { return std::max(1.0, pixels - (options.corners ? 1.0 : 0.0)); };
     const auto share = [&](double position, int pixels) {
-        const double first = options.corners && pixels > 1 ? 0 : 0.5;  // position of the side's first sample
+        const double first = options.corners && pixels > 1 ? 0 : 0.5;  // of the first sample point, in pixels
         return (position + first) / length(pixels);
     };
     const Vec3 gaze = (view.at - view.from).normalized();

@@ -1,4 +1,4 @@
-// The reference renderer on scenes with known answers.
+// Tests the reference renderer with scenes whose results are known.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,7 +16,7 @@ Surface matt(const Colour& colour) { return {.colour = colour, .diffuse = 1, .ch
 Surface mirror(double ks) { return {.diffuse = 0, .specular = ks, .checker = {}}; }
 Surface glass(double t, double ior) { return {.diffuse = 0, .transmittance = t, .refraction = ior, .checker = {}}; }
 
-/// A scene viewed from (0, 0, eye) towards the origin, y up, 30 degrees.
+/// Returns a scene viewed from (0, 0, eye) towards the origin with an angle of 30 degrees; y is up.
 Scene scene_from(double eye) {
     Scene scene;
     scene.view = {.from = {0, 0, eye}, .at = {0, 0, 0}, .up = {0, 1, 0}, .angle_degrees = 30};
@@ -28,7 +28,7 @@ Colour seen(const Scene& scene, const Options& options, double x, double y) {
     return trace_pixel(scene, options, x, y, counts);
 }
 
-/// Angle between a pixel's ray and the gaze, radians.
+/// Returns the angle between a primary ray and the viewing direction, in radians.
 double angle_off_axis(const Scene& scene, const Options& options, double x, double y) {
     const Vec3 gaze = (scene.view.at - scene.view.from).normalized();
     return std::acos(std::min(1.0, gaze.dot(primary_ray(scene, options, x, y).direction)));
@@ -91,7 +91,7 @@ TEST_CASE("the colours of lights add up; shadowed and averted faces get none") {
     check_colour(trace_pixel(scene, options, 0, 0, counts), Colour(ambient) + Colour(0.5, 0, 0), 1e-8);
     CHECK(counts == Counts{.primary = 1, .primary_hits = 1, .shadow = 2, .shadow_hits = 1});
 
-    scene.spheres[0].centre = {-2, 0, -2};  // behind the plane: no shadow
+    scene.spheres[0].centre = {-2, 0, -2};  // behind the plane: casts no shadow
     scene.lights[0].position = {0, 0, -4};
     counts = {};
     check_colour(trace_pixel(scene, options, 0, 0, counts), Colour(ambient) + Colour(0, 0.5 * std::sqrt(0.5), 0), 1e-8);
@@ -169,7 +169,7 @@ TEST_CASE("a glass sphere shows the checkered plane behind it as the closed form
         const double out_direction = theta - 2 * (incidence - inner);
         const double lands = std::sin(out_at) + (std::cos(out_at) + kBehind) * std::tan(out_direction);
         const double square = lands / kSize;
-        if (std::abs(square - std::round(square)) < 1e-4) continue;  // too near to an edge: the margin shifts it
+        if (std::abs(square - std::round(square)) < 1e-4) continue;  // too near an edge, which the ray offset shifts
         CAPTURE(x, lands);
         const bool even = std::fmod(std::floor(square), 2) == 0;
         odd += !even;
@@ -183,7 +183,7 @@ TEST_CASE("under total reflection the refracted share is reflected too, as one r
     Scene scene;
     scene.surfaces = {{.diffuse = 0, .specular = kKs, .transmittance = kT, .refraction = kIor, .checker = {}},
                       matt({1, 1, 1})};
-    scene.planes = {{{0, 0, 1}, 0, 0}, {{0, 0, 1}, -2, 1}};  // water from below, a bright ground
+    scene.planes = {{{0, 0, 1}, 0, 0}, {{0, 0, 1}, -2, 1}};  // water seen from below, above a bright ground
     const double critical = std::asin(1 / kIor);
     const auto looking_up = [&](double incidence, Counts& counts) {
         scene.view.from = {0, 0, -1};

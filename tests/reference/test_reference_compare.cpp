@@ -1,4 +1,4 @@
-// The comparison with the reference detects wrong pixels; the number of threads does not change the reference.
+// Tests that compare() detects wrong pixels and that the number of threads does not change the reference.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -14,7 +14,7 @@
 namespace raya::reference {
 namespace {
 
-/// A sphere, half in the shadow of another, over a background: flat parts and edges.
+/// Returns a scene with flat regions and edges: a sphere, half in the shadow of another one, in front of a background.
 Scene two_spheres() {
     Scene scene;
     scene.view = {.from = {0, 0, 5}, .at = {0, 0, 0}, .up = {0, 1, 0}, .angle_degrees = 40};
@@ -35,7 +35,7 @@ std::vector<float> floats(const Image& image) {
 
 constexpr Options kOptions{.width = 33, .height = 33};
 
-/// Index in `rgb` of the first of the three values of pixel (x, y).
+/// Returns the index in `rgb` of the first of the three values of pixel (x, y).
 std::size_t value_of(int x, int y) { return static_cast<std::size_t>(3 * (y * kOptions.width + x)); }
 
 TEST_CASE("an image agrees with itself, and render() with trace_pixel()") {
@@ -72,7 +72,7 @@ TEST_CASE("pixels on an edge are excused, others are not") {
     CHECK(with_error_at(12, 20, std::nanf("")).psnr_db < 0);
     CHECK(with_error_at(12, 20, HUGE_VALF).over == 1);
 
-    // The sphere of radius 1 seen from 5: its outline lies where tan(angle) = 1 / sqrt(24).
+    // The silhouette of a sphere of radius 1, seen from distance 5, lies where tan(angle) = 1 / sqrt(24).
     const double edge = 16.5 * (1 + 1 / std::sqrt(24) / std::tan(20 * std::numbers::pi / 180)) - 0.5;
     const int x = static_cast<int>(std::lround(edge));
     CAPTURE(edge, x);
@@ -114,7 +114,7 @@ TEST_CASE("counts on SPD's balls are consistent") {
     const Scene scene = read_nff(file);
     const Counts counts = render(scene, {.width = 65, .height = 65, .bounces = 4, .corners = true}).counts;
     CHECK(counts.primary == 65 * 65);
-    CHECK(counts.primary_hits == counts.primary);   // the floor fills the view
+    CHECK(counts.primary_hits == counts.primary);   // the floor fills the image
     CHECK(counts.reflected > counts.primary / 10);  // from the spheres, whose Ks is 0.5
     CHECK(counts.reflected < counts.primary * 4);
     CHECK(counts.refracted == 0);

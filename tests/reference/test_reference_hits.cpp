@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kRays = 10'000;
 
-/// Seeded numbers, equal on every platform.
+/// A seeded random number generator with the same results on every platform.
 class Random {
   public:
     explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -34,8 +34,9 @@ class Random {
 
 Vec3 at(const Ray& ray, double t) { return ray.origin + t * ray.direction; }
 
-/// The smallest sampled t at which `outside` (a signed distance, NaN where the surface ends) passes through zero, with
-/// `outward_only` only from negative to positive. Empty if there is none before `end`.
+/// Returns the smallest sampled t < end at which `outside` changes its sign; empty if there is none. `outside` is a
+/// signed distance, NaN beyond the ends of the surface. If `outward_only` is true, only changes from negative to
+/// positive count.
 template <class Outside>
 std::optional<double> first_crossing(const Outside& outside, double end, bool outward_only) {
     constexpr int kSteps = 500;
@@ -117,7 +118,7 @@ TEST_CASE("cones: the hit is the first zero of the implicit equation") {
         if (!t) continue;
         ++hits;
         REQUIRE(*t > 0);
-        // Only rounding moves it off the surface; on flat cones the slope magnifies it.
+        // Only rounding moves the hit point off the surface. On flat cones the slope magnifies the error.
         const double slope = std::abs(top - bottom) / height;
         REQUIRE(std::abs(outside(*t)) < 1e-11 * (1 + slope));
         if (sampled) REQUIRE(*t <= *sampled);
@@ -143,7 +144,8 @@ TEST_CASE("a cylinder has no caps, and its normal is radial") {
     CHECK((inside->geometric - Vec3(1, 0, 0)).length() < 1e-15);
 }
 
-/// The winding angle of the outline around the point: +-2 pi inside, 0 outside. z = 0 for all.
+/// Returns true if the outline winds around the point, by the sum of its angles: +-2 pi inside, 0 outside. All points
+/// have z = 0.
 bool winds_around(const std::vector<Vec3>& outline, const Vec3& p) {
     double sum = 0;
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -191,7 +193,7 @@ TEST_CASE("a triangle's normals are interpolated linearly and normalised") {
         CHECK((below->shading + expected.normalized()).length() < 1e-8);
         CHECK((below->leaving && !above->leaving));
     };
-    constexpr double kInward = 1e-9;  // away from the border, which belongs to one side only
+    constexpr double kInward = 1e-9;  // moves points off the border, which belongs to one side only
     const Vec3 middle(2.0 / 3, 2.0 / 3, 0);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t next = (i + 1) % 3;
@@ -203,7 +205,7 @@ TEST_CASE("a triangle's normals are interpolated linearly and normalised") {
 }
 
 TEST_CASE("a patch of more vertices reproduces a linear field, and turns a normal that faces away") {
-    // The normals have unequal lengths: the field is linear only before it is normalised.
+    // The normals have different lengths. Their interpolation is linear only before it is normalised.
     constexpr std::uint64_t kSeed = 6;
     Random random(kSeed);
     Scene scene;
@@ -223,7 +225,8 @@ TEST_CASE("a patch of more vertices reproduces a linear field, and turns a norma
     }
     CHECK(hits > 500);
 
-    // Not a linear field: near a vertex its own normal counts, not the extrapolation of another triangle.
+    // Changes one normal, so that no linear field fits all vertices. Near a vertex its own normal must count, not an
+    // extrapolation from another triangle.
     scene.polygons[0].normals[0] = Vec3(1, 0, 1).normalized();
     scene.polygons[0].normals[3] = Vec3(0, 1, 1).normalized();
     for (std::size_t i = 0; i < patch.vertices.size(); ++i) {

@@ -1,4 +1,4 @@
-// Reports of raya bench: reading, refused files, and comparison with a baseline.
+// Reports of raya bench: reading a report, refused files, and comparison with a baseline.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <random>
@@ -63,7 +63,7 @@ TEST_CASE("read_bench_report: inverts to_json", "[bench]") {
         const BenchReport read = read_bench_report(folder / "b.json");
         CHECK(read.driver == written.driver);
         REQUIRE(read.rows.size() == written.rows.size());
-        // The file has milliseconds: the conversion may change the last bit.
+        // The file contains milliseconds. The conversion from seconds and back may change the last bit.
         CHECK(rows_in_common(read, written) == static_cast<int>(written.rows.size()));
         const BenchComparison same = compare_bench(read, written, 1e-9);
         CHECK(same.compared == static_cast<int>(written.rows.size()));
@@ -103,7 +103,7 @@ TEST_CASE("read_bench_report: refuses other files with a remedy", "[bench]") {
 }
 
 TEST_CASE("compare_bench: a row is slower if best and median both exceed the tolerance", "[bench]") {
-    // Relative rates: a time of 10 ms becomes 10 / rate ms.
+    // best, median: rates relative to the baseline, whose times are 10 and 12 ms. tolerance: percent.
     struct Case {
         double best, median, tolerance;
         bool slower;

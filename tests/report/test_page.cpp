@@ -1,4 +1,4 @@
-// The page of a report: the embedded report is inert and unchanged.
+// The page of a report: the embedded report is unchanged, and the browser does not interpret its text.
 #include <catch2/catch.hpp>
 
 #include "host/report/page/page.hpp"
@@ -11,7 +11,7 @@ namespace {
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
-// Returns the content of <pre id="report">, which has no entities.
+// Returns the content of <pre id="report">. Assumes that it contains no HTML entities.
 std::string report_in(const std::string& page) {
     const std::string begin = "<pre id=\"report\" tabindex=\"0\">";
     const std::size_t from = page.find(begin) + begin.size();

@@ -1,4 +1,4 @@
-// The roofline, on figures that can be computed by hand.
+// The roofline model, with figures that can be checked by hand.
 #include <catch2/catch.hpp>
 
 #include "host/model/budget.hpp"
@@ -37,7 +37,7 @@ TEST_CASE("roofline: a kernel with many operations is compute bound", "[report]"
     const RooflineRow row = row_of(work, 100);
     CHECK(row.bound == Bound::kCompute);
     CHECK(row.intensity == Approx(10));
-    CHECK(row.share == Approx(0.1));  // 1000 operations in 100 ns are 10 Gop/s of 100
+    CHECK(row.share == Approx(0.1));  // 1000 operations in 100 ns: 10 Gop/s, the peak is 100
     REQUIRE(row.of_format);
     CHECK(*row.of_format == Approx((97 + 20 + 5) / 100.0));
 }
@@ -45,9 +45,9 @@ TEST_CASE("roofline: a kernel with many operations is compute bound", "[report]"
 TEST_CASE("roofline: a kernel with many bytes is bandwidth bound", "[report]") {
     const RooflineRow row = row_of({.label = "move", .operations = 0, .bytes = 1000}, 100);
     CHECK(row.bound == Bound::kBandwidth);
-    CHECK(row.share == Approx(0.5));  // 10 GB/s of 20
+    CHECK(row.share == Approx(0.5));  // 10 GB/s, the peak is 20
     CHECK_FALSE(row.of_format);
-    // The ridge point is at 100 / 20 = 5 operations per byte.
+    // The ridge point is 100 Gop/s / 20 GB/s = 5 operations per byte.
     CHECK(row_of({.label = "a", .operations = 501, .bytes = 100}, 1).bound == Bound::kCompute);
     CHECK(row_of({.label = "a", .operations = 499, .bytes = 100}, 1).bound == Bound::kBandwidth);
 }

@@ -1,4 +1,4 @@
-// Host steps and device commands in a trace, and their times on different clocks.
+// Host steps and device commands in a trace, with times of different clocks.
 #include <catch2/catch.hpp>
 
 #include "host/report/session_trace.hpp"
@@ -88,7 +88,7 @@ TEST_CASE("add_device_commands: times of another clock are converted, and early 
     CHECK(slice_named(json, "later")["ts"] == 0.1);
     CHECK(slice_named(json, "later")["dur"] == 0.06);
     CHECK(slice_named(json, "early")["ts"] == 0);
-    CHECK(json["otherData"]["device_times_moved"] == 2);  // start and end
+    CHECK(json["otherData"]["device_times_moved"] == 2);  // start and end of "early"
     CHECK(json["otherData"]["device_clock"]["offset_ns"] == 900);
 }
 

@@ -1,4 +1,4 @@
-// Text tables.
+// text_table(): the layout of tables in text output.
 #include <catch2/catch.hpp>
 
 #include "host/report/table.hpp"

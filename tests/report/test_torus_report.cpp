@@ -1,4 +1,4 @@
-// The report and the summary of a torus.
+// The report and the summary of a render on the torus.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -87,7 +87,7 @@ TEST_CASE("to_json: a torus has its own members and none of a ring", "[report]")
     for (const char* key : {"antialias", "communication", "modelled_ms"}) CHECK(to_json(ring).find(key) != nullptr);
 }
 
-// A reflected ray takes one multiplication, ten moves and two branches, and makes a packet of 16 words.
+// A reflected ray costs one multiplication, ten moves and two branches, and creates a packet of 16 words.
 TEST_CASE("t805_budget_json: has the operations of a T805", "[report]") {
     EventCounts events{};
     events[RAYA_REFLECTED] = 3;

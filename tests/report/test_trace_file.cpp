@@ -1,4 +1,4 @@
-// The trace writer, checked by TraceSchema, and TraceSchema, checked by invalid traces.
+// TraceFile, whose traces TraceSchema checks, and TraceSchema, which must find the errors of invalid traces.
 #include <catch2/catch.hpp>
 #include <functional>
 
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-// Adds nested slices.
+// Adds random slices between `start` and `end`, nested up to `depth` more levels.
 void add_slices(TraceFile& trace, TraceTrack track, SplitMix& random, std::uint64_t start, std::uint64_t end,
                 int depth) {
     std::uint64_t at = start;
@@ -69,7 +69,7 @@ TEST_CASE("TraceFile: leaves out and counts events beyond the limit, flows as a 
         const Document json = json_of(trace);
         CHECK(trace.events() <= limit);
         CHECK(trace.events() + trace.left_out() == all);
-        CHECK(trace.events() + 1 >= std::min(limit, all));  // a flow takes two
+        CHECK(trace.events() + 1 >= std::min(limit, all));  // a flow needs two events
         const std::vector<std::string> faults = TraceSchema(json).faults();
         for (const std::string& fault : faults) CHECK_THAT(fault, Catch::Contains("outside all slices"));
     }
@@ -91,7 +91,7 @@ TEST_CASE("TraceFile: the text of a small trace", "[report]") {
 {"ph":"C","name":"u","pid":1,"ts":1.000,"args":{"u":0.5}}
 ],"otherData":{"events":2,"events_left_out":0}}
 )");
-    CHECK(TraceSchema(Document::parse(TraceFile(1).finish(false))).faults().empty());  // empty trace
+    CHECK(TraceSchema(Document::parse(TraceFile(1).finish(false))).faults().empty());  // a trace without events
 }
 
 TEST_CASE("TraceFile: refuses events that readers would misinterpret", "[report]") {
@@ -113,7 +113,7 @@ TEST_CASE("TraceFile: refuses events that readers would misinterpret", "[report]
 TEST_CASE("TraceSchema: finds each broken rule", "[report]") {
     struct Defect {
         std::string fault;
-        std::function<void(Document&)> apply;  // to the trace's events
+        std::function<void(Document&)> apply;  // to the trace's list of events
     };
     const auto first = [](Document& events, const char* phase) -> Document& {
         return *std::find_if(events.begin(), events.end(), [&](const Document& e) { return e["ph"] == phase; });

@@ -1,4 +1,4 @@
-// The choice of PEs in a trace.
+// The selection of the PEs that a trace contains.
 #include <algorithm>
 #include <catch2/catch.hpp>
 

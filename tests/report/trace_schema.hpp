@@ -1,4 +1,4 @@
-// The rules of traces in Chrome's JSON format as Perfetto reads them, and raya's additional rules.
+// The rules of Chrome's JSON trace format, as Perfetto reads it, and raya's additional rules.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,10 +15,10 @@
 
 namespace raya {
 
-/// Checks a whole trace and lists the broken rules.
+/// Checks a whole trace and lists the violated rules.
 class TraceSchema {
   public:
-    using Track = std::pair<std::int64_t, std::int64_t>;  // pid, tid
+    using Track = std::pair<std::int64_t, std::int64_t>;  // [process ID, thread ID]
 
     struct Slice {
         std::int64_t start, end;  // nanoseconds
@@ -43,7 +43,7 @@ class TraceSchema {
     std::size_t flows() const { return begins_.size(); }
     std::size_t counters() const { return counters_; }
 
-    /// Slices of a process in all its tracks.
+    /// Returns the slices in all tracks of a process.
     std::vector<Slice> slices_of(std::int64_t pid) const {
         std::vector<Slice> all;
         for (const auto& [track, slices] : slices_)
@@ -180,7 +180,7 @@ class TraceSchema {
     }
 
     std::vector<std::string> faults_;
-    bool begun_ = false;  // an event other than a name was seen
+    bool begun_ = false;  // an event that is not a name was read
     std::uint64_t events_ = 0;
     std::size_t counters_ = 0;
     std::set<std::tuple<std::string, std::int64_t, std::int64_t>> named_;

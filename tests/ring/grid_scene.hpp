@@ -10,7 +10,7 @@
 
 namespace raya {
 
-/// Two shiny spheres above a checkered floor, with edges across the middle of the image and some values above 1.
+/// Two shiny spheres above a checkered floor. Edges cross the middle of the image, and some colour values exceed 1.
 inline Scene grid_objects() {
     Scene scene;
     scene.name = "grid";
@@ -24,9 +24,9 @@ inline Scene grid_objects() {
     return scene;
 }
 
-/// The scene seen along an axis, in an image of `rows` rows with a pixel spacing of 1 / `pixels_of_unit` at distance 1.
-/// If the spacing is a power of two, corner and steps of the primary rays have few bits and the rays are exact. Images
-/// with different spacings then send the same ray through the same point.
+/// grid_objects() seen along an axis, in an image of `rows` rows. The pixel spacing is 1 / `pixels_of_unit` at distance
+/// 1. If the spacing is a power of two, the image's corner and the steps between pixels have few significant bits, so
+/// the primary rays are exact. Images with different spacings then send the same ray through the same point.
 inline Scene grid_scene(std::uint32_t rows, Sampling sampling, double pixels_of_unit) {
     Scene scene = grid_objects();
     const double steps = sampling == Sampling::kCorners ? std::max(1.0, rows - 1.0) : rows;

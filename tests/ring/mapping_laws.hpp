@@ -1,4 +1,5 @@
-// Properties of every mapping: shares and owners agree with each other and with the definition.
+// Checks that hold for every mapping: the lists of the PEs' pixels (shares) agree with raya_owner and with the
+// mapping's definition.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -8,9 +9,10 @@
 
 namespace raya {
 
-/// Counts the listed pixels of all shares that lie outside the image, occur twice, have another owner by raya_owner or
-/// by `defined(row, column)`, another number by raya_index_of, or another place in a run of pixels; and the pixels of
-/// the image that no share lists. Appends the size of each share to `sizes`.
+/// Counts the errors of a mapping. A pixel listed in a share is wrong if it lies outside the image, was listed before,
+/// has another owner by raya_owner or by `defined(row, column)`, another number by raya_index_of, or another position
+/// in a run of pixels (raya_pixel_run). A pixel of the image is wrong if no share lists it. Appends the size of each
+/// share to `sizes`.
 template <class Defined>
 std::uint32_t strays(const raya_mapping& m, const Defined& defined, std::vector<std::uint32_t>& sizes) {
     std::vector<bool> seen(std::size_t{m.width} * m.height);
@@ -35,7 +37,7 @@ std::uint32_t strays(const raya_mapping& m, const Defined& defined, std::vector<
     return wrong + static_cast<std::uint32_t>(std::count(seen.begin(), seen.end(), false));
 }
 
-/// Returns true if the pixel's owner lists it under the number that raya_index_of gives.
+/// Returns true if the pixel's owner lists it with the number that raya_index_of returns.
 inline bool round_trip_holds(const raya_mapping& m, const raya_pixel& pixel) {
     const raya_share share = raya_share_of(m, raya_owner(m, pixel.row, pixel.column));
     const std::uint32_t k = raya_index_of(m, share, pixel);

@@ -1,4 +1,5 @@
-// One-call renders on the ring machine, for tests. Without an OpenCL device these tests fail; they are not skipped.
+// Functions that render on the ring machine in one call. Without an OpenCL device these tests fail; they are not
+// skipped.
 #pragma once
 #include <optional>
 #include <string>
@@ -18,8 +19,8 @@ struct RingCase {
     std::uint32_t pes = 64, offset = 8;
     Fold fold = Fold::kCyclic;
     std::string machine = "grande";
-    std::optional<MappingRule> mapping{};                                // empty: cyclic, with offset and fold
-    std::uint32_t lanes = default_test_lanes(), group = 0, bounces = 8;  // lanes, group 0: the device's own
+    std::optional<MappingRule> mapping{};                                // empty: cyclic with `offset` and `fold`
+    std::uint32_t lanes = default_test_lanes(), group = 0, bounces = 8;  // lanes or group 0: the device's default
     Sampling sampling = Sampling::kCentres;
     std::string format = "fp32";
     bool filter = true;

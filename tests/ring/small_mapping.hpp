@@ -1,4 +1,4 @@
-// Random mappings of small images for tests, with all relations of P to W and H.
+// Random mappings of small images for tests, with fewer, as many or more PEs than the image has columns.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace raya {
 
-/// A slot mapping. Sides are 1..`largest_side`, PEs 1..W H.
+/// A random slot mapping of an image with sides of 1..`largest_side` pixels and 1 to width * height PEs.
 inline raya_mapping small_mapping(SplitMix& random, std::uint32_t largest_side) {
     const auto side = [&] { return random.next() % 8 == 0 ? 1 : 1 + random_below(random, largest_side); };
     const std::uint32_t width = side(), height = side(), pixels = width * height;
@@ -20,15 +20,15 @@ inline raya_mapping small_mapping(SplitMix& random, std::uint32_t largest_side) 
     return {width, height, choices[random_below(random, 6)], random_below(random, width), fold};
 }
 
-/// A divisor of `side`; all are equally likely.
+/// A random divisor of `side`; all divisors are equally likely.
 inline std::uint32_t random_divisor(SplitMix& random, std::uint32_t side) {
     std::uint32_t divisor = 1 + random_below(random, side);
     while (side % divisor) divisor = 1 + random_below(random, side);
     return divisor;
 }
 
-/// Changes the mapping's kind and draws its parameter. A grid may have more rows or columns of PEs than the image has,
-/// but no more PEs than pixels.
+/// Returns the mapping changed to `kind`, with a random parameter. A grid may have more rows or columns of PEs than the
+/// image has rows or columns of pixels, but not more PEs than pixels.
 inline raya_mapping of_kind(SplitMix& random, raya_mapping m, std::uint32_t kind) {
     const std::uint32_t pixels = m.width * m.height;
     m.kind = kind;
@@ -44,7 +44,7 @@ inline raya_mapping of_kind(SplitMix& random, raya_mapping m, std::uint32_t kind
     return m;
 }
 
-/// A mapping of any kind.
+/// A random mapping of a random kind.
 inline raya_mapping any_mapping(SplitMix& random, std::uint32_t largest_side) {
     const raya_mapping m = small_mapping(random, largest_side);
     return of_kind(random, m, random_below(random, RAYA_RANDOM + 1));

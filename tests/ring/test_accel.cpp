@@ -1,4 +1,4 @@
-// A PE's grid or BVH decides which objects are tested and never changes the image (`--accel grid`, `--accel bvh`).
+// A PE's grid or BVH selects the objects that are tested and never changes the image (`--accel grid`, `--accel bvh`).
 #include <catch2/catch.hpp>
 #include <map>
 #include <numbers>
@@ -12,7 +12,8 @@
 namespace raya {
 namespace {
 
-// The results that do not depend on the grid: the image, and all counts except those of tests, walks and steps.
+// The results that do not depend on the acceleration structure: the image, and all counts except those of tests,
+// traversals and traversal steps.
 std::string image_and_events(const RingResult& r) { return one_image(r.image, r.all.events); }
 
 RingResult render_with(Session& session, const Scene& scene, const RingCase& c, const Accel& accel) {
@@ -37,7 +38,7 @@ TEST_CASE("a grid or BVH changes no bit of the image, for any voxels and format"
     Session session(choose_device(""));
     const std::string name = GENERATE("centre", "glass", "polygons", "cones", "planes");
     const std::string format = GENERATE("fp32", "spa22");
-    // The fast tests take one scene per format; other tests cover the remaining objects.
+    // The fast tests render one scene per format; other tests cover the other kinds of objects.
     if (!thorough() && name != (format == "fp32" ? "polygons" : "cones")) return;
     const Scene scene = project_scene(name);
     const RingCase c{.width = 32, .height = 24, .pes = 8, .format = format};
@@ -69,7 +70,7 @@ TEST_CASE("scenes of all kinds of objects have the same image with a grid or BVH
     }
 }
 
-// A polygon around `at` with 3 to 42 corners, concave from six corners on.
+// A star-shaped polygon around `at` with 3 to 42 corners; it is concave from six corners on.
 Polygon star(SplitMix& random, const Vec3& at, const Vec3& u, const Vec3& v, int surface) {
     Polygon polygon{{}, {}, surface};
     const auto corners = 3 + random_below(random, 40);
@@ -115,7 +116,7 @@ TEST_CASE("scenes of many objects of all sizes have the same image with a BVH", 
     const std::string format = GENERATE("fp32", "spa22");
     for (unsigned seed = 1; seed <= quick_cases(2, 200); ++seed) {
         Scene scene = crowded_scene(seed);
-        if (seed % 3 == 0) scene.view.from = scene.view.at - Vec3(0, 0, 8);  // along an axis
+        if (seed % 3 == 0) scene.view.from = scene.view.at - Vec3(0, 0, 8);  // view along an axis
         const RingCase c{.width = 24, .height = 20, .pes = 6, .bounces = 3, .format = format};
         CAPTURE(seed, format);
         CHECK(image_and_events(render_with(session, scene, c, bvh)) ==
@@ -166,7 +167,8 @@ TEST_CASE("the number of ray trees and lights whose rays are batched changes no 
     }
 }
 
-// Duplicates every object about twice, with distant numbers and other surfaces: each hit has several equal distances.
+// Copies every object about twice, with distant object numbers and other surfaces, so that each ray hits several
+// objects at equal distances.
 Scene doubled_scene(std::uint64_t seed) {
     Scene scene = random_view_scene(seed);
     SplitMix random(seed);
@@ -201,13 +203,14 @@ TEST_CASE("of objects at equal distances the lowest number is hit, in any voxels
     }
 }
 
-// A floor of many squares, a square that is larger than all of them, and an infinite plane: all at equal distances.
+// A floor of many squares, a square larger than all of them, and an infinite plane lie in the same plane: a ray hits
+// them at equal distances.
 TEST_CASE("of a plane, a separately listed polygon and others at equal distances the lowest number is hit",
           "[ring][accel]") {
     Session session(choose_device(""));
     Scene scene = project_scene("planes");
     scene.planes = {{{0, 0, 1}, 0, 0}};
-    // The sphere makes the box high: rays find the large square in voxels before the one where they meet it.
+    // The sphere makes the box high, so that rays find the large square in voxels before the one where they hit it.
     scene.spheres = {{{-4, -4, 4}, 0.1, 0}};
     scene.cones.clear();
     scene.polygons = {};
@@ -236,7 +239,8 @@ TEST_CASE("of a plane, a separately listed polygon and others at equal distances
     }
 }
 
-// Lights in a ceiling of squares: a shadow ray meets the square around its light at its end, just before or just after.
+// Lights in a ceiling of squares: a shadow ray meets the square around its light at its end, or just before or after
+// its end.
 TEST_CASE("a hit at the end of a shadow ray does not count, in any voxel", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(1, {"spa22", "fp32", "e5m10"})));
@@ -290,11 +294,11 @@ TEST_CASE("a grid or BVH saves 95 % of the tests of many small spheres", "[ring]
     CHECK(tree.pe_memory.job_words == plain.pe_memory.job_words + tree.accel->words);
 }
 
-// Each fault in the BVH's kernels must change an image or a count. One scene has every kind of object, most of them
-// several nodes deep; in the other many hits are at equal distances.
+// Each fault injected into the BVH's kernels must change an image or a count. One scene has objects of every kind, most
+// of them several nodes deep; in the other scene, rays hit many objects at equal distances.
 TEST_CASE("every injected fault in the BVH traversal is detected", "[ring][accel][faults]") {
     Session session(choose_device(""));
-    Scene copies = crowded_scene(3);  // more of each sphere than a leaf holds
+    Scene copies = crowded_scene(3);  // gets 20 copies of each sphere, more than a leaf holds
     const std::vector<Sphere> spheres(copies.spheres.begin(), copies.spheres.begin() + 10);
     for (int i = 0; i < 20; ++i)
         for (const Sphere& s : spheres) copies.spheres.push_back({s.centre, 1, i < 7 ? 0 : 1});

@@ -1,4 +1,4 @@
-// The kernels' fp32 images, compared with the double-precision reference pixel by pixel.
+// The kernels' fp32 images, compared pixel by pixel with the double-precision reference renderer.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -11,7 +11,7 @@ namespace raya {
 
 TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
     constexpr std::uint32_t kSide = 160;
-    constexpr double kExcusedShare = 0.02;  // share of pixels that may graze an edge
+    constexpr double kExcusedShare = 0.02;  // fraction of pixels whose ray may graze an edge
     for (const std::string& name : project_scenes()) {
         CAPTURE(name);
         const Scene scene = project_scene(name);
@@ -55,7 +55,7 @@ TEST_CASE("corner sampling, other sizes and other bounces agree with the referen
 }
 
 TEST_CASE("a scene larger than local memory is read from global memory, with the same results", "[ring]") {
-    constexpr std::size_t kSphereBytes = 5 * sizeof(std::uint32_t);  // at least, of the packed words
+    constexpr std::size_t kSphereBytes = 5 * sizeof(std::uint32_t);  // minimum size of a packed sphere
     Scene scene = project_scene("planes");
     scene.surfaces.push_back({.colour = {0.5, 0.5, 0.5}, .diffuse = 1});
     const int opaque = static_cast<int>(scene.surfaces.size()) - 1;
@@ -64,7 +64,7 @@ TEST_CASE("a scene larger than local memory is read from global memory, with the
     const RingCase c{.width = 20, .height = 20, .pes = 20};
     const RingResult small = render_scene(scene, c);
     CHECK(small.build_options.find("-DRAYA_WORDS_LOCAL=1") != std::string::npos);
-    // Spheres hidden in the opaque one, too many for any device's local memory.
+    // Spheres hidden inside the opaque one, too many for any device's local memory.
     const std::size_t local_bytes = device_info(choose_device("")).local_memory_bytes;
     scene.spheres.insert(scene.spheres.end(), local_bytes / kSphereBytes + 1, {shell.centre, 0.01, opaque});
     const RingResult large = render_scene(scene, c);

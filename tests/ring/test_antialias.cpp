@@ -1,5 +1,5 @@
-// Anti-aliasing on the ring, compared with plain functions of whole images (whole_image.hpp) bit for bit, for random
-// distributions of the image over PEs. RAYA_ANTIALIAS_CASES=1000 tests more of them than the default.
+// Antialiasing on the ring, compared bit for bit with functions of whole images (whole_image.hpp), for random
+// distributions of the image over PEs. RAYA_ANTIALIAS_CASES sets the number of cases, for example 1000.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -19,7 +19,7 @@ using whole_image::value_at;
 
 constexpr double kPixelsOfUnit = 32;
 
-/// Few sizes, to render few reference images; sides of one and two pixels have few neighbours.
+/// Few sizes, so that few reference images are rendered. On sides of one and two pixels, pixels have few neighbours.
 constexpr std::array<std::array<std::uint32_t, 2>, 10> kSizes = {
     {{1, 1}, {1, 9}, {8, 1}, {2, 2}, {3, 2}, {7, 5}, {17, 13}, {32, 20}, {8, 40}, {39, 40}}};
 
@@ -28,7 +28,7 @@ int cases() {
     return given ? std::atoi(given) : 30;
 }
 
-/// P is 1..W H and often divides W.
+/// A random case; the number of PEs is 1 to width * height and often divides the width.
 RingCase random_case(SplitMix& random, const std::string& format) {
     const auto& size = kSizes[random_below(random, kSizes.size())];
     RingCase c{.width = size[0], .height = size[1], .format = format};
@@ -49,16 +49,16 @@ Antialias random_supersampling(SplitMix& random) {
             .points = random.next() % 2 ? RAYA_POINTS_AXES : RAYA_POINTS_DIAGONALS};
 }
 
-/// Plain images of the scene from one PE, each rendered once.
+/// Reference images of the scene without antialiasing, rendered by one PE, each only once.
 class PlainImages {
   public:
     explicit PlainImages(Session& session) : session_(session) {}
 
-    /// Without anti-aliasing.
+    /// The image at the case's size.
     const RingResult& of(const RingCase& c) { return render(c, c.width, c.height, kPixelsOfUnit); }
 
-    /// The image sampled every half pixel, with a margin of half a pixel: point (2 j + 1, 2 x + 1) is that of pixel
-    /// (j, x).
+    /// The image sampled every half pixel, with a margin of half a pixel: its point (2 j + 1, 2 x + 1) is the sample
+    /// point of pixel (j, x).
     const RingResult& fine(const RingCase& c) {
         RingCase centres = c;
         centres.sampling = Sampling::kCentres;
@@ -90,7 +90,7 @@ RingResult render_grid(Session& session, RingCase c) {
     return RingRenderer(session, grid_scene(c.height, c.sampling, kPixelsOfUnit), settings_of(c)).render();
 }
 
-// Offsets of a pixel's additional points, in half pixels down and to the right, in the order of summation.
+// Offsets of a pixel's additional sample points, {down, right} in half pixels, in the order of summation.
 using Offsets = std::array<std::array<int, 2>, 4>;
 constexpr Offsets kAxes = {{{0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
 constexpr Offsets kDiagonals = {{{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}};
@@ -99,7 +99,7 @@ const Offsets& offsets_of(const Antialias& antialias) {
     return antialias.points == RAYA_POINTS_AXES ? kAxes : kDiagonals;
 }
 
-/// The mean of the point (row, column) of the finer image and the four additional ones around it.
+/// The mean of the point (row, column) of the finer image and of the four additional points around it.
 float mean_of_points(const Image& fine, int row, int column, int colour, const RingCase& c) {
     std::array<float, 5> values = {value_at(fine, row, column, colour)};
     for (std::size_t n = 0; n < 4; ++n) {
@@ -109,7 +109,7 @@ float mean_of_points(const Image& fine, int row, int column, int colour, const R
     return whole_image::mean_of_five(values, settings_of(c).format);
 }
 
-/// The plain image with the mean of five points in the pixels of the mask.
+/// The plain image, in which the pixels of the mask are replaced by the mean of five points.
 Image supersampled(const Image& plain, const Image& fine, const Image& mask, const RingCase& c) {
     return whole_image::make_image(plain.width, plain.height, [&](int row, int column, int colour) {
         if (value_at(mask, row, column, 0) == 0) return value_at(plain, row, column, colour);
@@ -117,7 +117,7 @@ Image supersampled(const Image& plain, const Image& fine, const Image& mask, con
     });
 }
 
-/// The cost of the four additional points of each pixel of the mask; 0 in the others.
+/// The cost of the four additional points of each pixel in the mask; 0 for the other pixels.
 std::vector<std::uint64_t> supersampling_cost(const CostImage& fine, const Image& mask, const RingCase& c) {
     std::vector<std::uint64_t> cost;
     for (int row = 0; row < mask.height; ++row)
@@ -134,7 +134,7 @@ std::size_t pixels_of(const Image& mask) {
     return static_cast<std::size_t>(std::count(mask.rgb.begin(), mask.rgb.end(), 1.0f)) / 3;
 }
 
-/// The pixels' own points in the finer image.
+/// The finer image's values at the pixels' own sample points.
 Image own_points(const Image& fine) {
     return whole_image::make_image(fine.width / 2, fine.height / 2, [&](int row, int column, int colour) {
         return value_at(fine, 2 * row + 1, 2 * column + 1, colour);
@@ -199,7 +199,7 @@ TEST_CASE("supersampling takes the mean of five points where a neighbour differs
             recomputed += result.recomputed;
             pixels += size;
         }
-    CHECK(recomputed > pixels / 10);  // the cases have marked and unmarked pixels
+    CHECK(recomputed > pixels / 10);  // the cases have both marked and unmarked pixels
     CHECK(recomputed < pixels * 9 / 10);
     CHECK(mixed > std::size_t(cases()) / 2);
 }
@@ -209,8 +209,8 @@ TEST_CASE("the additional points lie half a pixel away, for any camera", "[ring]
     Session session(choose_device(""));
     constexpr int kWidth = 33, kHeight = 21;
     for (const char* format : {"fp32", "spa22"}) {
-        // Doubling the number of intervals halves the steps between pixel corners exactly. The finer image has no
-        // points beyond the outermost pixels' own, so those pixels, 104 of 693, are not compared.
+        // Doubling the number of intervals exactly halves the steps between pixel corners. The finer image has no
+        // points beyond the sample points of the outermost pixels, so these pixels, 104 of 693, are not compared.
         const RingCase fine_case{
             .width = 2 * kWidth - 1, .height = 2 * kHeight - 1, .sampling = Sampling::kCorners, .format = format};
         const Image fine = RingRenderer(session, scene, settings_of(fine_case)).render().image;
@@ -237,7 +237,8 @@ TEST_CASE("a difference equal to the threshold counts, a difference outside 0..1
     Session session(choose_device(""));
     const std::string format = GENERATE("fp32", "spa22");
     const double last_place = format == "fp32" ? 0x1p-23 : 0x1p-15;
-    // Without lights, a surface of Kd = 1 shows its colour: the image has two colours that differ in one component.
+    // Without lights, a surface of Kd = 1 shows its own colour, so the image has two colours, which differ in one
+    // component.
     const auto recomputed = [&](double surrounding, double object, double threshold, int component) {
         Scene scene = grid_scene(24, Sampling::kCentres, kPixelsOfUnit);
         scene.background = scene.surfaces[1].colour = {0.5, 0.5, 0.5};

@@ -1,4 +1,4 @@
-// Counts of anti-aliasing: phases, loads, rotations and their words. Neither counts nor pixels depend on the
+// Counts of antialiasing: phases, loads, rotations and their words. Neither the counts nor the pixels depend on the
 // distribution of the work.
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -19,7 +19,7 @@ RingResult render_case(Session& session, RingCase c) {
     return RingRenderer(session, scene, settings_of(c)).render();
 }
 
-/// The results that do not depend on PEs, mapping, lanes or groups.
+/// The results that do not depend on PEs, mapping, lanes or group size.
 struct AntialiasAnswer {
     std::string image, mask;
     std::vector<EventCounts> events;  // of each phase
@@ -37,7 +37,7 @@ AntialiasAnswer antialias_answer(const RingResult& result) {
     return answer;
 }
 
-/// The cost image's sum over each PE's pixels.
+/// By PE: the sum of the cost image over the PE's pixels.
 std::vector<std::uint64_t> owners_cost(const CostImage& cost, const raya_mapping& m) {
     std::vector<std::uint64_t> loads(m.pes);
     for (std::uint32_t row = 0; row < m.height; ++row)
@@ -56,7 +56,7 @@ void check_phase(const Phase& phase, const raya_mapping& m) {
     CHECK(phase.load.max == *std::max_element(phase.load.per_pe.begin(), phase.load.per_pe.end()));
 }
 
-/// Checks that `all` is the sum of the phases.
+/// Checks that the total `all` is the sum of the phases.
 void check_sums(const RingResult& result) {
     EventCounts events{};
     std::vector<std::uint64_t> loads(result.all.load.per_pe.size());
@@ -75,7 +75,7 @@ void check_sums(const RingResult& result) {
     CHECK(result.cost().cycles == cost);
 }
 
-/// Each rotation sends every PE's block of `band` pixels, 3 words per pixel.
+/// Checks that each rotation sends one block of `band` pixels per PE, with 3 words per pixel.
 void check_words(const RingResult& result, const RingCase& c) {
     const Communication& words = result.communication;
     CHECK(words.rotation_words == words.rotations * c.pes * 3 * result.pe_memory.band_pixels);
@@ -87,7 +87,7 @@ void check_words(const RingResult& result, const RingCase& c) {
 }  // namespace
 
 TEST_CASE("lanes and group size change no bit, mark or count of anti-aliasing", "[ring][antialias]") {
-    // Lanes and group size; few pairs, as each builds kernels.
+    // Pairs of lanes and group size; few, because each pair needs its own kernels.
     using Choices = std::vector<std::array<std::uint32_t, 2>>;
     const std::pair<std::string, Choices> formats[] = {{"fp32", {{1, 1}, {4, 8}, {16, 8}}},
                                                        {"spa22", {{1, 8}, {16, 1}}}};
@@ -157,7 +157,8 @@ TEST_CASE("a second anti-aliased render with the same renderer gives the same re
 
 TEST_CASE("with one column of pixels per PE the vertical neighbours are p PEs away", "[ring][antialias]") {
     Session session(choose_device(""));
-    // Left and right take one rotation each, above and below p each (none for p = 0, the PE's own block): 2 + 2 p.
+    // The left and right neighbours take one rotation each, the upper and lower ones p each (none for p = 0, when they
+    // are in the PE's own block): 2 + 2 p rotations.
     for (const auto& [offset, rotations] : {std::pair{0u, 2u}, {8u, 18u}, {16u, 34u}, {240u, 34u}}) {
         const RingCase c{.width = 256, .height = 256, .pes = 256, .offset = offset, .antialias = kFilter};
         const RingResult result = render_case(session, c);
@@ -172,7 +173,8 @@ TEST_CASE("with one column of pixels per PE the vertical neighbours are p PEs aw
 
 TEST_CASE("if a PE's memory is short, pixels rotate in bands, with the same image", "[ring][antialias]") {
     Session session(choose_device(""));
-    // The last band is shorter than the others if the share is odd or a PE owns fewer pixels.
+    // The last band is shorter than the others if a PE's number of pixels is odd, or if the PE owns fewer pixels than
+    // others.
     const RingCase cases[] = {{.width = 512, .height = 512, .pes = 256, .offset = 16, .antialias = kFilter},
                               {.width = 45, .height = 45, .pes = 2, .antialias = kFilter},
                               {.width = 41, .height = 77, .pes = 3, .fold = Fold::kBlock, .antialias = kFilter},

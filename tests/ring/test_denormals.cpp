@@ -1,6 +1,6 @@
-// Idle lanes compute with normal numbers: a denormal operand costs some CPUs a hundred cycles. The kernels are built
-// without optimisation, as an optimising compiler speculates and may compute with garbage that it then discards. The
-// tests are hidden, as they need PoCL's basic device: ctest runs them as ring.denormals.
+// Idle lanes compute with normal numbers, because a denormal operand costs some CPUs a hundred cycles. The kernels are
+// built without optimisation: an optimising compiler may compute speculatively with undefined values and discard the
+// results. The tests are hidden because they need PoCL's basic device; ctest runs them as ring.denormals.
 #include <catch2/catch.hpp>
 
 #include "tests/kernels/denormals.hpp"

@@ -1,4 +1,4 @@
-// Plans of dynamic distribution: their text, and invalid plans.
+// Plans of dynamic work distribution: their text, and invalid plans.
 #include <catch2/catch.hpp>
 #include <limits>
 #include <stdexcept>

@@ -1,4 +1,5 @@
-// Ring, bus and broadcasts by PEs bring the same neighbours, so the same bits; each has its own formula for moves.
+// Ring, bus and broadcasts by PEs deliver the same neighbouring pixels, so the results have the same bits. Each method
+// has its own formula for the number of moves.
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr ExchangeMethod kExchanges[] = {ExchangeMethod::kRing, ExchangeMethod::kBus, ExchangeMethod::kBroadcast};
 
-/// Pixels of all PEs, [PE][3][capacity], and the size of the bands that move.
+/// The pixels of all PEs, [PE][3][capacity], and the size of the bands that are exchanged.
 struct Shares {
     raya_mapping mapping{};
     std::uint32_t capacity = 1, band = 1;
@@ -23,7 +24,7 @@ struct Shares {
     float threshold = 0;
 };
 
-/// Results of filter and contrast, and their communication.
+/// The results of filter and contrast kernels, and their communication.
 struct Smoothed {
     std::vector<float> filtered;
     std::vector<std::uint8_t> marks;
@@ -73,7 +74,7 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 
 std::uint64_t moved(const Communication& c) { return c.rotations + c.transfers + c.pe_broadcasts; }
 
-/// Hashes of image and mask, and the number of recomputed pixels; sets `counted` to the communication.
+/// Returns the hashes of image and mask and the number of recomputed pixels; stores the communication in `counted`.
 std::string rendered(Session& session, RingCase c, ExchangeMethod method, Communication& counted) {
     c.antialias.exchange = method;
     const RingResult result = RingRenderer(session, grid_scene(c.height, c.sampling, 16), settings_of(c)).render();

@@ -1,5 +1,5 @@
-// Kernels of the neighbour exchange: a PE reads and writes only its own memory. Poison in all other PEs' memory changes
-// nothing, and injected kernel faults are detected.
+// Kernels of the neighbour exchange: a PE reads and writes only its own memory. Poison values in the memory of all
+// other PEs change no result, and injected kernel faults are detected.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -34,7 +34,7 @@ struct Launch {
 
 /// The memory of all PEs, block after block, followed by a guard block that no PE may touch.
 struct Memory {
-    std::vector<float> arrived, pixels;  // [PE][3][band], [PE][3][capacity]: pixels or their sums
+    std::vector<float> arrived, pixels;  // [PE][3][band]; [PE][3][capacity], pixels or sums
     std::vector<std::uint8_t> marks;     // [PE][capacity]
 };
 
@@ -43,7 +43,7 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b, std::size_t fro
     return from == to || std::memcmp(a.data() + from, b.data() + from, (to - from) * sizeof(T)) == 0;
 }
 
-/// Returns true if the memories have the same bits in the blocks first..end-1.
+/// Returns true if the two memories have the same bits in the blocks `first` to `end` - 1.
 bool same_blocks(const Launch& l, const Memory& a, const Memory& b, std::size_t first, std::size_t end) {
     const std::size_t band = 3 * l.band, block = 3 * l.capacity;
     return same_bits(a.arrived, b.arrived, first * band, end * band) &&
@@ -51,7 +51,7 @@ bool same_blocks(const Launch& l, const Memory& a, const Memory& b, std::size_t 
            same_bits(a.marks, b.marks, first * l.capacity, end * l.capacity);
 }
 
-/// The kernel of a step, possibly with an injected fault.
+/// Runs the kernel of an exchange step, optionally with an injected fault.
 class Runner {
   public:
     Runner(Session& session, Step step, std::uint32_t group, const std::string& format,
@@ -61,7 +61,7 @@ class Runner {
           group_(group),
           kernels_(session, {.lanes = 1, .group_size = group, .format = parse_format(format)}, sources) {}
 
-    /// The memory after the first `groups` PEs have run.
+    /// Returns the memory after the first `groups` PEs have run.
     Memory run(const Launch& l, const Memory& before, std::size_t groups) {
         if (groups == 0) return before;
         raya_job job{};
@@ -120,7 +120,7 @@ class Runner {
     Kernels kernels_;
 };
 
-/// A launch as in an exchange, mostly of a block that contains neighbours.
+/// A random launch as in an exchange; in most cases the arrived block contains neighbours.
 Launch random_launch(SplitMix& random) {
     Launch l{.m = small_mapping(random, 9), .side = random_below(random, RAYA_SIDES)};
     const std::vector<std::uint32_t> distances = neighbour_distances(l.m, l.side);
@@ -133,7 +133,7 @@ Launch random_launch(SplitMix& random) {
     return l;
 }
 
-/// Random colours around 0..1, and marks for every eighth pixel.
+/// Random colours from -0.25 to 1.25; each pixel is marked with probability 1/8.
 Memory random_memory(SplitMix& random, const Launch& l) {
     const auto colours = [&](std::size_t count) {
         std::vector<float> words(count);
@@ -146,13 +146,13 @@ Memory random_memory(SplitMix& random, const Launch& l) {
     return memory;
 }
 
-/// Poisons all memory that the PE may not read. It may read its own memory, except pixels of the arrived block beyond
-/// the end of the sender's share, which are stale.
+/// Returns a copy in which all memory that the PE must not read contains poison. The PE may read its own memory except
+/// the stale pixels of the arrived block, which lie beyond the end of the sender's pixels.
 Memory poisoned(SplitMix& random, const Launch& l, const Memory& clean, std::size_t pe) {
     const float poison = random.next() % 2 ? std::numeric_limits<float>::quiet_NaN() : 1e30f;
     Memory memory = clean;
     const raya_u32 sent = raya_share_size(raya_share_of(l.m, static_cast<raya_u32>((pe + l.distance) % l.m.pes)));
-    const std::size_t live = std::min(l.band, sent - std::min(sent, l.begin));  // of each of three rows
+    const std::size_t live = std::min(l.band, sent - std::min(sent, l.begin));  // valid values per colour
     const std::size_t band = 3 * l.band, block = 3 * l.capacity;
     for (std::size_t n = 0; n < memory.arrived.size(); ++n)
         if (n / band != pe || n % l.band >= live) memory.arrived[n] = poison;
@@ -178,13 +178,13 @@ Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
         for (int choice = 0; choice < 2; ++choice) {
             const std::size_t pe = random_below(random, l.m.pes);
             const Memory seen = runner.run(l, poisoned(random, l, before, pe), l.m.pes);
-            Memory expected = after;  // except stale words, which do not change
+            Memory expected = after;  // not the arrived block, which contains poison
             const auto at = static_cast<std::ptrdiff_t>(3 * pe * l.band);
             std::copy_n(seen.arrived.begin() + at, 3 * l.band, expected.arrived.begin() + at);
             found.poison_read += !same_blocks(l, expected, seen, pe, pe + 1);
             found.blocks_worked += !same_blocks(l, before, after, pe, pe + 1);
         }
-        // The writes of the last of the first `groups` PEs.
+        // Compares runs of `groups` - 1 and of `groups` PEs: the difference is what the last PE wrote.
         const std::size_t groups = 1 + random_below(random, l.m.pes);
         const Memory without = runner.run(l, before, groups - 1), with = runner.run(l, before, groups);
         found.stray_writes += !same_blocks(l, without, with, 0, groups - 1) ||
@@ -197,7 +197,7 @@ struct Fault {
     const char* what;
     Step step;
     SourcePatch patch;
-    bool reads, writes;  // the findings that must detect it
+    bool reads, writes;  // the kinds of findings that must detect the fault
 };
 
 const Fault kFaults[] = {
@@ -259,7 +259,7 @@ TEST_CASE("no PE reads or writes another PE's memory", "[ring][exchange]") {
     Session session(choose_device(""));
     for (const Step step : kSteps)
         for (const std::uint32_t group : {1u, 3u}) {
-            const std::string format = group == 1 ? "fp32" : "e6m15";  // few builds: they take most of the time
+            const std::string format = group == 1 ? "fp32" : "e6m15";  // few builds, because they take most of the time
             CAPTURE(kSeed, step_name(step), group, format);
             Runner runner(session, step, group, format);
             const Findings found = find_faults(runner, kSeed + group, 100);

@@ -1,4 +1,4 @@
-// Renders in reduced formats: the sphere filter changes no bit, and images agree with the reference.
+// Renders in reduced formats: the sphere filter changes no bit of an image, and images agree with the reference.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -12,7 +12,8 @@
 namespace raya {
 namespace {
 
-// Spheres that stress the filter's bounds: touching, nested, tiny, distant, half buried, some seen from inside.
+// Spheres that are hard for the filter's bounds: touching, nested, tiny, distant and half buried ones; some are seen
+// from inside.
 Scene hard_spheres(std::uint32_t seed) {
     std::mt19937 random(seed);
     const auto uniform = [&](double low, double high) {
@@ -77,8 +78,8 @@ TEST_CASE("the sphere filter is off if its error bounds do not hold", "[ring]") 
 }
 
 TEST_CASE("spa22 images show neither shadow acne nor light leaks", "[ring]") {
-    // Counts pixels that differ by 0.1 or more and do not graze an edge within an eighth of a pixel. The format's
-    // rounding moves edges by less; shadow acne and light leaks would affect whole areas.
+    // Counts the pixels that differ by 0.1 or more, except those within an eighth of a pixel of an edge. The format's
+    // rounding moves edges by less than that; shadow acne and light leaks would affect whole areas.
     constexpr std::uint32_t kSide = 128;
     constexpr double kAllowedShare = 0.002;
     for (const std::string& name : project_scenes()) {

@@ -1,4 +1,5 @@
-// Launches of trace end after a bounded amount of work and save their ray trees; the next launches continue them.
+// Launches of the trace kernel end after a bounded amount of work and save their ray trees; the next launches continue
+// them.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -39,7 +40,7 @@ RingSettings random_settings(SplitMix& random, const AccelKind accel) {
     c.offset = random_below(random, c.width);
     c.bounces = accel == AccelKind::kNone ? 5 : 8;
     c.keep_costs = true;
-    c.lanes = random_below(random, 2) ? 4 : 16;  // few builds
+    c.lanes = random_below(random, 2) ? 4 : 16;  // few values, so that few kernels are built
     c.group = random_below(random, 2) ? 1 : 3;
     c.format = random_below(random, 2) ? "fp32" : "spa22";
     if (random_below(random, 2)) c.antialias.method = AntialiasMethod::kSupersample;
@@ -81,7 +82,7 @@ TEST_CASE("a render completes if each launch runs one iteration of its loop", "[
     settings.work_per_launch = 1;
     const RingResult cut = RingRenderer(session, scene, settings).render();
     CHECK(launch_result_of(cut) == launch_result_of(whole));
-    CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more than one per pixel of a lane
+    CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more than one launch per pixel of a lane
 }
 
 TEST_CASE("launches report monotonic progress, first when each lane has done a few pixels", "[ring]") {
@@ -97,7 +98,7 @@ TEST_CASE("launches report monotonic progress, first when each lane has done a f
     CHECK(reported.size() > 1);
     CHECK(reported.front() < 6 * first.lanes * first.group_size / (96 * 96 / 4.0));
     CHECK(reported.back() == 1);
-    CHECK(launches_of(renderer.render()) == 1);  // no progress callback, and less than a second of work
+    CHECK(launches_of(renderer.render()) == 1);  // one launch: no progress callback, less than a second of work
     settings.work_per_launch = 5000;
     RingRenderer sliced(session, scene, settings);
     reported.clear();
@@ -112,7 +113,7 @@ TEST_CASE("launches report monotonic progress, first when each lane has done a f
 bool is_detected(Session& session, const Scene& scene, const RingSettings& settings, const LaunchResult& right) {
     try {
         return !(launch_result_of(RingRenderer(session, scene, settings).render()) == right);
-    } catch (const DeviceError&) {  // pixels are counted
+    } catch (const DeviceError&) {  // raya counts the finished pixels
         return true;
     }
 }
@@ -142,7 +143,8 @@ TEST_CASE("every injected fault in the state saved between launches is detected"
     }
 }
 
-// A launch of more work than this is cut: counts, costs, pixels and saved trees are wrong afterwards.
+// cut_launches() simulates a device that ends the loops of every launch with more work than this: such a launch sets
+// the cut flag and corrupts counts, costs, pixels and saved ray trees.
 constexpr std::uint32_t kUncut = 40;
 
 std::vector<SourcePatch> cut_launches() {
@@ -177,7 +179,8 @@ TEST_CASE("a launch whose loops are cut is repeated with half the work, and its 
     CHECK(session.launch_limit(kSupersamplePass) == (method == AntialiasMethod::kNone ? 300 : 37));
     const RingResult second = RingRenderer(session, scene, settings).render();
     CHECK(launch_result_of(second) == launch_result_of(whole));
-    CHECK(launches_of(second) == launches_of(first) - (method == AntialiasMethod::kNone ? 3 : 6));  // 300, 150, 75
+    // The first render repeats the launches with the limits 300, 150 and 75, once for each of the two kernels.
+    CHECK(launches_of(second) == launches_of(first) - (method == AntialiasMethod::kNone ? 3 : 6));
 }
 
 TEST_CASE("a device that ends loops early is an error, not an image", "[ring]") {
@@ -185,7 +188,7 @@ TEST_CASE("a device that ends loops early is an error, not an image", "[ring]") 
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 20, .height = 15, .pes = 4});
     settings.kernels.sources.patches = {{"shared/loop_canary.clh", "i < two", "i < two - 1"}};
-    for (const std::uint32_t limit : {UINT32_MAX, 300u}) {  // not repeated; repeated down to the smallest launch
+    for (const std::uint32_t limit : {UINT32_MAX, 300u}) {  // no repetition; repetition down to the smallest launch
         session.launch_limit(kTracePass) = limit;
         CHECK_THROWS_WITH(RingRenderer(session, scene, settings).render(),
                           Catch::Contains("has ended loops early") && Catch::Contains("remedy"));

@@ -1,4 +1,4 @@
-// Mappings of an image onto PEs: their parameters, their text, and the messages that refuse invalid ones.
+// Mappings of an image onto PEs: their parameters, their text, and the error messages for invalid mappings.
 #include <catch2/catch.hpp>
 #include <cstdint>
 
@@ -73,5 +73,5 @@ TEST_CASE("an invalid mapping is refused with the valid range or a valid value",
     refuses(tiles_mapping(9, 25), {320, 200}, 8,
             Contains("--mapping tiles:9x25") && Contains("320 x 200") && Contains("tiles:8x25"));
     refuses(tiles_mapping(320, 99), {320, 200}, 8, Contains("tiles:320x100"));
-    refuses(tiles_mapping(16'384, 3), {7, 200}, 8, Contains("tiles:7x2"));  // 2 and 4 are equally near: the smaller
+    refuses(tiles_mapping(16'384, 3), {7, 200}, 8, Contains("tiles:7x2"));  // 2 and 4 are equally near: the smaller one
 }

@@ -1,4 +1,5 @@
-// Slot mappings: every pixel has one owner, owner and share formulas agree, and neighbours are where the paper says.
+// Slot mappings: every pixel has one owner, the formulas for owners and for PEs' pixels agree, and neighbouring pixels
+// belong to the PEs that the paper states.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -12,14 +13,15 @@ using namespace raya;
 
 namespace {
 
-/// The owner by the definition in mapping.h, in signed numbers and without the shortcuts of its formulas.
+/// The owner according to the definition in mapping.h, in signed numbers and without the shortcuts of the kernels'
+/// formulas.
 std::int64_t defined_owner(const raya_mapping& m, std::int64_t row, std::int64_t column) {
     const std::int64_t width = m.width, height = m.height, pes = m.pes;
     std::int64_t slot = (column - row * m.parameter) % width;
     if (slot < 0) slot += width;
     if (m.kind == RAYA_FOLD_CYCLIC) {
         if (pes <= width) return slot % pes;
-        std::int64_t sharers = 0;  // of slot, slot + W, slot + 2 W, ...
+        std::int64_t sharers = 0;  // the PEs slot, slot + W, slot + 2 W, ...
         while (slot + sharers * width < pes && sharers < height) ++sharers;
         return slot + row % sharers * width;
     }
@@ -88,11 +90,11 @@ TEST_CASE("cyclic mapping with p = n and P = n x n: every n x n block has one pi
 }
 
 TEST_CASE("block fold: a PE owns a run of slots if P < W, a run of a slot's rows if P > W", "[mapping]") {
-    const raya_mapping few{10, 3, 4, 0, RAYA_FOLD_BLOCK};  // floor(c 4 / 10)
+    const raya_mapping few{10, 3, 4, 0, RAYA_FOLD_BLOCK};  // the owner of column c is floor(4 c / 10)
     std::vector<std::uint32_t> owners;
     for (std::uint32_t x = 0; x < 10; ++x) owners.push_back(raya_owner(few, 2, x));
     CHECK(owners == std::vector<std::uint32_t>{0, 0, 0, 1, 1, 2, 2, 2, 3, 3});
-    const raya_mapping many{2, 5, 5, 0, RAYA_FOLD_BLOCK};  // slot 0 has the PEs 0 and 1, slot 1 the PEs 2, 3 and 4
+    const raya_mapping many{2, 5, 5, 0, RAYA_FOLD_BLOCK};  // PEs 0 and 1 share slot 0; 2, 3 and 4 share slot 1
     owners.clear();
     for (std::uint32_t x = 0; x < 2; ++x)
         for (std::uint32_t j = 0; j < 5; ++j) owners.push_back(raya_owner(many, j, x));
@@ -111,7 +113,7 @@ TEST_CASE("slot mappings of the largest images and arrays agree with the definit
                 std::uint32_t wrong = 0;
                 for (int i = 0; i < 100; ++i) {
                     const std::uint32_t edge =
-                        i < 4 ? kSide - 1 : random_below(random, kSide);  // the last row and column too
+                        i < 4 ? kSide - 1 : random_below(random, kSide);  // also the last row or column
                     const raya_pixel pixel{i % 2 ? edge : random_below(random, kSide),
                                            i % 2 ? random_below(random, kSide) : edge};
                     const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);

@@ -1,5 +1,5 @@
-// The mappings without slots: every pixel has one owner, that of the definition, and shares are as even as the kind
-// guarantees. And the permutation of the random mapping.
+// Mappings without slots: every pixel has one owner, which is that of the definition, and PEs' pixel counts are as even
+// as the kind guarantees. Also tests the permutation of the random mapping.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -18,7 +18,8 @@ using Owners = std::vector<std::uint32_t>;  // [row][column]
 
 constexpr std::uint32_t kKinds[] = {RAYA_ROWS, RAYA_BLOCKS, RAYA_GRID, RAYA_TILES, RAYA_RANDOM};
 
-/// Assigns every `step_across`-th pixel of every `step_down`-th line, from `top` and `left` on, to `pe`.
+/// A set of pixels: every `step_across`-th pixel of every `step_down`-th row, from `top` and `left` to before `bottom`
+/// and `right`. paint() assigns them to `pe`.
 struct Brush {
     std::uint32_t top, step_down, bottom, left, step_across, right;
 };
@@ -30,7 +31,7 @@ void paint(Owners& owners, const raya_mapping& m, const Brush& b, std::uint32_t 
 Owners painted_blocks(const raya_mapping& m) {
     Owners owners(m.width * m.height);
     for (std::uint32_t j = 0, pe = 0; j < m.height; ++j) {
-        while ((pe + 1) * m.height <= j * m.pes) ++pe;  // the last PE whose lines begin at j or before
+        while ((pe + 1) * m.height <= j * m.pes) ++pe;  // the last PE whose first row is j or less
         paint(owners, m, {j, 1, j + 1, 0, 1, m.width}, pe);
     }
     return owners;
@@ -48,7 +49,7 @@ Owners painted_tiles(const raya_mapping& m) {
     return owners;
 }
 
-/// Assigns the permuted pixels to the PEs in turn; the permutation has its own tests.
+/// Assigns the permuted pixels to the PEs in turn. The permutation itself has its own tests.
 Owners dealt_at_random(const raya_mapping& m) {
     Owners owners(m.width * m.height);
     for (std::uint32_t n = 0; n < owners.size(); ++n)
@@ -56,7 +57,7 @@ Owners dealt_at_random(const raya_mapping& m) {
     return owners;
 }
 
-/// The owners by the definition in mapping.h, PE after PE and without its formulas.
+/// The owners according to the definition in mapping.h, computed PE by PE without the formulas of mapping.h.
 Owners painted(const raya_mapping& m) {
     if (m.kind == RAYA_BLOCKS) return painted_blocks(m);
     if (m.kind == RAYA_TILES) return painted_tiles(m);
@@ -70,7 +71,7 @@ Owners painted(const raya_mapping& m) {
     return owners;
 }
 
-/// The owner in 64-bit numbers, for images that are too large to paint.
+/// The owner in 64-bit arithmetic, for images that are too large for painted().
 std::uint64_t wide_owner(const raya_mapping& m, std::uint64_t row, std::uint64_t column) {
     const std::uint64_t first = raya_first_of(m.parameter), second = raya_second_of(m.parameter), width = m.width;
     if (m.kind == RAYA_ROWS) return row % m.pes;
@@ -80,7 +81,7 @@ std::uint64_t wide_owner(const raya_mapping& m, std::uint64_t row, std::uint64_t
     return raya_scramble(static_cast<std::uint32_t>(row * width + column), m.width * m.height, m.parameter) % m.pes;
 }
 
-/// The maximum difference between two shares, in pixels: a line, a tile or a pixel.
+/// The maximum difference between the pixel counts of two PEs: one row, tile or pixel.
 std::uint32_t unevenness(const raya_mapping& m) {
     if (m.kind == RAYA_RANDOM) return 1;
     if (m.kind == RAYA_TILES) return raya_first_of(m.parameter) * raya_second_of(m.parameter);
@@ -108,7 +109,7 @@ TEST_CASE("rows, blocks, grid, tiles, random: every pixel has one owner, and sha
             if (kind != RAYA_GRID) CHECK(*most - *least <= unevenness(m));
             idle += *least == 0;
         }
-    CHECK(idle > 100);  // PEs without pixels were among them
+    CHECK(idle > 100);  // some PEs had no pixels
 }
 
 TEST_CASE("a grid's PEs own one pixel of every A x B rectangle", "[mapping]") {
@@ -142,7 +143,7 @@ TEST_CASE("mappings of every kind agree with the definition on the largest image
         CAPTURE(kSeed, m.pes, mapping_text(m));
         std::uint32_t wrong = 0;
         for (int i = 0; i < 200; ++i) {
-            const std::uint32_t edge = i < 4 ? kSide - 1 : random_below(random, kSide);  // the last row and column too
+            const std::uint32_t edge = i < 4 ? kSide - 1 : random_below(random, kSide);  // also the last row or column
             const raya_pixel pixel{i % 2 ? edge : random_below(random, kSide),
                                    i % 2 ? random_below(random, kSide) : edge};
             const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
@@ -181,10 +182,10 @@ TEST_CASE("random mapping: the seed determines the mapping, and different seeds 
         for (std::uint32_t b = a + 1; b < kSeeds; ++b, ++pairs) {
             const std::uint32_t same =
                 std::inner_product(all[a].begin(), all[a].end(), all[b].begin(), 0u, std::plus<>(), std::equal_to<>());
-            apart += same > 176 && same < 336;  // 4096 / 16 = 256, standard deviation 15.5: five of them either way
+            apart += same > 176 && same < 336;  // 4096 / 16 = 256, +- 5 standard deviations of 15.5
         }
     CHECK(apart == pairs);
-    // A recorded result: random:1 in a report must always mean this mapping.
+    // The recorded start of the mapping random:1, which must never change, because reports name mappings by their seed.
     const Owners first(all[1].begin(), all[1].begin() + 12);
     CHECK(first == Owners{12, 9, 15, 13, 2, 10, 13, 10, 14, 10, 14, 5});
 }
@@ -203,7 +204,7 @@ TEST_CASE("random mapping: the owners of neighbouring pixels are independent", "
                 double chi_square = 0;
                 for (const double d : differences) chi_square += (d - expected) * (d - expected) / expected;
                 CAPTURE(seed, side, down, across);
-                CHECK(chi_square < 45);  // 15 degrees of freedom: one in 10,000
+                CHECK(chi_square < 45);  // 15 degrees of freedom: p = 0.0001
             }
         }
 }

@@ -1,4 +1,4 @@
-// Guarantee 1: the pixels do not depend on the distribution of the work, nor on lanes, group size or optimiser.
+// Guarantee 1: the pixels do not depend on the distribution of the work, on lanes, group size or the optimiser.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -85,9 +85,9 @@ TEST_CASE("the mapping's kind changes no bit of the image and no count, smoothed
     struct Row {
         MappingRule mapping;
         std::uint32_t pes,
-            supersampled_in;  // the group size for supersampling; the filter uses the other one
+            supersampled_in;  // group size (1 or 4) with supersampling; the filter uses the other one
     };
-    // If PEs outnumber lines or tiles, some are idle.
+    // If there are more PEs than rows or tiles, some PEs are idle.
     const Row rows[] = {{rows_mapping(), 5, 1},      {rows_mapping(), 40, 4},      {blocks_mapping(), 5, 4},
                         {blocks_mapping(), 40, 1},   {grid_mapping(3, 4), 12, 4},  {grid_mapping(20, 5), 100, 1},
                         {tiles_mapping(6, 3), 7, 1}, {tiles_mapping(8, 9), 40, 4}, {random_mapping(7), 13, 1},

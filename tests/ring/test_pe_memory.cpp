@@ -1,4 +1,4 @@
-// The memory plan of a PE.
+// The memory plan of a PE (plan_pe_memory()).
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <string>
@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Bytes of the ray tree's traversal stack, without the job's words and pixels; it grows by one ray per bounce.
+/// Bytes of the stack for the ray tree, without the job's words and pixels. The stack grows by one ray per bounce.
 std::uint64_t walk_bytes(std::uint32_t bounces) {
     return plan_pe_memory(machine_named("grande"), {.scene = "s", .bounces = bounces}).bytes();
 }
@@ -27,14 +27,14 @@ PeDemand demand(std::uint64_t job_words, std::uint32_t share, AntialiasMethod me
     return {.scene = "s", .job_words = job_words, .bounces = 8, .share = share, .antialias = method};
 }
 
-/// Bytes of a PE that exchanges pixels, without the pixels in transit: three words a pixel, and three words of sums or
-/// a mark.
+/// Bytes of a PE that exchanges pixels, without the pixels in transit: per pixel three words of colour, and three words
+/// of sums (filter) or a mark of one byte (supersampling).
 std::uint64_t bytes_at_rest(const PeDemand& d) {
     const std::uint64_t a_pixel = d.antialias == AntialiasMethod::kFilter ? 24 : 13;
     return 4 * d.job_words + walk_bytes(d.bounces) + a_pixel * d.share;
 }
 
-/// The longest band if the share is cut into the minimum number of equal parts that fit; 0 if none fits.
+/// The longest band if the PE's pixels are cut into the minimum number of equal parts that fit; 0 if none fits.
 std::uint32_t fewest_parts(std::uint32_t share, std::uint64_t free_bytes) {
     for (std::uint32_t parts = 1; parts <= share; ++parts) {
         const std::uint32_t longest = share / parts + (share % parts != 0);
@@ -51,7 +51,7 @@ TEST_CASE("a PE's memory is the job's words, the traversal stack and three words
     CHECK(memory.block_pixels == 256);
     CHECK((memory.sum_pixels == 0 && memory.band_pixels == 0 && memory.marks == 0));
     CHECK(memory.bytes() == 4 * 1000 + walk_bytes(8) + 12 * 256);
-    CHECK(walk_bytes(8) - walk_bytes(7) == 4 * 7);  // origin, direction, weight
+    CHECK(walk_bytes(8) - walk_bytes(7) == 4 * 7);  // 7 words: origin, direction, weight
     CHECK(walk_bytes(0) > 0);
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("PEs exchange the whole share, or the minimum number of equal parts of
         const std::uint64_t free_bytes = 12 + random.next() % (13 * d.share);
         CAPTURE(kSeed, i, d.job_words, d.share, free_bytes, antialias_name(method));
         const PeMemory memory = plan_pe_memory(machine_of(bytes_at_rest(d) + free_bytes), d);
-        CHECK(memory.block_pixels == d.share);  // all pixels stay in the PE: any may be a neighbour of another PE's
+        CHECK(memory.block_pixels == d.share);  // all pixels stay in the PE, as any may be a neighbour of another PE's
         CHECK(memory.sum_pixels == (method == AntialiasMethod::kFilter ? d.share : 0));
         CHECK(memory.marks == (method == AntialiasMethod::kSupersample ? d.share : 0));
         CHECK(memory.band_pixels == fewest_parts(d.share, free_bytes));
@@ -138,7 +138,7 @@ TEST_CASE("a scene that leaves no memory for a pixel is refused with both figure
     const std::uint64_t hundred_kb = (100 * 1024 - walk_bytes(8) - 12) / 4;
     CHECK_THROWS_WITH(plan(hundred_kb), Contains("big.nff") && Contains("100.0 KB") && Contains("32 KB") &&
                                             Contains("the SPA") && Contains("--machine grande") &&
-                                            !Contains("more PEs"));  // every PE holds the whole scene
+                                            !Contains("more PEs"));  // would not help: every PE holds the whole scene
 }
 
 TEST_CASE("a share that leaves no memory for a pixel in transit is refused with both figures and the remedy",
@@ -153,7 +153,7 @@ TEST_CASE("a share that leaves no memory for a pixel in transit is refused with 
         CHECK_NOTHROW(plan_pe_memory(machine_of(minimum - 1), demand(700, 333)));
         d.scene = "wide.nff";
         d.share = 1;
-        d.job_words = (50 * 1024 - bytes_at_rest(demand(0, 1, method)) - 12) / 4;  // 50 KB, up to 3 bytes less
+        d.job_words = (50 * 1024 - bytes_at_rest(demand(0, 1, method)) - 12) / 4;  // 50 KB in all, less up to 3 bytes
         CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), d),
                           Contains("wide.nff with --antialias " + name) && Contains("50.0 KB") && Contains("32 KB") &&
                               Contains("the SPA") && Contains("more PEs") && Contains("smaller image") &&

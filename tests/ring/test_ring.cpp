@@ -1,4 +1,4 @@
-// Rotations move every PE's block to its neighbour, bit for bit, and are counted by the words that they copy.
+// Rotations move every PE's block to its neighbour without changing a bit, and the copied words are counted.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -19,7 +19,7 @@ namespace {
 
 using Bits = std::vector<std::uint32_t>;  // floats as bits, so that NaNs compare equal
 
-/// Random words; half of them are NaNs and other values that a copy through arithmetic would change.
+/// Random words. Half of them are NaNs and other values that copying through floating-point arithmetic would change.
 Bits random_words(SplitMix& random, std::size_t count) {
     const std::uint32_t odd[] = {0x80000000u, 0x7fc12345u, 0x7f800001u, 0xff923456u, 0x00000001u, 0x7f800000u};
     Bits words(count);
@@ -43,7 +43,7 @@ Buffer<float> filled(Session& session, const std::string& name, const Bits& bits
     return buffer;
 }
 
-/// The blocks after rotation: block i is the former block (i + distance) mod P.
+/// The blocks after rotations by `distance`: block i is the former block (i + distance) mod P.
 Bits turned(const Bits& blocks, std::size_t pes, std::size_t distance) {
     Bits moved(blocks.size());
     const std::size_t size = blocks.size() / pes;
@@ -227,7 +227,7 @@ TEST_CASE("an exchange brings every band from every distance once, with the pred
         }
         CHECK(wrong == 0);
         const std::uint64_t bands = (capacity + band - 1) / band, moves = sum_of(exchange_moves(m, method, false));
-        const std::uint64_t whole = 3ull * capacity * moves;  // words: a short last band moves fewer
+        const std::uint64_t whole = 3ull * capacity * moves;  // total words; a short last band moves fewer
         const bool ring = method == ExchangeMethod::kRing, bus = method == ExchangeMethod::kBus;
         CHECK(counted.rotations == (ring ? moves * bands : 0));
         CHECK(counted.rotation_words == counted.rotations * m.pes * band * 3);

@@ -1,4 +1,4 @@
-// Renders that stop between two bands and resume from a checkpoint: the same image and counts.
+// Renders that stop between two bands and resume from a checkpoint have the same image and counts.
 #include <catch2/catch.hpp>
 #include <functional>
 #include <random>
@@ -13,11 +13,12 @@ namespace {
 
 struct Stopped {};
 
-/// Saves a checkpoint as bytes after every band, and stops the render after `bands` of them.
+/// Saves a checkpoint as bytes after every band, and stops the render after `bands` bands. Resumes from the checkpoint
+/// `from` unless it is empty.
 class TestCheckpoint {
   public:
     explicit TestCheckpoint(int bands = 1 << 30, std::string from = "") : left_(bands), saved_(std::move(from)) {
-        checkpointing_.band_s = 0;  // the shortest bands
+        checkpointing_.band_s = 0;  // makes bands as short as possible
         checkpointing_.due = [] { return true; };
         checkpointing_.keep = [this](const RingState& state, const StateSettings& settings) {
             saved_ = state_bytes(state, settings);
@@ -91,7 +92,7 @@ TEST_CASE("a render that is stopped at any band and resumed gives the same image
             CAPTURE(stop, to_end.count());
             TestCheckpoint first(stop);
             CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.checkpointing()), Stopped);
-            TestCheckpoint second(1 + static_cast<int>(random() % 2), first.saved());  // stops again if bands remain
+            TestCheckpoint second(1 + static_cast<int>(random() % 2), first.saved());  // may stop again
             std::string state = first.saved();
             try {
                 RingRenderer(session, scene, settings).render({}, second.checkpointing());

@@ -1,4 +1,4 @@
-// The modelled ring machine in a trace: its times are those of the time model, its work is the counted work.
+// Trace of the modelled ring machine: its times are those of the time model, and its work is the counted work.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -56,7 +56,7 @@ std::uint64_t rotations_of(const std::vector<TraceSchema::Slice>& slices) {
         std::count_if(slices.begin(), slices.end(), [](const auto& s) { return s.name == "rotation"; }));
 }
 
-// The number of sides that take a single rotation, for which the trace has no inner slices.
+// The number of exchange slices with a single rotation, for which the trace has no inner slices.
 std::uint64_t single_rotations(const Document& trace) {
     std::uint64_t singles = 0;
     for (const Document& e : trace["traceEvents"])
@@ -154,7 +154,8 @@ TEST_CASE("the work of the ring's kernels agrees with the counts", "[ring]") {
     CHECK(works[0].operations + works[1].operations == all.multiply_accumulates);
     CHECK(works[0].divisions + works[1].divisions == all.divisions);
     CHECK(works[0].roots + works[1].roots == all.roots);
-    // One launch: each of 24 PEs reads the words, reads and writes RAYA_EVENTS counters, and writes 20 bytes a pixel.
+    // In one launch, each of 24 PEs reads the job's words, reads and writes RAYA_EVENTS counters per work-item, and
+    // writes 20 bytes per pixel.
     const std::uint64_t words = super.result.communication.broadcast_words;
     CHECK(works[0].bytes == 24 * 4 * words + 24 * 16 * RAYA_EVENTS * super.result.group_size + 20 * 24 * 16);
     const std::uint64_t neighbours = 2 * 23 * 16 + 2 * 24 * 15;

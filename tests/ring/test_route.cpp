@@ -1,4 +1,5 @@
-// Distances to the PEs that own a PE's neighbouring pixels, and the minimum number of rotations that bring them.
+// Ring distances to the PEs that own a PE's neighbouring pixels, and the minimum number of rotations that bring these
+// pixels.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -21,7 +22,7 @@ namespace {
 
 using Distances = std::vector<std::uint32_t>;
 
-/// [row][column]: the PE that lists the pixel in its share.
+/// The owner of each pixel, [row][column], from the PEs' lists of pixels.
 std::vector<std::uint32_t> listed_owners(const raya_mapping& m) {
     std::vector<std::uint32_t> owners(std::size_t{m.width} * m.height);
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
@@ -34,7 +35,7 @@ std::vector<std::uint32_t> listed_owners(const raya_mapping& m) {
     return owners;
 }
 
-/// The distances by the definition in route.hpp, in signed numbers.
+/// The distances according to the definition in route.hpp, in signed numbers.
 Distances defined_distances(const raya_mapping& m, raya_u32 side) {
     const std::vector<std::uint32_t> owners = listed_owners(m);
     const std::int64_t right = side == RAYA_LEFT ? -1 : side == RAYA_RIGHT ? 1 : 0;
@@ -56,7 +57,7 @@ std::uint64_t turns_of(const std::vector<Leg>& route) {
                            [](std::uint64_t sum, const Leg& leg) { return sum + leg.turns(); });
 }
 
-/// The distances of a route's stops, ascending, with repetitions.
+/// The distances at which a route stops, in ascending order, with repetitions.
 Distances stops_of(const std::vector<Leg>& route, std::uint32_t pes) {
     Distances stops;
     for (const Leg& leg : route)
@@ -65,8 +66,8 @@ Distances stops_of(const std::vector<Leg>& route, std::uint32_t pes) {
     return stops;
 }
 
-/// Returns true if a route has at most one leg down and one up, in this order, none empty, with ascending stops within
-/// one round.
+/// Returns true if a route has at most one leg down, followed by at most one leg up. Legs must not be empty; their
+/// stops must ascend and lie within one round of the ring.
 bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
     if (route.size() > 2) return false;
     if (route.size() == 2 && (route[0].turn != Turn::kDown || route[1].turn != Turn::kUp)) return false;
@@ -76,13 +77,14 @@ bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
     });
 }
 
-/// The minimum number of rotations of any walk over the ring that visits all `wanted` (a bit per distance). A rotation
-/// in either direction costs 1, a restart from the PEs' own blocks 0. Breadth-first search over (distance, seen).
+/// The minimum number of rotations that visit all distances in `wanted` (bit d: distance d). A rotation in either
+/// direction costs 1; a restart from the PEs' own blocks costs 0. Breadth-first search over the states (distance,
+/// visited distances).
 int fewest_turns(std::uint32_t pes, std::uint32_t wanted) {
     constexpr int kFar = std::numeric_limits<int>::max();
     const std::uint32_t all = 1u << pes;
     std::vector<int> turns(std::size_t{pes} * all, kFar);
-    std::deque<std::uint32_t> next;  // distance * all + seen
+    std::deque<std::uint32_t> next;  // states: distance * all + seen
     const auto reach = [&](std::uint32_t distance, std::uint32_t seen, int cost, bool costs_nothing) {
         const std::uint32_t state = distance * all + (seen | 1u << distance);
         if (cost >= turns[state]) return;
@@ -101,7 +103,7 @@ int fewest_turns(std::uint32_t pes, std::uint32_t wanted) {
     return kFar;
 }
 
-/// Rotations of a walk that covers the ring except the widest gap between 0 and the distances.
+/// The number of rotations that go round the ring except across the widest gap between adjacent distances, 0 included.
 std::uint32_t turns_round_widest_gap(std::uint32_t pes, Distances stops) {
     stops.push_back(0);
     std::sort(stops.begin(), stops.end());
@@ -159,7 +161,7 @@ TEST_CASE("routes have the minimum number of rotations: every set of distances o
             CAPTURE(pes, distances, turns_of(route), fewest_turns(pes, wanted), stops_of(route, pes));
             CHECK(good);
         }
-    CHECK(fewest_turns(9, 0b000101001) == 5);  // checks the reference: 3 and 5 are 5 away down, 6 up
+    CHECK(fewest_turns(9, 0b000101001) == 5);  // checks the reference: 5 rotations down reach 3 and 5, 6 up
     CHECK(fewest_turns(9, 0b100000010) == 2);  // 1 and 8 are one rotation away, in opposite directions
 }
 
@@ -180,7 +182,7 @@ TEST_CASE("large rings: a route omits the widest gap", "[ring][route]") {
 }
 
 TEST_CASE("if a PE owns whole columns, four sides take 2 (min(p, P - p) + 1) rotations", "[ring][route]") {
-    for (const std::uint32_t p : {0u, 8u, 16u}) {  // the paper's image and array: 2, 18, 34
+    for (const std::uint32_t p : {0u, 8u, 16u}) {  // the paper's image and array: 2, 18 and 34 rotations
         CAPTURE(p);
         CHECK(exchange_rotations({256, 256, 256, p, RAYA_FOLD_CYCLIC}, 256, 256) == 2 * p + 2);
     }
@@ -190,8 +192,8 @@ TEST_CASE("if a PE owns whole columns, four sides take 2 (min(p, P - p) + 1) rot
             const raya_mapping m{pes, 20, pes, p, RAYA_FOLD_CYCLIC};
             const std::uint64_t rotations = 2 * (std::min(p, pes - p) + 1);
             CHECK(exchange_rotations(m, 20, 20) == rotations);
-            CHECK(exchange_rotations(m, 20, 10) == 2 * rotations);  // once per band,
-            CHECK(exchange_rotations(m, 20, 7) == 3 * rotations);   // the last of which is shorter
+            CHECK(exchange_rotations(m, 20, 10) == 2 * rotations);  // once per band
+            CHECK(exchange_rotations(m, 20, 7) == 3 * rotations);   // the last band is shorter
         }
     CHECK(exchange_rotations({6, 4, 1, 3, RAYA_FOLD_BLOCK}, 24, 5) == 0);  // one PE owns all neighbours
 }

@@ -1,4 +1,5 @@
-// Scenes in other units: scaled by a power of two the image keeps its bits, by a power of ten it agrees to rounding.
+// Scenes scaled to other units: scaling by a power of two changes no bit of the image, scaling by a power of ten only
+// the rounding.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -20,14 +21,15 @@ RingCase in_format(const std::string& format) {
     return c;
 }
 
-/// A scene of the project without its planes, whose horizon depends on the format's range and not on the scene.
+/// One of the project's scenes without its planes, because their horizon depends on the format's range and not on the
+/// scene.
 Scene without_planes(const std::string& name) {
     Scene scene = project_scene(name);
     scene.planes.clear();
     return scene;
 }
 
-/// Mean of the differences of all channels, clamped to 0..1.
+/// The mean absolute difference of all colour values, which are clamped to 0..1.
 double mean_difference(const Image& a, const Image& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.rgb.size(); ++i)
@@ -37,7 +39,8 @@ double mean_difference(const Image& a, const Image& b) {
 
 }  // namespace
 
-// Holds if no number comes near the format's limits; in e5mY, with numbers down to 2^-14 only, some always do.
+// The images are equal if no number comes near the format's limits. In e5mY, whose smallest number is 2^-14, some
+// numbers always do.
 TEST_CASE("a scene scaled by a power of two gives the same bits and counts", "[ring][scales]") {
     for (const char* format : quick(2, {"spa22", "fp32", "e8m7t", "e7m12", "e6m10"}))
         for (const char* name : quick(2, {"mirrors", "cones", "polygons", "centre", "glass", "spheres"})) {
@@ -82,7 +85,8 @@ TEST_CASE("scaling a scene into the format moves only the horizon of its planes"
 }
 
 TEST_CASE("a scene scaled by a power of ten gives the same image to rounding", "[ring][scales]") {
-    // Different rounding of lengths moves edges by a fraction of a pixel, and rays between mirrors by more.
+    // The different rounding of lengths moves edges by a fraction of a pixel, and rays between mirrors by more than
+    // that.
     for (const auto& [format, most] : {std::pair{"fp32", 2e-6}, {"spa22", 2e-4}, {"e5m10", 5e-3}})
         for (const char* name : quick(1, {"mirrors", "polygons", "cones", "centre"}))
             for (const int k : {-5, 4, -12, 12}) {

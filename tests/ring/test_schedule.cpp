@@ -1,4 +1,5 @@
-// Loads from cost images, compared with plain sums, with an event-by-event simulation and with theoretical bounds.
+// Loads computed from cost images, compared with plain sums, with an event-by-event simulation and with theoretical
+// bounds.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -17,8 +18,8 @@ namespace {
 
 using Cycles = std::vector<std::uint64_t>;
 
-/// A cost image of one random kind: zero, few values (so that many PEs become free at the same time), even, or a few
-/// pixels that cost far more than all others.
+/// A random cost image of one of four kinds: zero; few distinct values, so that many PEs become free at the same time;
+/// even; or a few pixels that cost far more than all others.
 CostImage random_image(SplitMix& random, std::uint32_t width, std::uint32_t height) {
     CostImage image{width, height, {}};
     const std::uint64_t kind = random.next() % 8;
@@ -44,9 +45,10 @@ struct Simulated {
     std::uint64_t requests = 0;
 };
 
-/// The definition, event by event: shares from every pixel's owner, the next PE by a search over all.
+/// Simulates a dynamic schedule event by event: finds each PE's pixels by the owners of all pixels, and the next free
+/// PE by a search over all PEs.
 Simulated simulated(const CostImage& image, const raya_mapping& m, const DynamicPlan& plan) {
-    std::vector<std::vector<std::uint64_t>> shares(m.pes);  // pixel numbers
+    std::vector<std::vector<std::uint64_t>> shares(m.pes);  // [PE]: pixel numbers
     for (std::uint32_t j = 0; j < image.height; ++j)
         for (std::uint32_t x = 0; x < image.width; ++x) shares[raya_owner(m, j, x)].push_back(j * image.width + x);
     Simulated run;
@@ -64,7 +66,7 @@ Simulated simulated(const CostImage& image, const raya_mapping& m, const Dynamic
         }
     }
     while (!queue.empty()) {
-        const auto first_free = std::min_element(run.finished.begin(), run.finished.end());  // the first of equals
+        const auto first_free = std::min_element(run.finished.begin(), run.finished.end());  // the lowest of equal PEs
         *first_free += plan.overhead;
         ++run.requests;
         for (std::uint32_t i = 0; i < plan.chunk && !queue.empty(); ++i, queue.pop_front())
@@ -88,7 +90,7 @@ TEST_CASE("a static load is the sum of its pixels' costs", "[schedule]") {
         CAPTURE(kSeed, i, width, height, pes, offset, fold);
         const CostImage image = random_image(random, width, height);
         Cycles sums;
-        for (std::uint32_t pe = 0; pe < pes; ++pe) {  // by the PE's list of pixels instead of by owner
+        for (std::uint32_t pe = 0; pe < pes; ++pe) {  // from the PE's list of pixels instead of the owners
             const raya_share own = raya_share_of(m, pe);
             sums.push_back(0);
             for (std::uint32_t k = 0; k < raya_share_size(own); ++k) {
@@ -129,7 +131,7 @@ TEST_CASE("imbalance_of_offsets() agrees with static_load() to the bit", "[sched
 
 TEST_CASE("dynamic and hybrid schedules agree with the simulation", "[schedule]") {
     const CostImage six{6, 1, {5, 1, 1, 1, 1, 2}};
-    const raya_mapping two{6, 1, 2, 0, RAYA_FOLD_BLOCK};  // PE 0 owns 5 1 1, PE 1 owns 1 1 2
+    const raya_mapping two{6, 1, 2, 0, RAYA_FOLD_BLOCK};  // pixel costs: PE 0 owns 5 1 1, PE 1 owns 1 1 2
     CHECK(dynamic_schedule(six, two, {1, 0, 0}).load.per_pe == Cycles{5, 6});
     CHECK(dynamic_schedule(six, two, {2, 10, 0}).load.per_pe == Cycles{16, 12 + 13});  // 5 1, then 1 1, then 1 2
     CHECK(dynamic_schedule(six, two, {1, 10, 0.5}).load.per_pe == Cycles{5 + 11 + 12, 1 + 11 + 11});  // 1 1 1 2 left
@@ -176,7 +178,7 @@ TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]"
         CHECK(pes * makespan(list) <= total + (pes - 1) * largest_chunk);
         CHECK(speedup(list, image) == list.load.speedup);  // equal without overhead
         plan.chunk = 1;
-        CHECK(pes * makespan(dynamic_schedule(image, m, plan)) <= (2 * pes - 1) * least);  // 2 - 1 / P of the optimum
+        CHECK(pes * makespan(dynamic_schedule(image, m, plan)) <= (2 * pes - 1) * least);  // 2 - 1/P times the optimum
     }
 }
 
@@ -201,7 +203,7 @@ TEST_CASE("extreme plans: one chunk, all static, one PE, more PEs than chunks", 
         CHECK(all_static.load.per_pe == static_load(image, m).per_pe);
         CHECK(all_static.requests == 0);
 
-        m.pes = pixels;  // a PE per pixel: if every pixel has a cost, each PE makes one request, in order
+        m.pes = pixels;  // one PE per pixel: if every pixel costs something, each PE makes one request
         if (*std::min_element(image.cycles.begin(), image.cycles.end()) > 0)
             CHECK(dynamic_schedule(image, m, {1, 0, 0}).load.per_pe == image.cycles);
         const Schedule idle = dynamic_schedule(image, m, {plan.chunk, plan.overhead + 1, 0});

@@ -1,6 +1,6 @@
 // Ray counts by kind, compared with the counts that SPD publishes for its scenes: 513 x 513 rays through pixel corners,
-// tree depth 5 with the eye ray as 1. SPD: "Implementations should agree within about 10 %". The bounds here are
-// tighter: the range of two published implementations, extended by 1 %.
+// tree depth 5, where the eye ray has depth 1. SPD says: "Implementations should agree within about 10 %". The bounds
+// here are tighter: the range of two published implementations, extended by 1 %.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -25,7 +25,7 @@ void check_between(std::uint64_t value, double low, double high) {
     CHECK(double(value) <= high);
 }
 
-// The path of an output file of the SPD programs, which may not exist.
+// The path of an output file of the SPD programs. The file may be missing.
 std::filesystem::path spd_file(const std::string& name) {
     const char* folder = std::getenv("RAYA_SPD_DIR");
     return std::filesystem::path(folder ? folder : RAYA_SOURCE_DIR "/../shared/spd") / name;

@@ -1,4 +1,4 @@
-// Large images: the device holds a window of the pixels at a time, which changes no result.
+// Large images: the device holds only a window of the pixels at a time. This changes no result.
 #include <catch2/catch.hpp>
 
 #include "tests/ring/render_scene.hpp"

@@ -1,4 +1,4 @@
-// Reference anti-aliasing for tests: plain functions of whole images, without PEs, mappings, blocks or rotations.
+// Reference antialiasing for tests: functions of whole images, without PEs, mappings, blocks or rotations.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,9 +12,10 @@
 
 namespace raya::whole_image {
 
-/// Arithmetic of a format: each operation in double, then rounded to the format. The double rounding is innocuous for
-/// addition, subtraction and division of p-bit numbers in at least 2 p + 2 bits (S. Figueroa, "When is double rounding
-/// innocuous?", 1995), and 53 >= 2 * 24 + 2. It is not for formats that truncate.
+/// Arithmetic of a number format: each operation is computed in double and then rounded to the format. The double
+/// rounding does not change the result of an addition, subtraction or division of p-bit numbers if the wider format has
+/// at least 2 p + 2 bits (S. Figueroa, "When is double rounding innocuous?", 1995); here 53 >= 2 * 24 + 2. This does
+/// not hold for formats that truncate.
 class Arithmetic {
   public:
     explicit Arithmetic(const NumberFormat& format) : format_(format) {}
@@ -38,7 +39,7 @@ inline bool inside(const Image& image, int row, int column) {
     return row >= 0 && row < image.height && column >= 0 && column < image.width;
 }
 
-/// The image of `value(row, column, colour)`.
+/// An image whose values are `value(row, column, colour)`.
 template <class Value>
 Image make_image(int width, int height, Value&& value) {
     Image image{width, height, {}};
@@ -48,7 +49,8 @@ Image make_image(int width, int height, Value&& value) {
     return image;
 }
 
-/// (own + the pixel (-down, -right) away) + the pixel (down, right) away; pixels outside the image are omitted.
+/// Adds to each pixel the pixel at offset (-down, -right), then the pixel at offset (down, right). Pixels outside the
+/// image are omitted.
 inline Image line_sums(const Image& image, int down, int right, const Arithmetic& in) {
     return make_image(image.width, image.height, [&](int row, int column, int colour) {
         float sum = value_at(image, row, column, colour);
@@ -71,8 +73,8 @@ inline Image filtered(const Image& image, const NumberFormat& format) {
     });
 }
 
-/// Returns true if a colour of the two pixels, clamped to 0..1, differs by at least `threshold`, a number of the
-/// format.
+/// Returns true if a colour component of the two pixels, clamped to 0..1, differs by at least `threshold`, which must
+/// be a number of the format.
 inline bool differ(const Image& image, int row, int column, int other_row, int other_column, float threshold,
                    const Arithmetic& in) {
     const auto clamped = [&](int j, int x, int colour) {
@@ -86,7 +88,7 @@ inline bool differ(const Image& image, int row, int column, int other_row, int o
     return found;
 }
 
-/// 1 in pixels that differ from the left, right, upper or lower neighbour, else 0.
+/// A mask: 1 for pixels that differ() from the left, right, upper or lower neighbour, 0 for the others.
 inline Image contrast_mask(const Image& image, double threshold, const NumberFormat& format) {
     const Arithmetic in(format);
     const float rounded = in.round(threshold);
@@ -100,7 +102,7 @@ inline Image contrast_mask(const Image& image, double threshold, const NumberFor
     });
 }
 
-/// The mean of a pixel's own value and of its four additional points.
+/// The mean of a pixel's own value and its four additional sample points.
 inline float mean_of_five(const std::array<float, 5>& values, const NumberFormat& format) {
     const Arithmetic in(format);
     float sum = values[0];
@@ -108,7 +110,8 @@ inline float mean_of_five(const std::array<float, 5>& values, const NumberFormat
     return in.divide(sum, 5);
 }
 
-/// The number of values with different bits; the number of all values if the sizes differ.
+/// The number of colour values whose bits differ. If the images' sizes differ, the number of values of the larger
+/// image.
 inline std::size_t unlike_values(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height || a.rgb.size() != b.rgb.size())
         return std::max(a.rgb.size(), b.rgb.size());

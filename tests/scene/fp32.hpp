@@ -1,11 +1,11 @@
-// Numbers of a scene rounded to fp32.
+// Rounds numbers of a scene to fp32.
 #pragma once
 #include "host/scene/scene.hpp"
 
 namespace raya {
 
 /// Rounds to fp32. The variable is volatile because gcc 12.2 at -O2 drops the rounding of adjacent values: its
-/// vectoriser cancels the pair of conversions.
+/// vectoriser removes the conversion to float and back.
 inline double fp32(double value) {
     const volatile float rounded = static_cast<float>(value);
     return rounded;

@@ -1,4 +1,4 @@
-// Decodes the words of a job (kernels/shared/job.h) and counts how often each is read.
+// Decodes the words of a job (kernels/shared/job.h) and counts how often each word is read.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -31,7 +31,7 @@ class PackedScene {
         return {x, y, real(at + 2)};
     }
 
-    /// The number of words that were never read, and of words that were read more than once.
+    /// unread(): the number of words that were never read; shared(): of words that were read more than once.
     std::size_t unread() const { return static_cast<std::size_t>(std::count(reads_.begin(), reads_.end(), 0)); }
     std::size_t shared() const {
         return static_cast<std::size_t>(std::count_if(reads_.begin(), reads_.end(), [](int n) { return n > 1; }));

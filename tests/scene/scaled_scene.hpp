@@ -1,4 +1,4 @@
-// Scenes in other units.
+// Scenes scaled to another unit of length.
 #pragma once
 #include "host/scene/scene.hpp"
 

@@ -7,7 +7,7 @@
 
 namespace raya {
 
-/// RAYA_SPD_DIR, or ../shared/spd next to the project's folder. Tests skip files that are missing.
+/// The folder named by RAYA_SPD_DIR; by default ../shared/spd, relative to the source folder. Tests skip missing files.
 inline std::filesystem::path spd_folder() {
     const char* given = std::getenv("RAYA_SPD_DIR");
     return given ? given : RAYA_SOURCE_DIR "/../shared/spd";

@@ -1,4 +1,4 @@
-// The main scene has the imbalance of the paper's scene, and the figures in scenes/README.md are right.
+// The main scene has the same imbalance as the paper's scene, and the figures in scenes/README.md are right.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>

@@ -40,7 +40,7 @@ double turn_of(const Vec3& a, const Vec3& b, const Vec3& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Returns true if edges of two outlines cross, seen from above.
+/// Returns true if edges of the two outlines cross, seen from above.
 bool cross(const Polygon& one, const Polygon& other) {
     const auto ends = [](const Polygon& polygon, std::size_t i) {
         return std::pair{polygon.vertices[i], polygon.vertices[(i + 1) % polygon.vertices.size()]};
@@ -60,7 +60,7 @@ Vec3 middle_of(const Polygon& polygon) {
     return sum / static_cast<double>(polygon.vertices.size());
 }
 
-/// The voxel that contains the whole sphere, or -1.
+/// The index of the voxel that contains the whole sphere, or -1 if none does.
 int voxel_of(const Sphere& sphere, const std::array<int, 3>& voxels) {
     int index = 0;
     for (int axis = 2; axis >= 0; --axis) {
@@ -128,7 +128,7 @@ TEST_CASE("lattice: counts, and every cylinder joins two spheres", "[generate]")
         CHECK(s.cones.size() == 3 * n * (n + 1) * (n + 1));
         CHECK(s.surfaces.size() == 4);
         const double distance = 1.0 / size;
-        std::set<std::tuple<long, long, long>> middles;  // of the cylinders, in half distances
+        std::set<std::tuple<long, long, long>> middles;  // of the cylinders, in units of half the grid distance
         for (const Cone& c : s.cones) {
             const Vec3 middle = (c.base + c.apex) / 2, along = c.apex - c.base;
             const Vec3 halves = middle * 2 / distance;
@@ -204,7 +204,7 @@ TEST_CASE("gears: wheels are closed surfaces whose fronts face outwards", "[gene
     const Scene s = generate_gears(2);
     std::set<std::pair<Point, Point>> edges;
     double volume = 0;
-    for (std::size_t i = 1; i < s.polygons.size(); ++i) {  // 0 is the ground
+    for (std::size_t i = 1; i < s.polygons.size(); ++i) {  // polygon 0 is the ground
         const std::vector<Vec3>& corners = s.polygons[i].vertices;
         for (std::size_t at = 0; at < corners.size(); ++at)
             REQUIRE(edges.insert({point(corners[at]), point(corners[(at + 1) % corners.size()])}).second);
@@ -227,7 +227,7 @@ TEST_CASE("gears: teeth mesh with the neighbours' gaps without touching", "[gene
             CHECK_FALSE(cross(layer[i], layer[j]));
             const Vec3 apart = middle_of(layer[i]) - middle_of(layer[j]);
             CHECK(apart.z == 0);
-            if (i + j == 3) continue;  // across the diagonal
+            if (i + j == 3) continue;  // diagonal neighbours
             double nearest = apart.length();
             for (const Vec3& v : layer[i].vertices) nearest = std::min(nearest, (v - middle_of(layer[j])).length());
             CHECK(nearest < 0.97 * reach);
@@ -313,7 +313,7 @@ TEST_CASE("cluster: seven spheres above the floor that do not touch", "[generate
         CHECK(mirrors == shape.mirrors);
         apart += !touching;
     }
-    CHECK(apart >= 297);  // 200 attempts nearly always find a free position
+    CHECK(apart >= 297);  // 200 attempts per sphere nearly always find a free position
     ClusterShape none;
     none.glass = none.mirrors = none.matt = 0;
     CHECK(generate_cluster(1, none).spheres.empty());

@@ -1,4 +1,5 @@
-// The power of two that scales a scene into the middle of a format's range; 1 if the scene lies within the range.
+// The power of two that scales a scene into the middle of a format's range; no scaling (factor 1) if the scene lies
+// within the range.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -16,7 +17,7 @@ using Catch::Matchers::Contains;
 
 const NumberFormat kFp32{}, kSpa22{6, 15, false}, kSmall{5, 10, false};
 
-/// A sphere of `radius`, seen from `distance`.
+/// A scene with a sphere of `radius`, seen from `distance`.
 Scene sphere_seen_from(double radius, double distance) {
     Scene scene;
     scene.name = "one.nff";
@@ -49,7 +50,8 @@ TEST_CASE("the limits of formats are those of the kernels", "[length_scale]") {
 
 TEST_CASE("a scene within a format's range is not scaled; outside the range it is scaled to the middle",
           "[length_scale]") {
-    // e6m15: hits count up to 2^15, so lengths up to 2^13; radii from 2^-15 on, with a margin of two powers 2^-13.
+    // e6m15: the maximum hit distance is 2^15, so the maximum length is 2^13. The minimum radius is 2^-15, or 2^-13
+    // with a margin of two powers.
     CHECK(length_scale(sphere_seen_from(1, 8192), kSpa22).exponent == 0);
     CHECK(length_scale(sphere_seen_from(1, 8193), kSpa22).exponent == -8);
     CHECK(length_scale(sphere_seen_from(0x1p-13, 8), kSpa22).exponent == 0);

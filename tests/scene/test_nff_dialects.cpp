@@ -1,4 +1,4 @@
-// NFF dialects: what the reader skips, its remarks, and what it refuses.
+// NFF dialects: the statements that the reader skips, its remarks, and the errors that it reports.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -87,7 +87,7 @@ TEST_CASE("the error for a file of another format names the format", "[dialects]
         write_whole_file(file, text);
         CHECK_THROWS_WITH(read_nff(file), !Contains("looks like"));
     }
-    write_whole_file(file, "#include \"a\"\n" + kView + kSphere);  // a comment in NFF
+    write_whole_file(file, "#include \"a\"\n" + kView + kSphere);  // "#" starts a comment in NFF
     CHECK(read_nff(file).spheres.size() == 1);
 }
 
@@ -161,7 +161,7 @@ TEST_CASE("text that is not NFF, and files that leave no scene, are refused", "[
     }
     CHECK_THROWS_WITH(parse_lenient("la 1 1 1\n" + kSphere), Contains("no 'v'"));
     CHECK_THROWS_WITH(parse_lenient(kView + "tt wood.ppm\n0 0 0\n"), Contains("no object"));
-    // The rules for NFF's own entities stay strict.
+    // The rules for NFF's own entities stay strict in lenient mode.
     CHECK_THROWS_WITH(parse_lenient(kView + "s 0 0 0\n"), Contains("file ends"));
     CHECK_THROWS_WITH(parse_lenient(kView + "s 0 0 0 1 2\n"), Contains("follows the end"));
     CHECK_THROWS_WITH(parse_lenient(kView + kView + kSphere), Contains("second 'v'"));

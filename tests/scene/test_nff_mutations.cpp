@@ -1,4 +1,5 @@
-// Damaged files: each is either read, and is then equal after writing and reading, or refused with file and line.
+// Mutated NFF files: the reader must either return a scene, which must not change if written and read again, or throw
+// an error with file and line.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -39,7 +40,7 @@ class Mutator {
   private:
     std::size_t below(std::size_t limit) { return static_cast<std::size_t>(random_.next() % limit); }
 
-    /// A position in the text, its end included, and a length from there.
+    /// A random piece of the text: start, which may be the text's end, and length.
     std::pair<std::size_t, std::size_t> piece(const std::string& text) {
         const std::size_t start = below(text.size() + 1);
         return {start, below(std::min<std::size_t>(40, text.size() - start) + 1)};
@@ -75,7 +76,7 @@ class Mutator {
             case 7:
                 text.replace(start, below(2) * length, kWords[below(kWords.size())]);
                 break;
-            default: {  // splice in a piece of another scene
+            default: {  // insert a piece of another scene
                 const std::string& other = kTexts[below(kTexts.size())];
                 const auto [from, count] = piece(other);
                 text.replace(start, length, other, from, count);
@@ -86,7 +87,7 @@ class Mutator {
     SplitMix random_;
 };
 
-/// Returns true if a message starts with "m.nff:LINE: " and continues.
+/// Returns true if a message starts with "m.nff:LINE: " and has more text after it.
 bool has_place(const std::string& message) {
     const std::string name = "m.nff:";
     if (!message.starts_with(name)) return false;
@@ -95,7 +96,8 @@ bool has_place(const std::string& message) {
            message.substr(end, 2) == ": " && message.size() > end + 2;
 }
 
-/// The error in the reader's handling of a text, or an empty string. Counts accepted texts.
+/// Describes the error in the reader's handling of a text; empty if there is none. Counts the accepted texts in
+/// `accepted`.
 std::string complaint(const std::string& text, int& accepted) {
     try {
         const Scene scene = parse_nff(text, "m.nff");
@@ -122,6 +124,6 @@ TEST_CASE("mutated files are either read or refused", "[nff]") {
         FAIL_CHECK(wrong);
     }
     INFO(accepted << " of " << count << " accepted");
-    CHECK(accepted > count / 20);  // some mutated files stay valid,
-    CHECK(accepted < count / 2);   // most do not
+    CHECK(accepted > count / 20);  // some mutated files stay valid
+    CHECK(accepted < count / 2);   // most become invalid
 }

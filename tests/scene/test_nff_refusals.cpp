@@ -18,10 +18,10 @@ const std::string kChecker = "#raya checker 1 1 1 0 0 0 1\n";
 
 struct Row {
     std::string text;
-    const char* message;  // "LINE: reason", or the start of it
+    const char* message;  // start of the expected message, "LINE: reason"
 };
 
-/// The error message of parse_nff() for a text, or "accepted".
+/// The error message of parse_nff() for a text; "accepted" if it throws no error.
 std::string refusal(const std::string& text) {
     try {
         parse_nff(text, "folder/t.nff");
@@ -38,13 +38,13 @@ void check(const std::vector<Row>& rows) {
     }
 }
 
-/// Checks rows whose text follows a valid view and sphere: it starts on line 9.
+/// Checks rows whose text is appended to a valid view and sphere, so that it starts on line 9.
 void check_entities(std::vector<Row> rows) {
     for (Row& row : rows) row.text = kShortView + kOneSphere + row.text;
     check(rows);
 }
 
-/// A view with one line replaced; lines as in kShortView.
+/// The text of a view and a sphere with one line replaced. `old_line` must be a line of kShortView.
 std::string view_with(const std::string& old_line, const std::string& new_line) {
     std::string text = kShortView + kOneSphere;
     return text.replace(text.find(old_line), old_line.size(), new_line);

@@ -1,4 +1,4 @@
-// Decoded jobs: every word belongs to one record and agrees with the scene, rounded to fp32.
+// Decoded jobs: every word belongs to one record and equals the scene's value rounded to fp32.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -22,15 +22,16 @@ using namespace raya;
 
 namespace {
 
-constexpr double kRounding = 0x1p-24;  // of a number that is rounded to fp32 once
+constexpr double kRounding = 0x1p-24;  // relative error of one rounding to fp32
 
-// The error of a shading normal at a corner: the origin's rounding over the shortest side, here 1/100 of the extent.
+// Bound of the error of a shading normal at a corner: a few roundings of the origin, divided by the shortest side,
+// which here is 1/100 of the scene's extent.
 constexpr double kNormalLimit = 8 * 100 * kRounding;
 
 Surface rounded(Surface s) {
     for (double* value : {&s.diffuse, &s.specular, &s.shine, &s.transmittance, &s.refraction}) *value = fp32(*value);
     if (s.checker) s.checker = Checker{fp32(s.checker->even), fp32(s.checker->odd), fp32(s.checker->size)};
-    s.colour = s.checker ? s.checker->even : fp32(s.colour);  // a checker's own colour is that of its even squares
+    s.colour = s.checker ? s.checker->even : fp32(s.colour);  // a checkered surface's colour: the even squares'
     return s;
 }
 
@@ -107,7 +108,7 @@ class JobCheck {
         check_surface(cone.surface, at);
     }
 
-    /// Checks the faces of a polygon from number `face` on: itself, or the triangles of a patch.
+    /// Checks the job's faces of a polygon, from number `face` on: the polygon itself, or the triangles of a patch.
     void check_faces(const Polygon& polygon, std::size_t& face) {
         const Vec3 normal = newell_normal(polygon.vertices);
         for (const std::vector<int>& corners : faces_of(polygon)) {
@@ -149,7 +150,7 @@ class JobCheck {
         }
     }
 
-    /// At the corners of a patch's triangle the interpolated normal must be the vertex normal.
+    /// Checks that the normal interpolated at the corners of a patch's triangle equals the vertex normal.
     void check_normals(const Polygon& patch, const std::vector<int>& corners, std::size_t at) {
         const int axis = dropped_axis(newell_normal(patch.vertices));
         const double u0 = packed_.real(at + RAYA_PATCH_ORIGIN), v0 = packed_.real(at + RAYA_PATCH_ORIGIN + 1);
@@ -180,7 +181,7 @@ JobSettings settings_for(std::uint32_t width, std::uint32_t height, Sampling sam
     return settings;
 }
 
-/// A quad and a triangle with normals, and a concave polygon without; one checker.
+/// A scene with a quad and a triangle with normals, a concave polygon without normals, and a checkered surface.
 Scene patch_scene() {
     Scene scene;
     scene.view.from = {0, 0, -5};

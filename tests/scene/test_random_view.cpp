@@ -1,4 +1,4 @@
-// Random views: uniform camera positions in the allowed zone, and no other change of the scene.
+// Random views: camera positions are uniform in the allowed zone, and nothing else in the scene changes.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-// The bounding box of the finite objects is tight.
+// The bounding box of the finite objects is the smallest one.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

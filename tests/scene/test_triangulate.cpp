@@ -1,4 +1,5 @@
-// Newell's normal, the dropped axis, and ear clipping of concave, degenerate and self-touching outlines.
+// Newell's normal, the dropped axis of the projection, and ear clipping of concave, degenerate and self-touching
+// outlines.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -20,8 +21,8 @@ Vec3 doubled_area(const Outline& outline, const std::array<int, 3>& t) {
     return (corner(outline, t[1]) - corner(outline, t[0])).cross(corner(outline, t[2]) - corner(outline, t[0]));
 }
 
-/// Requires n - 2 triangles with the outline's orientation, whose areas sum to its area (so that they cover it once),
-/// and that every vertex is used.
+/// Checks that there are n - 2 triangles with the outline's orientation, that their areas sum to the outline's area (so
+/// that they cover it once), and that every vertex is used.
 void check_triangulation(const Outline& outline) {
     const Vec3 normal = newell_normal(outline);
     const auto triangles = triangulate(outline, normal);
@@ -38,7 +39,7 @@ void check_triangulation(const Outline& outline) {
     for (const int uses : used) CHECK(uses > 0);
 }
 
-/// The outline in a plane whose normal has no zero component.
+/// The outline, moved to a plane whose normal has no zero component.
 Outline tilted(const Outline& flat) {
     const Vec3 normal = Vec3(0.3, -0.9, 0.4).normalized();
     const Vec3 u = normal.cross(Vec3(0, 0, 1)).normalized();

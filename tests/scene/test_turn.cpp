@@ -1,4 +1,4 @@
-// Camera turns: distance, height, direction and exactness.
+// Turns of the camera: distance, height, direction and exactness.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -30,7 +30,7 @@ TEST_CASE("a turn changes only the azimuth of the camera's position, by the angl
         const Vec3 axis = view.up.normalized(), before = view.from - view.at, after = seen.from - seen.at;
         CHECK(after.length() == Approx(before.length()).epsilon(1e-12));
         CHECK(after.dot(axis) == Approx(before.dot(axis)).margin(1e-12));
-        // The level parts of both arms enclose the angle, anticlockwise.
+        // The components of both vectors perpendicular to the axis enclose the angle, anticlockwise.
         const Vec3 level = before - axis * before.dot(axis), then = after - axis * after.dot(axis);
         const double angle = std::atan2(axis.dot(level.cross(then)), level.dot(then));
         CHECK(std::remainder(angle - degrees * std::numbers::pi / 180, 2 * std::numbers::pi) == Approx(0).margin(1e-9));

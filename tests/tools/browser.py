@@ -2,7 +2,7 @@
 import json, os, select, shutil, subprocess, tempfile, time
 
 PROGRAMS = ["chromium", "chromium-browser", "google-chrome"]
-TIMEOUT_S = 60  # of an answer of the browser
+TIMEOUT_S = 60  # maximum time of an answer of the browser
 
 
 def program():
@@ -15,11 +15,11 @@ class Browser:
 
     def __init__(self):
         self.profile = tempfile.mkdtemp(prefix="raya-browser-")
-        down, self.out = os.pipe()  # fd 3 and 4 of the browser
+        down, self.out = os.pipe()  # the browser reads commands from fd 3 and writes answers to fd 4
         self.into, up = os.pipe()
 
         def take_pipes():
-            ends = os.dup(down), os.dup(up)  # numbers other than 3 and 4
+            ends = os.dup(down), os.dup(up)  # duplicates, whose numbers are not 3 and 4
             os.dup2(ends[0], 3), os.dup2(ends[1], 4)
 
         self.process = subprocess.Popen(
@@ -43,7 +43,7 @@ class Browser:
         shutil.rmtree(self.profile, ignore_errors=True)
 
     def message(self, seconds):
-        """The next message; None if none arrives within `seconds`."""
+        """The browser's next message; None if none arrives within `seconds`."""
         end = time.monotonic() + seconds
         while b"\0" not in self.rest:
             if not select.select([self.into], [], [], max(0, end - time.monotonic()))[0]:

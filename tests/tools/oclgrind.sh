@@ -3,8 +3,8 @@
 # calls, accesses outside a buffer, more than 32 KB of local memory.
 #   tests/tools/oclgrind.sh RAYA PATCH_KERNELS      the built program; tests/kernels/patch_kernels.cpp
 # Renders each scene of scenes/ with one and four lanes, one and four work-items, on different arrays, and one scene with anti-aliasing.
-# Oclgrind's log must stay empty (its exit code is always 0), and every image must be that of the default device. By default one scene and
-# one injected fault of each kind; RAYA_THOROUGH=1: all.
+# Oclgrind's log must stay empty (its exit code is always 0), and every image must be that of the default device. By default it runs one scene
+# and one injected fault of each kind; with RAYA_THOROUGH=1, all of them.
 set -euo pipefail
 raya=$(readlink -f "$1")
 patch_kernels=$(readlink -f "$2")
@@ -21,7 +21,7 @@ runs=(
     "--lanes 1 --group 4 --pes 4 --mapping column"
     "--lanes 4 --group 4 --pes 2 --offset 5"
 )
-# Options of the exchange between PEs; only on the first scene, as the exchange does not depend on objects.
+# Options of the exchange between PEs; tested only with the first scene, because the exchange does not depend on objects.
 exchanges=(
     "--antialias filter --pes 9 --offset 2 --group 4"
     "--antialias filter --pes 4 --fold block"
@@ -36,9 +36,9 @@ if [[ -z $thorough ]]; then
     exchanges=("${exchanges[2]}")
 fi
 
-# Unoptimised: Oclgrind 21.10 supports neither `freeze` nor `noalias.scope.decl`, which the optimiser emits.
-# The check for uninitialised values does not support clEnqueueFillBuffer, so raya clears buffers by writes. It does not follow buffer
-# copies either, so it is off for renders with rotations.
+# Kernels are compiled unoptimised: Oclgrind 21.10 supports neither `freeze` nor `noalias.scope.decl`, which LLVM's optimiser emits.
+# The check for uninitialised values does not support clEnqueueFillBuffer, so raya clears buffers by writes. It does not track buffer
+# copies either, so the check is off for renders with rotations.
 watch_values=--uninitialized
 under_oclgrind() {
     # shellcheck disable=SC2086  # may be empty
@@ -94,18 +94,18 @@ if [[ -n $thorough ]]; then
 fi
 watch_values=
 for options in "${exchanges[@]}"; do
-    # The same method on one large array by the default device.
+    # The same method on one large array, with the default device.
     method=$(sed -E 's/--(pes|offset|group|lanes|fold) [a-z0-9]+//g' <<<"$options")
     check_run "${scenes[0]}" "$options" "$method --machine grande --format spa22 --pes 1"
 done
 [[ -z $thorough ]] || check_fault torus/inject.cl $'*next = end;\n        node_barrier();' "*next = end;" "data race" --machine torus --nodes 2x1x1
 [[ -z $thorough ]] || check_fault torus/route.cl $'goal = RAYA_STAYS;\n        node_barrier();' "goal = RAYA_STAYS;" "data race" --machine torus --nodes 2x1x1
 check_fault torus/accept.cl $'vote(votes, goal);\n        node_barrier();' "vote(votes, goal);" "data race" --machine torus --nodes 2x1x1
-# Nodes with several work-items, rays that wait for queue space, both methods of making primary rays.
+# Nodes with several work-items, rays that wait for free queue entries, both methods of making primary rays.
 size=6
 [[ -z $thorough ]] || check_run cones "--machine torus --nodes 2x2x1 --lanes 4 --group 3 --queue 200" "--machine grande"
 check_run planes "--machine torus --nodes 2x1x2 --lanes 1 --group 4 --inject root --links torus2d" "--machine grande"
-# A pool of rays of several trees, from which idle lanes take the next one.
+# A pool with the rays of several trees, from which idle lanes take the next ray.
 size=4
 check_run glass "--machine grande --accel grid --lanes 4 --group 3 --pes 2" "--machine grande"
 echo "Oclgrind: ${#scenes[@]} scenes, ${#runs[@]} runs each, ${#exchanges[@]} of the exchange, the torus, the grid${thorough:+ and the BVH}: no reports, the same images"

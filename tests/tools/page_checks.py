@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks for every page that raya writes, in a browser (browser.py).
+"""Checks of all pages that raya writes, in a browser (browser.py).
 
     tests/tools/page_checks.py PAGE.html [--pictures FOLDER]      prints the complaints about a page; FOLDER: for screenshots
 """
@@ -10,8 +10,8 @@ import browser
 
 WIDTHS = (400, 820, 1400)
 
-# Returns complaints about the page, and counts. A link with an = is a state of the page, not an anchor. SVG text has its colour in `fill`; its
-# background is the document's.
+# Returns complaints about the page, and counts of checked elements. A link to # with an = contains settings and is not an anchor. The colour of SVG
+# text is in `fill`, its background is that of the document.
 LOOK = r"""(() => {
   const wrong = [];
   const seen = (e) => e.checkVisibility() && e.getClientRects().length > 0;
@@ -78,7 +78,7 @@ LOOK = r"""(() => {
 
 
 def complaints(page):
-    """Yields complaints about requests, exceptions and messages in the console."""
+    """Yields complaints: network requests, exceptions, and messages in the console."""
     for method, what in page.events:
         if method == "Network.requestWillBeSent":
             url = what["request"]["url"]
@@ -101,7 +101,7 @@ def main():
     with browser.Browser() as page:
         for width, dark, scripts in [(w, d, True) for w in WIDTHS for d in (False, True)] + [(WIDTHS[1], False, False)]:
             page.open(url, width, dark, scripts)
-            if scripts:  # wait for them
+            if scripts:  # wait until they have run
                 page.value("new Promise((done) => setTimeout(done, 1500))")
             name = f"{width}-{'dark' if dark else 'light'}{'' if scripts else '-no-scripts'}"
             wrong += [f"{name}: {text}" for text in [*page.value(LOOK)["wrong"], *complaints(page)]]

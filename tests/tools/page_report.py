@@ -3,7 +3,7 @@ import json, re, subprocess
 from pathlib import Path
 
 REPORT = re.compile(r'(<pre id="report"[^>]*>)(.*?)(</pre>)', re.S)
-# Text that a page must escape: ends of elements, scripts, events, entities, placeholders of the page's template, line separators.
+# Text that a page must escape: closing tags, scripts, event handlers, entities, placeholders of the page's template, line separators.
 HOSTILE = ("</pre></script></template></title><script>window.hit = 1</script><img src=x onerror='window.hit = 1'><svg onload='window.hit = 1'>"
            "&lt;&amp;&#60;{{style.css}}{{report}}<!--<![CDATA[ \u2028\u2029\u0000'\"`${window.hit = 1}`\\ javascript:window.hit=1//")
 
@@ -13,7 +13,7 @@ def report_of(html):
 
 
 def with_report(html, report):
-    """The page with another report, escaped as in host/report/page/page.cpp."""
+    """The page with its report replaced; JSON is escaped as in host/report/page/page.cpp."""
     text = json.dumps(report, indent=2, ensure_ascii=False)
     for sign in "<>&":
         text = text.replace(sign, f"\\u{ord(sign):04x}")
@@ -30,7 +30,7 @@ def places(value, holds):
 
 
 def gpu_day(raya, folder):
-    """(report.json, page.html) of a run of tools/gpu_day whose steps are right, wrong, late and not here."""
+    """(report.json, page.html) of a run of tools/gpu_day with steps that are right, wrong, out of time, or not possible on this machine."""
     steps = Path(folder, "steps")
     steps.mkdir(parents=True)
     for name, code, text in [("devices", "1 0 right", "$ raya devices\nGPU"), ("verify-quick", "1 12 exit code 4", "$ raya verify --quick\nGPU (maker, driver 1)\nFAIL  grid \"a\\b\""),

@@ -1,7 +1,7 @@
 """Injects random faults into reports, which the schemas must refuse; for test_reports.py."""
 import copy, random, re
 
-# Optional members that happen to be in all reports of the test.
+# Optional members that are in all reports of this test by chance.
 OPTIONAL = {"tune.json: results[].configuration.local_words", "tune.json: results[].configuration.batch",
             "tune.json: results[].configuration.lanes", "tune.json: results[].configuration.group"}
 OPEN = re.compile(r"study\.json: (settings|tables\[\]\.rows\[\])")  # objects with any members, or with both strings and numbers
@@ -9,13 +9,13 @@ SIGNED = "length_exponent"  # may be negative; it is 0 in the test
 
 
 def variant(value):
-    """Text of an object's variant, which determines its members."""
+    """Text that identifies the variant of an object; the members of an object depend on its variant."""
     words = [value[key] for key in ("kind", "method", "status") if isinstance(value.get(key), str)]
     return f"<{words[0] if words else ''}{' torus' * ('torus' in value)}>"
 
 
 def spots(value, path):
-    """Yields (path, container, key) of every value in a report; of lists only the first and the last item."""
+    """Yields (path, container, key) of every value in a report, but only of the first and last item of a list."""
     if isinstance(value, dict):
         own = path + variant(value)
         for key in value:
@@ -34,7 +34,7 @@ def plain(path):
 
 
 class Damage:
-    """Makes damaged copies of reports. Which members are required is derived from the reports, not from the schemas."""
+    """Makes damaged copies of reports. Required members are found from the reports (those in every report), not from the schemas."""
 
     def __init__(self, made, seed):
         self.random, self.made, self.always, self.negative = random.Random(seed), made, {}, set()
@@ -48,7 +48,7 @@ class Damage:
                     self.negative.add(path)
 
     def one(self):
-        """(schema, description of the fault, damaged report); None if the random fault does not apply at the random place."""
+        """(schema, description of the fault, damaged report), for a random fault at a random place; None if the fault is not possible there."""
         form, name, report = self.random.choice(self.made)
         root = {"": copy.deepcopy(report)}
         path, holder, key = self.random.choice(list(spots(root, form + ": ")))

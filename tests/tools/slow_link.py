@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Links two network namespaces, and delays and drops packets like `tc netem`, also on kernels without netem.
+"""Connects two network namespaces, and delays and drops network packets like `tc netem`, also on Linux kernels without netem.
 
     slow_link.py NAMESPACE NAMESPACE DELAY_MS LOST_OF     drops one packet of LOST_OF; the device is link0 at both ends
 
@@ -29,7 +29,7 @@ def open_end(namespace):
 
 def carry(ends, delay_s, lost_of, counts):
     others = dict(zip(ends, reversed(ends)))
-    under_way = collections.deque()  # (time of arrival, end, packet)
+    under_way = collections.deque()  # (time of arrival, receiving end of the link, packet)
     while True:
         wait = max(0, under_way[0][0] - time.monotonic()) if under_way else None
         for end in select.select(ends, [], [], wait)[0]:
@@ -43,7 +43,7 @@ def carry(ends, delay_s, lost_of, counts):
             _, end, packet = under_way.popleft()
             try:
                 os.write(end, packet)
-            except OSError:  # the device is not up
+            except OSError:  # the receiving device is not up
                 pass
 
 

@@ -25,7 +25,7 @@ mkdir "$bare/out"
 "$root/tools/package" --build "$build" -o "$bare/out"
 cp "$root"/tools/container/{install,left_out} "$bare/out"
 
-# The package alone: raya starts, and names the missing driver.
+# Without recommended packages: raya starts, and its message names the missing driver.
 in_root sh -c 'apt-get install -qq -y --no-install-recommends /out/raya_*.deb' >"$bare.log" 2>&1 || fail "$(<"$bare.log")"
 in_root raya --version
 code=0 output=$(in_root raya render $scene -o /root/c.ppm 2>&1) || code=$?
@@ -36,7 +36,7 @@ in_root apt-get install -qq -y --no-install-recommends --download-only pocl-open
 keep_packages "$build"
 in_root /out/install >"$bare.log" 2>&1 || fail "$(<"$bare.log")"
 rm -f "$bare/root/c.ppm"
-bytes=$(du -sx --apparent-size --block-size=1 --exclude="$bare/out" "$bare" | cut -f1)  # size of the files, as for images
+bytes=$(du -sx --apparent-size --block-size=1 --exclude="$bare/out" "$bare" | cut -f1)  # sum of file sizes, as container tools report image sizes
 echo "the container's files: $((bytes / 1000000)) MB"
 ((bytes < 400000000)) || fail "400 MB or more"
 [[ -z $(find "$bare/usr/lib" -name 'libOpenImageIO*') ]] || fail "OpenImageIO is installed"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Refuses committed binary files, such as caches and build products, except the kinds in WANTED.
+"""Fails if git tracks binary files, such as caches and build products, except the kinds in WANTED.
   test_binary.py     exit code 77: not a git checkout"""
 import fnmatch
 import pathlib
@@ -8,11 +8,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WANTED = ["docs/*.png", "tests/fuzz/corpus/*"]
-HEAD = 8000  # bytes that are searched for a zero byte, as in git
+HEAD = 8000  # number of bytes at the start of a file that are searched for a zero byte, as git does
 
 
 def unwanted(files):
-    """Names of the files, given as (name, first bytes), that have a zero byte and are not in WANTED."""
+    """Names of the files, given as (name, first bytes), that have a zero byte in these bytes and are not in WANTED."""
     return [name for name, head in files if b"\0" in head and not any(fnmatch.fnmatch(name, kind) for kind in WANTED)]
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/bundle: the packed program runs without raya's build dependencies; a program that needs other libraries is refused.
+# Tests tools/bundle: the packed program runs without raya's build dependencies; tools/bundle refuses a program that needs other libraries.
 #   test_bundle.sh BUILD     the build folder, with the target `bundled` built
 set -euo pipefail
 build=$(readlink -f "$1")
@@ -18,7 +18,7 @@ cmp "$scratch"/{one,two}.tar.gz || fail "the same programs make another tarball"
 glibc=$(grep -oE 'glibc [0-9.]+' <<<"$out")
 [[ $(printf '%s\n' "$glibc" "glibc 2.34" | sort -V | head -n 1) == "$glibc" ]] || fail "needs $glibc, newer than RHEL 9's"
 
-# Unpacked in another folder, with an empty environment except for the driver's variables. LD_DEBUG lists the loaded libraries.
+# Runs the program unpacked in another folder, in an empty environment except for the driver's variables. LD_DEBUG lists the loaded libraries.
 mkdir "$scratch/away" "$scratch/home"
 tar -xzf "$scratch/one.tar.gz" -C "$scratch/away"
 top=$(echo "$scratch"/away/raya-*)

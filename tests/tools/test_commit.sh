@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The commit in `raya --version`: of a checkout, of a checkout with changes, of an archive by `git archive`; none for other sources.
+# Tests the commit in `raya --version` for a checkout, a checkout with changes, and an archive by `git archive`; other sources have no commit.
 set -euo pipefail
 root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
 command -v git >/dev/null || { echo "skipped: no git"; exit 77; }
@@ -20,7 +20,7 @@ cp "$root/tools/commit.txt" "$checkout/tools"
 grep -qF 'Format:%H' "$checkout/tools/commit.txt" || { echo "skipped: these sources come from git archive"; exit 77; }
 expect "$checkout" "Release, a compiler"
 
-git init -q "$scratch"  # another project's repository, in a folder above
+git init -q "$scratch"  # the repository of another project, in a parent folder of the sources
 git -C "$scratch" commit -q --allow-empty -m "of others"
 expect "$checkout" "Release, a compiler"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Completions of `raya completion` in bash, zsh and fish, as far as they are installed.
+"""Tests the completions of `raya completion` in those of bash, zsh and fish that are installed.
   test_completion.py RAYA"""
 import os
 import pathlib
@@ -69,14 +69,14 @@ class Zsh:
         folder = pathlib.Path(script).parent / "functions"
         folder.mkdir()
         shutil.copy(script, folder / "_raya")  # the name under which distributions install it
-        self.more = ""  # output that until() has not returned yet
+        self.more = ""  # output after the text that until() has returned
         pid, self.terminal = pty.fork()
         if pid == 0:
             os.execvpe("zsh", ["zsh", "-f", "-i"], {**os.environ, "TERM": "dumb", "COLUMNS": "200", "LINES": "200"})
         self.keys(f"PS1='>''>>'; unset zle_bracketed_paste; unsetopt prompt_sp; stty cols 200 rows 200; fpath=({folder} $fpath); autoload -Uz compinit && compinit -D -u; "
                   "zstyle ':completion:*' list-prompt ''; LISTMAX=1000; setopt no_auto_menu no_beep; echo EN''D\n")
         self.until("END")
-        self.until(">>>")  # earlier keys would go to the terminal, not to zsh's line editor
+        self.until(">>>")  # before the prompt, the terminal and not zsh's line editor would receive keys
 
     def keys(self, text):
         os.write(self.terminal, text.encode())

@@ -40,7 +40,7 @@ def small_page(lab):
 
 
 def large_page(lab):
-    """A page with every colour, style and kind of axis, a band, bars, and names that are scripts unless escaped."""
+    """A page with every colour, style and kind of axis, an interval band, error bars, and names that would be scripts if not escaped."""
     def series(number):
         x = range(1, 60 if number == 1 else 5)
         style = "steps" if number == 7 else "points" if number == 8 else "line" if number < 7 else "paper"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Documents: links lead somewhere, paragraphs are short, and what README prints is what raya prints.
+"""Checks the documents: targets of links exist, paragraphs are short, and the outputs printed in README.md equal raya's outputs.
 
   test_documents.py RAYA    RAYA: the program; its examples in README.md are run in the project's folder
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 GENERATED = {"report.md", "gpu_resources.md", "portability.md", "performance.md", "sweep.md"}  # tools write these
 MOST_WORDS, MOST_CELL_WORDS, MOST_COLUMNS = 80, 30, 170
-# What differs between machines and runs: times, rates, shares of a peak, sizes of binaries, the device's name.
+# Output that differs between machines and runs: times, rates, percentages of a peak, sizes of binaries, the device's name.
 MEASURED = re.compile(r"\d+(\.\d+)?(?= ?(s|Mrays/s|ms)\b)|pthread-[^(:]*?(?= \(|:|$)|(?<=\s)\d+\.\d+|\b\d+ lanes?\b|(?<=\s)\d{2,3}$")
 
 
@@ -68,6 +68,14 @@ def examples(text):
             yield lines[0][2:], lines[1:]
 
 
+def stale_counts(verify_output):
+    """docs/verify.md names the number of images that --quick renders."""
+    printed = len(re.findall(r"^PASS  image ", verify_output, re.M))
+    named = re.search(r"(\d+) images", (ROOT / "docs/verify.md").read_text())
+    if not named or int(named[1]) != printed:
+        yield f"docs/verify.md: {named and named[0]}, and raya verify --quick renders {printed}"
+
+
 def wrong_examples(raya, text):
     with tempfile.TemporaryDirectory() as folder:
         for command, printed in examples(text):
@@ -77,6 +85,8 @@ def wrong_examples(raya, text):
                 yield f"README.md: {command}: exit code {run.returncode}: {run.stderr}"
                 continue
             lines = {masked(line.replace(folder + "/", "")) for line in run.stdout.splitlines()}
+            if " verify " in command:
+                yield from stale_counts(run.stdout)
             yield from (f"README.md: {command} does not print: {line}" for line in printed if masked(line) not in lines)
 
 
@@ -93,7 +103,7 @@ def main():
         faults.append("test_documents.py: finds no fault where there is one")
     faults += wrong_examples(raya, readme)
     wrong = "    $ build/raya devices\n    a device that nobody has\n"
-    if not list(wrong_examples(raya, wrong)):
+    if not list(wrong_examples(raya, wrong)) or not list(stale_counts("PASS  image a\n")):
         faults.append("test_documents.py: an example with another output passes")
     print("\n".join(faults) or f"{len(documents())} pages, {len(list(examples(readme)))} examples: no fault")
     return bool(faults)

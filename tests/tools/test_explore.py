@@ -18,7 +18,7 @@ SEED = int(os.environ.get("RAYA_EXPLORE_SEED", "1993"))
 WIDTHS = (400, 820, 1400)
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 
-# Follows links and returns the page's texts and figures for each; with `whole`, also loads and curves.
+# Opens links and returns the page's texts and figures for each link; with `whole`, also loads and curves.
 FOLLOW = r"""(async (cases) => {
   const answers = [];
   for (const {link, whole} of cases) {
@@ -50,7 +50,7 @@ def start(page, url, **view):
 
 WIDE, HIGH = 48, 36
 SQUARE = ["--size", "64x64", "--lanes", "4", "--format", "fp32"]  # on the SPA, which has a time model
-# Both folds with fewer, as many and more PEs than columns, divisors and others; every other mapping, with unequal sides.
+# Both folds, with fewer, as many and more PEs than columns, that divide their number or not; and every other mapping, with unequal sides.
 SETTINGS = [("cyclic:7", 48, "cyclic"), ("cyclic:13", 12, "cyclic"), ("cyclic:5", 20, "cyclic"), ("cyclic:5", 20, "block"), ("cyclic:40", 12, "block"),
             ("cyclic:11", 100, "cyclic"), ("cyclic:11", 100, "block"), ("column", 7, "block"), ("rows", 7, ""), ("blocks", 10, ""), ("grid:3x8", 24, ""),
             ("grid:7x2", 14, ""), ("tiles:8x3", 9, ""), ("random:1", 17, ""), ("random:4000000000", 48, "")]
@@ -68,8 +68,8 @@ def grouped(number):
 
 
 def rendered(raya, folder, scene, settings):
-    """Yields the figures that the page must show for each setting, from renders: loads, and moves of the 3 x 3 filter where it is possible."""
-    # A machine without a memory limit: a PE's pixels move at once.
+    """Yields the figures that the page must show for each setting, from renders: loads, and moves of the 3 x 3 filter if the mapping allows it."""
+    # A machine without a memory limit, so that all pixels of a PE move at the same time.
     report, size = Path(folder, "report.json"), ["--size", f"{WIDE}x{HIGH}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32"]
 
     def render(mapping, pes, fold, *more):
@@ -94,7 +94,7 @@ def rendered(raya, folder, scene, settings):
 
 
 def compared(page, cases):
-    """Yields the differences between the page and the renders."""
+    """Yields the differences between the figures of the page and of the renders."""
     asked = [{"link": case["link"], "whole": True} for case in cases]
     for case, answer in zip(cases, page.value(f"{FOLLOW}({json.dumps(asked)})")):
         if answer["message"]:
@@ -108,7 +108,8 @@ def compared(page, cases):
 
 
 def arithmetic(page):
-    """Complaints about figures that no render prints: shortest vectors (by all pairs), rotations on Kohata & Ito's array, digits as by fmt, times."""
+    """Complaints about figures that no render prints: shortest vectors (compared with a search of all pairs), rotations on Kohata & Ito's array,
+    digits (compared with fmt's), times."""
     wrong = page.value("""(() => {
       const wrong = [], side = 48;
       const check = (setting, width) => {
@@ -141,7 +142,7 @@ def arithmetic(page):
 
 
 def costs(page, html, folder):
-    """The page decodes costs of any size, up to a sum of 2^53 - 1, and reports incomplete costs."""
+    """The page must decode costs of any size, up to a sum of 2^53 - 1, and report incomplete costs."""
     report, rng, changed = report_of(html.read_text()), random.Random(SEED), Path(folder, "costs.html")
     for bits in (0, 9, 33, 41):
         cycles = [rng.getrandbits(bits) if bits else 0 for _ in range(WIDE * HIGH)]
@@ -165,7 +166,7 @@ def costs(page, html, folder):
 
 
 def looks(page, html):
-    """Complaints about the page at all widths, light and dark, on paper, without scripts."""
+    """Complaints about the page at all widths, with both colour schemes, printed, and without scripts."""
     for width, dark, scripts, media in [(w, d, True, "") for w in WIDTHS for d in (False, True)] + [(820, False, False, ""), (700, False, True, "print")]:
         start(page, html.as_uri(), width=width, dark=dark, scripts=scripts, media=media)
         view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
@@ -271,7 +272,7 @@ def handled(page, html):
     for name, mapping in (("rows", "rows"), ("tiles", "tiles:8x8"), ("random", "random:1"), ("column", "column")):
         page.value(f"(() => {{ const e = document.getElementById('mapping'); e.value = '{name}'; e.dispatchEvent(new Event('input', {{bubbles: true}})); }})()")
         settle(page)
-        if name != "tiles":  # the sides of tiles depend on the page
+        if name != "tiles":  # the page chooses the sides of tiles
             yield from expect(f"choosing {name}", mapping, 63)
     yield from expect("view and fold", "column", 63, "block", owner, "loads")
     page.value("new Promise((done) => setTimeout(done, 400))")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# tools/gpu_day: interruption and resuming; page and exit code for steps that are right, wrong, late or missing.
-#   test_gpu_day.sh          with a stand-in for raya, which renders nothing, in a folder like that of tools/bundle
+# Tests tools/gpu_day: interruption and resuming; page and exit code for steps that are right, wrong, out of time or missing.
+#   test_gpu_day.sh          with a mock raya that renders nothing, in a folder like that of tools/bundle
 #   test_gpu_day.sh RAYA     with the built program on the default device: small pictures, minutes of kernel compilation
 set -euo pipefail
 root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
@@ -19,7 +19,7 @@ expect() {  # expect CODE TEXT...
 }
 ended() { find "$out" -name '*.code' | wc -l; }
 
-# Rows that are in both lists of hashes and counts are equal; a picture has the same hash for every accelerator, machine and number of nodes.
+# Rows that are in both renders.csv and gpu_day.csv must be equal. A picture must have the same hash for every accelerator, machine and number of nodes.
 common=0
 while IFS=, read -r scene options row; do
     found=$(awk -F, -v scene="$scene" -v options="$options" '$1 == scene && $2 == options { sub(/^[^,]*,[^,]*,/, ""); print }' "$day/gpu_day.csv")
@@ -32,13 +32,13 @@ several=$(grep -v '^#' "$day/gpu_day.csv" | sed -E 's/ --(accel|machine|nodes) [
 
 if (($# > 0)); then
     ln -s "$(readlink -f "$1")" "$day/raya"
-    # Long limits, as other programs may load this machine. The stand-in tests the limits.
+    # Long time limits, because other programs may load this machine. The runs with the mock raya test the limits.
     sed -i 's/^limits=.*/limits=(0 3000 3000 3000 3000 3000)/; s/timeout -k 5 "$limit"/timeout -k 5 3000/' "$day/gpu_day"
     grep -q 'timeout -k 5 3000' "$day/gpu_day"
 else
     cat >"$day/raya" <<'RAYA'
 #!/usr/bin/env bash
-# Renders with the hash of FILE.csv. A file in this folder injects a fault, by its name.
+# The mock raya: its renders have the hashes of FILE.csv. A file in this folder injects the fault that its name describes.
 here=$(dirname "$0")
 fault() { [[ -e $here/$1 ]]; }
 case $1 in
@@ -83,7 +83,7 @@ RAYA
     cp "$day/gpu_day.csv" "$day/right.csv"
 fi
 
-# Killed while it runs: finished steps do not run again.
+# gpu_day is killed while it runs: finished steps must not run again.
 "$day/gpu_day" --out "$out" --small --all >"$scratch/page" 2>"$scratch/err" &
 for ((i = 0; i < 20000; ++i)); do
     (($(ended) < 6)) || break
@@ -124,7 +124,7 @@ if (($# > 0)); then
 fi
 expect 4 "fp32, trace kernel | 5000 | 5120 | reached" "a third of that | 1706.67 | 2000.5 | reached" "1000 | 800 | missed"
 
-# Each in a folder of its own: the failed step is named, and the others run.
+# Each fault in a new folder: the page names the failed step, and the other steps run.
 another() { out=$scratch/$1; touch "$day/$1"; gpu_day "${@:2}"; rm "$day/$1"; }
 cp "$day/right.csv" "$day/gpu_day.csv"
 another no_device --all
@@ -133,7 +133,7 @@ expect 3 "no device: raya: no OpenCL device" "devices: exit code 3"
 another wrong_verify --all
 expect 4 "- verify-full: exit code 4" "FAIL  geometry  grid" "| 3 | hashes | 16 | 0 | 0" "| 1 | devices, verify --quick | 1 | 1 | 0"
 
-# A step that hangs; a stage that is out of time resumes when it is requested again.
+# A step that hangs; a stage that is out of time continues when it is requested again.
 sed -i 's/^limits=.*/limits=(0 3 1 0 60 60)/' "$day/gpu_day"
 another slow_verify --all
 expect 4 "- verify-quick: not done after" "| 3 | hashes | 0 | 16 | 0" "- hash-torus-cones-spa22: late" "| 4 | bench, roofline, tuning | 14 | 0 | 0"

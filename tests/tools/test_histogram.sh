@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/instruction_counts --histogram: Oclgrind's counts agree with raya's own counters of the same events.
+# Tests tools/instruction_counts --histogram: Oclgrind's counts of calls equal raya's counters of the same events.
 set -euo pipefail
 raya=$(readlink -f "$1")
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
@@ -10,7 +10,7 @@ number() { awk -v line="$1" 'index($0, "  " line " ") == 1 { print $NF }' <<<"$o
 
 histogram trace "$root/scenes/centre.nff"
 [[ $(number "rays primary") == 64 ]] || fail "8 x 8 pixels have 64 primary rays"
-# One lane, one sphere at a time: a call for each test.
+# One lane, one sphere at a time, so that each test is one call.
 [[ $(number "call test_sphere()") == "$(number "tests sphere")" ]] || fail "calls of test_sphere() are not the tests that raya counted"
 histogram add_neighbours "$root/scenes/planes.nff"
 [[ $out == *"kernel add_neighbours, "*"fadd"* ]] || fail "no additions in add_neighbours"

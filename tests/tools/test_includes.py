@@ -27,7 +27,7 @@ faults = []
 
 
 def table_rows(text):
-    """(folders of the row, text of "may know") for each row of the table below "Folders and includes"."""
+    """Yields (folders of the row, text of the column "may include") for each row of the table below "Folders and includes"."""
     section = text.split("## Folders and includes", 1)[1].split("\n## ", 1)[0]
     for line in section.splitlines():
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
@@ -38,7 +38,7 @@ def table_rows(text):
 
 
 def full_name(name, known):
-    """`cl/` in a row of the host's folders is host/cl/."""
+    """The full name of a folder: `cl/` in the table stands for host/cl/."""
     return name if name in known else "host/" + name
 
 
@@ -157,7 +157,7 @@ def named_twice(types):
     return [f"{header}: type {name} is also defined in {first[name]}" for header, name in types if first.setdefault(name, header) != header]
 
 
-# (file, injected include, part of the fault): up the table, between independent folders, a cycle, OpenCL in a report.
+# (file, injected include, part of the error message): a folder lower in the table, an independent folder, a cycle, OpenCL in a report.
 INJECTED = [
     ("host/scene/scene.hpp", "host/ring/mapping.hpp", "may not know host/ring/"),
     ("host/torus/node_transfers.cpp", "host/ring/mapping.hpp", "may not know host/ring/"),

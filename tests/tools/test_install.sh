@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# An installation by `cmake --install`: it runs without the sources, from any folder, finds its modules, and other projects find the number layer.
+# Tests an installation by `cmake --install`: raya runs without the sources, from any folder, and finds its modules; other projects find the number layer.
 #   test_install.sh BUILD
 set -euo pipefail
 build=$(readlink -f "$1")
@@ -12,13 +12,13 @@ cmake --install "$build" --prefix "$scratch/first place" >"$scratch/log" || fail
 mv "$scratch/first place" "$scratch/prefix"
 prefix=$scratch/prefix
 mkdir "$scratch/home"
-away() {  # away COMMAND...: runs it without the build's environment; sets code and out
+away() {  # away COMMAND...: runs the command without the build's environment; sets code and out
     code=0
     out=$(cd "$scratch/home" && env -i HOME="$scratch/home" PATH="$prefix/bin:/usr/bin:/bin" POCL_CACHE_DIR="$POCL_CACHE_DIR" "$@" 2>&1) || code=$?
 }
 expect() { [[ $code == "$1" && $out == *"$2"* ]] || fail "exit code $code: $out"; }  # expect CODE TEXT
 
-# No text file contains a path of the sources or the build. (Programs contain them only with debugging information.)
+# No text file contains a path of the sources or the build. (Programs contain such paths only in debugging information.)
 found=$(grep -rIlF -e "$root/" -e "$build" "$prefix" || true)
 [[ -z $found ]] || fail "the path of the sources is in: $found"
 ! objdump -p "$prefix/bin/raya" "$prefix"/lib/raya/*.so | grep -E "R(UN)?PATH.*($root|$build)" || fail "the search path of libraries leads to the build"
@@ -69,9 +69,9 @@ code=0 out=$(cd "$scratch/other" && env POCL_CACHE_DIR="$POCL_CACHE_DIR" ./harmo
 expect 0 "8191 terms, sum 9.848633"
 [[ $out == *"64 terms, sum 5.0625"* && $out == *"512 terms, sum 7.085938"* ]] || fail "other sums: $out"
 code=0 out=$(cd "$scratch/other" && ./harmonic 2>&1) || code=$?
-expect 1 "OpenCL error"  # without them there is no number/number.clh
+expect 1 "OpenCL error"  # without pkg-config's options the kernel does not find number/number.clh
 
-# Without the module of pictures, or without its libraries, raya refuses a PNG with a remedy, and writes PPM.
+# Without the image module, or without its libraries, raya refuses to write a PNG, with a remedy, and still writes PPM.
 rm "$prefix/lib/raya/raya_pictures.so"
 away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
 expect 2 "there is no file '$prefix/lib/raya/raya_pictures.so"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `raya manual` makes, as man shows it: all of --help-all, word for word, without a warning of man's. 77: no man here.
+"""Checks the manual pages of `raya manual` as man shows them: they contain all text of --help-all, and man prints no warnings. Exit code 77: no man.
   test_manual.py RAYA FOLDER     FOLDER holds the pages that the build has made: raya.1 and man1/"""
 import os
 import pathlib
@@ -33,7 +33,7 @@ def shown(page):
 def help_of(command):
     wide = {**os.environ, "COLUMNS": "120"}
     text = subprocess.run([raya, *command, "--help"], capture_output=True, text=True, check=True, env=wide).stdout
-    if "--help-all" in text:  # commands whose --help is a selection
+    if "--help-all" in text:  # commands whose --help lists only common options
         text = subprocess.run([raya, *command, "--help-all"], capture_output=True, text=True, check=True, env=wide).stdout
     return re.sub(r" \\\n +", " ", text)  # joins continued lines of examples
 

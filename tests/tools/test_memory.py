@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the allocations of raya fail, one in each run, and checks how raya ends (tests/cli/memory_faults.cpp).
+"""Makes one memory allocation of raya fail in each run, and checks exit code, message and files (tests/cli/memory_faults.cpp).
 
     tests/tools/test_memory.py RAYA FAULTS CL_FAULTS [--sample N] [--seed S] [--log FILE] [--results FILE]
 
@@ -37,7 +37,7 @@ COMMANDS = {
     "resume": BANDS + ["--resume"],
 }
 INPUTS = {"page": ["saved.json"], "resume": ["s.rst"]}
-ELSEWHERE = 200  # number of tested allocations outside raya
+ELSEWHERE = 200  # number of tested allocations by libraries
 LIMIT_S = 120  # seconds; a run takes half a second on an idle machine
 
 
@@ -47,7 +47,7 @@ def environment(**more):
 
 
 class Trial:
-    """Runs of one program, each in a folder of its own."""
+    """Runs one program, each time in a new folder."""
 
     def __init__(self, options, folder):
         self.raya = options.raya
@@ -56,13 +56,13 @@ class Trial:
         self.inputs = folder / "inputs"
         self.inputs.mkdir()
         self.cache = os.environ.get("POCL_CACHE_DIR")
-        self.resumable = {}  # {hash of a checkpoint that a run left: True if it can be resumed}
+        self.resumable = {}  # {hash of a checkpoint file that a run left: True if raya can resume it}
         self.plain(SMALL + ["-o", "x.ppm", "--report", str(self.inputs / "saved.json")])
         self.make_checkpoint(options.cl_faults)
         self.expected = {name: self.expect(name) for name in COMMANDS}
 
     def plain(self, arguments, inputs=(), **variables):
-        """(process, files) of a run without failing allocations."""
+        """(process, files) of a run in which no allocation fails."""
         with tempfile.TemporaryDirectory(dir=self.folder) as here:
             for name in inputs:
                 shutil.copy(self.inputs / name, here)
@@ -71,7 +71,7 @@ class Trial:
             return done, files_of(here)
 
     def make_checkpoint(self, cl_faults):
-        """Makes a checkpoint, by a render whose device fails after writing it."""
+        """Makes a checkpoint, by a render whose device fails after the checkpoint is written."""
         for launch in range(1, 50):
             done, files = self.plain(BANDS, LD_PRELOAD=cl_faults, RAYA_FAULT=f"clEnqueueNDRangeKernel {launch} -5")
             if done.returncode == 3 and "s.rst" in files:
@@ -85,7 +85,7 @@ class Trial:
         return {file: comparable(file, content) for file, content in files.items()}
 
     def sites(self, name):
-        """(sorted numbers of the allocation sites that the command reaches, number of its allocations elsewhere)"""
+        """(sorted numbers of the allocation sites in raya that the command reaches, number of its allocations outside raya)"""
         listed = self.folder / "sites"
         done, _ = self.plain(COMMANDS[name], INPUTS.get(name, ()), LD_PRELOAD=self.faults,
                              RAYA_MEMORY_SITES=str(listed))
@@ -111,7 +111,7 @@ class Trial:
             return self.judge(name, elsewhere, code, message, mark.exists(), before, files_of(here)), code, message
 
     def run(self, arguments, here, variables):
-        """(exit code, stderr). A driver that waits for memory forever is terminated: the exit code is that of SIGTERM."""
+        """(exit code, stderr) of a run. A run in which the driver waits for memory forever is terminated; its exit code is that of SIGTERM."""
         with subprocess.Popen([self.raya, *arguments], cwd=here, env=environment(**variables),
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
             try:
@@ -142,7 +142,7 @@ class Trial:
         return f"BAD: exit {code}"
 
     def is_whole(self, name, file, content):
-        """Returns true if a file is complete. Files written before the failure are kept: an expensive picture survives a failing report."""
+        """Returns true if a file is complete. raya keeps files that it has written before the failure: a failing report must not delete the image."""
         if file == "s.rst":
             return self.resumes(content)
         return comparable(file, content) == self.expected[name].get(file)
@@ -164,7 +164,7 @@ def files_of(folder):
 
 
 def comparable(name, content):
-    """The part of a file that is the same in every run: pixels; names of a report's members; the end of a complete file."""
+    """The part of a file that is equal in every run: pixels of an image, names of a report's members, or the end of another complete file."""
     if name.endswith((".ppm", ".pfm", ".png")):
         return hashlib.sha256(content).hexdigest()
     if name == "x.json":
@@ -175,7 +175,7 @@ def comparable(name, content):
 
 
 def faults_of(trial, seed, sample):
-    """[(command, fault)]: every site once, in the first command that reaches it, and allocations elsewhere."""
+    """[(command, fault)]: every allocation site once, in the first command that reaches it, and allocations outside raya."""
     seen, sites, elsewhere = set(), [], []
     for name in COMMANDS:
         numbers, count = trial.sites(name)

@@ -10,26 +10,32 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 CALLS = re.compile(r"\b(?:throw\s+)?(UserError|DeviceError|NffError|JsonError|CheckFailure|runtime_error|warn|add_warning|complain|refuse)\s*[({]")
-# Words with a standard term (docs/glossary.md), and ends that a message does not have.
+# Private words, which have a standard term (docs/glossary.md), and punctuation that a message must not end with.
 PRIVATE = re.compile(r"\b(told|tells|beside|standstill|stands still|in place of|of use|thrown away|put aside|held against|wants to|no longer goes)\b", re.I)
 
 
 def literals(text, start):
-    """(string literals in the parentheses that open at `start`, joined; end)."""
+    """(string literals in the parentheses that open at `start`, " | " between separate arguments; end)."""
     depth, at, found = 0, start, []
+    joins = False  # true: only white space since the last literal, which the compiler concatenates with the next one
     while at < len(text):
         character = text[at]
         if character == '"':
             end = at + 1
             while text[end] != '"':
                 end += 2 if text[end] == "\\" else 1
+            if found and not joins:
+                found.append(" | ")
             found.append(text[at + 1:end])
-            at = end
+            at, joins = end, True
         elif text.startswith("//", at):
             at = text.index("\n", at)
         elif character == "'":
             at = text.index("'", at + (3 if text[at + 1] == "\\" else 1))
-        elif character in "({":
+            joins = False
+        elif not character.isspace():
+            joins = False
+        if character in "({":
             depth += 1
         elif character in ")}":
             depth -= 1
@@ -45,7 +51,7 @@ def messages():
         for call in CALLS.finditer(text):
             message, _ = literals(text, call.end() - 1)
             if len(message.split()) > 2:
-                yield f"{path.relative_to(ROOT)}:{text.count(chr(10), 0, call.start()) + 1}", message.replace("\\n", "\n").replace('\\"', '"')
+                yield f"{path.relative_to(ROOT)}:{text.count(chr(10), 0, call.start()) + 1}", message.replace("\\n", " / ").replace('\\"', '"')
 
 
 def faults_of(message):

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Ranks on two hosts that are connected by TCP only give the image of a single process; also with delayed and lost packets.
+# Ranks on two hosts that are connected only by TCP make the same image as a single process, also if network packets are delayed and lost.
 #   tests/tools/test_namespaces.sh RAYA [MPIRUN]      the built program, with raya_mpi.so next to it; Open MPI's launcher, default `mpirun`
-# A host is a network namespace with its own host name, /etc/hosts and disk: the files of rank 0 do not exist on the other host. Needs root,
+# Each host is a network namespace with its own host name, /etc/hosts and disk, so the files of rank 0 do not exist on the other host. Needs root,
 # iproute2, /dev/net/tun and Open MPI; exit code 77 without.
 set -euo pipefail
 raya=$(readlink -f "$1")
@@ -14,8 +14,8 @@ command -v ip >/dev/null || skip "no ip (Debian: iproute2)"
 (: <>/dev/net/tun) 2>/dev/null || skip "no /dev/net/tun"
 [[ -e $(dirname "$raya")/raya_mpi.so ]] || skip "raya was built without MPI"
 mpirun=$(command -v "${2:-mpirun}") || skip "no ${2:-mpirun}"
-# Open MPI's mpirun prints Open MPI, its mpiexec OpenRTE. MPICH 4.0 sometimes hangs over TCP: in MPI_Finalize one rank waits in a barrier while
-# another needs its answer (pmodels/mpich pull request 6596).
+# `--version` of Open MPI's mpirun prints "Open MPI", that of its mpiexec "OpenRTE". MPICH 4.0 sometimes hangs over TCP: in MPI_Finalize one rank waits in a barrier while
+# another rank needs its answer (pmodels/mpich pull request 6596).
 [[ $("$mpirun" --version) == *Open* ]] || skip "$mpirun is not Open MPI's"
 
 hosts=("raya-$$-a" "raya-$$-b")  # unique for concurrent runs of this script
@@ -44,7 +44,7 @@ number_link() {
         ip -n "${hosts[i]}" address add "10.83.18.$((i + 1))/24" dev link0
         ip -n "${hosts[i]}" link set link0 up
     done
-    for host in "${hosts[@]}"; do  # not immediate
+    for host in "${hosts[@]}"; do  # namespaces do not end immediately
         timeout 10 sh -c "until ip -n $host link show link0 | grep -qE 'state (UP|UNKNOWN)'; do sleep 0.1; done" || fail "the link of $host stays down"
     done
 }
@@ -86,7 +86,7 @@ for what, right in {
 END
 }
 
-check() {  # check NAME SCENE OPTION...: without MPI, then on one rank for each host
+check() {  # check NAME SCENE OPTION...: renders without MPI, then with one rank on each host
     local name=$1 scene=$2 host before
     shift 2
     "$raya" render "$scenes/$scene.nff" "$@" --quiet -o "$scratch/image.pfm" --report "$scratch/alone.json"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/package: contents and dependencies of the package, Debian's checks; the same build gives the same bytes. Exit code 77: no packaging tools.
+# Tests tools/package: contents and dependencies of the package, Debian's checks, reproducible bytes. Exit code 77: no packaging tools.
 #   test_package.sh BUILD
 set -euo pipefail
 build=$(readlink -f "$1")
@@ -45,7 +45,7 @@ done
 zcat "$scratch/whole/usr/share/doc/raya/changelog.gz" | head -n 1 | grep -q "^raya ($version) " || fail "another version in changelog.gz"
 [[ $(PKG_CONFIG_PATH=$scratch/whole/usr/share/pkgconfig pkg-config --modversion raya-number) == "$version" ]] || fail "another version of raya-number"
 
-# The packager is the maintainer. Bad options, and a folder that is not a build: no file is written.
+# The packager becomes the package's maintainer. Bad options, and a folder that is not a build: no file is written.
 code=0 out=$(DEBFULLNAME="A Packer" DEBEMAIL=packer@debian.example "$root/tools/package" --build "$build" -o "$scratch/two" 2>&1) || code=$?
 expect 0 "raya_"
 [[ $(dpkg-deb -f "$scratch"/two/raya_*.deb Maintainer) == "A Packer <packer@debian.example>" ]] || fail "another maintainer"
@@ -56,7 +56,7 @@ expect 2 "is not a folder"
 package --build "$scratch" -o "$scratch"
 expect 3 "no $scratch/raya"
 [[ -z $(find "$scratch" -mindepth 1 -name 'tmp.*') && -z $(find "$scratch" -maxdepth 1 -name '*.deb') ]] || fail "temporary files were left"
-# lintian finds an error: a package without a copyright file.
+# An error that lintian detects: a package without a copyright file.
 if command -v lintian >/dev/null; then
     mkdir -p "$scratch/bad"
     cp -a "$scratch/whole" "$scratch/bad/files"

@@ -55,7 +55,7 @@ BUILD = r"""(() => {
 
 
 def make(raya, folder):
-    """{name: HTML file} of the pages under test; the reports are next to them."""
+    """{name: HTML file} of the pages under test. The reports are in the same folder."""
     small, pages = ["--size", "48x32", "--lanes", "4"], {}
 
     def one(name, *command, code=0):
@@ -128,7 +128,7 @@ def looks(page, name, html, folder):
 
 
 def maps(page, name, html):
-    """Each pixel in the map of loads has the colour of its owner's load, so there are as many colours as loads; a torus has one cell for each node."""
+    """Checks the map of loads. Each pixel has the colour of its owner's load, so there are as many colours as loads; a torus has a cell per node."""
     loads = set(json.loads(html.with_suffix(".json").read_text())["load"]["per_pe"])
     start(page, html.as_uri())
     colours = page.value("(() => { const c = document.querySelector('canvas'); return new Set(new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height).data.buffer)).size; })()")
@@ -142,7 +142,7 @@ NAMED = {"kind", "png", "mapping", "fold", "links", "format", "status"}  # membe
 
 
 def hostile(page, name, html, folder):
-    """Replaces every text of the report, and names of members, by HOSTILE; the page must show it as text."""
+    """Replaces every text of the report, and names of members, by HOSTILE, which the page must show as text."""
     text, changed = html.read_text(), Path(folder, "hostile.html")
     start(page, html.as_uri())
     whole = page.value(STRUCTURE)
@@ -175,12 +175,12 @@ def hostile(page, name, html, folder):
 
 
 def damaged(page, name, html, folder, count):
-    """Removes members or changes their type: the page reports it, and no script fails."""
+    """Removes members or changes their type: the page must report the damage, and no script may fail."""
     text, rng, named, changed = html.read_text(), random.Random(SEED), 0, Path(folder, "damaged.html")
     for i in range(count):
         report = report_of(text)
         holder, key = rng.choice([place for place in places(report, lambda value: True) if rng.random() < 0.2 or place[1] != 0] or [(report, "kind")])
-        if i == 0:  # other damage may only change a number in a long list, which is not an error
+        if i == 0:  # later faults may only change a number in a long list, which the page cannot detect
             key = "every part"
             report |= {part: 7 for part, value in report.items() if isinstance(value, (dict, list))}
         elif rng.random() < 0.4 and isinstance(holder, dict):
@@ -199,7 +199,7 @@ def damaged(page, name, html, folder, count):
 
 
 def sorts(page, html):
-    """The column of counts sorts by value, in spite of narrow spaces in the numbers."""
+    """The column of counts is sorted by value, although its numbers contain narrow spaces."""
     start(page, html.as_uri(), width=1400)
     order = page.value(r"""(() => { const t = document.querySelector("#counts table"); const b = t.tHead.querySelectorAll("button")[1]; b.click();
       return [...t.tBodies[0].rows].map((r) => +r.cells[1].textContent.replace(/\D/g, "")); })()""")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/portability with stand-ins for raya and its test programs: matrix and exit code for results that are right, wrong or missing.
+# Tests tools/portability with mock programs instead of raya and its tests: matrix and exit code for right, wrong and missing results.
 #   test_portability.sh RAYA PATCH_KERNELS     the built program, for the kernels under Oclgrind; tests/kernels/patch_kernels.cpp
 set -euo pipefail
 raya=$(readlink -f "$1")
@@ -9,7 +9,7 @@ build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT
 mkdir "$build/tests"
 
-# Every implementation has a device; PoCL's basic device renders a wrong image; there is an unexpected defect without optimiser.
+# Every implementation has a device; PoCL's basic device renders a wrong image; an unexpected defect occurs without the optimiser.
 cat >"$build/raya" <<'RAYA'
 #!/usr/bin/env bash
 case $1 in
@@ -57,7 +57,7 @@ fail() { echo "FAILED: $1"; echo "$out"; exit 1; }
 matrix() { code=0; out=$("$root/tools/portability" --build "$build" --hashes "$build/renders.csv" "$@" 2>"$build/stderr") || code=$?; }
 expect() { [[ $out == *"$1"* ]] || fail "no '$1'"; }  # expect TEXT
 
-# Hashes: written once, then what every implementation is held against, the first one too.
+# Hashes are written once; then the hashes of every implementation, including the first, are compared with them.
 matrix --write-hashes
 ((code == 0)) || fail "exit code $code of --write-hashes"
 expect "20 renders of 17 images, 20 of them new or changed"
@@ -119,7 +119,7 @@ expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | 
 expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | FAIL 24/24 |"
 expect "basic; right: 5a5a5a5a"
 
-# No right cell: every case is skipped; too slow. A check that passes and then crashes.
+# Matrices without a right cell: every case is skipped, or too slow. A check that passes and then crashes.
 matrix --only "PoCL loopvec" --checks image,machine
 ((code == 1)) || fail "exit code $code where nothing was decided"
 expect "2 cells: 0 right, 0 FAIL, 2 not decided. Nothing is right of: PoCL loopvec."
@@ -138,7 +138,7 @@ matrix --only "PoCL loopvec" --checks number,renders
 expect "number: exit code -11, though no check failed"
 rm "$build/raya.crash"
 
-# Oclgrind: a render without a fault; then the same image from a kernel that also writes beyond a buffer.
+# Oclgrind: a render without a fault; then a kernel that makes the same image but also writes beyond a buffer.
 "$patch_kernels" "$build/kernels"
 mv "$build/raya" "$build/stand_in"
 cat >"$build/raya" <<RAYA
@@ -161,10 +161,10 @@ matrix --only "no such implementation"
 matrix --checks defects --list
 ((code == 0)) || fail "exit code $code of --list"
 expect "Oclgrind: "
-# An installed GPU driver replaces this row, even without a GPU.
+# If a GPU driver is installed, its row replaces this one, even without a GPU.
 ls /etc/OpenCL/vendors | grep -vqE '^(pocl|rusticl|mesa)[.]icd$' || expect "GPU: "
 
-# --write refuses a part of the matrix.
+# --write is refused if only a part of the matrix is requested.
 page=$(<"$root/docs/portability.md")
 for part in "--only PoCL" "--checks renders" "--only PoCL --checks defects"; do
     # shellcheck disable=SC2086  # several words

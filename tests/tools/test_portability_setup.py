@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/portability --setup without a network: stand-ins for the wheels, in a folder that pip searches. Drivers without a device."""
+"""Tests tools/portability --setup without a network, with mock wheels in a folder that pip searches; and drivers without a device."""
 import hashlib, os, struct, subprocess, sys, tempfile, zipfile
 from pathlib import Path
 

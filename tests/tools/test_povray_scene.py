@@ -128,7 +128,7 @@ class Triangles(unittest.TestCase):
     def cut(self, vertices, wanted):
         found = translation.triangles(vertices)
         self.assertEqual(len(found), len(vertices) - 2)
-        self.assertAlmostEqual(sum(area(*(vertices[i] for i in corners)) for corners in found), wanted)  # none overlap, none lie outside
+        self.assertAlmostEqual(sum(area(*(vertices[i] for i in corners)) for corners in found), wanted)  # no overlaps, nothing outside
 
     def test_concave_outlines_on_all_axes_either_way_round(self):
         for place in (lambda u, v: (1.0, u, v), lambda u, v: (v, 1.0, u), lambda u, v: (u, v, 1.0), lambda u, v: (u, v, u + v)):
@@ -156,7 +156,7 @@ class Picture(unittest.TestCase):
         self.wanted = numbers_of_pfm(self.folder / "raya.pfm")
 
     def pixels_that_differ(self, text):
-        """Share of the values that differ from raya's."""
+        """Fraction of the values that differ from raya's."""
         (self.folder / "scene.pov").write_text(text)
         command = ["povray", "+Iscene.pov", "+Opovray.ppm", "+FP16", "File_Gamma=1.0", f"+W{SIZE}", f"+H{SIZE}", "-A", "-D", "-V", "-GA"]
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)

@@ -32,9 +32,9 @@ RARE = {
     "tune.json: results[].configuration.registers": "NVIDIA only",
     "tune.json: results[].configuration.link_exchange": "a knob of the torus, whose search takes long",
 }
-OF_RANKS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.")  # need MPI
+OF_RANKS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.")  # these members need MPI
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
-# (kernel file, text, faulty replacement): a check of verify must fail.
+# (kernel file, text, faulty replacement): mutants, for which a check of verify must fail.
 FAULT = ("shared/mapping.h", "if (m.kind == RAYA_ROWS) return row % m.pes;", "if (m.kind == RAYA_ROWS) return (row + 1) % m.pes;")
 
 
@@ -53,11 +53,11 @@ class Rules:
         return jsonschema.Draft202012Validator(node.value, resolver=resolver)
 
     def wrong(self, name, report):
-        """Lines on what is wrong with a report."""
+        """Messages of the errors in a report."""
         return [f"{'.'.join(map(str, e.absolute_path)) or 'the report'}: {e.message[:200]}" for e in self.whole[name].iter_errors(report)]
 
     def meet(self, node, value, met):
-        """Adds to `met` the places of the schema's members that describe `value`."""
+        """Adds to `met` the places of all schema members that describe parts of `value`."""
         if node.has("$ref"):
             self.meet(node.target(), value, met)
         for key in ("anyOf", "oneOf"):
@@ -118,14 +118,14 @@ class Reports:
         self.made.append((form + ".json", name, json.loads(text)))
 
     def odd_scene(self):
-        """A scene with a polygon without area and an unknown entity."""
+        """A scene for which raya warns: it has a polygon without area and an unknown entity."""
         path = self.folder / "odd.nff"
         path.write_text((SCENES / "planes.nff").read_text() + "p 3\n0 0 0\n0 0 0\n1 1 1\ntt 1\n")
         return path
 
     def renders(self):
         odd = self.odd_scene()
-        few = ["--size", "16", "--lanes", "1", "--format", "fp32", "--quiet", "--report", "r.json"]  # few kernels, as building them takes most of the time
+        few = ["--size", "16", "--lanes", "1", "--format", "fp32", "--quiet", "--report", "r.json"]  # few kernels, whose builds take most of the time
         spheres, ring = SCENES / "spheres.nff", ["--pes", "8"]
 
         def render(scene, *options, output="x.ppm", launcher=()):
@@ -170,7 +170,7 @@ class Reports:
             self.one("study", "study", study, "--size", "32", "-o", "study", of=f"study/{study}.json")
 
     def tune(self, scene):
-        """Repeats tune with more time until at least one candidate has finished, also on slow machines."""
+        """Repeats tune with increasing time limits until at least one candidate has finished, because the machine may be slow."""
         seconds = 3
         while self.made[-1][0] != "tune.json" or not self.made[-1][2]["results"]:
             self.one("tune", "tune", scene, "--seconds", seconds, "--variants", "none", "--format", "fp32", "--size", "16", "--report", "r.json",
@@ -187,7 +187,7 @@ def members_met(rules, made):
 
 
 def unseen(rules, met, ranks):
-    """Yields members that are described and in no report, and members of RARE that are in a report."""
+    """Yields members of the schemas that are in no report, and members of RARE that are in a report."""
     for root in rules.schemas.values():
         for node in root.walk():
             for _, member in node.members():
@@ -198,7 +198,7 @@ def unseen(rules, met, ranks):
 
 
 def missed(rules, made, met, seed, wanted=40):
-    """Removes random members from the schemas, one at a time; yields those for which no report with the member is refused."""
+    """Removes random members from the schemas, one at a time. Yields a member if the schema without it still accepts every report that has it."""
     members = {place(member): (node, name) for root in rules.schemas.values() for node in root.walk() for name, member in node.members()
                if "/if/" not in member.pointer}
     for name in random.Random(seed).sample(sorted(met & set(members)), wanted):
@@ -214,7 +214,7 @@ def description(node):
 
 
 def loose(rules):
-    """Yields members without a description, and objects that accept any member."""
+    """Yields schema members without a description, and objects that accept undescribed members."""
     for root in rules.schemas.values():
         jsonschema.Draft202012Validator.check_schema(root.value)
         closed = {id(n.target().value) for n in root.walk() if n.has("$ref") and n.get("unevaluatedProperties") is False}
@@ -231,7 +231,7 @@ def loose(rules):
 
 
 def relaxed(schema):
-    """The schema without required members, for shortened examples."""
+    """The schema with all members optional, for shortened examples."""
     if isinstance(schema, list):
         return [relaxed(one) for one in schema]
     if not isinstance(schema, dict):

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# tools/setup on machines with missing packages, simulated by stand-ins for dpkg-query and sudo. Nothing is installed.
+# Tests tools/setup on simulated machines with missing packages: dpkg-query and sudo are mock programs. Nothing is installed.
 set -euo pipefail
 setup=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../tools/setup
-machine=$(mktemp -d)  # all programs that the script can find
+machine=$(mktemp -d)  # PATH of the tested script: a folder with all programs that it can find
 trap 'rm -rf "$machine"' EXIT
 chmod 755 "$machine"
 ln -s "$(command -v env)" "$(command -v bash)" "$machine"
@@ -71,12 +71,12 @@ echo catch2 config-files; exit 1"
 run_setup
 expect 1 "neither root nor sudo" "$line cmake catch2"
 
-# The same with a sudo that does not let this user in, and no terminal to ask at.
+# The same with a sudo that refuses this user, and without a terminal for a password.
 stand_in sudo 'exit 1'
 run_setup
 expect 1 "neither root nor sudo" "$line cmake catch2"
 
-# With sudo: updates the lists, then installs exactly the missing packages.
+# With sudo: tools/setup updates the package lists, then installs exactly the missing packages.
 stand_in sudo '[[ $* == "-n true" ]] || echo "sudo $*"'
 run_setup
 apt='sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq'
@@ -87,7 +87,8 @@ stand_in sudo '[[ $* != *apt-get* ]]'
 run_setup
 expect 1 "apt-get failed" "$line cmake catch2"
 
-# Another program holds apt's locks: of `update` until the third attempt, of `install` until the second; then for longer than tools/setup waits.
+# Another program holds apt's locks: the lock of `update` until the third attempt, that of `install` until the second. Then: for longer than
+# tools/setup waits.
 chmod 777 "$machine"
 stand_in sleep "echo \$1 >>$machine/slept"
 stand_in sudo '[[ $* == *apt-get* ]] || exit 0
@@ -109,7 +110,7 @@ expect 1 "update failed" "apt-get failed" "$line cmake catch2"
 mapfile -t slept <"$machine/slept"
 ((${#slept[@]} == 240)) || { echo "FAILED: ${#slept[@]} times 5 s"; exit 1; }
 
-# Not Debian: continues if the build tools are installed.
+# Not Debian: tools/setup succeeds if the build tools are installed.
 rm "$machine/dpkg-query"
 run_setup
 expect 1 "not a Debian system" libopenimageio-dev "'c++' is missing"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Compiles every kernel to SPIR-V with clang and llvm-spirv, and validates it with spirv-val for OpenCL 1.2.
 #   tests/tools/test_spirv.sh       exit code 77: clang-15, llvm-spirv-15 or spirv-val is missing (tools/setup --gpu)
-# Unoptimised and SPIR-V 1.0, because of defects of llvm-spirv-15: see docs/porting.md.
+# Kernels are compiled unoptimised, to SPIR-V 1.0, because of defects of llvm-spirv-15: see docs/porting.md.
 set -euo pipefail
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
 for tool in clang-15 llvm-spirv-15 spirv-val; do

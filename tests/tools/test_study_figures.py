@@ -36,7 +36,7 @@ def read_pfm(path):
 
 
 def loads(cost, p, pes=SIZE):
-    """Load of each PE. PE i has the pixels (row j, column (j p + i) mod N); with fewer PEs than columns, those of all i with the same i mod PEs."""
+    """Load of each PE. Slot i has the pixels (row j, column (j p + i) mod N); a PE has the slots with the same i mod (number of PEs)."""
     sums = [0] * pes
     for j, row in enumerate(cost):
         for i in range(SIZE):
@@ -50,7 +50,7 @@ def imbalance(sums):
 
 
 def table(page, name):
-    """Rows of a table as dictionaries {name of the column without unit: value}."""
+    """Rows of a table: dictionaries {column name without unit: value}."""
     found = next(one for one in page["tables"] if one["name"] == name)
     labels = [column.rsplit(" (", 1)[0] for column in found["columns"]]
     return [dict(zip(labels, row)) for row in found["rows"]]
@@ -96,7 +96,7 @@ class Figures(unittest.TestCase):
         self.assertEqual(len(rows), SIZE)
         for row in rows:
             self.assertAlmostEqual(row["u"], imbalance(loads(self.cost, row["p"])), delta=1e-12)
-        self.assertNotAlmostEqual(rows[5]["u"], imbalance(loads(self.cost, 6)), delta=1e-6)  # the comparison detects another offset
+        self.assertNotAlmostEqual(rows[5]["u"], imbalance(loads(self.cost, 6)), delta=1e-6)  # the comparison would detect another offset
 
     def test_speed_ups_of_every_number_of_pes(self):
         for row in table(self.pages["fig9"], "fig9"):
@@ -123,7 +123,7 @@ class Figures(unittest.TestCase):
         for row in table(self.pages["fig8"], "fig8")[:20]:
             self.assertLessEqual(row["least u"], row["mean u"])
             self.assertLessEqual(row["mean u"], row["largest u"])
-            # 64 views: a half width is at most 2.0 standard errors, and a standard error at most half the range / sqrt(63).
+            # For 64 views the half width is 2.0 standard errors, and a standard error is at most (range / 2) / sqrt(63).
             self.assertLess(row["+-"], 2.0 * (row["largest u"] - row["least u"]) / 2 / math.sqrt(63) + 1e-12)
 
 

@@ -7,8 +7,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void voxel_hits(__global const uint* restrict memories,  // of all nodes
                 __global const float* restrict rays,
                 const uint start,                        // of the node's words
-                const uint voxel,                        // local number; the node's voxel count selects planes only
-                __global uint* restrict objects,         // [ray]: number among the voxel's objects, RAYA_NO_OBJECT
+                const uint voxel,                        // local number; the node's voxel count: planes only
+                __global uint* restrict objects,         // [ray]: number in the voxel; RAYA_NO_OBJECT: miss
                 __global float* restrict distances,      // [ray]
                 __global float* restrict places)         // [ray][3][3]: G, N, colour; undefined for a miss
 {

@@ -1,4 +1,4 @@
-// Random histories for tests, and the link traffic of their messages.
+// Random histories for tests, and the link traffic of a history's messages.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -13,7 +13,7 @@ namespace raya {
 /// Builds a history task by task.
 class HistoryBuilder {
   public:
-    /// Adds a task of the node, caused by a message or by injection; returns its number.
+    /// Adds a task of the node, started by the message `cause` or by injection; returns the task's number.
     std::uint32_t task(std::uint32_t node, std::uint64_t cycles, std::uint32_t cause = HistoryTask::kInjection) {
         history.tasks.push_back({.node = node,
                                  .cause = cause,
@@ -21,7 +21,8 @@ class HistoryBuilder {
                                  .first = static_cast<std::uint32_t>(history.messages.size())});
         return static_cast<std::uint32_t>(history.tasks.size()) - 1;
     }
-    /// Both add a message that the last task sends, and return the message's number.
+    /// ray() and back() add a message that the last task sends, a ray to node `to` or a return to the root, and return
+    /// the message's number.
     std::uint32_t ray(std::uint32_t to) { return send(to, RAYA_PACKET_WORDS, RAYA_KIND_PRIMARY); }
     std::uint32_t back() { return send(RAYA_ROOT, RAYA_RETURN_WORDS, RAYA_KIND_RETURN); }
 
@@ -34,8 +35,8 @@ class HistoryBuilder {
     }
 };
 
-/// About `max_tasks` tasks of very different lengths, injected at some nodes or only at the root. Rays have one of
-/// three lengths and go to any node, their own included.
+/// A history of about `max_tasks` tasks of very different lengths. Injected tasks start at random nodes or all at the
+/// root. Rays have 8, 16 or 24 words and go to any node, including their sender.
 inline History random_history(SplitMix& random, const raya_torus& torus, std::uint32_t max_tasks) {
     struct Due {
         std::uint32_t node, cause;
@@ -63,7 +64,8 @@ inline History random_history(SplitMix& random, const raya_torus& torus, std::ui
     return built.history;
 }
 
-/// The input of torus_time(): the load of each node, and the words and messages on each link by the routing rules.
+/// The input of torus_time(): the load of each node in cycles, and the words and messages on each link according to the
+/// routing rules.
 inline TorusResult traffic_of(const raya_torus& torus, const History& history) {
     TorusResult result;
     std::vector<std::uint64_t> loads(raya_nodes(torus));

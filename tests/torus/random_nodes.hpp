@@ -1,5 +1,5 @@
-// Random scenes, partitions and nodes. Node memory does not depend on why an object is in a voxel's list, so the lists
-// here are random and the tests need no geometry.
+// Random scenes, partitions and nodes. The layout of a node's memory depends only on which objects each voxel lists, so
+// the lists are random and the tests need no geometry.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -21,7 +21,7 @@ inline PackedJob pack(const Scene& scene) {
     return pack_job(scene, settings);
 }
 
-/// 0 to `most` objects of each kind, with 1 to 12 surfaces and 0 to 5 lights.
+/// A scene with 0 to `most` objects of each kind, 1 to 12 surfaces and 0 to 5 lights.
 inline Scene random_objects(SplitMix& random, std::uint64_t most) {
     Scene scene = empty_scene();
     for (const ObjectKind& kind : object_kinds()) {
@@ -42,7 +42,7 @@ inline Scene random_objects(SplitMix& random, std::uint64_t most) {
     return scene;
 }
 
-/// A partition with empty lists; box and cells are arbitrary.
+/// A partition whose voxels list no objects; the box and the cell sizes are arbitrary.
 inline Partition empty_partition(const Divisions& divisions) {
     Partition p;
     p.grid = {{-1, -2, -3}, {0.25F, 0.5F, 0.75F}, {divisions[0], divisions[1], divisions[2]}, 100};
@@ -50,7 +50,7 @@ inline Partition empty_partition(const Divisions& divisions) {
     return p;
 }
 
-/// A partition with the given lists, [voxel]; planes are not allowed.
+/// A partition with the given object lists, indexed by voxel. The lists must not contain planes.
 inline Partition partition_of(const Divisions& divisions, const std::vector<std::set<std::uint32_t>>& lists) {
     Partition p = empty_partition(divisions);
     std::set<std::uint32_t> distinct;
@@ -72,7 +72,8 @@ inline std::vector<std::uint32_t> finite_objects(const PackedJob& job) {
     return finite;
 }
 
-/// Lists every finite object in 1 to `most` random voxels; half of the objects in one.
+/// Lists every finite object in random voxels: about half of the objects in one voxel, the others in up to `most`
+/// voxels.
 inline Partition random_partition(SplitMix& random, const PackedJob& job, const Divisions& divisions,
                                   std::uint32_t most) {
     std::vector<std::set<std::uint32_t>> lists(divisions[0] * divisions[1] * divisions[2]);
@@ -83,7 +84,7 @@ inline Partition random_partition(SplitMix& random, const PackedJob& job, const 
     return partition_of(divisions, lists);
 }
 
-/// A node's words; counts how often each is read.
+/// The words of a node, with a count of the reads of each word.
 class NodeReader {
   public:
     NodeReader(const NodeMemories& memories, std::uint32_t node)

@@ -1,4 +1,4 @@
-// Small random torus machines for tests; sides of one and two nodes are frequent.
+// Small random torus machines for tests. Sides of one or two nodes are frequent.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,25 +12,26 @@
 
 namespace raya {
 
-/// Three sides of 1..`largest`. A quarter of them are 1, where a link leads back to its own node.
+/// Three sides of 1..`largest` nodes. At least a quarter of the sides have one node, so that their links lead back to
+/// the same node.
 inline std::array<std::uint32_t, 3> random_sides(SplitMix& random, std::uint32_t largest) {
     const auto side = [&] { return random.next() % 4 == 0 ? 1 : 1 + random_below(random, largest); };
     const std::uint32_t first = side(), second = side();
     return {first, second, side()};
 }
 
-/// A torus with 2-D or 3-D links.
+/// A random torus with 2-D or 3-D links.
 inline raya_torus random_torus(SplitMix& random, std::uint32_t largest) {
     const Links links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
     return make_torus(random_sides(random, largest), links);
 }
 
-/// A torus as text for failure messages: "3x4x6 on 6x12x1".
+/// Node counts and torus sides as text for failure messages: "3x4x6 on 6x12x1".
 inline std::string torus_text(const raya_torus& t) {
     return sides_text({t.nodes[0], t.nodes[1], t.nodes[2]}) + " on " + sides_text({t.sides[0], t.sides[1], t.sides[2]});
 }
 
-/// The message of the UserError that a call throws; "not refused" if it throws none.
+/// Returns the message of the UserError that `call` throws, or "not refused" if it throws none.
 inline std::string refusal_of(const std::function<void()>& call) {
     try {
         call();

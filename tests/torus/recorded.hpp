@@ -1,4 +1,4 @@
-// A render with a record of every packet that its nodes sent.
+// A torus render, and a record of every packet that its nodes sent.
 #pragma once
 #include <vector>
 

@@ -1,4 +1,5 @@
-// One-call renders on the torus machine, for tests. Without an OpenCL device these tests fail; they are not skipped.
+// Functions that render on the torus machine in one call. Without an OpenCL device these tests fail; they are not
+// skipped.
 #pragma once
 #include <fmt/core.h>
 
@@ -24,7 +25,7 @@ struct TorusCase {
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     PacketCharge packets{};
-    std::uint32_t queue = 0;                                // packets; 0: the default
+    std::uint32_t queue = 0;                                // length in packets; 0: the default
     std::uint32_t lanes = default_test_lanes(), group = 0;  // 0: the device's default
     std::uint32_t bounces = 4;
     std::string format = "fp32";
@@ -77,8 +78,8 @@ inline TorusResult render_torus(const Scene& scene, const TorusCase& c, const Pa
     return render_torus(session, scene, c, sink);
 }
 
-/// The results that are equal on all machines: image hash and ray counts. Intersection tests, grid steps and highlights
-/// are left out: a node computes a highlight before it is known whether the light is occluded.
+/// The results that must be equal on all machines, as text: image hash and ray counts. Intersection tests, grid steps
+/// and highlights are omitted, because a node computes a highlight before it is known whether the light is occluded.
 inline std::string one_image(const Image& image, const EventCounts& e) {
     return fmt::format("{} primary {} hits {} reflected {} refracted {} shadow {} shadow hits {} lit {} shaded {}",
                        pixel_hash(image), e[RAYA_PRIMARY], e[RAYA_PRIMARY_HITS], e[RAYA_REFLECTED], e[RAYA_REFRACTED],
@@ -87,7 +88,8 @@ inline std::string one_image(const Image& image, const EventCounts& e) {
 
 inline std::string one_image(const TorusResult& r) { return one_image(r.image, r.events); }
 
-/// The ring machine's image of the same size, format and bounces: every ray against every object.
+/// Image hash and ray counts (one_image()) of a ring render of the same size, format and bounces, which tests every ray
+/// against every object.
 inline std::string ring_image(const Scene& scene, const TorusCase& c) {
     const RingCase ring{.width = c.width,
                         .height = c.height,
@@ -101,7 +103,7 @@ inline std::string ring_image(const Scene& scene, const TorusCase& c) {
     return one_image(r.image, r.all.events);
 }
 
-/// Adds a packet's words to each link of its route by the routing rules; `words`: [node][link].
+/// Adds the packet's words to each link of its route according to the routing rules; `words`: [node][link].
 inline void add_route(std::vector<std::uint64_t>& words, const raya_torus& torus, const PacketRecord& p) {
     for (std::uint32_t node = p.source; node != p.destination;) {
         const bool home = raya_state_kind(p.head.state) == RAYA_KIND_RETURN;
@@ -113,7 +115,7 @@ inline void add_route(std::vector<std::uint64_t>& words, const raya_torus& torus
 
 inline std::uint32_t lights_of(const Scene& scene) { return static_cast<std::uint32_t>(scene.lights.size()); }
 
-/// Objects of every kind, 1 to 4 lights, and an eye among, near or far from the objects.
+/// A scene with objects of every kind, 1 to 4 lights, and an eye among, near or far from the objects.
 inline Scene random_view_scene(std::uint64_t seed) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0x5eed);
@@ -123,20 +125,21 @@ inline Scene random_view_scene(std::uint64_t seed) {
     scene.view.at = random_point(random, 1);
     scene.view.up = random_direction(random);
     scene.view.angle_degrees = away > 20 ? 25 : random.uniform(30, 110);
-    // Planes hide all that is behind them, so keep none, some or all of them.
+    // A plane hides everything behind it, so keep a random number of the planes.
     scene.planes.resize(random_below(random, scene.planes.size() + 1));
     scene.lights.resize(1 + random_below(random, 4), {random_point(random, 8), {}});
     return scene;
 }
 
-/// Seeds of random_view_scene() with many rays of every kind, and some lit points.
+/// Seeds with which random_view_scene() has many rays of every kind and some lit points.
 inline constexpr std::array<std::uint64_t, 11> kRichScenes = {27, 41, 53, 63, 14, 19, 35, 8, 21, 29, 69};
 
-/// Objects of every kind seen in a mirror that is very far away: rays that come back from it are wide.
+/// A scene with objects of every kind, seen in a mirror so far away that the rays reflected by it are wide (is_wide(),
+/// kernels/grid/walk.clh).
 inline Scene far_mirror_scene(std::uint64_t seed, const std::string& format) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0xfa5);
-    // Beyond 1024 times the scene's size in fp32, beyond a few times in formats of fewer bits.
+    // Rays are wide from 1024 times the scene's size on in fp32, from a few times its size on in formats of fewer bits.
     const double away = (format == "fp32" ? 20'000 : 500) * (1 + random_below(random, 3));
     scene.surfaces.push_back({.colour = {0.9, 1, 0.9}, .diffuse = 0.5, .specular = 0.5, .shine = 5});
     scene.planes = {{{-1, 0, 0}, -away, static_cast<int>(scene.surfaces.size()) - 1}};

@@ -1,4 +1,4 @@
-// The asynchronous torus: times computed by hand, bounds, and freedom from deadlock.
+// Simulation of the asynchronous torus: times computed by hand, lower and upper bounds, and freedom from deadlock.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -12,8 +12,9 @@
 namespace raya {
 namespace {
 
-// Milliseconds: a cycle; one end's processing of a ray or a return; a ray or a return on a link in one direction, and
-// with traffic in both directions.
+// Times in ms. kCycle: one cycle. kRayEnd, kReturnEnd: processing of a ray or of a return at one end of a link. kRay,
+// kReturn: transfer of a ray or of a return over a link with traffic in one direction. kRayBoth: transfer of a ray with
+// traffic in both directions.
 constexpr double kCycle = 40e-6, kRayEnd = 51 * kCycle, kReturnEnd = 35 * kCycle;
 constexpr double kRay = 64 / 1.7e3, kReturn = 32 / 1.7e3, kRayBoth = 64 / 1.2e3;
 
@@ -47,7 +48,7 @@ TEST_CASE("a link carries one message at a time in each direction, and both dire
     const std::uint32_t first = one_way.ray(2), second = one_way.ray(2);
     one_way.task(2, 10, first);
     one_way.task(2, 20, second);
-    // The input thread holds one message: the second starts when the first has been received.
+    // The input thread holds one message, so the transfer of the second starts when the first has been received.
     CHECK(simulate(ring_of(4), one_way.history).finish_ms == about(520 * kCycle + 4 * kRayEnd + 2 * kRay));
 
     HistoryBuilder both;
@@ -58,7 +59,8 @@ TEST_CASE("a link carries one message at a time in each direction, and both dire
     both.task(2, 10, up);
     both.task(1, 10, down);
     CHECK(simulate(ring_of(4), both.history).finish_ms == about(510 * kCycle + 2 * kRayEnd + kRayBoth));
-    // The second starts when half of the first has been sent; both continue at the lower rate, then the second alone.
+    // The second transfer starts when half of the first is done. Both continue at the lower rate; then the second
+    // continues alone.
     const auto later = static_cast<std::uint64_t>(kRay / 2 / kCycle);
     both.history.tasks[1].cycles = 500 + later;
     const double alone = static_cast<double>(later) * kCycle, shared = (1 - alone / kRay) * kRayBoth;
@@ -88,7 +90,7 @@ TEST_CASE("a full port makes the main task wait", "[torus]") {
     h.task(1, 1000);
     const AsyncMachine machine{.buffer = 5};
     const AsyncResult r = simulate(ring_of(4), h.history, machine);
-    // Rays enter while two slots are free: four at once, each further one when another has left.
+    // A ray may enter while two slots are free: four enter at once, each further one when another ray has left.
     CHECK(r.nodes[1].port_ms == about((kRays - 4) * (2 * kRayEnd + kRay) - kRayEnd));
     CHECK(r.finish_ms == about(kRays * (2 * kRayEnd + kRay)));
     CHECK(r.nodes[2].queue_max == 1);
@@ -98,7 +100,7 @@ TEST_CASE("a full port makes the main task wait", "[torus]") {
     CHECK_THROWS_AS(simulate(ring_of(4), h.history, {.buffer = 1}), UserError);
 }
 
-// Every node of a ring sends many rays to the opposite node: each waits for a free slot in the next.
+// Every node of a ring sends many rays to the opposite node, and each ray waits for a free slot in the next node.
 TEST_CASE("a ring whose buffers may fill up deadlocks; with one slot kept free it does not", "[torus]") {
     const raya_torus torus = ring_of(6);
     HistoryBuilder h;
@@ -116,8 +118,8 @@ TEST_CASE("a ring whose buffers may fill up deadlocks; with one slot kept free i
     }
 }
 
-// A node processes rays in order of arrival: a ray that no other task depends on may delay one that others depend on.
-// So an asynchronous machine is not always the faster one, although it is for renders (test_history.cpp).
+// A node processes rays in order of arrival, so a ray that no other task depends on may delay one that others depend
+// on. Therefore the asynchronous machine is not always faster, although it is faster for renders (test_history.cpp).
 TEST_CASE("supersteps can be faster than asynchronous execution, because they order the tasks", "[torus]") {
     constexpr std::uint64_t kLong = 10'000'000;
     HistoryBuilder h;
@@ -125,8 +127,8 @@ TEST_CASE("supersteps can be faster than asynchronous execution, because they or
     const std::uint32_t one = h.ray(0), other = h.ray(1);
     h.task(0, kLong, one);       // superstep 2 of node 0, starts before
     h.task(1, 100'000, other);   // superstep 2 of node 1
-    h.task(0, 10, h.ray(0));     // superstep 3 of node 0, which
-    h.task(2, kLong, h.ray(2));  // superstep 4 of node 2 waits for
+    h.task(0, 10, h.ray(0));     // superstep 3 of node 0
+    h.task(2, kLong, h.ray(2));  // superstep 4 of node 2, after the task above
     const double none_orders = simulate(ring_of(4), h.history).finish_ms;
     h.history.tasks[1].cycles = 0;
     const double ordered = simulate(ring_of(4), h.history).finish_ms;
@@ -149,7 +151,7 @@ TEST_CASE("random histories: every message is delivered once, within the time bo
         const TorusResult traffic = traffic_of(torus, history);
         const TorusTime bound = torus_time(torus, traffic);
         CHECK(r.finish_ms >= bound.overlapped_ms * (1 - 1e-9));
-        double all = 0;  // upper bound: everything in sequence, as some node or link is always busy
+        double all = 0;  // upper bound: the sum, because some node or link is always busy
         for (std::size_t link = 0; link < r.links.size(); ++link) {
             CHECK(r.links[link].words == traffic.link_words[link]);
             CHECK(r.links[link].messages == traffic.link_packets[link]);

@@ -1,4 +1,5 @@
-// Queue and mailboxes of a node next to its words: exact to the byte, refused with figures and remedies.
+// The plan of a node's memory for queue and mailboxes, in addition to the node's words. The sizes are exact to the
+// byte, and error messages contain the figures and remedies.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -17,7 +18,8 @@ namespace {
 
 constexpr std::uint32_t kDefaultQueue = 8192;
 
-// A row of nodes with one voxel each, which hold the given numbers of spheres of one surface; no lights, no planes.
+// A row of nodes with one voxel each. Node i's voxel contains counts[i] spheres of one surface; there are no lights and
+// no planes.
 NodeMemories row_of_nodes(const std::vector<std::uint32_t>& counts, const raya_torus& torus) {
     Scene scene = empty_scene();
     scene.lights.clear();
@@ -33,20 +35,22 @@ NodeMemories row_of_nodes(const std::vector<std::uint32_t>& counts, const raya_t
 
 constexpr std::uint64_t padded_to_rows(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
 
-// Bytes of such a node: header, one voxel, a surface, and six words per sphere; the spheres are aligned to whole rows.
+// Bytes of such a node's words: header, one voxel, one surface, and six words per sphere. The spheres are padded to
+// whole rows.
 constexpr std::uint64_t bytes_with(std::uint32_t spheres) {
     return padded_to_rows(padded_to_rows(sizeof(raya_node) + sizeof(raya_voxel_memory) + 4 * RAYA_SURFACE_WORDS) +
                           24ull * spheres);
 }
 
-// Rays, 64 bytes each: the queue, and a quarter of it (at least 1) in an outbox and an inbox of each link. Returns, 32
-// bytes each: as many in an inbox of each link and in the one outbox to the root.
+// Bytes of queue and mailboxes. Rays have 64 bytes: `queue` rays in the queue, and a quarter of that (at least 1) in an
+// outbox and an inbox of each link. Returns have 32 bytes: as many in an inbox of each link and in one outbox towards
+// the root.
 std::uint64_t packet_bytes(std::uint64_t queue, std::uint64_t links) {
     const std::uint64_t box = queue < 8 ? 1 : queue / 4;
     return 64 * (queue + 2 * links * box) + 32 * (links > 0 ? links + 1 : 0) * box;
 }
 
-// A NodeTrial whose machines share `words` evenly among their nodes; counts its calls.
+// A NodeTrial whose machines share `words` evenly among their nodes. It counts its calls.
 struct EvenTrial {
     std::uint64_t words = 0;
     int calls = 0;
@@ -81,7 +85,7 @@ TEST_CASE("without a memory limit the queue has the requested or the default len
         return std::vector<std::uint32_t>{buffers.queue, buffers.box};
     };
     CHECK(plan(0, 5) == std::vector<std::uint32_t>{kDefaultQueue, kDefaultQueue / 4});
-    CHECK(plan(0, 10000) == std::vector<std::uint32_t>{10000, 2500});  // at least what a ray's tree can need
+    CHECK(plan(0, 10000) == std::vector<std::uint32_t>{10000, 2500});  // at least the packets of one ray tree
     CHECK(plan(5, 5) == std::vector<std::uint32_t>{5, 1});
     CHECK(plan(11, 5) == std::vector<std::uint32_t>{11, 2});
     CHECK(plan(100'000, 5) == std::vector<std::uint32_t>{100'000, 25'000});
@@ -108,7 +112,7 @@ TEST_CASE("queues and mailboxes that exceed the device's memory are refused, wit
     CHECK(refusal(4004) ==
           "s.nff: queues of 4004 packets and their mailboxes in 64 nodes do not fit the memory of a small device; use "
           "--queue 2002 or fewer nodes");
-    // Total: queues, and mailboxes of rays and returns at both ends.
+    // Limit on the total: the queues, and the mailboxes for rays and returns at both ends of each link.
     device.all = 64ull * 64 * 4000 + 3 * device.one_buffer;
     CHECK(refusal(4000) == "not refused");
     --device.all;
@@ -179,8 +183,8 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
         CHECK(error.memory_bytes == limit);
     }
 
-    // Six links instead of four: four more mailboxes of two rays and two more of two returns leave 640 bytes less for
-    // the words.
+    // With six links instead of four, a node has four more mailboxes of two rays and two more of two returns. They
+    // leave 640 bytes less for the words.
     EvenTrial trial{8 * (bytes_with(200) - 640) / 4, 0};
     const auto remedy = [&](const char* nodes) {
         return figures + fmt::format("use --nodes {} or --pe-memory {}", nodes, enough);
@@ -262,7 +266,8 @@ TEST_CASE("each larger machine that is tried doubles the shortest side, up to 65
             return NodeTrialResult{~0ull / 8, nodes};
         };
         CAPTURE(seed, torus_text(torus));
-        // One byte too few for the fullest node, but enough for an even share of the words on more nodes.
+        // The limit is one byte too small for the fullest node, but large enough for an even share of the words on more
+        // nodes.
         const std::uint64_t limit = bytes_with(2000) + packet_bytes(1, links_of_node(torus)) - 1;
         CHECK_THROWS_AS(plan_buffers("s", memories, torus, limit, 0, 1, trial), UserError);
         for (std::size_t i = 1; i < tried.size(); ++i) {

@@ -1,4 +1,5 @@
-// Model charges that differ from what the device moves: discarded rays, and one return per ray instead of per term.
+// The model's charges that differ from the device's transfers: discarded rays, and one return per ray instead of one
+// per term.
 #include <catch2/catch.hpp>
 #include <map>
 #include <tuple>
@@ -10,8 +11,8 @@
 namespace raya {
 namespace {
 
-// Each node makes every ray of its window, and the rays of its own rows to find those that miss the box. The number of
-// discarded rays is the number of pixels in all windows.
+// Each node creates the primary rays of its window's pixels, and those of its own rows to find the rays that miss the
+// box. The number of discarded rays is the number of pixels in all windows.
 std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
     const PackedJob job = pack_job(scene, job_settings(s, length_scale(scene, s.format)));
     std::uint64_t pixels = 0;
@@ -25,9 +26,10 @@ std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
 using RayKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;  // pixel, path, level
 RayKey key_of(const PacketRecord& p) { return {p.head.pixel, p.head.path, raya_state_level(state_of(p))}; }
 
-// The one return of a ray leaves from the node where the shadow ray to the last light that the surface faces ends.
+// A ray has at most one return. It leaves from the node where the shadow ray to the last light that the surface faces
+// ends.
 void check_last_lights(const Recorded& r) {
-    std::map<RayKey, PacketRecord> last;  // of each ray: the last record of its last shadow ray
+    std::map<RayKey, PacketRecord> last;  // by ray: the last record of its last shadow ray
     for (const PacketRecord& p : r.records) {
         if (kind_of(p) != RAYA_KIND_SHADOW) continue;
         PacketRecord& known = last.emplace(key_of(p), p).first->second;

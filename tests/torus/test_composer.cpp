@@ -1,4 +1,5 @@
-// Contributions are sorted by their pixels' ray trees, whatever their order of arrival, and each addition rounds once.
+// The composer adds each pixel's contributions in the order of the pixel's ray tree, whatever their order of arrival,
+// and rounds once per addition.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -12,8 +13,8 @@
 namespace raya {
 namespace {
 
-// The contributions of a random ray tree in depth-first order, reflection before refraction: the expected result of
-// sorting.
+// Generates the contributions of a random ray tree in depth-first order, reflection before refraction. This is the
+// expected order after sorting.
 class TreeWalk {
   public:
     TreeWalk(SplitMix& random, std::vector<raya_head>& to, std::uint32_t pixel)
@@ -61,8 +62,8 @@ std::vector<float> colours_of(const std::vector<raya_head>& packets) {
     return colours;
 }
 
-// Lists of random numbers of the format for `pixels` pixels, some of them empty. Products and sums are exact in double:
-// multiples of 2^-38 below 2^12.
+// Lists of random numbers of the format, one list per pixel; some are empty. The numbers are multiples of 2^-38 below
+// 2^12, so that products and sums are exact in double.
 Contributions random_lists(SplitMix& random, const NumberFormat& format, std::uint32_t pixels) {
     Contributions lists;
     lists.starts = {0};
@@ -78,7 +79,7 @@ Contributions random_lists(SplitMix& random, const NumberFormat& format, std::ui
     return lists;
 }
 
-// c w + sum, rounded once.
+// c * w + sum, rounded once.
 float add_to(float sum, float c, float w, const NumberFormat& format) {
     if (format.is_fp32()) return std::fma(c, w, sum);
     return round_to_format(std::fma(static_cast<double>(c), w, sum), format);
@@ -128,7 +129,7 @@ TEST_CASE("a duplicate contribution, or one outside the image, is an error", "[t
         CHECK_NOTHROW(sort_contributions(returns, 4));
         CHECK_THROWS_AS(sort_contributions(returns, 3), std::logic_error);
         raya_head twice = returns[random_below(random, returns.size())];
-        twice.state ^= RAYA_STATE_FRESH;  // not part of its identity
+        twice.state ^= RAYA_STATE_FRESH;  // not part of the contribution's identity
         twice.weight += 1;
         returns.push_back(twice);
         shuffle(returns, random);

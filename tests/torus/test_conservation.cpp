@@ -1,4 +1,5 @@
-// Conservation of packets: packets made and ended, hops, words, and the voxels that rays visit.
+// Conservation of packets: counts of packets created and ended, hops and words on links, and the voxels that rays
+// visit.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
@@ -20,7 +21,8 @@ std::uint64_t sum(const std::vector<std::uint64_t>& values) {
     return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
 }
 
-// Identifies a ray of a pixel; the records with one key are the stages of that ray's walk.
+// Identifies a ray of a pixel, shadow rays included. The records with the same key are the stages of the ray's
+// traversal of the voxels.
 using LightKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
 LightKey light_key(const PacketRecord& p) {
     return {p.head.pixel, p.head.path, raya_state_level(state_of(p)), raya_state_light(state_of(p))};
@@ -33,7 +35,7 @@ std::map<LightKey, std::vector<PacketRecord>> stages_of(const std::vector<Packet
     return stages;
 }
 
-// The number of packets of each kind follows from the events.
+// Checks that the number of packets of each kind follows from the events.
 void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t lights, bool return_a_ray) {
     const EventCounts& e = r.events;
     CHECK(r.made == r.ended);
@@ -44,8 +46,8 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t light
     CHECK(r.made[RAYA_KIND_REFRACTED] == e[RAYA_REFRACTED]);
     CHECK(r.made[RAYA_KIND_SHADOW] == e[RAYA_SHADOW]);
     CHECK(e[RAYA_SHADOW] == e[RAYA_SHADOW_HITS] + e[RAYA_LIT]);
-    // Every ray returns an ambient term or the background, and each lit light adds a term. With one return per ray, a
-    // blocked last shadow ray makes a return, too: with one light, all blocked ones do.
+    // Every ray returns an ambient term or the background, and each unblocked light adds a term. With one return per
+    // ray, a blocked last shadow ray also causes a return packet; with one light, every blocked shadow ray does.
     const std::uint64_t rays = pixels + e[RAYA_REFLECTED] + e[RAYA_REFRACTED], terms = rays + e[RAYA_LIT];
     const std::uint64_t stopped = return_a_ray ? e[RAYA_SHADOW_HITS] : 0;
     CHECK(r.returns == (return_a_ray ? rays : terms));
@@ -53,7 +55,7 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t light
     CHECK(r.made[RAYA_KIND_RETURN] <= terms + stopped);
 }
 
-// Each record crosses as many links as the torus distance, however long it waits.
+// Checks that each record crosses as many links as the torus distance between its nodes, however long it waits.
 void check_traffic(const Recorded& r, const TorusSettings& s) {
     std::uint64_t hops = 0;
     std::vector<std::uint64_t> words(r.result.link_words.size());
@@ -76,7 +78,7 @@ void check_traffic(const Recorded& r, const TorusSettings& s) {
         return std::tie(a.superstep, a.source) < std::tie(b.superstep, b.source);
     }));
     CHECK((r.records.empty() || r.records.back().superstep < r.result.supersteps.size()));
-    CHECK(r.result.supersteps.back().live <= r.result.made[RAYA_KIND_RETURN]);  // returns that the host has yet to read
+    CHECK(r.result.supersteps.back().live <= r.result.made[RAYA_KIND_RETURN]);  // returns not yet read by the host
 }
 
 std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
@@ -84,7 +86,7 @@ std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
     return raya_voxel(grid, at.at[0], at.at[1], at.at[2]);
 }
 
-// True if a ray walks from voxel to neighbouring voxel, in one direction along each axis, to none twice.
+// Returns true if a ray goes from voxel to neighbouring voxel and never reverses its direction along an axis.
 bool walks(const std::vector<PacketRecord>& stages) {
     bool right = true;
     for (std::size_t i = 1; i < stages.size(); ++i) {
@@ -103,8 +105,9 @@ bool walks(const std::vector<PacketRecord>& stages) {
     return right;
 }
 
-// True if a wide ray visits all voxels in turn, from the one of the node that made it on; a shadow ray until it is
-// blocked. At most one more stage follows, to the voxel where the ray is shaded.
+// Returns true if a wide ray visits all voxels in cyclic order, starting with the voxel after that of the node that
+// made it. A shadow ray may end earlier, where it is blocked. At most one more stage follows, to the voxel where the
+// ray is shaded.
 bool tours(const std::vector<PacketRecord>& stages, const raya_torus& torus, const raya_grid& grid) {
     const std::uint32_t voxels = raya_voxels(grid);
     const std::size_t visits = stages.size() - (state_of(stages.back()) & RAYA_STATE_FOUND ? 1 : 0);
@@ -122,7 +125,7 @@ struct RayWalks {
     std::size_t narrow = 0, wide = 0;
 };
 
-// Requires one voxel per node, so that every step is a record.
+// Checks the voxels that each ray visits. The case must have one voxel per node, so that every step is a record.
 RayWalks check_walks(const Recorded& r, const TorusSettings& s) {
     RayWalks walked;
     std::size_t broken = 0, early = 0, wrong_walks = 0, wrong_tours = 0;
@@ -144,7 +147,8 @@ RayWalks check_walks(const Recorded& r, const TorusSettings& s) {
     return walked;
 }
 
-// A return goes to the root, and each node of a pixel's ray tree returns at most once.
+// Checks that every return goes to the root, and that each ray of a pixel's ray tree, shadow rays included, has at most
+// one return.
 void check_returns(const Recorded& r) {
     std::map<LightKey, int> answers;
     std::size_t astray = 0;
@@ -249,7 +253,7 @@ TEST_CASE("the packet trace of a render gives each ray the right parent", "[toru
         render_torus(random_view_scene(kRichScenes[0]), c, [&](const PacketRecord& record) { trace.add(record); });
     const std::vector<Row> rows = rows_of(gunzip(trace.finish()));
     REQUIRE(rows.size() == trace.rows());
-    std::map<std::uint64_t, Row> last;  // of each ray
+    std::map<std::uint64_t, Row> last;  // by ray: its latest row
     std::size_t wrong_bytes = 0, changed = 0, broken = 0, twice = 0, primaries_with_parents = 0;
     for (const Row& row : rows) {
         wrong_bytes += row.bytes != (row.kind == "return" ? 32 : 64);
@@ -266,12 +270,12 @@ TEST_CASE("the packet trace of a render gives each ray the right parent", "[toru
     CHECK(broken == 0);
     CHECK(twice == 0);
     CHECK(primaries_with_parents == 0);
-    std::map<std::string, std::uint64_t> sent;  // rays of each kind that ever left a node
+    std::map<std::string, std::uint64_t> sent;  // by kind: rays that left a node at least once
     std::size_t strange_parents = 0;
     for (const auto& [ray, row] : last) {
         ++sent[row.kind];
         const auto parent = row.parent.empty() ? last.end() : last.find(std::stoull(row.parent));
-        if (parent == last.end()) continue;  // it never left its node
+        if (parent == last.end()) continue;  // the parent never left its node
         const std::string& kind = parent->second.kind;
         strange_parents += kind == "return" || (kind == "shadow" && row.kind != "return");
     }

@@ -1,5 +1,5 @@
-// Short queues: the shortest suffices if nodes need not wait for each other, one packet less is refused, and a machine
-// that deadlocks ends with the queue that the search finds.
+// Short queues. The shortest queue is sufficient if nodes need not wait for each other; a queue one packet shorter is
+// rejected; a machine that deadlocks finishes with the queue length that the search finds.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -16,14 +16,14 @@ std::uint32_t shortest_of(const Scene& scene, const TorusCase& c) {
     return raya_min_queue(lights_of(scene), c.bounces);
 }
 
-// Mirrors and glass in a hollow mirror ball that also contains eye and lights, and a small sphere in each of two
-// distant corners: one of the 4 x 4 x 4 voxels has all rays.
+// Mirrors and glass in a hollow mirror ball that also contains the eye and the lights, and a small sphere in each of
+// two distant corners. All rays stay in one of the 4 x 4 x 4 voxels.
 Scene scene_in_one_voxel(std::uint64_t seed) {
     SplitMix random(seed);
     Scene scene = empty_scene();
     scene.surfaces[1].specular = 0.75;
     scene.spheres = {{{-2, -2, -2}, 0.01, 0}, {{2, 2, 2}, 0.01, 0}};
-    const Vec3 middle(0.5, 0.5, 0.5);  // of voxel (2, 2, 2), whose side is 1
+    const Vec3 middle(0.5, 0.5, 0.5);  // centre of voxel (2, 2, 2), whose side is 1
     scene.spheres.push_back({middle, -0.45, 1});
     for (int i = 0; i < 12; ++i)
         scene.spheres.push_back({middle + random.uniform(0.15, 0.35) * random_direction(random),
@@ -36,7 +36,7 @@ Scene scene_in_one_voxel(std::uint64_t seed) {
     return scene;
 }
 
-// The image of a render, or the figures of its deadlock.
+// Hash and counts of a finished render, or the figures of its deadlock.
 struct Ending {
     std::string image;
     std::optional<DeadlockFigures> deadlock;
@@ -141,7 +141,7 @@ TEST_CASE("a machine that deadlocks ends with the queue that the search finds", 
         CHECK(one_image(r) == expected);
         CHECK(r.queue_max <= found.queue);
         CHECK(r.made == r.ended);
-        // A repeated deadlock is the same: no state remains of the first render or of the search.
+        // The deadlock repeats identically: no state of the first render or of the search remains.
         renderer.set_queue(short_one.queue);
         const Ending again = outcome_of(renderer);
         REQUIRE(again.deadlock);
@@ -159,7 +159,7 @@ TEST_CASE("the queue that the search finds fits a node's memory", "[torus]") {
     const std::uint32_t shortest = shortest_of(scene, c);
     c.queue = shortest;
     TorusSettings settings = settings_of(c);
-    settings.memory_bytes = 16384;  // less than twice the shortest queue needs
+    settings.memory_bytes = 16384;  // less than twice the memory of the shortest queue
     TorusRenderer renderer(session, scene, settings);
     REQUIRE(outcome_of(renderer).deadlock);
     const QueueFound found = search(renderer, shortest);

@@ -1,5 +1,5 @@
-// Fault injection: each kernel with one line changed must fail the torus's own checks or change its image or traffic.
-// A ctest entry of its own: test_torus "[faults]".
+// Fault injection: each mutant of a kernel, with one changed line, must fail the torus's own checks or change its image
+// or traffic. These tests have their own ctest entry: test_torus "[faults]".
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
@@ -69,11 +69,11 @@ struct Traffic {
     std::string image;
     PacketCounts made{};
     std::uint64_t discarded = 0;
-    std::vector<std::uint64_t> words, expected;  // over each link
+    std::vector<std::uint64_t> words, expected;  // [node][link]: counted, and by the routing rules
     bool operator==(const Traffic&) const = default;
 };
 
-// Stops a machine that does not end.
+// Stops a machine that does not finish.
 void stop_endless(int& calls) {
     if (++calls > 5'000) throw std::runtime_error("does not end");
 }
@@ -93,7 +93,7 @@ Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
     return t;
 }
 
-// The first difference or error that reveals a fault; empty if there is none.
+// Returns the first difference or error that reveals the fault; empty if there is none.
 std::string symptom(Session& session, const Scene& scene, TorusCase c, const Traffic& right, const SourcePatch& patch) {
     c.sources.patches = {patch};
     try {
@@ -119,7 +119,7 @@ TEST_CASE("every injected kernel fault is detected", "[torus][.][faults]") {
     TorusCase tours{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
     tours.format = "spa22";
     tours.packets = {22, true};
-    // The eye is outside the box: several nodes examine a pixel.
+    // The eye is outside the box, so several nodes test the same pixel.
     const TorusCase outside{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
     const Trial trials[] = {{random_view_scene(kRichScenes[1]), walks},
                             {far_mirror_scene(kRichScenes[3], "spa22"), tours},

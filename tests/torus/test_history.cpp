@@ -1,4 +1,4 @@
-// Histories of renders agree with the renders' counts: each node's cycles, and every message over every link.
+// Histories of renders agree with the renders' counts: each node's cycles, and every message on every link.
 #include <catch2/catch.hpp>
 #include <map>
 #include <stdexcept>
@@ -31,7 +31,7 @@ Recorded recorded(const Scene& scene, const TorusCase& c) {
     return r;
 }
 
-// Messages of each kind that a task of another kind, or an injection, has sent.
+// By kind: the number of messages whose sending task was started by a message of another kind or by injection.
 std::map<std::uint32_t, std::uint64_t> made_by_others(const History& history) {
     std::map<std::uint32_t, std::uint64_t> made;
     for (const HistoryMessage& message : history.messages) {

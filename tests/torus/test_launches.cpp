@@ -1,4 +1,5 @@
-// Launches bounded to little work, and links moved by a kernel instead of copies: the same image and the same counts.
+// Image and counts do not change if launches do little work each, or if a kernel instead of copy commands moves the
+// packets over the links.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -15,7 +16,7 @@
 namespace raya {
 namespace {
 
-// Compares the images and all counts, superstep by superstep.
+// Checks that the images and all counts, superstep by superstep, are equal.
 void check_same(const TorusResult& a, const TorusResult& b) {
     CHECK(pixel_hash(a.image) == pixel_hash(b.image));
     CHECK(a.events == b.events);
@@ -103,14 +104,14 @@ TEST_CASE("bounded launches and links moved by a kernel give the image and count
             check_same(parts, whole);
             once += launches_of(whole);
             bounded += launches_of(parts);
-        } catch (const TorusDeadlock&) {  // then both must deadlock
+        } catch (const TorusDeadlock&) {  // then both renders must deadlock
             CHECK_THROWS_AS(TorusRenderer(session, scene, settings).render(), TorusDeadlock);
         }
     }
     CHECK(bounded > 4 * once);
 }
 
-// Up to a GPU's default group size and the maximum.
+// Group sizes up to a GPU's default and the maximum.
 TEST_CASE("work-groups of many work-items give the same image", "[torus][slow]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kRichScenes[0]);
@@ -164,7 +165,7 @@ TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterati
     };
     NodeStatus status(2);
     status.words[RAYA_STATUS_QUEUE] = 1000;
-    status.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 500;  // may come to node 0
+    status.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 500;  // may arrive at node 0
 
     LaunchPlan few = plan_of(100), many = plan_of(1'000'000);
     CHECK(many.trace_voxel().once);  // the queue is empty
@@ -178,9 +179,10 @@ TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterati
 
     device.max_loop_iterations = 65'535;
     LaunchPlan short_loops = plan_of(100), one_voxel_too_long = plan_of(10'000);
-    CHECK(short_loops.route() == LaunchBudget{7679, false});  // queues may hold 8192 packets
+    CHECK(short_loops.route() == LaunchBudget{7679, false});  // (65535 - 4096) / 8; a queue may hold 8192 packets
     CHECK_FALSE(short_loops.accept().once);
-    for (const auto& [packets, once] : {std::pair{22u, true}, std::pair{23u, false}}) {  // 1 + 100 + 12 units each
+    // Units of work per packet: 1 for its batch, 100 for the tests, 12 for its processing (RAYA_WORK_OF_PROCESSING).
+    for (const auto& [packets, once] : {std::pair{22u, true}, std::pair{23u, false}}) {
         NodeStatus waiting(2);
         waiting.words[RAYA_STATUS_QUEUE] = packets - 5;
         waiting.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 5;

@@ -1,4 +1,4 @@
-// Links carry every packet from a node's outbox to the node at the other end, once.
+// Links transfer each packet exactly once, from a node's outbox to the node at the other end.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kUnsent = 0xdead0000;
 
-// Mailboxes of a machine that a test fills and empties: a model of the nodes' work between exchanges.
+// Fills and empties the mailboxes of all nodes, as the nodes' kernels would between two exchanges.
 class Mailboxes {
   public:
     Mailboxes(Session& session, const raya_torus& torus, std::uint32_t capacity, std::uint32_t words)
@@ -34,12 +34,13 @@ class Mailboxes {
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) out_[at(box)] = 0;
     }
 
-    /// Moves packets with the kernel from now on.
+    /// From now on moves packets with the exchange kernel instead of copy commands.
     void use_kernel(Kernels& kernels) {
         links_.use_kernel(kernels.get<ExchangeKernel>(), kernels.options().group_size, device_status_);
     }
 
-    /// Adds up to `most` packets, as far as they fit, to each outbox with a probability of 1 / `rareness`.
+    /// For each outbox, with probability 1 / `rareness`: adds a random number of packets, at most `most` and at most
+    /// the free space.
     void put(SplitMix& random, std::uint32_t rareness, std::uint32_t most) {
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             for (std::uint32_t node = 0; node < nodes_ && torus_.sides[link / 2] > 1; ++node) {
@@ -51,7 +52,8 @@ class Mailboxes {
             }
     }
 
-    /// Exchanges once, and checks flags, words, inboxes and counters.
+    /// Exchanges once, and checks the sent flags, the words per link, the inboxes and the counters. If `record`, also
+    /// visits the new packets before the exchange.
     void exchange(bool record) {
         session_.write("test", links_.outboxes(), out_);
         if (record)
@@ -76,7 +78,7 @@ class Mailboxes {
                 wrong_flags += sent[link * nodes_ + node] != goes;
                 const std::size_t to = at(link * nodes_ + node);
                 if (busy) touched += !std::equal(&in_[to], &in_[to] + (1 + capacity_) * words_, &before[to]);
-                if (!busy && !goes) touched += in_[to] != 0;  // an empty box stays empty, whatever follows its header
+                if (!busy && !goes) touched += in_[to] != 0;  // an empty inbox stays empty; only its header counts
                 if (!goes) continue;
                 expected[node * RAYA_LINKS + link] += std::uint64_t{packets} * words_;
                 arrive(link, node, end);
@@ -86,7 +88,7 @@ class Mailboxes {
         CHECK(words == expected);
     }
 
-    /// Nodes take none, some or all of their inboxes' packets.
+    /// Removes none, some or all packets from each inbox, as the nodes would.
     void take(SplitMix& random, std::uint32_t rareness) {
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) {
             std::uint32_t& left = inbox(box / nodes_, raya_link_end(torus_, box % nodes_, box / nodes_));
@@ -97,7 +99,8 @@ class Mailboxes {
         session_.write("test", links_.inboxes(), in_);
     }
 
-    /// Every packet has been visited once and has arrived once, except those that wait in outboxes.
+    /// Checks that every packet has arrived once, except those that wait in outboxes, and if `record`, that every
+    /// packet has been visited once.
     void check_totals(bool record) const {
         std::uint64_t waiting = 0, counted = 0;
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box)
@@ -112,7 +115,7 @@ class Mailboxes {
     }
 
     std::uint64_t arrived() const { return arrived_.size(); }
-    static inline std::uint64_t spans = 0, single_boxes = 0;  // copy commands of several boxes, of one
+    static inline std::uint64_t spans = 0, single_boxes = 0;  // copy commands of several mailboxes, of one
 
   private:
     std::uint32_t& outbox(std::uint32_t link, std::uint32_t node) {
@@ -123,7 +126,7 @@ class Mailboxes {
     }
     std::size_t at(std::uint32_t box) const { return std::size_t{box} * (1 + capacity_) * words_; }
 
-    // The first word of a packet is its number, from which all others follow.
+    // Writes a packet. Its first word is its number; the other words are computed from the number.
     void put_packet(std::uint32_t link, std::uint32_t node, std::uint32_t slot) {
         const auto number = static_cast<std::uint32_t>(sources_.size());
         sources_.push_back(node);
@@ -157,8 +160,8 @@ class Mailboxes {
     NodeStatus status_;
     Buffer<std::uint32_t> device_status_;
     std::vector<std::uint32_t> out_, in_;
-    std::vector<std::uint32_t> sources_;           // of each packet: the node that put it
-    std::map<std::uint32_t, int> arrived_, seen_;  // how often each did
+    std::vector<std::uint32_t> sources_;           // by packet number: its source node
+    std::map<std::uint32_t, int> arrived_, seen_;  // by packet number: arrivals, visits
 };
 
 }  // namespace

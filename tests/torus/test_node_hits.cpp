@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kRays = 640;
 
 struct VoxelHits {
-    std::vector<std::uint32_t> objects;  // numbers in the voxel
+    std::vector<std::uint32_t> objects;  // their numbers in the voxel
     std::vector<float> distances, places;
 };
 
@@ -33,7 +33,7 @@ VoxelHits voxel_hits(KernelRunner& runner, const NodeMemories& memories, std::ui
     return {runner.read(objects), runner.read(distances), runner.read(places)};
 }
 
-// Cuts patches to three corners, so that none is split and job objects match scene objects one to one.
+// Reduces patches to three corners, so that none is split and the job's objects match the scene's objects one to one.
 Scene with_triangles(Scene scene) {
     for (Polygon& polygon : scene.polygons)
         if (!polygon.normals.empty()) {
@@ -43,7 +43,7 @@ Scene with_triangles(Scene scene) {
     return scene;
 }
 
-// The scene reduced to the listed objects and all planes.
+// The scene with only the listed objects and all planes.
 Scene only(const Scene& scene, const std::set<std::uint32_t>& list) {
     Scene some = scene;
     std::uint32_t number = 0;
@@ -61,7 +61,7 @@ Scene only(const Scene& scene, const std::set<std::uint32_t>& list) {
     return some;
 }
 
-// Scene numbers of a voxel's objects, indexed by their numbers in the voxel.
+// The scene's numbers of a voxel's objects, indexed by the objects' numbers in the voxel.
 std::vector<std::uint32_t> whole_numbers(NodeReader& node, const raya_voxel_memory& voxel) {
     const raya_objects& o = voxel.objects;
     std::vector<std::uint32_t> numbers = node.section(voxel.numbers_at, o.spheres + o.polygons + o.cones);
@@ -71,7 +71,7 @@ std::vector<std::uint32_t> whole_numbers(NodeReader& node, const raya_voxel_memo
     return numbers;
 }
 
-// The number of rays with different hits.
+// The number of rays whose hits differ.
 std::size_t differences(const VoxelHits& own, const VoxelHits& theirs) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < own.objects.size(); ++i) {
@@ -85,7 +85,7 @@ std::size_t differences(const VoxelHits& own, const VoxelHits& theirs) {
     return count;
 }
 
-// Hits in the job's own words, in the form of voxel_hits().
+// The hits in the job's own words, in the format of voxel_hits().
 VoxelHits job_hits(KernelRunner& runner, const PackedJob& job, const std::vector<float>& rays) {
     const ProbedHits hits = closest_hits(runner, job.words(), rays);
     const ProbedPlaces probed = find_places(runner, job.words(), rays);

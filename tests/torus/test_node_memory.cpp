@@ -1,4 +1,4 @@
-// Memories of torus nodes, compared with the job word by word, for random scenes and lists.
+// The memories of torus nodes, compared with the job word by word, for random scenes and object lists.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
@@ -14,7 +14,7 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-// Compares a node with the job: every word of an object, and all that it refers to.
+// Compares a node with the job: every word of each object, and everything that the object refers to.
 class NodeCheck {
   public:
     NodeCheck(const PackedJob& job, NodeReader& node) : job_(job), header_(job.header()), node_(node) {}
@@ -24,8 +24,8 @@ class NodeCheck {
         return {first, first + static_cast<std::ptrdiff_t>(count)};
     }
 
-    // Compares objects of `words` words each from `at` on with the job's objects `numbers`, which are counted from
-    // `first` at `job_at`.
+    // Compares the node's objects of `words` words each, from word `at` on, with the job's objects `numbers`. The job's
+    // object `first` is at its word `job_at`.
     void objects(std::uint32_t at, std::uint32_t words, const Words& numbers, std::uint32_t first,
                  std::uint32_t job_at) {
         for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -38,7 +38,7 @@ class NodeCheck {
         }
     }
 
-    // Compares sphere rows, which start at a multiple of four words, and the surfaces behind them.
+    // Compares sphere rows, which start at a multiple of four words, and the surface references that follow them.
     void spheres(const raya_objects& own, const Words& numbers) {
         const raya_objects& all = header_.objects;
         const std::uint32_t own_surfaces = raya_sphere_surfaces_at(own.spheres_at, own.spheres);
@@ -59,7 +59,7 @@ class NodeCheck {
             FAIL("words of the surface at " << job_at);
     }
 
-    // Surfaces follow the header without gaps, in the job's order.
+    // Checks that the surfaces follow the header without gaps, in the job's order.
     void surfaces() const {
         std::uint32_t at = sizeof(raya_node) / 4;
         for (const auto& [job_at, own_at] : surfaces_) {
@@ -71,7 +71,7 @@ class NodeCheck {
     const raya_job& header() const { return header_; }
 
   private:
-    // Compares corners and normals, then makes the two "at" words equal.
+    // Compares corners and normals, then overwrites the two offsets ("at" words) so that they are equal.
     void outline(Words& own, const Words& theirs) {
         const std::size_t corners = theirs[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS;
         if (node_.section(own[RAYA_POLYGON_CORNERS_AT], corners) !=
@@ -88,10 +88,10 @@ class NodeCheck {
     const PackedJob& job_;
     const raya_job header_;
     NodeReader& node_;
-    std::map<std::uint32_t, std::uint32_t> surfaces_;  // in the job -> in the node
+    std::map<std::uint32_t, std::uint32_t> surfaces_;  // word offset in the job -> in the node
 };
 
-// Compares all but the "at" words.
+// Compares all header words except the offsets ("at" words).
 void check_header(const raya_node& node, const raya_job& job, const Partition& partition, const raya_torus& torus) {
     raya_job expected = job;
     expected.lights_at = node.job.lights_at;
@@ -140,7 +140,7 @@ void check_node(const PackedJob& job, const Partition& partition, const raya_tor
         check_voxel(check, node, node.voxel(local), {first, partition.objects.begin() + partition.starts[voxel + 1]});
     }
     check.surfaces();
-    // Only padding before rows was not read, and no word was read twice.
+    // Only the padding before rows was not read, and no word was read twice.
     CHECK(node.words_read(1) + node.words_read(0) == node.size());
     CHECK(node.words_read(0) <= 3 * (node.header().voxels + 1));
 }
@@ -184,7 +184,7 @@ TEST_CASE("nodes hold copies of the job's objects in their voxels, and nothing e
     }
     CHECK(objects > 5000);
     CHECK(idle > 100);    // nodes without a voxel
-    CHECK(shared > 100);  // nodes with several
+    CHECK(shared > 100);  // nodes with several voxels
 }
 
 TEST_CASE("a node holds only the surfaces of its own objects and of the planes", "[torus]") {
@@ -202,7 +202,7 @@ TEST_CASE("a node holds only the surfaces of its own objects and of the planes",
     const auto node_of = [&](std::size_t spheres, std::size_t surfaces, std::size_t planes) {
         const std::size_t before = (sizeof(raya_node) + sizeof(raya_voxel_memory)) / 4 + surfaces * RAYA_SURFACE_WORDS +
                                    planes * RAYA_PLANE_WORDS;
-        return in_rows(in_rows(before) + spheres * (RAYA_SPHERE_WORDS + 2));  // a surface and a number for each
+        return in_rows(in_rows(before) + spheres * (RAYA_SPHERE_WORDS + 2));  // + surface and number
     };
     CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 3, 0), node_of(1, 1, 0)});
     scene.spheres[2].surface = 0;

@@ -1,4 +1,4 @@
-// Refusals of partitioned scenes: the machine that a refusal names does hold the scene.
+// If raya rejects a partitioned scene, the machine that its message recommends can hold the scene.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <regex>

@@ -1,4 +1,4 @@
-// The torus's image and ray counts are those of the ring machine, bit for bit, for any partition of the scene.
+// The torus's image and ray counts equal those of the ring machine, bit for bit, for any partition of the scene.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-// Number of random machines; RAYA_TORUS_CASES sets another one.
+// The number of random machines; RAYA_TORUS_CASES overrides it.
 std::uint32_t random_cases() {
     const char* text = std::getenv("RAYA_TORUS_CASES");
     return text ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10)) : quick_cases(6, 16);
@@ -21,15 +21,15 @@ std::uint32_t random_cases() {
 
 constexpr std::uint32_t kMaxTestNodes = 100;
 
-// Random nodes, voxels, links, injection and queue, which need no other kernels.
+// Random nodes, voxels, links, injection and queue length. They need no other kernels.
 TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
     do c.nodes = random_sides(random, 5);
     while (c.nodes[0] * c.nodes[1] * c.nodes[2] > kMaxTestNodes);
     const std::uint32_t how = random_below(random, 4);
     for (std::size_t axis = 0; axis < 3; ++axis)
         c.voxels[axis] = how == 0   ? c.nodes[axis]
-                         : how == 1 ? 1 + random_below(random, c.nodes[axis])        // fewer
-                         : how == 2 ? c.nodes[axis] * (1 + random_below(random, 3))  // laid out evenly
+                         : how == 1 ? 1 + random_below(random, c.nodes[axis])        // at most as many voxels as nodes
+                         : how == 2 ? c.nodes[axis] * (1 + random_below(random, 3))  // a multiple of the nodes
                                     : 1 + random_below(random, 9);
     c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
     c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
@@ -59,7 +59,7 @@ TEST_CASE("ten scenes on several machines and queue lengths: the image is the ri
         Divisions voxels;
         Links links;
         Injection inject;
-        std::uint32_t queue;  // in multiples of the shortest, one ray tree; 0: the default
+        std::uint32_t queue;  // in multiples of the shortest queue (one ray tree); 0: the default
     };
     const Row rows[] = {{{1, 1, 1}, {1, 1, 1}, Links::kTorus3d, Injection::kAll, 1},
                         {{2, 1, 1}, {2, 1, 1}, Links::kTorus3d, Injection::kRoot, 2},
@@ -82,14 +82,14 @@ TEST_CASE("ten scenes on several machines and queue lengths: the image is the ri
         const std::string expected = ring_image(scene, c);
         CHECK_THAT(expected, Catch::Contains("primary 216 "));
         for (const Row& row : rows) {
-            if ((&row - rows + scenes_done) % 2 == (format == "spa22")) continue;  // half of them in each format
+            if ((&row - rows + scenes_done) % 2 == (format == "spa22")) continue;  // each format takes half of the rows
             if (!thorough() && (scenes_done % 2 == 1 || (&row - rows) / 2 % 4 != scenes_done % 4)) continue;
             c.nodes = row.nodes;
             c.voxels = row.voxels;
             c.links = row.links;
             c.inject = row.inject;
             c.queue = row.queue * raya_min_queue(lights_of(scene), c.bounces);
-            if (row.queue == 1 && scenes_done % 4) c.queue = 0;  // the shortest take very many supersteps
+            if (row.queue == 1 && scenes_done % 4) c.queue = 0;  // the shortest queues take very many supersteps
             CAPTURE(scene.name, case_text(c));
             CHECK(one_image(render_without_deadlock(session, scene, c)) == expected);
         }

@@ -12,18 +12,18 @@ using namespace raya;
 
 namespace {
 
-constexpr std::uint32_t kLastLevel = 31;  // after the most bounces
+constexpr std::uint32_t kLastLevel = 31;  // after the maximum number of bounces
 
 struct Contribution {
     std::uint32_t path, state;
     bool operator==(const Contribution&) const = default;
 };
 
-// A ray tree in the order of a recursive tracer: a ray's own contributions, then its reflected subtree, then its
-// refracted subtree. Chains that only reflect or only refract often reach the last level.
+// A random ray tree in the order of a recursive ray tracer: a ray's own contributions, then its reflected subtree, then
+// its refracted subtree. Chains of only reflections or only refractions often reach the last level.
 struct RandomTree {
     SplitMix random;
-    std::uint32_t last_level = kLastLevel, most = 400;  // contributions
+    std::uint32_t last_level = kLastLevel, most = 400;  // most: contributions at which the tree stops growing
     std::vector<Contribution> contributions{};
 
     void add(std::uint32_t path, std::uint32_t level, std::uint32_t light) {
@@ -36,7 +36,7 @@ struct RandomTree {
             if (random.next() % 2) add(path, level, light);
         if (random.next() % 16 == 0) add(path, level, RAYA_MOST_LIGHTS);
         if (level == last_level || contributions.size() > most) return;
-        const std::uint64_t choice = random.next() % 64;  // both: 14, one of them: 24 each, none: 2
+        const std::uint64_t choice = random.next() % 64;  // of 64: 14 both, 24 reflected, 24 refracted, 2 none
         if (choice < 38) walk(raya_path_reflected(path), level + 1);
         if (choice < 14 || (choice >= 38 && choice < 62)) walk(raya_path_refracted(path, level), level + 1);
     }

@@ -1,4 +1,4 @@
-// The packet trace: rows, and the numbers of rays and parents, compared with names from generated ray trees.
+// The packet trace: its rows and the numbers of rays and parents, compared with the names of generated ray trees.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ namespace {
 
 const std::string kHeading = "superstep,source,destination,kind,bytes,ray,parent\n";
 
-/// A sent packet and its name: "17" is the primary ray of pixel 17, "17RT" the refracted ray of its reflected ray,
-/// "17RT+3" that one's shadow ray to light 3, "17RT+3!" the return packet of that shadow ray.
+/// A sent packet and its name: "17" is the primary ray of pixel 17, "17RT" the refracted ray of that ray's reflected
+/// ray, "17RT+3" the shadow ray of "17RT" to light 3, and "17RT+3!" the return packet of that shadow ray.
 struct Sent {
     PacketRecord record;
     std::string kind, name, parent;
@@ -44,7 +44,7 @@ class Tree {
             if (below(2) == 0) break;
         }
         if (level == depth) return;
-        const std::uint32_t which = 1 + below(level < 3 ? 3 : 2);  // both only near the root: 31 levels are deep
+        const std::uint32_t which = 1 + below(level < 3 ? 3 : 2);  // both only near the root: 31 levels exist
         if (which & 1) grow(pixel, raya_path_reflected(path), level + 1, name + "R", depth);
         if (which & 2) grow(pixel, raya_path_refracted(path, level), level + 1, name + "T", depth);
     }
@@ -88,7 +88,7 @@ raya_head head_of(std::uint32_t pixel, std::uint32_t state, std::uint32_t path) 
     return head;
 }
 
-// Rows with numbers in the order in which names first appear in the table.
+// The expected rows; rays are numbered in the order in which their names first appear in the table.
 std::string expected_rows(const std::vector<Sent>& sent) {
     std::map<std::string, std::size_t> numbers;
     const auto number = [&](const std::string& name) { return numbers.emplace(name, numbers.size()).first->second; };
@@ -126,7 +126,7 @@ TEST_CASE("a return that comes first gets its shadow ray's number; expected rows
     const auto row = [&](std::uint32_t kind, std::uint32_t level, std::uint32_t light, std::uint32_t path) {
         trace.add({3, 1, 2, head_of(9, raya_state(kind, level, light), path), kind == RAYA_KIND_RETURN ? 6u : 22u});
     };
-    row(RAYA_KIND_RETURN, 1, 4, 1u << 31);     // of the refracted ray's shadow ray
+    row(RAYA_KIND_RETURN, 1, 4, 1u << 31);     // 0, return of the refracted ray's shadow ray
     row(RAYA_KIND_SHADOW, 1, 4, 1u << 31);     // 1, the parent of the return; child of 2
     row(RAYA_KIND_REFRACTED, 1, 0, 1u << 31);  // 2, child of the primary ray, 3
     row(RAYA_KIND_PRIMARY, 0, 0, 0);
@@ -155,7 +155,7 @@ TEST_CASE("invalid packet heads are refused", "[torus]") {
     CHECK_THROWS_AS(packet_kind_name(RAYA_KINDS), std::logic_error);
 }
 
-// Enough rays to make the table grow many times; then all are looked up again in reverse order.
+// Enters enough rays to make the table grow many times, then looks all of them up in reverse order.
 TEST_CASE("a ray keeps its number while the table grows", "[torus]") {
     constexpr std::uint32_t kRays = 200'000;
     RayNumbers numbers;

@@ -22,7 +22,7 @@ TEST_CASE("the torus reports progress per superstep, and 1 only after the last",
             CAPTURE(i, shares.size());
             CHECK(shares[i] < 1);
         }
-        for (const double part : {0.3, 0.5, 0.7, 0.9}) {  // of the supersteps
+        for (const double part : {0.3, 0.5, 0.7, 0.9}) {  // fraction of the supersteps
             CAPTURE(part);
             CHECK(shares[static_cast<std::size_t>(part * static_cast<double>(shares.size()))] ==
                   Approx(part).margin(0.25));

@@ -1,4 +1,4 @@
-// The search for a queue that ends a deadlock: long enough, and within the limits of node, device and option.
+// The search for a queue length that avoids a deadlock: long enough, and within the limits of node, device and option.
 #include <catch2/catch.hpp>
 #include <vector>
 
@@ -8,12 +8,13 @@
 namespace raya {
 namespace {
 
-// A machine that ends with queues of `enough` packets or more, 10 bytes each. Records the tried lengths.
+// A machine that finishes if its queues hold at least `enough` packets of 10 bytes. It records the lengths that the
+// search tries.
 struct TriedMachine {
     std::uint32_t enough;
     std::uint64_t limit = UINT64_MAX;
     std::uint32_t device = UINT32_MAX;  // the longest queue that fits into the device
-    std::uint32_t driver = UINT32_MAX;  // the longest that the driver allocates
+    std::uint32_t driver = UINT32_MAX;  // the longest queue that the driver allocates
     std::uint32_t most = kLongestQueue;
     std::vector<std::uint32_t> tried{};
 

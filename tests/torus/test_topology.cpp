@@ -35,7 +35,7 @@ std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint
     return distances;
 }
 
-// The links that a packet takes; stops after as many steps as there are nodes.
+// The links that a packet takes. Stops after as many steps as there are nodes.
 std::vector<std::uint32_t> route_of(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
     std::vector<std::uint32_t> links;
     for (std::uint32_t node = from; links.size() <= raya_nodes(torus);) {
@@ -102,7 +102,7 @@ TEST_CASE("4 x 4 x 4 nodes are a torus of 8 x 8 with four slabs of equal k", "[t
     }
     CHECK(torus_text(make_torus({4, 4, 4}, Links::kTorus3d)) == "4x4x4 on 4x4x4");
     CHECK(torus_text(make_torus({2, 8, 4}, Links::kTorus2d)) == "2x8x4 on 8x8x1");
-    CHECK(torus_text(make_torus({1, 1, 2}, Links::kTorus2d)) == "1x1x2 on 1x2x1");  // 2 x 1 is no better
+    CHECK(torus_text(make_torus({1, 1, 2}, Links::kTorus2d)) == "1x1x2 on 1x2x1");  // 2x1 has no advantage
     CHECK(torus_text(make_torus({8, 8, 1}, Links::kTorus2d)) == "8x8x1 on 8x8x1");
     CHECK(torus_text(make_torus({8, 2, 3}, Links::kTorus2d)) == "8x2x3 on 8x6x1");
 }

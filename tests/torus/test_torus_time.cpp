@@ -1,4 +1,4 @@
-// Modelled times of a torus, compared with times computed by hand; the lower bound never exceeds the upper one.
+// Modelled times of a torus, compared with times computed by hand. The lower bound never exceeds the upper bound.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-// 1.7 MB/s in one direction, 2.4 MB/s in both together.
+// Link rates: 1.7 MB/s in one direction, 2.4 MB/s in both directions together.
 constexpr double kCycleMs = 40e-6, kWordMs = 1 / 425., kBothWaysWordMs = 1 / 300.;
 
 TorusResult result_of(const raya_torus& torus) {
@@ -50,13 +50,14 @@ TEST_CASE("both directions share a link, wrap-around links included", "[torus]")
     TorusResult result = result_of(torus);
     const std::uint32_t from = raya_node_of(torus, 0, 2, 0), to = raya_node_of(torus, 0, 0, 0);
     send(result, from, 2, 100, 16);  // up along y from the last row to the first
-    send(result, to, 3, 100, 16);    // and down again
+    send(result, to, 3, 100, 16);    // and back
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
     send(result, to, 2, 90, 16);  // another link
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
     send(result, from, 2, 100, 16);
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs + 1600 * kWordMs));
-    // Two nodes along x are joined by two links, one each way round, which do not share their rate.
+    // Two nodes along x are joined by two links, one in each direction round the side. The links do not share their
+    // rate.
     TorusResult two = result_of(torus);
     send(two, 0, 0, 100, 16);
     send(two, 1, 0, 100, 16);
@@ -72,7 +73,7 @@ TEST_CASE("stepwise time sums each superstep's busiest node and busiest link", "
     CHECK(torus_time(torus, result).stepwise_ms == about_ms(6000 * kCycleMs + 336 * kBothWaysWordMs));
 }
 
-/// Supersteps of random work and traffic, with the nodes' and links' totals.
+/// A result with supersteps of random work and traffic, and with the totals of nodes and links.
 TorusResult random_render(SplitMix& random, const raya_torus& torus) {
     TorusResult result = result_of(torus);
     std::vector<std::uint64_t> cycles(raya_nodes(torus));

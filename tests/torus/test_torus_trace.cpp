@@ -1,4 +1,4 @@
-// The modelled torus machine in a trace: stepwise time, and flows of packets.
+// Trace of the modelled torus machine: stepwise time, and flows of packets.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -62,11 +62,11 @@ TEST_CASE("the traced torus ends at the stepwise time, and its nodes compute for
             std::int64_t computing = 0;
             for (const TraceSchema::Slice& s : schema.slices().at({kTraceMachine, 2 + node}))
                 if (s.name == "compute") computing += s.end - s.start;
-            // Rounded to nanoseconds at both ends of each superstep.
+            // Both ends of each superstep are rounded to nanoseconds.
             CHECK(std::abs(computing - static_cast<std::int64_t>(40 * t.result.load.per_pe[node])) <=
                   static_cast<std::int64_t>(2 * steps.size()));
         }
-        // With all nodes shown and fewer packets than the sample holds, every packet is a flow.
+        // All nodes are shown, and there are fewer packets than the sample holds: every packet is a flow.
         REQUIRE(t.packets < TorusTrace::kMaxPackets);
         CHECK(schema.flows() == t.packets);
         CHECK(t.trace["otherData"]["machine"]["flows"] == t.packets);
@@ -142,7 +142,7 @@ TEST_CASE("the packet sample has its maximum size and is uniform over time", "[t
     for (const Document& e : json["traceEvents"])
         if (e["ph"] == "s")
             ++of_quarter[std::min<std::size_t>(3, static_cast<std::size_t>(e["ts"].get<double>() / 4 / 25))];
-    for (const int count : of_quarter) CHECK(std::abs(count - 5000) < 400);  // 6 standard deviations
+    for (const int count : of_quarter) CHECK(std::abs(count - 5000) < 400);  // 400: 6 standard deviations
 }
 
 TEST_CASE("the work of the torus's kernels agrees with the counts", "[torus]") {

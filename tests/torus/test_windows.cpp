@@ -1,4 +1,4 @@
-// Pixel windows: each holds all pixels whose rays enter the box at the node's voxels, and few others.
+// A node's pixel window contains all pixels whose rays enter the box at the node's voxels, and few others.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -22,7 +22,8 @@ double rounded(double value, const NumberFormat& format) {
 
 Vec3 vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-// The ray through a point of the image, each operation rounded to the format as in the kernels (shading/camera.clh).
+// The direction of the ray through an image point. As in the kernels (shading/camera.clh), each operation is rounded to
+// the format.
 Vec3 direction_of(const Camera& c, double row, double column) {
     const auto in = [&](double value) { return rounded(value, c.format); };
     Vec3 d;
@@ -35,7 +36,7 @@ Vec3 direction_of(const Camera& c, double row, double column) {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// The distance at which a ray enters the voxels `first` to `last`, in double; kNever if it misses them.
+// The distance in double at which a ray enters the block of voxels from `first` to `last`; kNever if it misses them.
 double meets(const raya_grid& grid, const raya_place& first, const raya_place& last, const Vec3& origin,
              const Vec3& direction) {
     double in = 0, out = kNever;
@@ -51,20 +52,20 @@ double meets(const raya_grid& grid, const raya_place& first, const raya_place& l
     return in <= out ? in : kNever;
 }
 
-// True if a ray enters the box at the voxel.
+// Returns true if a ray enters the box at voxel `at`.
 bool enters(const raya_grid& grid, const raya_place& at, const Vec3& origin, const Vec3& direction) {
     const raya_place last{{grid.divisions[0] - 1, grid.divisions[1] - 1, grid.divisions[2] - 1}};
     const double box = meets(grid, {{0, 0, 0}}, last, origin, direction);
     return box < kNever && meets(grid, at, at, origin, direction) <= box * (1 + 1e-12);
 }
 
-// The range of rows and columns, low and high, of the points whose rays enter the box at a node's voxels.
+// The range ([0]: rows, [1]: columns) of the image points whose rays enter the box at a node's voxels.
 struct Met {
     double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
     bool any() const { return low[0] <= high[0]; }
 };
 
-// Tries `fine` x `fine` points per pixel.
+// Finds that range from `fine` x `fine` rays per pixel.
 Met met_by(const Camera& c, const raya_grid& grid, const raya_torus& torus, std::uint32_t node, int fine) {
     Met met;
     const Vec3 eye = vector_of(c.job.eye);
@@ -102,7 +103,8 @@ Vec3 middle_of(const raya_grid& grid) {
     return middle;
 }
 
-// An eye at the distance `away` from the middle of the box; short distances lie inside.
+// A random camera with its eye at the distance `away` from the middle of the box; for short distances the eye is
+// inside.
 Camera random_camera(SplitMix& random, const raya_grid& grid, const NumberFormat& format, double away, double angle) {
     Scene scene = empty_scene();
     scene.view.from = middle_of(grid) + away * random_direction(random);
@@ -128,7 +130,7 @@ TEST_CASE("a node's window holds every pixel whose ray enters the box at its vox
         const raya_grid grid = random_grid(
             random, {1 + random_below(random, 5), 1 + random_below(random, 5), 1 + random_below(random, 5)});
         const double away = std::array{0.0, 0.3, 2.0, 8.0, 30.0, 300.0, 3000.0, 10000.0}[random_below(random, 8)];
-        // From far away pixels are as small as the last bits of a direction.
+        // From far away, the pixel spacing is as small as the last bits of a direction.
         const double angle = away < 50 ? random.uniform(10, 150) : random.uniform(50, 300) / away;
         const Camera camera = random_camera(random, grid, format, away, angle);
         const auto windows = pixel_windows(camera.job, grid, torus, format);
@@ -168,7 +170,7 @@ TEST_CASE("a window exceeds the projection of the node's outer faces by at most 
             const Met m = met_by(camera, grid, torus, node, 4);
             CAPTURE(seed, i, node, w.rows[0], w.rows[1], w.columns[0], w.columns[1], m.low[0], m.high[0], m.low[1],
                     m.high[1]);
-            // Projections that the image's edge cuts may have larger windows.
+            // The window of a projection that the image's edge clips may be larger.
             const bool cut = m.low[0] <= 0 || m.low[1] <= 0 || m.high[0] > camera.job.mapping.height - 1.5 ||
                              m.high[1] > camera.job.mapping.width - 1.5;
             if (!m.any() || cut) continue;

@@ -1,4 +1,4 @@
-// The search on synthetic cost functions: distance to the optimum, and number of trials.
+// The search with synthetic cost functions: the cost found relative to the minimum, and the number of trials.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -31,7 +31,8 @@ double minimum_cost(const Space& space, const Cost& cost) {
     return minimum;
 }
 
-// Each knob has a best value, from which the cost grows in both directions by a factor of its own.
+// A cost factor for each knob, with its minimum at a random best value of the knob. Each step away from this value
+// multiplies the cost by the same factor, which is random for each knob.
 struct Valley {
     Valley(const Space& space, std::mt19937& random) {
         std::uniform_real_distribution<double> step(0.02, 0.6);
@@ -56,7 +57,7 @@ Cost separable(const Space& space, std::mt19937& random) {
     };
 }
 
-// The best value of one knob depends on another's: lanes and group share the registers of a device.
+// The best value of knob 1 depends on the value of knob 0. Example: lanes and group size share a device's registers.
 Cost shared(const Space& space, std::mt19937& random) {
     const double share = std::uniform_real_distribution<double>(-0.8, 0.8)(random);
     return [valley = Valley(space, random), share](const Candidate& c) {
@@ -69,7 +70,7 @@ Cost shared(const Space& space, std::mt19937& random) {
     };
 }
 
-// A step in the cost where the sum of two knobs exceeds a limit, like spilled registers.
+// The cost jumps where the sum of two knobs exceeds a limit, as when a kernel spills registers.
 Cost spilling(const Space& space, std::mt19937& random) {
     const std::size_t limit = 2 + random() % 5;
     return [valley = Valley(space, random), limit](const Candidate& c) {
@@ -79,13 +80,13 @@ Cost spilling(const Space& space, std::mt19937& random) {
     };
 }
 
-/// The result of a search, compared with an exhaustive one.
+/// The result of a search, compared with an exhaustive search.
 struct SearchQuality {
     double loss;   // cost found / minimum cost
     double share;  // candidates tried / size of the space
 };
 
-// `noise`: relative error of each measurement, uniform in -noise..noise.
+// Searches `space`. Each measurement has a relative error, uniform in -noise..noise.
 SearchQuality search_quality(const Space& space, const Cost& cost, std::mt19937& random, double noise) {
     std::uniform_real_distribution<double> error(-noise, noise);
     std::map<Candidate, int> asked;
@@ -105,7 +106,7 @@ TEST_CASE("search: ends within 5 % of the minimum after trying a fraction of the
     struct Family {
         const char* name;
         Cost (*make)(const Space&, std::mt19937&);
-        int max_missed;  // of 200
+        int max_missed;  // searches that may end more than 5 % above the minimum, of 200
     };
     constexpr int kSpaces = 200;
     for (const Family& family :
@@ -166,7 +167,7 @@ TEST_CASE("search: tries the knobs with two values first", "[tune]") {
     for (unsigned seed = 1; seed <= 200; ++seed) {
         std::mt19937 random(seed);
         Space space = random_space(random);
-        const std::size_t gains = space.knobs.size();  // index of the last knob
+        const std::size_t gains = space.knobs.size();  // index of the knob added below, the only one with a gain
         space.knobs.push_back({&TunedValues::link_exchange, {0, 1}});
         space.start.push_back(random() % 2);
         const auto switches = static_cast<std::size_t>(std::count_if(

@@ -1,4 +1,4 @@
-// The file of tuned values: writing, reading, damage, and use by renders.
+// The file of tuned values: writing, reading, damaged files, and use by renders.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -32,7 +32,7 @@ const TunedFile kFile{.date = "2026-11-22",
                                    .speedup = 1,
                                    .scene = "x.nff"}}};
 
-/// Sets XDG_CACHE_HOME to a new folder and unsets RAYA_TUNED for its lifetime.
+/// For its lifetime, sets XDG_CACHE_HOME to a new folder and unsets RAYA_TUNED.
 class OwnCache {
   public:
     OwnCache() {
@@ -49,7 +49,7 @@ class OwnCache {
     ScratchFolder folder_;
 };
 
-/// A source of tuned values that records warnings.
+/// A source of tuned values that records its warnings.
 struct WarningRecorder {
     std::vector<std::string> texts{};
     TunedSource source = stored_choices([this](const std::string& text) { texts.push_back(text); });
@@ -144,7 +144,7 @@ TEST_CASE("stored values: an invalid file causes one warning, is ignored, and ov
         CHECK(WarningRecorder().source(device, kFile.entries[0].what));
         std::filesystem::remove(file);
     }
-    CHECK_THROWS_AS(tuned_path(device), UserError);  // the path is a folder
+    CHECK_THROWS_AS(tuned_path(device), UserError);  // a folder, not a file
 }
 
 TEST_CASE("stored values: a file that other users may write causes a warning and is ignored", "[tune]") {

@@ -1,4 +1,4 @@
-// The T4 report of trials, and how candidates win.
+// The T4 report of trials, and the decision whether a candidate is faster.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -28,7 +28,7 @@ TEST_CASE("t4_text: follows results-schema.json 1.0.0", "[tune]") {
     CHECK(report["schema_version"] == "1.0.0");
     CHECK(report["metadata"]["timeunit"] == "milliseconds");
     const Document& results = report["results"];
-    REQUIRE(results.size() == 5);  // the unfinished trial is left out
+    REQUIRE(results.size() == 5);  // without the unfinished trial
     std::vector<std::string> ends;
     for (const Document& one : results) {
         for (const char* key : {"configuration", "times", "invalidity", "correctness"}) CHECK(one.contains(key));
@@ -51,23 +51,23 @@ TEST_CASE("wins_significantly: requires nearly all pairs and a gain above the no
     const std::vector<double> defaults(9, 0.1), better(9, 0.09);
     trial.samples = {defaults, better};
     CHECK(wins_significantly(trial));
-    trial.samples[1][4] = 0.2;  // one disturbed sample
+    trial.samples[1][4] = 0.2;  // one sample slowed down by other programs
     CHECK(wins_significantly(trial));
     trial.samples[1][7] = 0.2;
     CHECK_FALSE(wins_significantly(trial));
-    trial.samples = {defaults, std::vector<double>(9, 0.099)};  // within the noise
+    trial.samples = {defaults, std::vector<double>(9, 0.099)};  // a gain of 1 % is within the noise
     CHECK_FALSE(wins_significantly(trial));
     CHECK_FALSE(wins_significantly(make_trial(TrialStatus::kCorrectness)));
 }
 
 TEST_CASE("ratio_of: the larger ratio of minimum times and of the median of pairs", "[tune]") {
-    const Trial wins = make_trial(TrialStatus::kCorrect);  // 0.08 of 0.1; 0.4, 1.0, 0.8
+    const Trial wins = make_trial(TrialStatus::kCorrect);  // minima: 0.08 / 0.1; pairs: 0.4, 1.0, 0.8
     CHECK(ratio_of(wins) == Approx(0.8));
     Trial one_spike = wins;
-    one_spike.samples = {{0.2, 0.2, 0.2}, {0.1, 0.2, 0.21}};  // the minimum is half, the median is not
+    one_spike.samples = {{0.2, 0.2, 0.2}, {0.1, 0.2, 0.21}};  // minima: 0.5; median of pairs: 1
     CHECK(ratio_of(one_spike) == Approx(1.0));
     Trial disturbed = wins;
-    disturbed.samples = {{0.1, 0.4, 0.4}, {0.2, 0.2, 0.2}};  // pairs are half, the minimum is double
+    disturbed.samples = {{0.1, 0.4, 0.4}, {0.2, 0.2, 0.2}};  // minima: 2; median of pairs: 0.5
     CHECK(ratio_of(disturbed) == Approx(2.0));
     CHECK(ratio_of(make_trial(TrialStatus::kTimeout)) == 1);
 }

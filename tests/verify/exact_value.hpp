@@ -1,5 +1,5 @@
-// The exact value of an operation, and the features of its rounding (ties, overflow, ...), by which known answers are
-// selected.
+// MPFR numbers for the exact results of operations, and the features of their rounding (ties, overflow, ...). The known
+// answers are selected so that they cover all features.
 #pragma once
 #include <mpfr.h>
 
@@ -14,7 +14,7 @@
 
 namespace raya {
 
-/// An MPFR number of so many bits.
+/// An MPFR number with a given precision in bits.
 class Mpfr {
   public:
     explicit Mpfr(mpfr_prec_t bits) { mpfr_init2(value_, bits); }
@@ -27,10 +27,11 @@ class Mpfr {
     mpfr_t value_;
 };
 
-/// Bits that represent sums, products and a b + c of fp32 numbers exactly; quotients and roots are truncated to them.
+/// A precision in bits at which sums, products and a * b + c of fp32 numbers are exact. Quotients and square roots are
+/// truncated to it.
 inline constexpr mpfr_prec_t kExactBits = 700;
 
-/// fp32 operations by MPFR with the infinities, NaNs and denormals of IEEE 754.
+/// fp32 operations computed with MPFR, with the infinities, NaNs and denormal numbers of IEEE 754.
 class IeeeOracle {
   public:
     float add(float a, float b) {
@@ -62,7 +63,7 @@ class IeeeOracle {
     float rounded(const Operation& operation) {
         const mpfr_exp_t lowest = mpfr_get_emin(), highest = mpfr_get_emax();
         int inexact = operation(z_);
-        mpfr_set_emin(-148);  // binary32, from the MPFR manual
+        mpfr_set_emin(-148);  // the range of binary32 (MPFR manual)
         mpfr_set_emax(128);
         inexact = mpfr_check_range(z_, inexact, MPFR_RNDN);
         mpfr_subnormalize(z_, inexact, MPFR_RNDN);
@@ -74,11 +75,11 @@ class IeeeOracle {
     Mpfr a_{24}, b_{24}, c_{24}, z_{24};
 };
 
-/// Feature of results that double rounding, first to fp32 and then to the format, would change.
+/// Feature of results that would differ if they were rounded to fp32 first and then to the format.
 inline constexpr const char* kTwice = "rounded twice is wrong";
 
-/// Returns the features of rounding `exact` to `expected`: its place between neighbouring numbers of the format, and
-/// whether it leaves the format's range.
+/// Returns the features of the rounding of `exact` to `expected`: the position of `exact` between neighbouring numbers
+/// of the format, a result of 0, infinity or NaN, a carry into the exponent, and kTwice.
 inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const NumberFormat& format) {
     const int bits = format.fraction_bits + 1;
     std::set<std::string> all;
@@ -115,7 +116,7 @@ inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const N
         note("just above a number");
     else
         note(half ? "upper half" : "lower half");
-    // Double rounding, first to fp32, would give another result.
+    // Does rounding to fp32 first give another result?
     mpfr_set(twice, exact, MPFR_RNDN);
     mpfr_set(again, twice, format.truncates ? MPFR_RNDZ : MPFR_RNDN);
     if (bits < 24 && mpfr_get_flt(again, MPFR_RNDN) != expected) all.insert(kTwice);

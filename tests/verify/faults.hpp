@@ -1,4 +1,4 @@
-// Mutants of kernels that simulate faults of a device, driver or compiler, in the code under test, not in the checks.
+// Mutants of kernels: patches of the code under test, not of the checks, that simulate faults of device or compiler.
 #pragma once
 #include <fmt/core.h>
 
@@ -9,37 +9,38 @@
 
 namespace raya {
 
-/// Ties round to the odd number.
+/// Ties round to the number with an odd significand.
 inline const SourcePatch kRoundingFault{"number/reduced.clh", "even = ~(bits <<", "even = (bits <<"};
-/// The compiler may fuse a b + c.
+/// The compiler may fuse a * b + c.
 inline const SourcePatch kContractionFault{"number/lanes.clh", "FP_CONTRACT OFF", "FP_CONTRACT ON"};
-/// The device divides by the reciprocal.
+/// The device divides by a multiplication with the reciprocal.
 inline const SourcePatch kDivisionFault{"number/divide.clh", "return a / b;", "return a * (1.0f / b);"};
-/// The last object of equal distance wins.
+/// Of several objects at the same distance, the last one is hit instead of the first.
 inline const SourcePatch kTieFault{"geometry/sphere.clh", "& (t < h.distance)",
                                    "& ((t < h.distance) | ((t == h.distance) & (h.object != RAYA_NO_OBJECT)))"};
 /// The grid traversal ends one voxel early.
 inline const SourcePatch kWalkFault{"grid/walk.clh", "raya_voxel_plane(g, axis, g.divisions[axis])",
                                     "raya_voxel_plane(g, axis, g.divisions[axis] - 1)"};
-/// 64-bit products lose their upper half.
+/// A 64-bit product is truncated to 32 bits.
 inline const SourcePatch kMappingFault{"shared/ratios.h", "(raya_u64)a * b / c", "a * b / c"};
-/// Work-items read local memory before all have written it.
+/// A barrier is missing: work-items read local memory before all have written it.
 inline const SourcePatch kBarrierFault{
     "checks/machine.cl", "words - 1 - w] + 1;\n        barrier(CLK_LOCAL_MEM_FENCE);", "words - 1 - w] + 1;"};
 /// The filter treats pixels at the right border as inner pixels.
 inline const SourcePatch kBorderFault{"ring/filter.cl", "raya_has_neighbour(m, pixel, RAYA_RIGHT)", "1"};
-/// The link exchange of the torus flips a bit in a colour or a limit. Lost words would leave old memory contents, for
-/// example a ray that never ends.
+/// The link exchange of the torus flips a bit of a colour or limit in a packet. It does not drop words, because stale
+/// memory could contain a ray that never terminates.
 inline const SourcePatch kExchangeFault{"torus/exchange.cl", "to[i] = from[i];",
                                         "to[i] = from[i] ^ (uint8)(0, 0, 0, 0, 0, 0, 1 << 21, 0);"};
-/// A resumed launch treats results that the previous launch returned as gone.
+/// A resumed launch takes the returns that the previous launch wrote as already transferred, and overwrites them.
 inline const SourcePatch kAgainFault{"torus/accept.cl", "gone = !again && (root", "gone = (root"};
 
-/// A wrong count of an event that a kernel counts at one place: a wrong kind, a lost count or a double count.
+/// A fault of one counter, which a kernel increments at one place: counted as another event, not counted, or counted
+/// twice.
 struct CountFault {
-    const char* event;  // verify's name of the counter
+    const char* event;  // name of the counter in raya verify
     SourcePatch patch;
-    const char* only;  // name of a check that must fail
+    const char* only;  // one of the checks that must fail
 };
 
 inline const char* const kOnGlass = "image glass fp32: tiles";
@@ -86,8 +87,8 @@ inline const std::vector<CountFault> kCountFaults = {
      kOnTorus},
     {"shadow_hits", {"torus/shade_packets.clh", "RAYA_SHADOW_HITS, stopped", "RAYA_LIT, stopped"}, kOnTorus}};
 
-/// Same for any event (RAYA_*), where counts of a pixel or node are summed. `how`: 0 wrong kind, 1 lost, 2 double
-/// count.
+/// The same faults for any event (RAYA_*), in the sum of a pixel's counts (ring) or a node's counts (torus). `how`: 0:
+/// counted as another event, 1: not counted, 2: counted twice.
 inline SourcePatch ring_count_fault(int event, int how) {
     if (how == 0)
         return {"ring/pixel_store.clh", "store->totals[e].all += events;",

@@ -1,4 +1,4 @@
-// Prints the known answers of the number layer: build/tests/make_known_answers > host/verify/known_answers.csv
+// Prints the known answers of the number layer. Usage: build/tests/make_known_answers > host/verify/known_answers.csv
 #include "tests/verify/make_known_answers.hpp"
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Makes the known answers of the number layer. Operands are selected so that every operation has rows with every
-// rounding feature; results are from MPFR.
+// Makes the known answers of the number layer: rows with an operation, its operands and its result by MPFR. The
+// operands are selected so that the rows of each operation cover every rounding feature.
 #pragma once
 #include <bit>
 #include <cmath>
@@ -14,10 +14,12 @@
 
 namespace raya {
 
-/// Feature of rows that another method would change: fused or unfused a b + c, or a quotient by the reciprocal.
+/// Feature of rows whose result would differ with another method: a * b + c fused instead of unfused or the reverse, or
+/// a quotient by multiplication with the reciprocal.
 inline constexpr const char* kOtherMethod = "another method is wrong";
 
-/// The operations by an oracle, with the features of their results. Oracle: MpfrOracle, or IeeeOracle for fp32.
+/// Computes operations with an oracle, and the rounding features of their results. Oracle: MpfrOracle, or IeeeOracle
+/// for fp32.
 template <class Oracle>
 class AnswerMaker {
   public:
@@ -27,12 +29,12 @@ class AnswerMaker {
         return operation == kPower ? power(a, b) : oracle_result(oracle_, operation, a, b, c);
     }
 
-    /// Returns the features of this row; rows with the same features are redundant.
+    /// Returns the features of the row with these operands. Rows with the same features test the same.
     std::set<std::string> features(std::size_t operation, float a, float b, float c) {
         const float expected = result(operation, a, b, c);
         exact(operation, a, b, c);
         std::set<std::string> all = features_of(exact_, expected, format_);
-        // Methods that a compiler or device may use instead of the operation.
+        // Other methods that a compiler or device may use for the operation.
         if ((operation == kMad || operation == kMulAdd) &&
             differ(oracle_.mad(a, b, c), oracle_.add(oracle_.mul(a, b), c)))
             all.insert(kOtherMethod);
@@ -51,7 +53,7 @@ class AnswerMaker {
         return std::ldexp(2 - std::ldexp(1.0, -format_.fraction_bits), range_of(format_).highest);
     }
 
-    // Sets exact_ to the exact value of operations with one rounding, to the result of others.
+    // Sets exact_ to the exact value if the operation rounds once, otherwise to the operation's result.
     void exact(std::size_t operation, float a, float b, float c) {
         Mpfr x(24), y(24), z(24);
         mpfr_set_flt(x, a, MPFR_RNDN);
@@ -77,7 +79,7 @@ class AnswerMaker {
             mpfr_set_flt(exact_, result(operation, a, b, c), MPFR_RNDZ);
     }
 
-    // The operations of kernels/number/power.clh in the same order.
+    // Does the same operations as kernels/number/power.clh, in the same order.
     float constant(float value) { return format_.is_fp32() ? value : round_to_format(value, format_); }
     float log2(float x) {
         const auto bits = std::bit_cast<std::int32_t>(x);
@@ -107,7 +109,7 @@ class AnswerMaker {
     Mpfr exact_{kExactBits};
 };
 
-/// Special numbers of the format, of either sign: ends of the range, neighbours of 1, ...
+/// Returns special numbers of the format, with both signs: the ends of its range, the neighbours of 1, ...
 inline std::vector<float> special_numbers(const NumberFormat& format) {
     const Range range = range_of(format);
     const double unit = std::ldexp(1.0, -format.fraction_bits), base = std::ldexp(1.0, range.highest - 1);
@@ -137,7 +139,7 @@ inline std::vector<float> special_numbers(const NumberFormat& format) {
     return all;
 }
 
-/// Candidate operands: [row][3].
+/// Returns candidate operands, three per row: [row][3].
 inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const NumberFormat& format) {
     constexpr std::uint64_t kSeed = 19'930;
     constexpr std::size_t kRandomRows = 3000;
@@ -160,9 +162,9 @@ inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const
             all.push_back({rounded(1 - std::ldexp(random.uniform(0, 1), -i)), rounded(random.uniform(1, 30)), 1});
         return all;
     }
-    // Random operands first: they have more features; special numbers add the missing ones.
+    // Random operands come first, because each has more features. Special numbers add the missing features.
     const NumberFormat operand_format =
-        operation == kRound ? NumberFormat{} : format;  // num_round takes any fp32 number
+        operation == kRound ? NumberFormat{} : format;  // the operand of num_round is an fp32 number
     const NumberRows rows = RandomOperands(operand_format, kSeed).rows(kRandomRows);
     for (std::size_t i = 0; i < rows.count(); ++i) all.push_back({rows.a[i], rows.b[i], rows.c[i]});
     const std::vector<float> marks = special_numbers(format);
@@ -172,7 +174,8 @@ inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const
     return all;
 }
 
-/// The rows of one operation: the first candidates with each feature, until each occurs twice (some six times).
+/// Returns the rows of one operation: candidates in order, each kept if it has a feature that fewer than two rows have
+/// (six for some features).
 template <class Oracle>
 std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t operation, const NumberFormat& format) {
     const auto enough = [](const std::string& feature) { return feature == kOtherMethod || feature == kTwice ? 6 : 2; };
@@ -181,11 +184,11 @@ std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t 
     std::set<std::array<std::uint32_t, 3>> taken;
     std::vector<KnownAnswer> answers;
     for (auto [a, b, c] : candidates(operation, format)) {
-        // num_round takes normal numbers and zeros only.
+        // num_round accepts only normal numbers and zeros.
         if (operation == kRound && (std::fpclassify(a) == FP_SUBNORMAL || std::isinf(a))) continue;
         if (operands < 2) b = 1;
         if (operands < 3) c = 1;
-        bool wanted = operation == kPower;  // all candidates of num_power
+        bool wanted = operation == kPower;  // num_power keeps all candidates
         const std::set<std::string> features = maker.features(operation, a, b, c);
         for (const std::string& feature : features) wanted = wanted || seen[feature] < enough(feature);
         const std::array<std::uint32_t, 3> bits = {std::bit_cast<std::uint32_t>(a), std::bit_cast<std::uint32_t>(b),
@@ -193,7 +196,7 @@ std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t 
         if (!wanted || !taken.insert(bits).second) continue;
         for (const std::string& feature : features) ++seen[feature];
         float result = maker.result(operation, a, b, c);
-        if (std::isnan(result)) result = std::bit_cast<float>(0x7fc00000u);  // one NaN for all
+        if (std::isnan(result)) result = std::bit_cast<float>(0x7fc00000u);  // the same bits for every NaN
         answers.push_back({bits, std::bit_cast<std::uint32_t>(result)});
     }
     return answers;
@@ -216,7 +219,7 @@ inline FormatAnswers answers_in(const NumberFormat& format) {
     return answers_by(oracle, format);
 }
 
-/// The text of host/verify/known_answers.csv: a format for each variant of the number layer, and more.
+/// Returns the text of host/verify/known_answers.csv. It has at least one format for each variant of the number layer.
 inline std::string make_known_answers() {
     std::vector<FormatAnswers> all;
     for (const char* name :

@@ -1,4 +1,4 @@
-// Prints the known pictures: build/tests/make_pictures > host/verify/pictures.txt
+// Prints the known images. Usage: build/tests/make_pictures > host/verify/pictures.txt
 #include "tests/verify/make_pictures.hpp"
 
 #include <cstdio>

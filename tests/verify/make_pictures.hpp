@@ -1,4 +1,4 @@
-// Makes the known pictures with the plain settings on the default device.
+// Makes the known images, with their hashes and event counts, by renders with the plain settings on the default device.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ inline Image plain_picture(const Picture& picture) {
     return RingRenderer(session, scene_of(picture), reference_settings(picture)).render().image;
 }
 
-/// The text of host/verify/pictures.txt.
+/// Returns the text of host/verify/pictures.txt.
 inline std::string make_pictures() {
     std::vector<KnownPicture> all;
     for (const Picture& picture : pictures()) {

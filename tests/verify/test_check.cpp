@@ -1,4 +1,4 @@
-// Checks: exceptions, remedies, depths, and conversion to JSON and back.
+// struct Check: exceptions, remedies, depths, and conversion to JSON and back.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -16,7 +16,7 @@ std::string text_of(const std::vector<std::string>& lines) {
     return text;
 }
 
-// Returns the remedies of a check that throws this error.
+// Returns the remedies of a check that throws an `Error` with this message.
 template <class Error>
 std::string remedies_after(const std::string& message) {
     const Check check = run_check("layer", "name", [&]() -> Verdict { throw Error(message); });

@@ -1,4 +1,4 @@
-// Fault injection into kernels: each fault fails the checks that it affects, and no others.
+// Fault injection into kernels: with each fault exactly the checks that cover the faulty code fail.
 #include <catch2/catch.hpp>
 #include <set>
 #include <stdexcept>
@@ -28,7 +28,7 @@ Names failures(const std::vector<Check>& checks) {
     return names;
 }
 
-// Returns the names, up to the first comma, of the checks with this outcome.
+// Returns the names of the checks with this outcome, each up to its first comma.
 Names beginnings(const std::vector<Check>& checks, Outcome outcome) {
     Names names;
     for (const Check& check : checks)
@@ -42,7 +42,7 @@ const Fault& first_fault(const std::vector<Check>& checks) {
     throw std::logic_error("nothing failed");
 }
 
-// Returns a patch that makes the kernel return at once.
+// Returns a patch with which the kernel returns without doing anything.
 SourcePatch emptied(const std::string& file, const std::string& kernel) {
     const std::string text = kernel_file(file);
     const std::size_t at = text.find("void " + kernel + "(");
@@ -192,7 +192,7 @@ TEST_CASE("count faults of every event: fail an image check", "[verify][faults][
                                                                                               : kOnGlass))
                           .size() == 1);
             const bool on_torus = event != RAYA_SPHERE_TESTS && event != RAYA_PLANE_TESTS && event != RAYA_CONE_TESTS &&
-                                  event != RAYA_REFRACTED;  // of polygons alone
+                                  event != RAYA_REFRACTED;  // the torus image has only polygons
             if (on_torus) CHECK(failures(run({torus_count_fault(event, how)}, kOnTorus)).size() == 1);
         }
 }
@@ -218,7 +218,7 @@ TEST_CASE("verify: a failed build fails its check, and the others continue", "[v
     const VerifySettings settings{.sources = {"/no/such/folder"}, .only = "machine"};
     const auto checks = verify(choose_device(""), settings);
     CHECK(count_of(checks, Outcome::kFail) > 5);
-    CHECK(count_of(checks, Outcome::kPass) > 5);  // transfers need no kernel
+    CHECK(count_of(checks, Outcome::kPass) > 5);  // checks of transfers use no kernel
 }
 
 TEST_CASE("verify: refuses a patch that does not apply, before any check", "[verify]") {

@@ -1,4 +1,4 @@
-// The known answers: equal to MPFR's, with every rounding feature.
+// The known answers of the number layer: they equal the results of MPFR and cover every rounding feature.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -20,7 +20,7 @@ TEST_CASE("known_answers.csv: equals the output of make_known_answers", "[verify
 TEST_CASE("parse_known_answers: inverts known_answers_text", "[verify]") {
     const std::string text = embedded_files().at("host/verify/known_answers.csv");
     CHECK(known_answers_text(parse_known_answers(text)) == text);
-    CHECK(text.size() < 65'536);  // embedded in the program
+    CHECK(text.size() < 65'536);  // small, because the program contains the text
 }
 
 TEST_CASE("known answers in fp32: equal the host's results", "[verify]") {

@@ -1,4 +1,4 @@
-// The known pictures, compared with plain renders of the default device and with the double-precision reference.
+// The known images (pictures.txt), compared with plain renders on the default device and with the reference renderer.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <stdexcept>
@@ -10,7 +10,7 @@
 
 namespace raya {
 
-// The test tools.verify compares the pictures of raya verify --quick.
+// The test tools.verify runs raya verify --quick, which compares the other known images.
 TEST_CASE("known pictures not in verify --quick: equal plain renders of the default device", "[verify][slow]") {
     const std::vector<std::string> quick = check_names(choose_device(""), {.only = "image "});
     std::size_t made = 0;

@@ -1,9 +1,9 @@
-// Baseline for raya's times: the same Whitted ray tracing (kernels/README.md) of the same scenes with Embree 3 on all
-// cores.
+// Baseline for raya's render times: Whitted ray tracing as in kernels/README.md, of the same scenes, with Embree 3 on
+// all cores.
 //
 //   embree_peer SCENE.nff WxH BOUNCES centres|corners SAMPLES
 //
-// Prints "METHOD RAYS SECONDS..." for each of two methods, with one time for each sample, and "build SECONDS". `single`
+// Prints "METHOD RAYS SECONDS..." for each of two methods, one time per sample, and "build SECONDS". `single`
 // traces ray by ray; `sixteen` traces the ray trees of sixteen pixels, 4 x 4, in lockstep, in packets of sixteen rays.
 // Only the loop over the pixels is timed.
 #include <chrono>
@@ -21,7 +21,7 @@ namespace {
 void measure(const char* method, Picture& picture, long (Picture::*render)(), int samples) {
     std::string times;
     long rays = 0;
-    for (int i = 0; i <= samples; ++i) {  // the first warms up
+    for (int i = 0; i <= samples; ++i) {  // iteration 0 is a warm-up
         const auto start = std::chrono::steady_clock::now();
         rays = (picture.*render)();
         const double s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -36,9 +36,10 @@ void cone_bounds(const RTCBoundsFunctionArguments* args) {
     }
 }
 
-// t of the ray's nearest hit between `near` and `far`; a value beyond `far` if there is none.
+// Returns t of the ray's nearest hit between `near` and `far`, or a value beyond `far` if there is no hit.
 float meet_cone(const PeerCone& c, V3 origin, V3 direction, float near, float far, V3& normal) {
-    // Computes from the ray's point nearest to the base: otherwise rounding makes a ray that starts on the cone hit it.
+    // Starts from the point of the ray nearest to the cone's base: otherwise, through rounding, a ray that starts on
+    // the cone would hit it.
     const float moved = dot(c.base - origin, direction);
     const V3 start = (origin - c.base) + moved * direction;
     const float z = dot(start, c.axis), dz = dot(direction, c.axis);
@@ -50,7 +51,7 @@ float meet_cone(const PeerCone& c, V3 origin, V3 direction, float near, float fa
     if (!(discriminant > 0)) return none;
     const float root = std::sqrt(discriminant), q = b > 0 ? -(b + root) : root - b;
     const float by_a = q / a, by_q = constant / q;
-    const float in = b > 0 ? by_a : by_q, out = b > 0 ? by_q : by_a;  // where the ray enters and leaves the cone
+    const float in = b > 0 ? by_a : by_q, out = b > 0 ? by_q : by_a;  // t where the ray enters and leaves the cone
     for (const float t : {std::min(in, out), std::max(in, out)}) {
         if (c.inside && t != out) continue;
         const float at = z + t * dz, distance = t + moved;

@@ -31,7 +31,7 @@ struct PeerSurface {
 
 struct PeerTriangle {
     int surface;
-    int normals;  // index of its first of three normals in EmbreeScene::normals_; -1: a flat triangle
+    int normals;  // index of the first of its three normals in EmbreeScene::normals_; -1: a flat triangle
 };
 
 struct PeerCone {
@@ -44,7 +44,7 @@ struct PeerCone {
 /// The nearest hit of a ray.
 struct PeerHit {
     float t = 0;
-    V3 geometric, normal;  // the object's, not yet turned towards the ray
+    V3 geometric, normal;  // of the object, not yet turned towards the ray
     int surface = -1;      // -1: no hit
 };
 
@@ -60,7 +60,7 @@ class EmbreeScene {
     const std::vector<PeerSurface>& surfaces() const { return surfaces_; }
     double build_s() const { return build_s_; }
 
-    /// The hit that Embree found, or the hit of a plane if that is nearer.
+    /// Returns the hit that Embree found, or the hit of a plane if that is nearer.
     PeerHit hit(V3 origin, V3 direction, float t, unsigned geometry, unsigned primitive, V3 normal, float u,
                 float v) const;
     /// Returns true if a plane lies between the origin and t.

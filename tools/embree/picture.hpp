@@ -15,7 +15,7 @@ namespace raya {
 inline constexpr int kWide = 16, kTile = 4;
 inline constexpr float kFar = 1e30f;
 
-/// Stack of the rays of a pixel's tree that are still to be traced.
+/// Stack of the pending rays of a pixel's ray tree.
 class RayStack {
   public:
     void push_back(const Waiting& r) { rays_[size_++] = r; }
@@ -32,7 +32,7 @@ class Picture {
     Picture(const Whitted& whitted, const Camera& camera)
         : whitted_(whitted), camera_(camera), pixels_(static_cast<std::size_t>(camera.width) * camera.height) {}
 
-    /// Calls trace_row(row) for all rows, on all cores. Returns the sum of its results: the number of rays.
+    /// Calls trace_row(row), which returns a number of rays, for all rows, on all cores. Returns the sum.
     template <class Row>
     long all(int rows, const Row& trace_row) {
         std::atomic<int> next = 0;

@@ -9,7 +9,7 @@
 namespace raya {
 
 struct Camera {
-    V3 eye, gaze, right, top;  // right and top reach from the image's centre to its sides, at distance 1
+    V3 eye, gaze, right, top;  // right and top: from the image's centre to its sides, at distance 1
     int width, height;
     bool corners;
 
@@ -40,7 +40,7 @@ struct PeerLight {
     V3 position, colour;
 };
 
-/// A ray of a pixel's tree that is still to be traced.
+/// A pending ray of a pixel's ray tree.
 struct Waiting {
     V3 origin, direction;
     float weight;

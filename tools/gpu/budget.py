@@ -19,7 +19,7 @@ class Budget:
             self.rows[row["kernel"], row["variant"], row["target"]] = row
 
     def judges(self, target, version):
-        """Returns true if the budget of a target is of this version of the compilers."""
+        """Returns true if the budget of a target was made with this version of the compilers."""
         return self.versions.get(target) == version
 
     def faults(self, figures):
@@ -36,7 +36,7 @@ class Budget:
                 yield f"{what.replace('_', ' ')}: {figure}, {most} in the budget"
 
     def stale(self, found, targets):
-        """Names of the rows for these targets whose kernels do not exist any more."""
+        """Names of the rows for these targets whose kernels no longer exist."""
         return sorted(name for name in set(self.rows) - found if name[2] in targets)
 
     def write(self, all_figures, versions, whole=True):

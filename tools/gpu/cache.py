@@ -13,14 +13,14 @@ CODE = b"".join(path.read_bytes() for path in sorted(Path(__file__).parent.glob(
 
 class Cache:
     def __init__(self, folder, vendors):
-        """A cache in `folder`; None: no cache."""
+        """A cache in `folder`; without a cache if `folder` is None."""
         self.folder, self.hits = folder, []
         self.versions = {vendor: vendor.version() for vendor in vendors}
         if folder:
             folder.mkdir(parents=True, exist_ok=True)
 
     def compile(self, vendor, folder, build, targets):
-        """(figures, faults) as by the vendor's compile(). Called from several threads."""
+        """(figures, faults): those of the cache, or the result of the vendor's compile(). Called from several threads."""
         source = self.folder and vendor.compiler_input(folder, build, targets)
         if not source:
             return vendor.compile(folder, build, targets)

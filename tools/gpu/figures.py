@@ -28,7 +28,7 @@ class Figures:
     stack: int
     local: int
     scalar_spills: int = 0  # AMD: scalar registers spilled to lanes of vector registers
-    warps: int = 0          # that fit in a core
+    warps: int = 0          # maximum number of warps that fit in a core at the same time
     local_left: int = 0
 
     @property
@@ -38,7 +38,7 @@ class Figures:
 
 @dataclass
 class Fault:
-    """A property that a kernel must not have, in `text`."""
+    """A fault of a kernel, described by `text`."""
     kernel: str
     variant: str
     target: str
@@ -53,7 +53,7 @@ class Core:
     local: int        # local memory of all groups together
     group_local: int  # maximum local memory of one group
     unit: int         # allocation unit of local memory
-    reserved: int = 0  # local memory of each group that the system takes
+    reserved: int = 0  # local memory of each group that the driver reserves
     lone_groups: int = 0  # maximum number of groups of a single warp, if it differs from `groups`
 
     def set_occupancy(self, figures, warps_by_registers):

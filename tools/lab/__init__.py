@@ -1,7 +1,7 @@
 """The load laboratory: repeats and extends the papers' experiments, on your scenes.
 
-A study is one file. Its docstring holds the title, the question and the method; `run(lab, scenes)` renders and returns a Page. Example:
-docs/my_study.py. The built-in studies are in tools/lab/studies.
+A study is one file. Its docstring has the title, the question and the method. Its function `run(lab, scenes)` renders the scenes and returns a Page.
+Example: docs/my_study.py. The built-in studies are in tools/lab/studies.
 """
 import sys
 from importlib.util import find_spec

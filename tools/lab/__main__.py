@@ -1,4 +1,4 @@
-"""python3 -m raya.lab NAME|all|FILE.py [SCENE.nff...] -o DIR: runs studies; `raya study` is the same."""
+"""Runs studies: python3 -m raya.lab NAME|all|FILE.py [SCENE.nff...] -o DIR. `raya study` runs this module."""
 import json
 import os
 import signal
@@ -20,17 +20,17 @@ EXIT_USER, EXIT_DEVICE = 2, 3
 
 
 def settings_of(arguments):
-    """The options of `raya study`: passed by the program as JSON, or parsed here by the program's own code."""
+    """The options of `raya study`, as a namespace: the program passes them as JSON; arguments of a direct call are parsed by the program's parser."""
     if arguments[:1] != ["--settings"]:
         arguments = ["--settings", _engine.study_settings(arguments)]
     options = SimpleNamespace(**json.loads(arguments[1]))
     if options.network:
-        options.network = 1e-6 * options.network[0], 1e-9 * options.network[1]  # seconds a message, and a byte
+        options.network = 1e-6 * options.network[0], 1e-9 * options.network[1]  # seconds per message, seconds per byte
     return options
 
 
 def wanted_studies(name):
-    """(studies to run, sentences on the studies that are skipped). Raises ValueError if the named study cannot run here."""
+    """(list of studies to run, one sentence for each study that is skipped). Raises ValueError if the named study cannot run on this machine."""
     if name.endswith(".py"):
         return [study_of_file(name)], []
     known = studies()
@@ -65,7 +65,7 @@ def print_page(page, folder):
 
 
 def make_folder(path):
-    """Creates a folder. Returns the folders that were created, the innermost first."""
+    """Creates a folder and its missing parents. Returns the created folders, the innermost first."""
     missing = [one for one in [path, *path.parents] if not one.exists()]
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -142,7 +142,7 @@ if __name__ == "__main__":
     except Ended as ended:
         print("raya: interrupted", file=sys.stderr)
         signal.signal(ended.args[0], signal.SIG_DFL)
-        os.kill(os.getpid(), ended.args[0])  # the exit status then names the signal
+        os.kill(os.getpid(), ended.args[0])  # the signal ends the process, so its parent sees the signal in the exit status
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes stdout at exit
         print("raya: cannot write to stdout: Broken pipe", file=sys.stderr)

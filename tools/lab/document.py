@@ -17,9 +17,9 @@ from raya.lab.page import shown
 from raya.lab.papers import REFERENCES
 from raya.lab.statistics import NOT_REPRODUCED, REPRODUCED, UNDECIDED
 
-OPEN_ROWS, MOST_ROWS = 24, 400  # a table of up to OPEN_ROWS is unfolded; HTML shows at most MOST_ROWS
+OPEN_ROWS, MOST_ROWS = 24, 400  # a table of at most OPEN_ROWS rows is unfolded; HTML shows at most MOST_ROWS rows
 
-# No scripts and no external resources.
+# Content security policy: no scripts and no external resources.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
 ABOUT = {
     "title": "The load laboratory",
@@ -73,7 +73,7 @@ def plain(value):
 
 
 def rows_of(table):
-    """Rows of cells, each with its column's type: integers stay integers."""
+    """[row][column]: cells of a table. Each cell has the type of its column (a row of a pandas data frame would convert integers to floats)."""
     return list(table.rows.itertuples(index=False, name=None))
 
 
@@ -93,7 +93,7 @@ def ratio(comparison):
 
 
 def cells_of_comparisons(page):
-    """Header and rows of the table of comparisons. Without figures of a paper: the main figures alone."""
+    """[row][column]: table of comparisons, the header first. The paper's columns are omitted if no comparison has a figure of a paper."""
     def ours(c):
         return f"{shown(c.ours)}{f' +- {c.half_width:.2g}' if c.half_width else ''} {c.unit}".rstrip()
 
@@ -134,19 +134,19 @@ def cells_of_table(table):
 
 
 def lines_of_run(page):
-    """(name, value) of the command, version, device and settings that made a page."""
+    """[(name, value)] of the command, version, device and settings that made a page, as text."""
     return [(key, value if isinstance(value, str) else json.dumps(plain(value)))
             for key, value in [*page.run.items(), *page.settings.items()]]
 
 
 def command_of(pages):
-    """The command that makes all pages. The longest command of several pages names all options and scenes."""
+    """The command that makes all pages: that of the page with the longest command, which has all options and scenes, for `all` studies."""
     command = max((page.run.get("command", "") for page in pages), key=len)
     return command if len(pages) == 1 else re.sub(r"^raya study \S+", "raya study all", command)
 
 
 def verdict_sentences(pages):
-    """A sentence that counts the verdicts on all claims; with several papers, one more for each paper."""
+    """Sentences with the number of claims per verdict: one for all claims; if there are several papers, also one for each paper."""
     claims = [claim for page in pages for claim in page.claims]
     if not claims:
         return ["This page judges no claim of a paper."] if len(pages) == 1 else ["No study here judges a claim of a paper."]
@@ -170,23 +170,23 @@ def not_reproduced(pages):
 
 
 def prose(text):
-    """HTML of a sentence: `text` becomes code, +- becomes ±."""
+    """Escaped HTML of a sentence. Text in backquotes becomes a code element, +- becomes ±."""
     return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", str(escape(text)).replace("+-", "±")))
 
 
-# '-', or a number with its interval and unit.
+# A cell of a numeric column: empty, '-', or a number with interval, unit and "(derived)", which are optional.
 NUMBER = re.compile(r"-?|(-?[\d.]+(e[-+]?\d+)?|-?inf)( \+- \S+)?( [^\s\d]+)?( \(derived\))?")
 
 
 def classes_of(cells):
-    """CSS class of each column: n, numbers; t, text; w, sentences, which need width."""
+    """CSS class of each column. n: only numbers; w: longest cell over 60 characters; t: over 15 characters; otherwise empty."""
     columns = list(zip(*cells[1:])) or [()] * len(cells[0])
     return ["n" if all(map(NUMBER.fullmatch, c)) else "w" if max(map(len, c)) > 60 else
             "t" if max(map(len, c)) > 15 else "" for c in columns]
 
 
 def inlined(svg):
-    """An SVG drawing for HTML whose colours follow the page's colour scheme."""
+    """Inline SVG for the document: colours become CSS variables, which the dark colour scheme redefines."""
     return Markup(re.sub(r": #([0-9a-f]{6})", r": var(--plot-\1, #\1)", svg[svg.index("<svg"):]))
 
 
@@ -212,7 +212,7 @@ def environment():
 
 
 def write_page(folder, page):
-    """Writes all files of one study. Returns its drawings for the document: {name: HTML}."""
+    """Writes all files of one study. Returns its drawings for the document: {name: SVG of a plot, or base64 text of a PNG}."""
     drawings, files = {}, {}
     for table in page.tables:
         files[f"{table.name}.csv"] = table.rows.to_csv(index=False, na_rep="-")
@@ -225,7 +225,7 @@ def write_page(folder, page):
         drawings[plot.name] = inlined(drawn["svg"].decode())
     files[f"{page.name}.json"] = json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n"
     files[f"{page.name}.md"] = environment().get_template("page.md.j2").render(page=page)
-    for name, content in files.items():  # after all of them have been made: an error leaves no partial output
+    for name, content in files.items():  # only after all content has been made, so that an error leaves no partial output
         write_whole(folder / name, content)
     return drawings
 

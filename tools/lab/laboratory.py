@@ -1,4 +1,4 @@
-"""Renders for studies, and cost images: the modelled cycles of each pixel of a scene."""
+"""Renders scenes for studies, and caches cost images. A cost image has the modelled cycles of each pixel."""
 import hashlib
 import pickle
 from collections import namedtuple
@@ -24,7 +24,7 @@ def tests_of(events):
 
 @dataclass
 class Costs:
-    """The cost image of one render. The load of every array and mapping follows from it."""
+    """The cost image of one render. The loads of PEs with any mapping and number of PEs can be computed from it."""
 
     label: str
     trace: np.ndarray  # uint64 [H, W]: modelled cycles of each pixel in the first pass
@@ -34,27 +34,27 @@ class Costs:
 
     @property
     def recomputed(self):
-        """Pixels that were supersampled."""
+        """Number of supersampled pixels."""
         return self.report["antialias"].get("recomputed_pixels", 0)
 
 
 @dataclass
 class Ensemble:
-    """Costs of a scene's own picture and of random views of it, seeds 1, 2, ..."""
+    """Costs of a scene with its own camera (`picture`), and with random cameras with seeds 1, 2, ... (`views`)."""
 
     picture: Costs
     views: list
 
 
 def format_for(scene):
-    """The SPA's number format; fp32 for a scene that does not fit the memory of an SPA's PE."""
+    """The SPA's number format; fp32 if the scene does not fit the memory of a PE of the SPA."""
     return SPA["format"] if 4 * raya.job_words(scene) <= SPA["pe_memory_bytes"] else "fp32"
 
 
 class Laboratory:
-    """Renders scenes. Cost images are cached in a folder, by scene and settings, for all studies of a call.
+    """Renders scenes. Cost images are cached in `folder`, by scene and settings, so that the studies of one run share them.
 
-    size: pixels a side that the user asked for; network: (alpha in s, beta in s/byte); options: of every render (device).
+    size: pixels per side, if the user has set it; network: (seconds per message, seconds per byte); options: those of every render, and `device`.
     """
 
     def __init__(self, folder, size=None, network=None, **options):
@@ -73,7 +73,7 @@ class Laboratory:
         return raya.render(scene, session=self.session, **kept, **options)
 
     def costs(self, scene, size, antialias="none"):
-        """Cost image of the scene as the SPA's PEs render it, without their memory limit."""
+        """Cost image (`Costs`) of the scene, size x size pixels, on PEs of the SPA without their memory limit."""
         options = dict(machine="grande", format=format_for(scene), bounces=SPA["bounces"], size=size, pes=size,
                        offset=16 % size, accel="none", antialias=antialias)
         key = hashlib.sha256(repr((scene.nff, sorted(options.items()))).encode()).hexdigest()
@@ -89,7 +89,8 @@ class Laboratory:
         return costs
 
     def ensemble(self, scene, size, antialias="none", most=VIEWS):
-        """64 views of scenes like the paper's at 256 x 256; fewer for larger images and more objects, at least 4."""
+        """Costs of the scene and of random views (`Ensemble`): `most` views, or fewer if views x pixels x objects exceed 2^27, but at least
+        min(4, most)."""
         count = max(min(4, most), min(2**27 // (size * size * max(scene.objects, 1)), most))
         views = [self.costs(scene.random_view(seed).renamed(f"{scene.name}, view {seed}"), size, antialias)
                  for seed in range(1, count + 1)]
@@ -97,12 +98,13 @@ class Laboratory:
 
 
 def one_of(scenes):
-    """The scene of a study of one scene: the first that the user named; by default centre, which resembles the paper's."""
+    """The scene of a study that takes one scene: the first one on the command line; by default centre, which resembles the paper's scene."""
     return scenes[0] if scenes else raya.example("centre")
 
 
 def balance_pass(lab, scenes, first):
-    """One pass over one scene, a PE for each column. Returns (settings, cost image of the picture, cost images of the views)."""
+    """Costs of the first pass (`first`) or of supersampling, for one scene with a PE for each column. Returns (settings, cost image of the
+    picture, cost images of the views); cost images are uint64 [H, W]."""
     scene, size = one_of(scenes), lab.size(256)
     ensemble = lab.ensemble(scene, size, "none" if first else "supersample")
     picture, *views = (one.trace if first else one.supersample for one in [ensemble.picture, *ensemble.views])
@@ -116,11 +118,12 @@ VIEWS_PROSE = """
   looks at."""  # part of the method of fig7, fig8, fig12 and fig13
 
 
-Measured = namedtuple("Measured", "minimum median maximum runs")  # seconds; runs: a count
+Measured = namedtuple("Measured", "minimum median maximum runs")  # of seconds; runs: number of samples
 
 
 def measured(run, runs, enough_s, warm=True):
-    """Statistics of the seconds that run() returns, over at most `runs` calls after a warm-up. Stops after enough_s seconds."""
+    """Calls run(), which returns seconds, and returns statistics (`Measured`) of at most `runs` calls. Makes no further call when their sum has
+    reached enough_s seconds. warm: makes an additional first call as a warm-up."""
     if warm:
         run()
     seconds = [run()]
@@ -130,7 +133,7 @@ def measured(run, runs, enough_s, warm=True):
 
 
 def sampled(run, minimum_s=0.02):
-    """Mean seconds of a call, over as many calls as take 20 ms: clock and launch overhead distort shorter measurements."""
+    """Mean of the seconds that run() returns, over as many calls as take minimum_s: clock and launch overhead distort shorter measurements."""
     total = calls = 0
     while total < minimum_s:
         total += run()

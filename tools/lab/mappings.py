@@ -1,12 +1,12 @@
-"""Mappings that follow from the number of PEs, and the lattice of pixels that one PE owns.
+"""The grid mapping for a number of PEs, and the lattice of pixels that one PE owns.
 
-The lattice is that of the cyclic mapping with a PE for each column. Its basis is (p, 1) and (W, 0): offset p, image width W.
+Lattice of the cyclic mapping with a PE for each column: its basis is (p, 1) and (W, 0), in (columns, rows), with offset p and image width W.
 """
 import numpy as np
 
 
 def squarest_grid(pes):
-    """(A, B): A rows of B PEs, where A is the largest divisor of P up to sqrt(P)."""
+    """(A, B): A rows of B PEs, where A is the largest divisor of `pes` that is at most sqrt(pes)."""
     rows = max(a for a in range(1, int(pes**0.5) + 1) if pes % a == 0)
     return rows, pes // rows
 

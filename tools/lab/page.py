@@ -11,11 +11,11 @@ from raya.lab.statistics import VERDICTS
 
 @dataclass
 class Table:
-    """A table. A column name includes its unit: 'load (cycles)'. A missing value is nan."""
+    """A table. Column names include the unit: 'load (cycles)'. A missing value is nan."""
 
-    name: str  # stem of its CSV
+    name: str  # file name of the CSV without extension
     title: str
-    rows: pd.DataFrame  # or what pandas.DataFrame() takes, such as a list of dicts
+    rows: pd.DataFrame  # or any argument of pandas.DataFrame(), such as a list of dicts
     on_page: bool = True  # False: a long table, written to the CSV only
 
     def __post_init__(self):
@@ -43,24 +43,25 @@ class Series:
 
 
 def series_by(rows, label, x, y, half=None, style="line"):
-    """A series for each value of the column `label`, in order of first occurrence."""
+    """[Series]: one for each value of column `label`, in order of first occurrence. x, y, half: names of the columns of the points and of the half
+    widths of their intervals."""
     return [Series(str(value), some[x], some[y], style, some[half] if half else [])
             for value, some in rows.groupby(label, sort=False)]
 
 
 @dataclass
 class Plot:
-    name: str  # stem of its files
+    name: str  # file name of SVG and PNG without extension
     title: str
     x_label: str
     y_label: str
     series: list
-    log: str = ""  # "x", "y", "xy"
+    log: str = ""  # logarithmic axes: "", "x", "y" or "xy"
 
 
 @dataclass
 class Picture:
-    name: str  # stem of its PNG
+    name: str  # file name of the PNG without extension
     title: str
     words: str  # alternative text for readers who do not see the picture
     png: bytes
@@ -68,7 +69,7 @@ class Picture:
 
 @dataclass
 class Comparison:
-    """A figure of ours and the paper's figure, if it has one."""
+    """One of our figures and the corresponding figure of the paper; paper: None if it has none."""
 
     what: str
     unit: str
@@ -86,13 +87,13 @@ class Comparison:
 
 
 def with_paper(in_paper, comparisons):
-    """Removes the paper's figures unless the study has the paper's scene and size (in_paper)."""
+    """The comparisons; without the paper's figures unless the study uses the paper's scene and size (in_paper)."""
     return comparisons if in_paper else [replace(one, paper=None) for one in comparisons]
 
 
 @dataclass
 class Claim:
-    """A statement of a paper, our verdict on it and the reason."""
+    """A statement (`words`) of a paper at a `place`, our verdict, and the reason (`why`)."""
 
     paper: str
     place: str
@@ -125,7 +126,8 @@ class Page:
     run: dict = field(default_factory=dict)
 
     def describe(self, name, prose):
-        """Sets title, question and method from a study's prose (a line, a paragraph, a list), with {names} replaced by settings."""
+        """Sets title, question and method from a study's prose: its first line, the paragraph after it, and the items of its list. {names} are
+        replaced by settings and placeholders. Raises ValueError for an unknown {name} and for two files with the same name."""
         self.name = name
         try:
             prose = prose.format_map({**self.settings, **self.placeholders})

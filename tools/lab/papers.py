@@ -1,4 +1,4 @@
-"""Figures that the papers print, with their place; [D] marks figures derived from printed ones."""
+"""Figures of the papers, with table or figure number; [D] marks figures that we derived from printed ones."""
 
 SPA = "Kohata & Ito 1993"
 TP = "Yoshitani & Yamazaki, about 1995"
@@ -16,28 +16,28 @@ TRACE_0_MS, TRACE_16_MS, FILTER_0_MS, FILTER_16_MS = 653, 283, 9, 19
 FILTERED_0_MS, FILTERED_16_MS = TRACE_0_MS + FILTER_0_MS, TRACE_16_MS + FILTER_16_MS
 # Table 4: supersampling, communication and computation, p = 0 and p = 16.
 EXCHANGE_0_MS, EXCHANGE_16_MS, SUPERSAMPLE_0_MS, SUPERSAMPLE_16_MS = 2, 12, 739, 407
-# [D] Table 3: the time of a rotation, and the filter's arithmetic, which takes the same for every p, give p = 8.
+# [D] Times for p = 8, from Table 3: from the time of a rotation, and the time of the filter's arithmetic, which is the same for every p.
 FILTER_ARITHMETIC_MS, FILTER_8_MS, EXCHANGE_8_MS = 7, 14, 7
-# [D] Table 4, if its computation is the supersampling alone.
+# [D] Fraction of recomputed pixels, from Table 4, if its computation time is that of supersampling alone.
 RECOMPUTED_LEAST, RECOMPUTED_MOST = 0.16, 0.18
-# [D] Tables 2 and 3, with the digits that the rounding of 653, 283 and 64,800 ms leaves.
+# [D] From Tables 2 and 3, with the digits that are certain although 653, 283 and 64,800 ms are rounded.
 SPEEDUP_16 = 229  # printed in the abstracts
 SPEEDUP_0 = 99.2
 IMBALANCE_0, IMBALANCE_16 = 1.58, 0.118  # u(0), u(16); Figs 7 and 8 print no u
 IMBALANCE_16_ROUNDING = "the paper's lies in 0.115 .. 0.121, as its times are rounded"
 EFFICIENCY_0, EFFICIENCY_16 = 0.388, 0.895
-CAP_RATIO = 3.86  # next to Fig. 9: CAP, 256 PEs over 64
-PIXEL_MACHINE_SPEEDUP = 60  # next to Fig. 9: 64 nodes, "60 or more"
+CAP_RATIO = 3.86  # text next to Fig. 9: speed-up of CAP with 256 PEs over CAP with 64 PEs
+PIXEL_MACHINE_SPEEDUP = 60  # text next to Fig. 9: 64 nodes, "60 or more"
 EXCHANGE_SETUP_MS = 1.375  # [D] Table 4: 2 - 2 x 0.3125 = 12 - 34 x 0.3125
 
 # Yoshitani & Yamazaki, about 1995.
-RAY_WORDS = 22  # [D] Table 1: scalars of a ray packet, without the data for the search and of the object
+RAY_WORDS = 22  # [D] Table 1: scalars of a ray packet, without the data for the voxel search and the data of the object hit
 FEW_DIVISIONS, MANY_DIVISIONS = 32, 1024  # Fig. 3: 1024 objects on one machine
 FEW_DIVISIONS_S, MANY_DIVISIONS_S = 313, 60
 DIVISIONS_FALL = FEW_DIVISIONS_S / MANY_DIVISIONS_S  # [D]
 TESTS_FALL = 5  # tests fall "to about 1/5"
 
-# Havran & Sixta 1999: a uniform grid with 3D-DDA on SPD's scenes: divisions -> tests and steps a ray.
+# Havran & Sixta 1999, uniform grid with 3D-DDA on SPD's scenes: {(scene, divisions along x, y, z): (tests per ray, steps per ray)}.
 UNIFORM_GRIDS = {
     ("balls", (46, 46, 3)): (358.66, 5.69),
     ("balls", (103, 103, 7)): (72.54, 12.40),
@@ -72,5 +72,5 @@ REFERENCES = [
 
 
 def is_papers(scene, size):
-    """Returns true if a study has the scene that resembles the paper's, at the paper's size."""
+    """Returns true for the scene that resembles the paper's, at the paper's image size."""
     return scene == "centre" and size == SIZE

@@ -18,7 +18,7 @@ COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#0
 PAPER_COLOURS = ["#000000", "#8b1a1a", "#1a3a8b", "#1a5e1a"]
 DASHES = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (3, 1.5, 1, 1.5, 1, 1.5))]
 MARKERS = ["o", "s", "^", "v", "P", "X", "d", "<", ">"]
-FEW = 40  # maximum number of points of a line that get a marker each
+FEW = 40  # lines with at most FEW points have markers; longer ones have a band for the intervals
 HALO = [withStroke(linewidth=3, foreground="white")]
 
 STYLE = {
@@ -37,7 +37,8 @@ def plain(text):
 
 
 def look_of(style, number, count):
-    """Line and marker style of the number-th series of its kind: no two share a colour or a shape."""
+    """matplotlib options of the number-th series of its kind, which has `count` points. Colours, dashes and markers repeat with different periods,
+    so that series with the same colour differ in dash or marker."""
     colour, dash, marker = (some[number % len(some)] for some in (COLOURS, DASHES, MARKERS))
     if style in ("line", "steps"):
         look = {"color": colour, "linestyle": dash, "linewidth": 1.7 if count <= 100 else 1.3}
@@ -56,7 +57,8 @@ def is_shown(plot, x, y):
 
 
 def draw_intervals(axes, plot, series, colour):
-    """Draws error bars, or a band along a line of many points. On a logarithmic axis, intervals that reach 0 are clipped."""
+    """Draws error bars; for more than FEW points, a band. On a logarithmic axis, intervals that reach 0 are clipped at half of the lowest
+    positive value."""
     points = [(x, y, h) for x, y, h in zip(series.x, series.y, series.half_widths) if is_shown(plot, x, y)]
     if not points:
         return
@@ -71,7 +73,7 @@ def draw_intervals(axes, plot, series, colour):
 
 
 def draw_series(axes, plot):
-    """Draws all series. Returns their lines, for the legend."""
+    """Draws all series. Returns matplotlib's lines for the legend."""
     lines, kinds = [], {True: 0, False: 0}
     for series in plot.series:
         paper = series.style == "paper"
@@ -85,7 +87,7 @@ def draw_series(axes, plot):
 
 
 def name_paper_points(axes, plot):
-    """Labels the paper's points with their figures, if there are at most eight."""
+    """Labels the paper's points with their values, if there are at most eight points."""
     papers = [s for s in plot.series if s.style == "paper"]
     if sum(len(s.x) for s in papers) > 8:
         return
@@ -107,7 +109,7 @@ def power_of_ten(value, _):
 
 
 def mark_powers_of_two(axis, values):
-    """Puts ticks at powers of two, at most about nine."""
+    """Puts ticks at powers of two: about nine at most."""
     first, last = (math.frexp(value)[1] - 1 for value in (min(values), max(values)))
     axis.set_major_locator(FixedLocator([2.0**n for n in range(first, last + 1, (last - first) // 9 + 1)]))
     axis.set_minor_locator(NullLocator())
@@ -126,7 +128,7 @@ def mark_powers_of_ten(axis, values):
 def set_log_axis(axes, name, values):
     by_two = len(set(values)) > 2 and all(math.frexp(value)[0] == 0.5 for value in values)
     (axes.set_xscale if name == "x" else axes.set_yscale)("log", base=2 if by_two else 10, nonpositive="mask")
-    if not values:  # nothing to scale automatically to
+    if not values:  # without values, automatic limits fail on a logarithmic axis
         (axes.set_xlim if name == "x" else axes.set_ylim)(1, 10)
     (mark_powers_of_two if by_two else mark_powers_of_ten)(axes.xaxis if name == "x" else axes.yaxis, values)
 

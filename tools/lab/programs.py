@@ -1,4 +1,4 @@
-"""Runs programs for studies: raya on MPI ranks, and programs that are built with raya."""
+"""Runs programs for studies: raya on MPI ranks, and programs that raya's build makes."""
 import json
 import os
 import shlex
@@ -18,7 +18,8 @@ def sibling_program(name):
 
 
 def output_of(words, name, **how):
-    """Standard output of a program. If it fails, raises InputError with the last line on stderr, preferably one by raya."""
+    """Standard output of a program. If the program fails, raises InputError with the last line of stderr that starts with "raya: ", else with the
+    last line. how: arguments of subprocess.run()."""
     run = subprocess.run(words, capture_output=True, text=True, **how)
     if run.returncode:
         lines = [line for line in run.stderr.splitlines() if line.strip()]
@@ -28,7 +29,7 @@ def output_of(words, name, **how):
 
 
 def missing_mpirun():
-    """Message if there is no MPI launcher, else an empty string."""
+    """Error message with a remedy if there is no MPI launcher; else an empty string."""
     name = LAUNCHER[0] if LAUNCHER else "RAYA_MPIRUN"
     return "" if shutil.which(name) else (
         f"cannot start {name}; remedy: install openmpi-bin or mpich, whichever MPI raya was built with, or set RAYA_MPIRUN to "

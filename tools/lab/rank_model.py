@@ -1,4 +1,5 @@
-"""Predicts render times on MPI ranks from the measured times of one rank, the counts of a render, and a network's alpha and beta."""
+"""Predicts render times on MPI ranks from the measured times of one rank, the counts of a render, and a network's times: alpha, seconds per message,
+and beta, seconds per byte."""
 import os
 
 import numpy as np
@@ -41,7 +42,7 @@ class Ring:
         return [*self.arguments[:-1], str(round(int(self.arguments[-1]) * ranks**0.5))]
 
     def predict(self, i, one, network, processors):
-        """Predicted seconds of each of PARTS. one: measured seconds of one rank; network: (alpha in s, beta in s/byte)."""
+        """{part: predicted seconds} for PARTS, on self.ranks[i] ranks. one: measured seconds of one rank, by part; network: (alpha, beta)."""
         part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
         parts = dict.fromkeys(PARTS, 0.0)
         parts.update(compute=(one["trace"] * (1 + part["u"]) + one["rest"]) / processors, host=one["host"])
@@ -53,7 +54,7 @@ class Ring:
 
 
 class Torus:
-    """A torus of 8 x 8 x 8 nodes, counted in one render. More ranks than nodes have extrapolated tori (cut_further())."""
+    """A torus of 8 x 8 x 8 nodes, whose counts come from one render. For more ranks than nodes, larger tori are extrapolated (cut_further())."""
 
     name, label = "torus", "trace_voxel"
 
@@ -93,8 +94,8 @@ class Torus:
 
 
 def bricks(result, ranks):
-    """Sums over the supersteps of the maximum over ranks. All that the nodes of a brick send in one direction to the same rank
-    is one message."""
+    """{count: sum over the supersteps of the maximum over the ranks}, of cycles, messages and bytes. A brick is the cuboid of nodes of one rank. In
+    a superstep, all packets from a brick to another rank in one direction form one message."""
     rank_of, ends = raya.ranks_of_nodes(SIDES, ranks), raya.link_ends(SIDES)
     cycles, words = result.step_cycles, result.step_link_words
     by_rank = np.stack([cycles[:, rank_of == rank].sum(1) for rank in range(ranks)], 1)
@@ -113,7 +114,7 @@ def bricks(result, ranks):
 
 
 def cut_further(part, times):
-    """Extrapolates to a torus with `times` as many nodes, a rank for each: every node is cut into `times` nodes."""
+    """Extrapolates the counts to a torus with `times` as many nodes and one rank per node: every node is divided into `times` smaller nodes."""
     side = times ** (1 / 3)
     change = {"nodes": times, "supersteps": side, "cycles": 1 / times, "messages": side, "bytes": 1 / side**2,
               "status": times, "host": side * times}

@@ -1,4 +1,4 @@
-"""Modelled times of the SPA on one clock. CLOCK describes the clock and its uncertainty."""
+"""Modelled times of the SPA, all with the same clock model. CLOCK describes the model and its uncertainty."""
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -13,12 +13,12 @@ FACTORS = list(range(1, 9))
 
 
 def spa_ms(cycles):
-    """Milliseconds that a PE takes for modelled cycles, at factor 1."""
+    """Milliseconds that a PE takes for modelled cycles, without the clock model's factor (FACTOR)."""
     return cycles * SPA["cycle_ns"] * 1e-6
 
 
 FILTER_BUDGET_MS = spa_ms(raya.filter_cycles(papers.SIZE))
-# 9 - 2 = 19 - 12 = 7 ms; each of the four figures is rounded to 1 ms.
+# The filter's arithmetic takes 9 - 2 = 19 - 12 = 7 ms (Tables 3 and 4); each of these four times is rounded to 1 ms.
 FACTOR, FACTOR_LEAST, FACTOR_MOST = ((papers.FILTER_ARITHMETIC_MS + off) / FILTER_BUDGET_MS
                                      for off in (0, -2 * ROUNDING, 2 * ROUNDING))
 CLOCK = (f"modelled on one clock. Computing takes the instruction budget's cycles of 100 ns times a factor of {FACTOR:.2f} "
@@ -28,8 +28,8 @@ CLOCK = (f"modelled on one clock. Computing takes the instruction budget's cycle
 
 
 def host_model():
-    """(minimum, maximum) of a host call's set-up, rotation time and word rate, from the printed times of 2 rotations, of 34
-    rotations and of 256 x 256 x 3 words."""
+    """{name: (minimum, maximum)}: set-up time of a host call in ms, time of a rotation in ms, and words per second, from the printed times of 2
+    rotations, of 34 rotations and of a transfer of 256 x 256 x 3 words."""
     few, many = 2, 34
     few_ms, many_ms, image_ms = (np.array([value - ROUNDING, value + ROUNDING]) for value in
                                  (papers.EXCHANGE_0_MS, papers.EXCHANGE_16_MS, papers.IMAGE_MS))
@@ -42,13 +42,13 @@ def host_model():
 
 @dataclass
 class SpaRun:
-    """An image rendered on PEs of the SPA; without their memory limit if the scene does not fit."""
+    """A render on PEs of the SPA; if the scene does not fit their memory, without the memory limit."""
 
     result: raya.Result
     report: dict
 
     def time(self, factor=FACTOR):
-        """The report's modelled_ms with computing multiplied by a factor, and with the set-up of exchanges."""
+        """The report's modelled_ms, with computing times multiplied by the factor and with the set-up time of exchanges added."""
         t = dict(self.report["modelled_ms"])
         more = (factor - 1) * t["compute"]
         setup = papers.EXCHANGE_SETUP_MS if self.rotations else 0
@@ -72,8 +72,8 @@ def run_on_spa(lab, scene, size, pes, offset, antialias="none"):
 
 
 def offset_times(costs, pes, antialias, factor=FACTOR):
-    """Modelled times of every offset with the cyclic fold: columns offset, imbalance, trace_ms, smooth_ms, supersample_ms,
-    ring_ms, rotations, total_ms. Broadcast and gather are excluded: they take the same for every offset."""
+    """Data frame of modelled times with the cyclic fold, one row per offset: columns offset, imbalance, trace_ms, smooth_ms, supersample_ms,
+    ring_ms, rotations, total_ms. Broadcast and gather are excluded, because they take the same time for every offset."""
     times = pd.DataFrame(raya.offset_times(costs.trace, pes, antialias,
                                            costs.supersample if antialias == "supersample" else None))
     times[["trace_ms", "smooth_ms", "supersample_ms"]] *= factor
@@ -85,7 +85,7 @@ def offset_times(costs, pes, antialias, factor=FACTOR):
 
 @dataclass
 class SmoothingRuns:
-    """Anti-aliased renders of a scene with a PE for each column, at offsets 0, 8 and 16. Their costs give every other offset."""
+    """Anti-aliased renders of a scene with a PE for each column, at offsets 0, 8 and 16. times() computes all other offsets from their costs."""
 
     scene: raya.Scene
     size: int
@@ -94,7 +94,7 @@ class SmoothingRuns:
     costs: object
 
     def rows(self, factor=FACTOR):
-        """A row for each rendered offset; times in ms."""
+        """Data frame with one row per rendered offset; times in ms."""
         all_rows = []
         for p, run in self.runs.items():
             t, load = run.time(factor), run.report["load"]
@@ -114,7 +114,7 @@ class SmoothingRuns:
 
     @property
     def recomputed(self):
-        """Share of the pixels that were recomputed, 0..1."""
+        """Fraction of the pixels that were supersampled, 0..1."""
         report = list(self.runs.values())[-1].report
         return report["antialias"].get("recomputed_pixels", 0) / self.size**2
 
@@ -127,8 +127,8 @@ def smoothing_runs(lab, scenes, antialias):
 
 
 def default_size(scene):
-    """Default pixels a side of best-offset: the scene's own size if it is square, else 256; halved while pixels times objects
-    exceed 2^30, which would take minutes."""
+    """Default pixels per side of the study best-offset: the scene's image size if it is square, else 256; halved while pixels x objects exceed
+    2^30, which would take minutes."""
     square = scene.width == scene.height and 16 <= scene.width <= 4096
     size = scene.width if square else 256
     while size // 2 >= 64 and size * size * scene.objects > 2**30:

@@ -5,12 +5,14 @@ import numpy as np
 from scipy import stats
 
 VERDICTS = REPRODUCED, NOT_REPRODUCED, UNDECIDED = "reproduced", "not reproduced", "cannot be told"
-PREDICTABLE = 39  # pictures: with fewer, their minimum and maximum contain another one with less than 95 %
+# Minimum number of pictures for a prediction: with fewer, their minimum and maximum enclose the value of another picture with a probability
+# below 95 %.
+PREDICTABLE = 39
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """The mean of independent values and the half width of its confidence interval (nan for a single value)."""
+    """Mean of `count` independent values, and half width of its confidence interval (nan for a single value)."""
 
     mean: float
     half: float
@@ -18,7 +20,7 @@ class Estimate:
 
     low = property(lambda self: self.mean - self.half)
     high = property(lambda self: self.mean + self.half)
-    # low and high; the mean itself if there is no interval.
+    # low and high; the mean if there is no interval.
     least = property(lambda self: self.mean if np.isnan(self.half) else self.low)
     most = property(lambda self: self.mean if np.isnan(self.half) else self.high)
 
@@ -43,19 +45,20 @@ def each_of(tests):
 
 
 def prediction(values):
-    """(low, high) of the 95 % prediction interval of one more value, for any distribution (order statistics)."""
+    """(low, high): 95 % prediction interval for one more value, for any distribution (order statistics)."""
     return tuple(np.quantile(values, [0.025, 0.975], method="weibull"))
 
 
 def verdict(seen, contrary):
-    """Verdict on a claim: `seen` if the figures support it, `contrary` if they contradict it; undecided if neither or both."""
+    """Verdict on a claim. seen: the figures support the claim; contrary: they contradict it. Undecided if both or neither are true."""
     if bool(seen) == bool(contrary):
         return UNDECIDED
     return REPRODUCED if seen else NOT_REPRODUCED
 
 
 def verdict_among(paper, pictures):
-    """Verdict on a paper's figure for one picture: reproduced if it lies in the prediction interval of many pictures."""
+    """Verdict on a paper's figure for one picture: reproduced if the figure lies in the prediction interval of our pictures; undecided if it lies
+    outside and there are fewer than PREDICTABLE pictures."""
     low, high = prediction(pictures)
     among = low <= paper <= high
     return verdict(among, not among and len(pictures) >= PREDICTABLE)
@@ -71,7 +74,7 @@ def range_text(values, digits=3):
 
 
 def holding_to_the_end(values, holds):
-    """The values (pandas series) from the first one on from which `holds` is true for all."""
+    """The longest tail of the pandas series `values` in which `holds` (a boolean series) is true for every value."""
     return values[holds[::-1].cummin()[::-1]]
 
 

@@ -1,4 +1,4 @@
-"""Declares and finds studies."""
+"""Registry of the built-in studies, and loading of a user's study."""
 import importlib
 import importlib.util
 import pkgutil
@@ -12,10 +12,10 @@ REGISTRY = {}
 @dataclass(frozen=True)
 class Study:
     name: str
-    run: Callable  # (laboratory, scenes) -> Page; `scenes`: those that the user named, or an empty list
+    run: Callable  # (laboratory, scenes) -> Page; scenes: those on the command line, or an empty list
     prose: str  # title, question, method: a line, a paragraph, a list
     one_scene: bool = False
-    missing: Callable = lambda: ""  # message with remedy if the study cannot run on this machine
+    missing: Callable = lambda: ""  # returns a message with a remedy if the study cannot run on this machine, else ""
 
 
 def study(name, *, prose=None, **more):

@@ -1,4 +1,4 @@
-"""Common code of the studies of space division: renders on the torus machine or on one PE, and their figures."""
+"""Common code of the studies of space division: renders on the torus, or with a grid on one PE, and the figures of these renders."""
 import math
 
 import pandas as pd
@@ -25,12 +25,12 @@ def near_cube(count):
 
 
 def powers(most):
-    """1, 2, 4, ... up to `most`."""
+    """[1, 2, 4, ...]: the powers of two up to `most`."""
     return [1 << k for k in range(most.bit_length())]
 
 
 def even_scene(count):
-    """Spheres spread evenly over 4 x 4 x 4 voxels."""
+    """A scene of `count` spheres, spread evenly over 4 x 4 x 4 voxels."""
     return raya.generate.uniform(count, (4, 4, 4)).renamed(f"even-{count}")
 
 
@@ -38,7 +38,7 @@ def balls_scene(level):
     return raya.generate.balls(level).renamed(f"balls-{level}")
 
 
-# {column of a table: member of Run}, where the two names differ.
+# {column of a table: member of Run}, for columns whose name differs from the member's.
 MEMBERS = {
     "divisions": "voxels", "A x B x C": "sides", "tests a ray": "tests_per_ray", "steps a ray": "steps_per_ray",
     "modelled (s)": "modelled_s", "measured (ms)": "measured_ms", "measured, median (ms)": "median_ms",
@@ -49,7 +49,8 @@ MEMBERS = {
 
 
 class Run:
-    """Figures of one render. Times of the torus are modelled; those of one PE are also measured (`time`)."""
+    """Figures of one render on the torus, with modelled times, or on one PE, with modelled and measured times. time: Measured of a render on one
+    PE; None for the torus."""
 
     def __init__(self, scene, result, voxels, time=None):
         e, report = result.events, result.report
@@ -57,7 +58,7 @@ class Run:
         self.voxels, self.sides = math.prod(voxels), sides_text(voxels)
         self.rays, self.tests, self.steps, self.primary = rays_of(e), tests_of(e), e["steps"], e["primary"]
         self.tests_per_ray, self.steps_per_ray = self.tests / max(1, self.rays), self.steps / max(1, self.rays)
-        # Entries in the voxels' object lists beyond the first of each object.
+        # Entries in the voxels' object lists, not counting the first entry of each object.
         self.copies = report["torus" if time is None else "accel"]["copies"]
         self.voxels_of_object = 1 + self.copies / self.objects
         if time is not None:
@@ -83,13 +84,14 @@ class Run:
 
 
 def swept(cases, run, columns):
-    """Table with a row for each case (a dict of arguments): its arguments, the columns of run(**case), and the Run in `run`."""
+    """Data frame with one row per case, a dict of arguments. run(**case) returns a Run. Columns: the arguments, `columns` of the Run, and the Run
+    itself in column `run`."""
     return pd.DataFrame([{**case, **one.row(columns), "run": one} for case in cases for one in [run(**case)]])
 
 
 def run_on_torus(lab, scene, size, nodes, voxels, queue=None, **options):
-    """Renders on the torus without a memory limit. If the machine deadlocks because its queues are too short, doubles their
-    length, up to the default."""
+    """Renders on the torus without a memory limit; returns a Run. If the render deadlocks because queues are too short, repeats it with queues of
+    twice the length, up to the default of 8192 packets. Then, or with the default (`queue` None), raises raya.Deadlock."""
     while True:
         try:
             result = lab.render(scene, machine="torus", size=size, nodes=sides_text(nodes), voxels=sides_text(voxels),
@@ -102,7 +104,7 @@ def run_on_torus(lab, scene, size, nodes, voxels, queue=None, **options):
 
 
 def run_in_one_pe(lab, scene, size, voxels, bounces=0, sampling="centres", runs=1):
-    """Renders the scene in fp32 on one PE of grande with a grid; takes up to `runs` timing samples."""
+    """Renders the scene in fp32 on one PE of machine grande with a grid; returns a Run with the times of at most `runs` samples."""
     options = dict(machine="grande", format="fp32", size=size, pes=1, offset=0, bounces=bounces, sampling=sampling,
                    accel=f"grid:{sides_text(voxels)}")
     counted = lab.render(scene, **options)  # also warms up the timed renders

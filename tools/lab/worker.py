@@ -11,11 +11,11 @@ from raya.lab.laboratory import Laboratory
 from raya.lab.page import Page
 from raya.lab.study import studies, study_of_file
 
-laboratory = None  # of this process; its device session is reused from study to study
+laboratory = None  # the Laboratory of this process; all studies use its device session
 
 
 def warn_as_raya(options):
-    """Prints Python's warnings in raya's form on stderr; no warnings with -qq."""
+    """Makes Python print warnings on stderr in raya's format, and no warnings with -qq."""
     warnings.showwarning = lambda text, *_: options.verbosity > -2 and print(f"raya: warning: {text}", file=sys.stderr)
 
 
@@ -47,7 +47,7 @@ def place_of(error, run):
 
 def answer(pipe):
     """Main loop of the child: receives arguments of run_study() from the pipe, sends (result, error), ends at EOF."""
-    for number in (signal.SIGINT, signal.SIGQUIT):  # a terminal sends these to every process; the parent ends this one
+    for number in (signal.SIGINT, signal.SIGQUIT):  # a terminal sends these signals to both processes; the parent ends this one
         signal.signal(number, signal.SIG_IGN)
     while True:
         try:
@@ -61,7 +61,7 @@ def answer(pipe):
 
 
 class Worker:
-    """A child process. concurrent.futures would leak semaphores on a signal, and Python would warn of them."""
+    """A child process that runs studies. Not a concurrent.futures pool, which leaks semaphores on a signal, of which Python warns."""
 
     def __init__(self):
         self._process = None

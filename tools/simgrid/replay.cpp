@@ -1,6 +1,6 @@
-// Replays the work of a render on the torus with SimGrid (https://simgrid.org). Processors and links are SimGrid's; the
-// tasks of a node are actors. The code is independent of raya's simulator and implements the same rules
-// (host/torus/async_machine.hpp) with actors, semaphores and messages.
+// Replays the work of a render on the torus with SimGrid (https://simgrid.org). SimGrid simulates processors
+// and links. The main task, the input threads and the output threads of each node are actors. The code is independent
+// of raya's simulator and implements the same rules (host/torus/async_machine.hpp) with actors, semaphores and messages.
 //
 //   simgrid_replay PLATFORM.xml REPLAY [--cfg=...]
 //
@@ -28,7 +28,7 @@ namespace {
 
 namespace sg = simgrid::s4u;
 
-constexpr double kCommunicationPriority = 1e9;  // the main task has 1
+constexpr double kCommunicationPriority = 1e9;  // the main task has priority 1
 constexpr std::size_t kNoTask = SIZE_MAX;
 
 struct Hop {
@@ -40,7 +40,7 @@ struct Message {
     double words = 0;
     int cls = 0;
     std::vector<Hop> route;
-    std::size_t hop = 0;  // number of links that it has passed
+    std::size_t hop = 0;  // number of links that the message has passed
     std::size_t task = kNoTask;
 };
 
@@ -50,7 +50,8 @@ struct Task {
     std::vector<Message*> sends;
 };
 
-// One direction of a link. By class: messages in the output thread; whether the input thread is occupied.
+// One direction of a link. For each class of messages: the messages in the output thread, and whether the input thread
+// is occupied.
 struct Port {
     std::size_t from = 0, to = 0;
     int direction = 0;
@@ -104,8 +105,8 @@ void deliver(Message* message, std::size_t at) {
     wake(machine.nodes[at]);
 }
 
-// Puts a message into the output thread of its next link; waits for a free buffer. `came`: direction from which it
-// arrived; -1: from the main task.
+// Puts a message into the output thread of its next link; waits for a free buffer. `came`: direction from which the
+// message arrived; -1: from the main task.
 void put(std::size_t at, Message* message, int came) {
     Node& node = machine.nodes[at];
     const Hop next = message->route[message->hop];
@@ -262,7 +263,7 @@ void start_actors() {
 
 int main(int argc, char* argv[]) {
     sg::Engine engine(&argc, argv);
-    // A message takes its bytes divided by the link's rate, without SimGrid's corrections for TCP.
+    // A message takes its bytes / the link's rate: disables SimGrid's corrections for TCP.
     sg::Engine::set_config("network/model:CM02");
     sg::Engine::set_config("network/crosstraffic:0");
     sg::Engine::set_config("contexts/stack-size:128");

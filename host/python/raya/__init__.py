@@ -5,8 +5,9 @@
     result = raya.render(scene, machine="spa", offset=16, cost=True)
     result.imbalance, raya.imbalances(result.cost, pes=256, offsets=range(256))
 
-Keyword arguments of render() are the long options of `raya render` with underscores: pe_memory for --pe-memory, async_ for
---async. Invalid input raises ValueError, a device DeviceError, with the message of the command line.
+The keyword arguments of render() are the long options of `raya render` with underscores instead of hyphens: pe_memory for
+--pe-memory. A name that is a Python keyword has an underscore at its end: async_ for --async. Invalid input raises
+ValueError and a failure of the device raises DeviceError, with the same messages as the command line.
 """
 import contextlib
 import os
@@ -54,7 +55,8 @@ from raya._engine import (
 
 @contextlib.contextmanager
 def _shown(progress):
-    """The progress callback of the engine: `progress` itself, a progress bar for True, None for False."""
+    """Context manager that yields the engine's progress callback: one that draws a bar for True, None for False, else
+    `progress` itself."""
     if progress is not True:
         yield progress or None
         return
@@ -69,7 +71,8 @@ def render(scene, *, progress=False, session=None, **options):
 
     scene: a Scene, or the path of an NFF file. options: those of `raya render`; cost=True and packets=True store the
     arrays in the Result instead of a file. progress: True draws a progress bar; a function is called with the completed
-    share, 0..1. session: a Session; default: a shared one per device. Raises ValueError, DeviceError.
+    fraction of the work, 0..1. session: a Session; default: one that all renders on the same device share. Raises
+    ValueError, DeviceError.
     """
     if not isinstance(scene, Scene):
         scene = load(scene)
@@ -80,7 +83,8 @@ def render(scene, *, progress=False, session=None, **options):
 
 
 def program():
-    """The path of the program raya of the build or installation that contains this package."""
+    """Returns the path of the program `raya`: the environment variable RAYA_PROGRAM if it names a program, else the program
+    of the build or installation that contains this package, else the one in PATH. Raises FileNotFoundError."""
     package = Path(__file__).absolute().parent
     candidates = [os.environ.get("RAYA_PROGRAM"), package / "raya", package / "../../raya", package / "../../../../bin/raya",
                   shutil.which("raya")]
@@ -91,7 +95,8 @@ def program():
 
 
 def _run_program():
-    """The command `raya` of an installation by pip. Its studies run in this Python."""
+    """Runs the program `raya` in place of this process. Entry point of the command `raya` that pip installs; studies use
+    this Python interpreter."""
     os.environ.setdefault("RAYA_PYTHON", sys.executable)
     path = program()
     os.execv(path, [path, *sys.argv[1:]])

@@ -1,7 +1,7 @@
-// Charts as SVG in the page's colours, and pixel maps on canvases. `description`: text for screen readers.
+// Draws charts as SVG in the page's colours, and pixel maps on canvases. `description`: text for screen readers.
 "use strict";
 
-// --- Colours: OKLCH (B. Ottosson, "A perceptual color space for image processing", 2020), where all hues have equal
+// --- Colours in OKLCH (B. Ottosson, "A perceptual color space for image processing", 2020), where all hues have equal
 // lightness. Hue in degrees.
 
 function rgbOf(light, chroma, hue) {
@@ -31,7 +31,7 @@ function pixelMap(width, height, description, word) {
   return canvas;
 }
 
-// Returns value -> RGBA word: red above the mean, blue below, saturated at the value farthest from it.
+// Returns a function value -> RGBA word: red above the mean, blue below, saturated at the value farthest from the mean.
 function diverging(values) {
   const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
   const farthest = values.reduce((max, value) => Math.max(max, Math.abs(value - mean)), 0) || 1;
@@ -63,14 +63,14 @@ const chart = (description, marks, high = HIGH) => svg(
   "svg", {class: "chart", viewBox: `0 0 ${WIDE} ${high}`, role: "img", "aria-label": description},
   box("ground", 0, 0, WIDE, high), ...marks.flat());
 
-// About `count` round numbers from 0 to `max`.
+// Returns about `count` round numbers from 0 to `max`.
 function ticksOf(max, count) {
   const raw = max / count, power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].find((s) => s * power >= raw * 0.999) * power;
   return Array.from({length: Math.floor(max / step * 1.0001) + 1}, (_, i) => Number((i * step).toPrecision(6)));
 }
 
-// A linear axis; `to` maps a value to 0..1. `whole`: integer ticks without a unit prefix.
+// A linear axis. `to` maps a value to 0..1. `whole`: ticks are integers without a unit prefix.
 function linear(name, max, count, whole = false) {
   const [unit, prefix] = max >= 1e9 ? [1e9, "thousand million "] :
     max >= 1e6                      ? [1e6, "million "] :
@@ -108,8 +108,9 @@ function plane(across, up) {
   return {x, y, grid};
 }
 
-// Vertical bars of `values`, and a line at their mean. Above 416 values several share a column, dark up to their
-// minimum and pale up to their maximum. `colour(first, count)`: optional colour of a column.
+// Vertical bars of `values`, and a line at their mean. If there are more than 416 values, a column shows several of
+// them: dark up to their minimum, pale up to their maximum. `colour(first, count)`: colour of the column with these
+// values; optional.
 function bars(description, [across, up], values, mean, {colour = null, top = 0} = {}) {
   const count = values.length, columns = count <= 416 ? count : 208, wide = (RIGHT - LEFT) / columns,
         gap = columns > 100 ? 0.1 : 0.2;
@@ -128,7 +129,8 @@ function bars(description, [across, up], values, mean, {colour = null, top = 0} 
   return chart(description, [grid, marks, line("mark", [LEFT, y(mean)], [RIGHT, y(mean)])]);
 }
 
-// Horizontal bars with names above them: {name, text, value, mark}. mark: optional value of a line across the bar.
+// Horizontal bars with names above them: {name, text, value, mark}. mark: value at which a line crosses the bar;
+// optional.
 function namedBars(description, rows) {
   const max = rows.reduce((a, {value, mark = 0}) => Math.max(a, value, mark), 1e-300), x = (v) => 6 + 358 * v / max;
   return chart(
@@ -143,8 +145,8 @@ function namedBars(description, rows) {
     36 * rows.length + 6);
 }
 
-// Roofline chart: numbered points [operations per byte, operations per second] below the roof min(x * slope, top). A
-// second, lower top is dashed.
+// Roofline chart: numbered points [operations per byte, operations per second], and the roof min(x * slope, top). A
+// second, lower top is drawn dashed.
 function roof(description, slope, tops, points) {
   const xs = [tops[0][1] / slope, ...points.map(([x]) => x)],
         ys = [...tops.map(([, v]) => v), ...points.map(([, y]) => y)];
@@ -158,7 +160,7 @@ function roof(description, slope, tops, points) {
            line("roof", [x(from), y(from * slope)], [x(top / slope), y(top)], [RIGHT, y(top)]),
        label("end", RIGHT, y(top) - 5, name)]);
   marks.push(label("start", x(from) + 4, Math.min(y(from * slope) + 14, BOTTOM - 4), "copies"));
-  const taken = [];  // positions of labels; a label too near to another moves below it
+  const taken = [];  // positions of labels; a label that is too close to another is placed below it
   const places = points.map(([px, py], i) => [x(px), y(py), i + 1]).sort((a, b) => a[1] - b[1]);
   for (const [px, py, number] of places) {
     const right = px + 22 > RIGHT, lx = right ? px - 8 : px + 8;

@@ -1,8 +1,8 @@
-// The explorer: the page of one render's costs. Decodes the costs, keeps the state, and displays the figures of
-// model.js.
+// The explorer: an interactive page about the costs of the pixels of one render. Decodes the costs, stores the state,
+// and displays the figures that model.js computes.
 "use strict";
 
-// Allows line breaks only between options.
+// Makes a command line break only between options.
 const commandElements = (text) => text.split(" ").flatMap((word, i) => [i ? " " : "", make("span", {}, word)]);
 
 const explorer = {
@@ -15,7 +15,7 @@ const explorer = {
   curves: {pes: 0, known: 0, values: null, best: null, worst: 0},
 
   get focus() { return this.hovered ?? this.state.pe; },
-  get root() { return rootOf(this.figures.setting.pes); },  // may exceed the last offset
+  get root() { return rootOf(this.figures.setting.pes); },  // may exceed the maximum offset
 
   // --- From the report to the first view
 
@@ -41,7 +41,7 @@ const explorer = {
     this.followLink();
   },
 
-  // Inverse of cost_json() in page.cpp.
+  // Decodes the costs; inverse of cost_json() in page.cpp.
   async decodeCosts() {
     const packed = Uint8Array.from(atob(str(this.report, "cost.gzip")), (c) => c.charCodeAt(0));
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
@@ -53,7 +53,7 @@ const explorer = {
     return costs;
   },
 
-  // The image's pixels, and the lightness of each.
+  // Decodes the image's pixels, and computes the lightness of each.
   async decodeImage() {
     const {width, height} = this.size, photo = picture(this.report, "image.png", "the image");
     const context = make("canvas", {width, height}).getContext("2d");
@@ -81,7 +81,7 @@ const explorer = {
 
   pick(pe) { this.choose("pe", pe); },
 
-  // Sets the state from the address, at the start and after a link.
+  // Sets the state from the page's address, at the start and when a link is followed.
   followLink() {
     if (location.hash === this.hash) return;
     const {state, problems} = withLink(this.initialState, location.hash, this.size);
@@ -99,7 +99,7 @@ const explorer = {
     this.requestDraw();
   },
 
-  // Draws once at the next frame.
+  // Requests one redraw at the next frame.
   requestDraw() {
     if (this.waiting) return;
     this.waiting = requestAnimationFrame(() => {
@@ -131,26 +131,27 @@ const explorer = {
     if (this.curves.pes !== setting.pes) this.computeCurves(setting.pes);
   },
 
-  // Updates link, command and, with a delay, the address: browsers limit the rate of changes.
+  // Updates the link, the command and, with a delay, the page's address, because browsers limit the rate of its
+  // changes.
   updateLink() {
     const link = linkText(this.state), before = location.hash;
     $("link").setAttribute("href", link);
     $("command").replaceChildren(...commandElements(`${str(this.report, "command")} ${optionsText(this.state)}`));
     clearTimeout(this.updating);
     this.updating = setTimeout(() => {
-      if (location.hash !== before) return;  // followLink() will run
+      if (location.hash !== before) return;  // the browser will call followLink()
       this.hash = link;
       if (location.hash !== link) history.replaceState(null, "", link);
     }, 250);
   },
 
-  // Computes the curves for this number of PEs, a few offsets at a time, so that the page stays responsive.
+  // Computes the curves for the current number of PEs, a few offsets at a time, so that the page stays responsive.
   computeCurves(pes) {
     const {width} = this.size, values = {cyclic: new Float64Array(width)};
     if (pes !== width) values.block = new Float64Array(width);
     const own = this.curves = {pes, known: 0, values, best: null, worst: 0};
     const more = () => {
-      if (own !== this.curves) return;  // the number of PEs has changed
+      if (own !== this.curves) return;  // the number of PEs has changed since
       own.known = addToCurves(values, this.costs, this.size, pes, own.known, performance.now() + 10);
       if (own.known < width) setTimeout(more);
       else
@@ -201,7 +202,7 @@ const explorer = {
       `Circle: minimum, ${fixed(best.u, 3)} at p = ${best.offset}${values.block ? `, fold ${best.fold}` : ""}.` :
                                                                                     "";
     if (!best) return;
-    const own = (state.fold === "block" && values.block) || values.cyclic;  // of the selected fold
+    const own = (state.fold === "block" && values.block) || values.cyclic;  // u of the selected fold
     $("best").dataset.offset = own.indexOf(own.reduce((a, u) => Math.min(a, u)));
     $("best").textContent = `best p = ${$("best").dataset.offset}`;
   },

@@ -1,4 +1,4 @@
-// Connects the explorer's controls and the pointer with its state.
+// Connects the explorer's controls and pointer events with its state.
 "use strict";
 
 // Controls and the members of the state that they edit: [name, index].
@@ -97,7 +97,7 @@ function listenToPointer(page) {
   $("curves").addEventListener("pointermove", (event) => event.buttons & 1 && drag(event));
 }
 
-// Sets all controls to the state, except a field that the user is typing in (`active`).
+// Updates all controls from the state, except the field in which the user is typing (`active`).
 function sync(page, active) {
   const {state, size: {width}} = page, pes = settingOf(state).pes;
   for (const [id, [name, which]] of Object.entries(CONTROLS))

@@ -1,5 +1,5 @@
-// Views of the explorer: image, close-up, bars of loads, and curves, from the figures of model.js. Independent of the
-// controls.
+// Views of the explorer: image, close-up, bars of loads, and curves, drawn from the figures of model.js. The views do
+// not depend on the controls.
 "use strict";
 
 const HUES = 360, LEVELS = 64;
@@ -19,7 +19,7 @@ const VIEW_TEXTS = {
   picture: () => "The rendered image.",
 };
 
-// `levels`: lightness of each pixel, 0..63. `focus`: a PE, whose pixels become white and all others dim, or null.
+// `levels`: lightness of each pixel, 0..63. `focus`: null, or a PE whose pixels are drawn white and all others dimmed.
 function drawPicture(canvas, f, {levels, costs, maxCost, photo}, view, focus) {
   const {owners, loads, mean, setting: {pes}} = f, shown = new Uint32Array(photo.data.buffer.slice(0));
   const level = (pe) => view === "owners" ? Math.floor(hueOf(pe, pes)) :
@@ -39,7 +39,7 @@ function drawPicture(canvas, f, {levels, costs, maxCost, photo}, view, focus) {
     new ImageData(new Uint8ClampedArray(shown.buffer), photo.width, photo.height), 0, 0);
 }
 
-// Loads relative to the mean, each in its PE's colour. `top`: the least value at the top of the axis.
+// Loads relative to the mean, each in its PE's colour. `top`: minimum for the upper end of the axis.
 function loadBars(f, texts, focus, top) {
   const {mean, setting: {pes}} = f;
   const description = `Loads of ${pes} PEs: from ${texts.idlest} to ${texts.busiest}, mean ${texts.mean}.`;
@@ -52,7 +52,7 @@ function loadBars(f, texts, focus, top) {
     });
 }
 
-// u over the offsets computed so far. `here`: the current offset and fold, or null.
+// Load imbalance u over the offset, for the offsets computed so far. `here`: the current offset and fold, or null.
 function offsetCurves(f, texts, {values, known, best}, root, here) {
   const side = values.cyclic.length, last = Math.max(side - 1, 1), folds = Object.entries(values);
   const max = folds.reduce(
@@ -72,7 +72,8 @@ function offsetCurves(f, texts, {values, known, best}, root, here) {
   ]);
 }
 
-// Draws the middle of the image enlarged: owners, one PE's pixels marked, and its shortest vector.
+// Draws the enlarged centre of the image: the owner of each pixel, marks on the pixels of one PE, and the shortest
+// vector between them.
 function drawCloseUp(canvas, f, {width: across, height: down}, focus) {
   const context = canvas.getContext("2d"), {owners, vector, setting: {pes}} = f,
         reach = vector ? Math.ceil(Math.hypot(...vector)) : 12;
@@ -81,7 +82,7 @@ function drawCloseUp(canvas, f, {width: across, height: down}, focus) {
   const row0 = Math.floor((down - cells) / 2), column0 = Math.floor((across - cells) / 2);
   const ownerAt = (row, column) => owners[(row0 + row) * across + column0 + column],
         own = focus ?? ownerAt(middle, middle);
-  let from = null;  // the pixel of that PE that is nearest to the middle
+  let from = null;  // the pixel of that PE nearest to the centre
   for (let row = 0; row < cells; ++row)
     for (let column = 0; column < cells; ++column) {
       const pe = ownerAt(row, column), away = Math.hypot(row - middle, column - middle);

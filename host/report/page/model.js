@@ -1,19 +1,19 @@
-// Owners, loads and figures of a setting, equal to those of the program to the last digit (kernels/shared/mapping.h,
-// host/ring/route.cpp, host/model/; compared by tests/tools/test_explore.py). Integers below 2^53 are exact in
-// JavaScript; products of 32-bit integers use Math.imul. Independent of the page.
+// Computes owners, loads and figures of a setting. The results equal raya's in every digit (kernels/shared/mapping.h,
+// host/ring/route.cpp, host/model/); tests/tools/test_explore.py compares them. JavaScript's numbers are exact for
+// integers below 2^53; products of 32-bit integers use Math.imul. This file does not depend on the page.
 //
-// A setting: {kind, offset, fold, pes, a, b, seed}; kind: slots, rows, blocks, grid, tiles or random; a, b: rows and
-// columns of a grid, or width and height of a tile.
+// A setting is {kind, offset, fold, pes, a, b, seed}. kind: "slots", "rows", "blocks", "grid", "tiles" or "random". a,
+// b: rows and columns of a grid, or width and height of a tile in pixels.
 "use strict";
 
 // --- Owners of pixels
 
-// floor(n / d) of integers, n < 2^53. It is exact: a quotient that is not an integer is at least 1 / d below the next
-// integer, which exceeds the rounding error of a double.
+// Returns floor(n / d) of integers, n < 2^53. The result is exact: a quotient that is not an integer is at least 1 / d
+// below the next integer, which is more than the rounding error of a double.
 const floorRatio = (n, d) => Math.floor(n / d);
 const stepsBelow = (first, step, end) => first < end ? floorRatio(end - first - 1, step) + 1 : 0;
 
-// (row, slot) -> PE of the slot mappings.
+// Returns the function (row, slot) -> PE of a mapping with slots.
 function slotOwner({fold, pes}, {width, height}) {
   if (fold === "cyclic")
     return pes <= width ? (row, slot) => slot % pes :
@@ -49,7 +49,7 @@ function scrambler(count, seed) {
   };
 }
 
-// (row, column) -> PE of the other mappings.
+// Returns the function (row, column) -> PE of any other mapping.
 function plainOwner({kind, pes, a, b, seed}, {width, height}) {
   if (kind === "rows") return (row) => row % pes;
   if (kind === "blocks") return (row) => floorRatio(row * pes, height);
@@ -60,7 +60,7 @@ function plainOwner({kind, pes, a, b, seed}, {width, height}) {
   return (row, column) => scrambled(row * width + column) % pes;
 }
 
-// The PE of each pixel, row by row.
+// Returns the PE of each pixel, row by row.
 function ownersOf(setting, size) {
   const {width, height} = size, owners = new Int32Array(width * height);
   const slots = setting.kind === "slots", owner = slots ? slotOwner(setting, size) : plainOwner(setting, size);
@@ -82,7 +82,7 @@ function loadsOf(owners, costs, pes) {
   return loads;
 }
 
-// As host/model/time_model.cpp, with the same order of operations.
+// Same formulas as in host/model/time_model.cpp, in the same order of operations.
 function balanceOf(loads) {
   const pes = loads.length;
   let sum = 0, busiest = 0, idlest = 0;
@@ -104,15 +104,15 @@ function balanceOf(loads) {
   };
 }
 
-// Writes u of the offsets from `first` on into curves.cyclic and curves.block, if they exist, until `deadline`. Returns
-// the next offset.
+// Computes u of the offsets from `first` on, until time `deadline`, and writes them to curves.cyclic and curves.block,
+// if these exist. Returns the next offset.
 function addToCurves(curves, costs, size, pes, first, deadline) {
   const {width, height} = size, folds = Object.keys(curves);
   const owner = folds.map((fold) => slotOwner({fold, pes}, size));
   const loads = new Float64Array(pes), slots = new Float64Array(width);
   let offset = first;
   for (; offset < width && performance.now() < deadline; ++offset) {
-    // With P <= W every PE has whole slots, so both folds use the loads of slots.
+    // If P <= W, every PE has whole slots, so the loads for both folds are sums of the slots' loads.
     if (pes <= width) {
       slots.fill(0);
       for (let row = 0, begin = 0, at = 0; row < height; ++row, at += width) {
@@ -139,7 +139,8 @@ function addToCurves(curves, costs, size, pes, first, deadline) {
 
 // --- Neighbours
 
-// For left, right, above, below: found[d] = 1 if some pixel of a PE i has that neighbour on PE i + d, modulo P.
+// For the left, right, upper and lower neighbour: found[d] = 1 if, for some pixel, the PE of that neighbour is i + d
+// modulo P, where i is the pixel's PE.
 function distancesOf(owners, {width, height}, pes) {
   const [left, right, above, below] = [0, 1, 2, 3].map(() => new Uint8Array(pes));
   const away = (from, to) => from >= to ? from - to : from + pes - to;
@@ -152,7 +153,7 @@ function distancesOf(owners, {width, height}, pes) {
   return [left, right, above, below];
 }
 
-// Minimum number of rotations that reach all distances: near ones in one direction, the others in the other.
+// Minimum number of rotations (circular shifts) that cover all distances: some in one direction, the rest in the other.
 function turnsOf(found) {
   const pes = found.length, distances = [];
   for (let d = 0; d < pes; ++d)
@@ -164,7 +165,7 @@ function turnsOf(found) {
   return fewest;
 }
 
-// Communication of the 3 x 3 filter: rotations of the ring, or transfers or broadcasts over the bus.
+// Communication for the 3 x 3 filter: rotations of the ring, or transfers or broadcasts over the bus.
 function movesOf(owners, size, pes) {
   const moves = {rotations: 0, transfers: 0, broadcasts: 0};
   for (const found of distancesOf(owners, size, pes)) {
@@ -179,7 +180,7 @@ function movesOf(owners, size, pes) {
 
 // --- Lattices
 
-// A shortest vector of the lattice of {(a, b): b = a p mod N}: [rows down, columns to the right].
+// Returns a shortest vector of the lattice {(a, b): b = a p mod N} as [rows down, columns to the right].
 function shortestVector(offset, side) {
   let least = [0, side], square = side * side;
   for (let rows = 1; rows * rows < square; ++rows) {
@@ -189,7 +190,7 @@ function shortestVector(offset, side) {
   return least;
 }
 
-// null if the pixels of a PE are not a lattice.
+// Returns null if the pixels of a PE do not form a lattice.
 function vectorOf({kind, fold, offset, pes, a, b}, {width}) {
   if (kind === "slots" && (fold === "cyclic" ? width % pes === 0 : width === pes))
     return shortestVector(offset % pes, pes);
@@ -220,8 +221,8 @@ function figuresOf(setting, size, costs, rates) {
 
 // --- As text
 
-// Formats with `digits` decimals as the program does: ties round to even, where toFixed() rounds up. 100 decimals are
-// exact for doubles of ordinary size.
+// Formats with `digits` decimals as raya does: ties are rounded to even, whereas toFixed() rounds them up. 100 decimals
+// represent doubles of typical magnitude exactly.
 function fixed(value, digits) {
   const all = value.toFixed(100), point = all.indexOf("."), cut = point + 1 + digits;
   if (!/^50*$/.test(all.slice(cut))) return value.toFixed(digits);

@@ -8,7 +8,7 @@ const rowName = (row) =>
   `${str(row, "kernel")}, ${str(row, "format")}, ${num(row, "lanes")} lanes, group ${num(row, "group")}`;
 const rowCells = (row) => [str(row, "kernel"), str(row, "format"), count(row, "lanes"), count(row, "group")];
 
-// In compared.rows, compare_bench() puts the run's rows first, in their order.
+// The first elements of compared.rows are the rows of this run, in the order of the report (compare_bench()).
 function rates(r, rows) {
   const compared = has(r, "compared") ? list(r, "compared.rows", "object") : [];
   const description = `Rays per second, medians of the samples${compared.length ? "; lines: the baseline" : ""}.`;
@@ -68,7 +68,7 @@ function comparison(r) {
   ];
 }
 
-// One chart for each number format, because a peak is measured for one.
+// One chart for each number format, because each peak is measured for one format.
 function rooflines(rows) {
   const formats = new Map(), shown = [];
   for (const row of rows) {

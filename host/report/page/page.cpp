@@ -10,14 +10,14 @@ namespace {
 
 const std::string& asset(const std::string& name) { return embedded_files().at("host/report/page/" + name); }
 
-// Escapes <, > and &, which JSON has only within strings, so that no string can look like a tag or an entity.
+// Escapes <, > and &, so that no string looks like a tag or an entity. JSON has these characters only within strings.
 std::string escape_tags(std::string json) {
     for (const auto& [sign, escape] : {std::pair{"<", "\\u003c"}, {">", "\\u003e"}, {"&", "\\u0026"}})
         json = replaced(std::move(json), sign, escape);
     return json;
 }
 
-// Replaces every {{NAME}} of `text` by the asset NAME or the report. Does not replace in inserted text.
+// Replaces every {{NAME}} in `text` by the asset NAME or the report. Inserted text is not searched again.
 std::string fill_template(const std::string& text, const Json& report) {
     std::string page;
     std::size_t from = 0;

@@ -9,15 +9,17 @@
 namespace raya {
 
 /// Returns the page of a report of render, bench, verify, explore or tools/gpu_day. Texts of the report are escaped, so
-/// that none can end its element or run as a script. The page needs no network; without scripts it shows the JSON.
+/// that they cannot close the element that contains them or run as a script. The page does not load anything from the
+/// network. Without JavaScript it shows the JSON.
 std::string report_page(const Json& report);
 
-/// Limit of the sum of costs: the explorer's script uses doubles, which represent integers exactly up to here.
+/// Maximum sum of costs: the explorer's script computes with doubles, which represent integers exactly up to this
+/// limit.
 inline constexpr std::uint64_t kExactCycles = std::uint64_t{1} << 53;
 
-/// Encodes a cost image for the explorer's script: {"bytes": B, "gzip": base64}. The gzip data has B planes: the lowest
-/// bytes of all pixels row by row, then the next higher ones. Planes compress better than interleaved bytes, because
-/// neighbours rarely differ in their high bytes.
+/// Encodes a cost image for the explorer's script: {"bytes": B, "gzip": base64}. The gzip data has B planes, one for
+/// each byte of a cost, from the lowest to the highest byte. A plane has one byte per pixel, row by row. Planes
+/// compress better than interleaved bytes, because neighbours rarely differ in their high bytes.
 Json cost_json(const std::vector<std::uint64_t>& cycles);
 
 }  // namespace raya

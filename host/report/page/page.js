@@ -1,4 +1,4 @@
-// Displays the report embedded in the page. If that fails, shows the reason above the JSON.
+// Displays the report embedded in the page. If that fails, shows the error above the JSON.
 "use strict";
 
 const SHOWN = {

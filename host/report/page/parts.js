@@ -1,5 +1,5 @@
-// Building blocks of pages: members of a report, elements, tables. Texts of a report go only into text nodes and inert
-// attributes, never into HTML.
+// Building blocks of pages: access to members of a report, HTML elements, tables. Texts from a report are written only
+// to text nodes and inert attributes, never to HTML.
 "use strict";
 
 const $ = (id) => document.getElementById(id);
@@ -29,7 +29,7 @@ function member(object, path, type) {
 }
 
 const num = (object, path) => member(object, path, "number");
-const whole = (object, path) => member(object, path, "whole number");  // 1 or more
+const whole = (object, path) => member(object, path, "whole number");  // integer >= 1
 const str = (object, path) => member(object, path, "text");
 const list = (object, path, type) => member(object, path, "list").map((value, i) => {
   if (!TYPES[type](value)) throw new Error(`${path}[${i}] is not a ${type}`);
@@ -38,7 +38,7 @@ const list = (object, path, type) => member(object, path, "list").map((value, i)
 
 // --- Elements
 
-// `children`: elements, text, and lists of these; null and false are skipped.
+// `children`: elements, texts, and arrays of these; null and false are skipped.
 function make(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
@@ -58,7 +58,7 @@ const message = (text) => make("p", {class: "message"}, prose(text));
 const code = (text) => make("code", {}, text);
 const part = (title, ...children) => children.flat().length ? [make("h3", {}, prose(title)), ...children] : [];
 
-// rows: [name, text or element]; rows with "" are skipped.
+// rows: [name, text or element]; rows whose text is "" are skipped.
 const definitions = (rows, attributes = {}) => make(
   "dl", attributes,
   rows.filter(([, what]) => what !== "").map(([name, what]) => [make("dt", {}, name), make("dd", {}, what)]));
@@ -70,8 +70,8 @@ const tiles = (rows) => make(
 // kind: "yes", "no" or "open".
 const verdict = (kind, text) => make("span", {class: `verdict ${kind}`}, text);
 
-// --- Tables. Cells: text, numbers as text, or elements. Columns of numbers are right-aligned and sorted by value; long
-// tables are collapsed.
+// --- Tables. Cells: text, numbers as text, or elements. Columns of numbers are right-aligned and sortable by value;
+// long tables are collapsed.
 
 const OPEN_ROWS = 24, MAX_ROWS = 400;
 const NUMBER = /^(-|[-+]?(inf|[\d.,\u202f]+(e[-+]?\d+)?)( (%|ms|s|min|h))?)?$/;
@@ -104,7 +104,7 @@ function table(label, header, rows, rest = "All rows are in the report.") {
   return [make("details", {}, make("summary", {}, `${rows.length} rows`), whole, cut)];
 }
 
-// Sorts by value, cells without a number last; a second click reverses the order.
+// Sorts by value, with cells without a number last. A second click reverses the order.
 function sortBy(head, column, body) {
   const sign = head.getAttribute("aria-sort") === "ascending" ? -1 : 1, numeric = head.className === "n";
   const key = (row) => {
@@ -125,7 +125,7 @@ function sortBy(head, column, body) {
 const caption = (element, ...texts) => make(
   "figure", {}, element, make("figcaption", {}, texts.map((text) => typeof text === "string" ? prose(text) : text)));
 
-// Adds a section and its link in the contents. If build() throws, the section shows the error.
+// Adds a section, and a link to it in the contents. If build() throws, the section shows the error.
 function section(id, title, build) {
   let children;
   try {
@@ -140,7 +140,7 @@ function section(id, title, build) {
   nav.firstChild.append(make("li", {}, make("a", {href: `#${id}`}, title)));
 }
 
-// Builds the head. If build() throws, shows the error; the sections follow in any case.
+// Builds the head of the page. If build() throws, shows the error instead; the sections follow in any case.
 function heading(build) {
   try {
     build();

@@ -52,7 +52,8 @@ const range = (r) => !(num(r, "load.mean") > 0) ?
   `from ${percent(1 - num(r, "load.min") / num(r, "load.mean"))} below to ${
     percent(num(r, "load.max") / num(r, "load.mean") - 1)} above the mean`;
 
-// Two maps: loads, with at most 256 cells a side, each the mean of its pixels; and owners of the upper left pixels.
+// Two maps: loads, with at most 256 x 256 cells, each the mean of its pixels; and the owners of the pixels in the upper
+// left corner.
 function ownerMaps(r, size) {
   const {width, height} = size, machine = member(r, "machine", "object"), setting = settingOf(stateOf(machine, size));
   const loads = list(r, "load.per_pe", "number"), owners = ownersOf(setting, size), colour = diverging(loads);
@@ -82,7 +83,8 @@ function ownerMaps(r, size) {
   ];
 }
 
-// Number of node (i, j, k), as in kernels/shared/torus.h. On a 2-D torus, slabs of equal k are next to each other.
+// Returns the number of node (i, j, k), as kernels/shared/torus.h does. On a 2-D torus, the slabs of equal k are placed
+// next to each other.
 function nodeNumbers([I, J, K], flat) {
   let slabs = 1;
   const apart = (c) => Math.abs(I * c - J * (K / c));
@@ -92,9 +94,9 @@ function nodeNumbers([I, J, K], flat) {
                 (i, j, k) => i + I * (j + J * k);
 }
 
-// One cell for each node: slices of equal z in rows, x to the right, y down.
+// One cell for each node. Slices of equal z are arranged in rows; within a slice x points to the right, y down.
 function nodeMap(r, values, description) {
-  const nodes = list(r, "torus.nodes", "number"), [I, J, K] = nodes, slices = Math.ceil(Math.sqrt(K));  // in a row
+  const nodes = list(r, "torus.nodes", "number"), [I, J, K] = nodes, slices = Math.ceil(Math.sqrt(K));  // per row
   if (nodes.length !== 3 || I * J * K !== values.length)
     throw new Error("a list does not have one value for each node");
   const number = nodeNumbers(nodes, str(r, "torus.links") === "torus2d"), colour = diverging(values);

@@ -1,8 +1,8 @@
-// Settings of mapping and PEs: converts between a report's machine, raya's options and links such as
-// #mapping=cyclic:16&pes=256. Independent of the page.
+// Converts settings of mapping and PEs between the machine of a report, raya's options and links such as
+// #mapping=cyclic:16&pes=256. This file does not depend on the page.
 //
-// A state: {mapping, offset, fold, pes, grid: [A, B], tile: [w, h], seed, view, pe}. The parameters of each mapping are
-// kept while another is selected. pe: the highlighted PE, or null.
+// A state: {mapping, offset, fold, pes, grid: [A, B], tile: [w, h], seed, view, pe}. It keeps the parameters of all
+// mappings, also of those not selected. pe: the highlighted PE, or null.
 "use strict";
 
 const MAPPINGS = ["cyclic", "column", "rows", "blocks", "grid", "tiles", "random"];
@@ -11,14 +11,14 @@ const divisorsOf = (side) => Array.from({length: side}, (_, i) => i + 1).filter(
 const pairOf = (text) => /^\d{1,5}x\d{1,5}$/.test(text) ? text.split("x").map(Number) : null;
 const rootOf = (pes) => Math.round(Math.sqrt(pes));
 
-// Initial state, from the machine of a report. The other mappings get defaults: the paper's offset, the squarest grid,
-// tiles of up to 8 x 8.
+// Returns the initial state for the machine of a report. The other mappings have default parameters: the paper's
+// offset, the grid closest to a square, tiles of up to 8 x 8 pixels.
 function stateOf(machine, {width, height}) {
   const [mapping, more] = str(machine, "mapping").split(":"), pes = whole(machine, "pes"),
                   slots = mapping === "cyclic" || mapping === "column";
   if (!MAPPINGS.includes(mapping)) throw new Error(`unknown machine.mapping ${mapping}`);
   if (pes > width * height) throw new Error("machine.pes is larger than the number of pixels");
-  const divisor = (number, limit) => {  // the largest one up to `limit`
+  const divisor = (number, limit) => {  // the largest divisor up to `limit`
     while (number % limit !== 0) --limit;
     return limit;
   };
@@ -36,7 +36,7 @@ function stateOf(machine, {width, height}) {
   };
 }
 
-// The setting for model.js.
+// Returns the setting for model.js.
 function settingOf(state) {
   const slots = state.mapping === "cyclic" || state.mapping === "column";
   const [a, b] = state.mapping === "grid" ? state.grid : state.mapping === "tiles" ? state.tile : [0, 0];
@@ -51,7 +51,7 @@ function settingOf(state) {
   };
 }
 
-// Value of --mapping.
+// Returns the value of --mapping.
 function mappingText(state) {
   const more = {
     cyclic: () => `:${state.offset}`,
@@ -76,7 +76,7 @@ function optionsText(state) {
   return `--mapping ${mappingText(state)} --pes ${setting.pes}${fold}`;
 }
 
-// Returns `state` changed by a link, and error messages for invalid values, which are ignored.
+// Returns `state` with the values of a link, and error messages for invalid values, which are ignored.
 function withLink(state, link, {width, height}) {
   const next = {...state}, problems = [], pixels = width * height;
   const values = new Map(link.replace(/^#/, "").split("&").filter(Boolean).map((part) => part.split("=", 2)));
@@ -105,7 +105,7 @@ function withLink(state, link, {width, height}) {
     next.mapping = name;
   };
   if (values.has("mapping")) {
-    next.fold = "cyclic";  // the default, omitted in links
+    next.fold = "cyclic";  // the default, which links omit
     takeMapping(values.get("mapping") ?? "");
   }
   if (values.has("fold")) next.fold = one(values.get("fold"), ["cyclic", "block"], "the fold") ?? next.fold;

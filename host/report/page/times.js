@@ -1,7 +1,7 @@
 // Modelled and measured times of a render, and rooflines.
 "use strict";
 
-// Part, member of modelled_ms, meaning, and pattern for the labels of the device's corresponding commands.
+// Rows: part, member of modelled_ms, meaning, and a pattern for the labels of the corresponding device commands.
 const RING_PARTS = [
   ["objects", "objects", "the scene over the bus to all PEs", /^bus\.broadcast/],
   ["compute", "compute", "tracing, and anti-aliasing", /^(trace|supersample|filter\.)/],
@@ -76,7 +76,7 @@ function labels(r) {
   ];
 }
 
-// Chart and table of rows [name, row] with the device's peak.
+// Returns a chart and a table of rows [name, row], with the device's peak.
 function rooflineOf(peak, rows) {
   const format = str(peak, "format"), points = [], giga = (path, digits = 2) => fixed(1e-9 * num(peak, path), digits);
   const cells = rows.map(([name, row]) => {

@@ -1,5 +1,5 @@
 // harmonic: sums 1 + 1/2 + 1/3 + ... in the format that the -D options choose, until a term no longer changes the sum.
-// One work-item.
+// Launch it with one work-item.
 #include "number/number.clh"
 
 __kernel void harmonic(__global float* restrict sum,   // [1]

@@ -1,4 +1,5 @@
-// An OpenCL program that uses the number layer: sums the harmonic series, which diverges, until the sum stops growing.
+// Example of an OpenCL program that uses the number layer. It sums the harmonic series, which diverges, until rounding
+// stops the sum from growing.
 //   harmonic OPTIONS     in the folder of harmonic.cl; the options are for the kernel compiler and name the folder that
 //                        holds number/: -I ../.., or $(pkg-config --cflags raya-number) if raya is installed
 // Needs OpenCL only:   c++ -std=c++17 harmonic.cpp -lOpenCL
@@ -30,7 +31,8 @@ cl_device_id first_device() {
     return device;
 }
 
-/// The build options of a format. The layer replaces the device's division and fma if they are not exact.
+/// Returns the kernel's build options for a format. They tell the number layer whether the device's fma and division
+/// are exact.
 std::string build_options(cl_device_id device, const std::string& given, int exponent_bits, int fraction_bits) {
     cl_device_fp_config floats = 0;
     check(clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr), "asking for CL_FP_*");

@@ -30,16 +30,16 @@ from raya.lab.programs import sibling_program, output_of
 
 NONE, GRID, BVH, EMBREE = "none", "grid", "bvh", "Embree"
 BOUNCES, ROUNDS, BEARABLE_S, ENOUGH_S, PEER_SAMPLES, SEEDS = 4, 5, 30, 10, 3, 5
-FITTED_FROM, SAME_WORK = 100, 1e-3  # objects; of the rays
+FITTED_FROM, SAME_WORK = 100, 1e-3  # minimum number of objects of a fit; relative difference of ray counts up to which they count as equal
 NAMED = "named"
-# {member of a row: column} of the table of each scene and method.
+# {member of a row: column of the table}; a row has the figures of one scene and one method.
 EACH = {**{name: name for name in ("scene", "seed", "objects", "method", "rays", "tests", "steps")}, "best": "best (ms)",
         "median": "median (ms)", "samples": "samples", "build": "build (ms)", "scene_words": "scene words",
         "accel_words": "accelerator words"}
 
 
 def own_scenes():
-    """(series, group, seed, a function that makes the scene)"""
+    """Yields (series, group, seed, function that makes the scene)."""
     for level in range(1, 7):
         yield "balls", f"balls {level}", 0, lambda level=level: raya.generate.balls(level)
     for count in (10, 100, 1_000, 10_000, 100_000):
@@ -48,7 +48,7 @@ def own_scenes():
 
 
 class Method:
-    """One scene with one method, and the seconds of its samples."""
+    """A prepared render of one scene with one method, and the seconds of its timing samples."""
 
     def __init__(self, name, turn, **figures):
         self.name, self.turn, self.figures, self.seconds, self.turns = name, turn, figures, [], []
@@ -67,7 +67,7 @@ def raya_method(lab, scene, size, name):
 
 
 def ask_embree(program, nff, size):
-    """({method: (rays, seconds)}, seconds of the build)"""
+    """({method: (number of rays, render seconds)}, seconds of building Embree's BVH)"""
     words = [program, "/dev/stdin", f"{size}x{size}", str(BOUNCES), "centres", str(PEER_SAMPLES)]
     methods, build = {}, math.nan
     for line in output_of(words, "embree_peer", input=nff).splitlines():
@@ -95,8 +95,8 @@ def embree_method(scene, size, failures, group):
 
 
 def measure(lab, size, scenes):
-    """(table of scenes and methods, scenes not rendered without an accelerator, failures of Embree)"""
-    rows, left_out, failures, test_s = [], [], [], 1e-9  # test_s: a low guess until a test is measured
+    """(table with a row per scene and method, names of scenes that are not rendered without an accelerator, error messages of Embree)"""
+    rows, left_out, failures, test_s = [], [], [], 1e-9  # test_s: seconds per object test; a low guess until measured
     for series, group, seed, make in scenes:
         scene = make()
         methods = [raya_method(lab, scene, size, name) for name in (GRID, BVH)]
@@ -127,7 +127,7 @@ def measure(lab, size, scenes):
 
 
 def pairs(rows, method, other):
-    """Rows of the scenes rendered with both methods; `same`: both traced the same number of rays, to SAME_WORK."""
+    """Rows of the scenes that were rendered with both methods. Column `same`: the numbers of rays differ by at most SAME_WORK."""
     both = rows[rows["method"] == method].merge(rows[rows["method"] == other], on=["series", "scene", "seed", "objects"],
                                           suffixes=("", " of other"))
     rays = both[["rays", "rays of other"]]
@@ -135,7 +135,7 @@ def pairs(rows, method, other):
 
 
 def ratios(rows, method, other):
-    """Ratio of the times of two methods, for every group with scenes in which both traced the same number of rays."""
+    """Ratio of the times of two methods, for every group that has scenes in which both methods traced the same number of rays."""
     found = []
     for group, some in pairs(rows, method, other).query("same").groupby("scene", sort=False):
         times = some["best"] / some["best of other"]
@@ -209,7 +209,7 @@ def growth_of(runs):
 
 
 def pays_from(some, method):
-    """Sentence part: the number of objects from which on a method pays, over groups in order of their objects."""
+    """Part of a sentence: the number of objects from which on a method is faster; groups are in ascending order of objects."""
     start = len(some)
     while start > 0 and some[start - 1]["times"].least > 1:
         start -= 1
@@ -231,7 +231,7 @@ def finding_of_paying(runs, series):
 
 
 def finding_of_two(runs, method, other):
-    """Sentence that says which of two methods is faster, over all groups."""
+    """Sentence on which of two methods is faster, over all groups."""
     some = ratios(runs, method, other)
     if not some:
         return f"No scene has a ratio of {method} to {other}."
@@ -251,7 +251,7 @@ def finding_of_growth(growth, series):
 
 
 def finding_of_memory(runs):
-    """Memory and build time of grid and BVH, for the largest scenes of a series."""
+    """Sentence on memory and build time of grid and BVH for the largest scenes of a series."""
     made = runs[runs["method"].isin([GRID, BVH])]
     group = made["scene"][made["objects"].idxmax()]
     texts, scene = [], 0

@@ -21,7 +21,7 @@ from raya.lab import Claim, Comparison, Page, Plot, Series, Table, each_of, esti
 from raya.lab.laboratory import format_for
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, offset_times, default_size
 
-VIEWS, ENOUGH = 40, 1  # ENOUGH, %: our choice; the loss up to which an offset counts as enough
+VIEWS, ENOUGH = 40, 1  # ENOUGH: maximum loss in % of an offset that counts as good enough; our choice
 METHODS = ("none", "filter", "supersample")
 
 
@@ -33,7 +33,7 @@ class Choice:
         self.root = round(pes**0.5) % size
         self.times = offset_times(ensemble.picture, pes, antialias)
         ms = np.array([offset_times(view, pes, antialias)["total_ms"] for view in ensemble.views])  # [view, offset]
-        self.chosen_by, self.judged_by = ms[0::2], ms[1::2]  # odd and even seeds
+        self.chosen_by, self.judged_by = ms[0::2], ms[1::2]  # seeds 1, 3, ... choose the offset; seeds 2, 4, ... judge it
         total = self.times["total_ms"]
         self.best, self.best_near = (self.times.loc[some.idxmin()] for some in (total, total[:self.root + 1]))
         sums = self.chosen_by.sum(0)
@@ -46,7 +46,7 @@ class Choice:
     method = property(lambda c: "without anti-aliasing" if c.antialias == "none" else f"with --antialias {c.antialias}")
 
     def longer(self, offset, confidence=0.95):
-        """By how many % longer an offset takes than the chosen one, in the views that did not choose it."""
+        """By how many % an offset takes longer than the chosen offset, in the views of judged_by."""
         return estimate(100 * (self.judged_by[:, offset] / self.judged_by[:, self.chosen] - 1), confidence)
 
     def loss(self, ms):

@@ -16,11 +16,11 @@ from raya.lab import Page, Plot, Series, Table, holding_to_the_end, one_of, stud
 from raya.lab.laboratory import SPA, format_for
 from raya.lab.voxels import powers
 
-METHODS = {"ring": "rotations", "bus": "transfers", "bus-broadcast": "pe_broadcasts"}  # --exchange: member of the report
+METHODS = {"ring": "rotations", "bus": "transfers", "bus-broadcast": "pe_broadcasts"}  # {--exchange: report's count of moves}
 
 
 def exchange(lab, scene, size, pes, antialias, method):
-    """(moves, modelled ms, ms by words alone, hash) of the exchange of neighbours by one method."""
+    """(number of moves, modelled ms, ms of the words without set-up times, image hash) of exchanging neighbouring pixels by one method."""
     result = lab.render(scene, machine="grande", format=format_for(scene), bounces=SPA["bounces"], size=size, pes=pes,
                         offset=round(pes**0.5) % size, accel="none", antialias=antialias, exchange=method)
     c, ms = result.report["communication"], result.report["modelled_ms"]["communication"]
@@ -41,7 +41,7 @@ def rows_of(lab, scene, size, antialias):
 
 
 def wins_from(rows, bus):
-    """Sentence part: the number of PEs from which on the ring takes less than the faster method of the bus."""
+    """Part of a sentence: the number of PEs from which on the ring takes less time than the faster of the two bus methods."""
     pes = holding_to_the_end(rows["P"], rows["ring (ms)"] < bus)
     return f"from {pes.iloc[0]} PEs on" if len(pes) else f"for no number of PEs up to {rows['P'].iloc[-1]}"
 

@@ -16,7 +16,7 @@ DIVISIONS = powers(8192)
 COLUMNS = ("scene", "divisions", "A x B x C", "copies", "rays", "tests", "steps", "tests a ray", "steps a ray",
            "modelled (s)", "measured (ms)", "measured, median (ms)", "objects", "voxels of an object")
 NOTICED = 1.02  # ratio above which two figures count as different
-# {subject: title of the plot, label of its axis, column, name of its minimum}
+# {subject: (title of the plot, label of its y axis, column of the table, name of its minimum)}
 SUBJECTS = {"modelled": ("Modelled time against divisions", "modelled time of a T805 (s)", "modelled (s)",
                          "least modelled time"),
             "tests": ("Intersection tests against divisions", "intersection tests", "tests", "fewest tests"),
@@ -65,7 +65,7 @@ def least(some, name):
 
 
 def at_objects(some):
-    """The row with as many divisions as objects; None if that number was not tried."""
+    """The row whose number of divisions equals the number of objects; None if there is no such row."""
     found = some[some["divisions"] == some["objects"]]
     return found.iloc[0] if len(found) else None
 
@@ -125,7 +125,7 @@ def finding_of_rise(by_scene):
 
 
 def finding_of_parts(runs):
-    """Shares of tests and of grid traversal in the modelled time, as divisions grow."""
+    """Fractions of the modelled time that object tests and grid traversal take, by number of divisions."""
     at = [run for run in runs if run.voxels in (papers.FEW_DIVISIONS, papers.MANY_DIVISIONS)] + [runs[-1]]
 
     def shares(events):
@@ -138,7 +138,7 @@ def finding_of_parts(runs):
 
 
 def claims_of(by_scene):
-    near, fifth, paper = 1.25, (4, 6), papers.DIVISIONS_FALL  # our limits: times that count as equal; "about 1/5"
+    near, fifth, paper = 1.25, (4, 6), papers.DIVISIONS_FALL  # our limits. near: ratio of equal times; fifth: range of "about 1/5"
     modelled, measured, tests = (fall_of(by_scene[-1], name) for name in ("modelled", "measured", "tests"))
 
     def claim(place, words, seen, why, contrary=None):

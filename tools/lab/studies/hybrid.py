@@ -18,8 +18,8 @@ import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, series_by, study
 from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers, run_on_torus, sides_text
 
-NODES, SIDES = 64, (4, 8)  # SIDES: voxels along each axis in every group, as in the paper and finer
-MEMORIES = {"32 KB": 32 * 1024, "4 MB": 4 * 1024 * 1024}  # of a node: as a PE of the SPA; as a transputer board
+NODES, SIDES = 64, (4, 8)  # SIDES: voxels along each axis of the grid of a group: as in the paper, and a finer grid
+MEMORIES = {"32 KB": 32 * 1024, "4 MB": 4 * 1024 * 1024}  # of a node: that of a PE of the SPA; that of a transputer board
 
 
 def row_of(lab, scene, size, sides, groups):
@@ -40,9 +40,10 @@ def row_of(lab, scene, size, sides, groups):
 
 
 def rows_of(lab, scene, size, sides):
-    """1, 2, 4, ... groups."""
+    """Figures for 1, 2, 4, ... groups of nodes."""
     rows = pd.DataFrame([row_of(lab, scene, size, sides, groups) for groups in powers(NODES)])
-    # With one node a group no node sends a message or discards a ray: their work is that of a single node with all pixels.
+    # With one node per group, no node sends a message or discards a ray. The sum of their work is the work of a
+    # single node that renders all pixels.
     for bound in ("overlapped", "stepwise"):
         rows[f"speed-up, {bound}"] = rows["work"].iloc[-1] / rows[f"{bound} (ms)"]
     for name, size in MEMORIES.items():

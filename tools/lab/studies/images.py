@@ -14,7 +14,7 @@ import raya
 from raya.lab import Claim, Comparison, Page, Plot, Series, Table, estimate, papers, study, verdict, with_paper
 from raya.lab.laboratory import VIEWS
 
-FEWEST, MOST = 6, 30  # objects, as in the paper
+FEWEST, MOST = 6, 30  # minimum and maximum number of objects of a scene, as in the paper
 
 
 def paper_like_scenes():
@@ -58,8 +58,8 @@ def images(lab, scenes):
 
 
 def groups_of(lab, scenes, size):
-    """{group: (sentence of the method, cost images)} of random views of each scene (by default of centre, the most unbalanced one), and
-    of random scenes with as many objects as the paper's."""
+    """{group: (sentence for the method, cost images)}: random views of each scene (by default of centre, the most unbalanced scene), and random
+    scenes with as many objects as the paper's."""
     groups = {}
     for scene in scenes or [raya.example("centre")]:
         views = lab.ensemble(scene, size).views
@@ -74,7 +74,7 @@ def groups_of(lab, scenes, size):
 
 
 def claim_of_columns(every, columns, cyclic):
-    """The paper gives no figure for "strongly"; the reason states our limit."""
+    """The paper gives no figure for "strongly", so the reason of the verdict states our limit."""
     strongly = 2
     off = {c: (every[c] - every[c].mean()).abs() for c in (columns, cyclic)}
     beyond = estimate(off[columns] - strongly * off[cyclic])

@@ -28,13 +28,13 @@ Does the offset that suits the first pass suit supersampling as well?
 - {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; supersampling alone.""" + U_AND_VIEWS + """
 - Offsets are compared within the same views, all {tests} differences together with 95 % (Bonferroni)."""
 
-GOOD = 0.9  # our limit: a balance is good if it has this part of the gain of the best of 0..n over p = 0
+GOOD = 0.9  # our limit: a balance is good if its gain over p = 0 is at least this fraction of the gain of the best offset of 0..n
 
 
 def page_of(name, lab, scenes, first):
     settings, picture, views = balance_pass(lab, scenes, first)
     scene, size = settings["scene"], settings["size"]
-    offsets, n = range(size), round(size**0.5)  # n: the paper's best
+    offsets, n = range(size), round(size**0.5)  # n: the offset that the paper calls the best
     u = raya.imbalances(picture, size, offsets)
     of_views = np.array([raya.imbalances(view, size, offsets) for view in views])  # [view, offset]
     means = [estimate(column) for column in of_views.T]
@@ -83,7 +83,7 @@ def claims_of(place, of_views, means, n, first, in_paper):
 
 
 def findings_of(u, means, n, why_best, views):
-    half, best = 8 % len(u), 16 % len(u)  # the paper's
+    half, best = 8 % len(u), 16 % len(u)  # the offsets p = 8 and p = 16 of the paper
     return [f"Over {views} views u is {means[0].text()} at p = 0, {means[half].text()} at p = 8 and "
             f"{means[best].text()} at p = 16.",
             why_best,

@@ -13,7 +13,7 @@ From how many nodes on is the root the bottleneck?
 from raya.lab import Page, Plot, Series, Table, holding_to_the_end, series_by, study
 from raya.lab.voxels import BOUNCES, CLOCK, even_scene, near_cube, powers, run_on_torus, swept
 
-MOST, DIFFERENT = 512, 1.1  # DIFFERENT: ratio of times above which the two methods count as different
+MOST, DIFFERENT = 512, 1.1  # maximum number of nodes; ratio above which the times of the two methods count as different
 CASES = [{"nodes": nodes, "inject": method} for nodes in powers(MOST) for method in ("root", "all")]
 COLUMNS = ("supersteps", "overlapped (ms)", "stepwise (ms)", "the root's processor (ms)",
            "the root's busiest link (ms)", "root / overlapped (%)", "busiest link (bytes)", "packets",
@@ -43,7 +43,7 @@ def inject(lab, scenes):
 
 
 def bound_text(rows):
-    """Sentence part: the number of nodes, two or more, from which on the root is always the bottleneck."""
+    """Part of a sentence: the number of nodes (at least two) from which on the root is always the bottleneck."""
     nodes = holding_to_the_end(rows["nodes"][1:], rows["root / overlapped (%)"][1:] >= 100)
     return f"from {nodes.iloc[0]} nodes on" if len(nodes) else "not even with the most nodes"
 

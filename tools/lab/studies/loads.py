@@ -14,7 +14,7 @@ PROSE = """{figure}
 - The load of a PE is the sum of the modelled cycles that the kernels counted for its pixels, divided by the mean load of all PEs. It
   needs no clock.""" + VIEWS_PROSE
 
-FLAT = 0.1  # our limit, in mean loads: middle and sides may differ by this much in a flat load
+FLAT = 0.1  # our limit: in a flat distribution, the loads of middle and sides differ by at most this fraction of the mean load
 
 
 def shares(image, offset):
@@ -24,7 +24,7 @@ def shares(image, offset):
 
 
 def middle_and_sides(loads):
-    """Mean load of the middle quarter of the PEs, and of the outer eighths at both sides together; loads: [..., PE]."""
+    """Mean load of the middle quarter of the PEs, and mean load of the first and last eighth together. loads: [..., PE]."""
     eighth, middle = loads.shape[-1] // 8, loads.shape[-1] // 2
     sides = (loads[..., :eighth].mean(-1) + loads[..., loads.shape[-1] - eighth:].mean(-1)) / 2
     return loads[..., middle - eighth:middle + eighth].mean(-1), sides

@@ -23,7 +23,7 @@ COLUMNS = ("u", "hops a packet", "supersteps", "busiest link (bytes)", "tests a 
 
 
 def series_of(lab, scene, size, fixed, links, known):
-    """Table of the machines of one kind, each with twice the nodes of the one before. `known`: cache of runs, by settings."""
+    """Table of tori of one kind, with 1, 2, 4, ... nodes. known: {settings: Run}, a cache."""
     rows, one = [], None
     for nodes in powers(MOST):
         if rows and rows[-1]["supersteps"] * nodes > MOST_LAUNCHES:

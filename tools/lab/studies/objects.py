@@ -38,7 +38,7 @@ COUNTS, SEEDS, OTHER_WORDS = (64, 192, 256, 512, 1024, 8320), 5, (32, 48)
 EVEN, RANDOM, WITHIN = "even", "random", "random, none across voxels"
 PAPER, OWN = "Yoshitani & Yamazaki", "raya"
 PROTOCOLS = {PAPER: {"inject": "root", "packet_words": papers.RAY_WORDS, "returns": "rays"}, OWN: {}}
-NOTICED, LINEAR = 1.02, 1.1  # ratio of times from which on random is slower; objects over time up to which time is linear
+NOTICED, LINEAR = 1.02, 1.1  # ratio of times above which random scenes count as slower; maximum growth of objects / time that counts as linear
 TIMES = ("overlapped", "stepwise", "asynchronous")
 
 
@@ -47,7 +47,7 @@ def render(lab, scene, size, **options):
 
 
 def scenes_of(count):
-    """{kind: scenes}: the even scene; for each seed a random scene, and the same with its spheres moved within their voxels."""
+    """{kind: scenes}: the even scene; for each seed, a random scene, and the same scene with its spheres moved within their voxels."""
     even = even_scene(count).moved_within()
     random = [even.scattered(seed) for seed in range(1, SEEDS + 1)]
     return {EVEN: [even.touching_walls()], RANDOM: [one.touching_walls() for one in random],
@@ -55,8 +55,8 @@ def scenes_of(count):
 
 
 def depth_of(lab, scene, size):
-    """Of primary rays: the share that hits; of those that enter the box, the share that ends in its first voxel, and the mean number of
-    voxels."""
+    """Figures of the primary rays: fraction that hits an object; of the rays that enter the box of the voxels, fraction that ends in its first
+    voxel, and mean number of visited voxels."""
     run = render(lab, scene.without_lights(), size, packets=True)
     packets = run.result.packets
     primary = packets[packets["kind"] == raya.PACKET_KINDS.index("primary")]
@@ -123,7 +123,7 @@ def ratio_of(runs, count, kind, protocol):
 
 
 def growth_of(first, last):
-    """Objects over time, of each scene, as a product of four factors."""
+    """Objects / time of each scene, as a product of four factors."""
     def one(a, b):
         steps, tests = b.events["steps"] / a.events["steps"], b.tests / a.tests
         work, time, count = b.work_ms / a.work_ms, b.overlapped_ms / a.overlapped_ms, COUNTS[-1] / COUNTS[0]
@@ -142,7 +142,7 @@ def texts_of(some, time):
 
 
 def claim_of_random(ratios):
-    """Judged by the asynchronous machine, like the paper's; the reason adds its bounds."""
+    """The verdict uses times of the asynchronous machine, because the paper's machine is asynchronous. The reason also states the two bounds."""
     some = of(ratios, RANDOM, PAPER)
     slower = sum(e.low > 1 for e in some["asynchronous"])
     not_slower = sum(e.low <= 1 and e.high < NOTICED for e in some["asynchronous"])
@@ -164,7 +164,7 @@ def claim_of_growth(growth):
 
 
 def claim_of_depth(growth):
-    """The paper's reason is confirmed if it explains more than half of the product, by logarithms, for both kinds of scenes."""
+    """The paper's reason is confirmed if its factor is more than half of the logarithm of the product, for both kinds of scenes."""
     even, random = growth[0][2], growth[1][2]
     shares = [estimate(np.log(rows["fewer voxels a ray"]) / np.log(rows["objects / time"])) for rows in (even, random)]
     return Claim(papers.TP, "Fig. 4", "The reason is that the share of rays that end in the front voxels differs.",

@@ -19,9 +19,9 @@ from raya.lab.mappings import shares_blocks, shortest_square
 from raya.lab.studies.images import paper_like_scenes
 from scipy.stats import rankdata, spearmanr
 
-NOTHING = 0.02  # our limit: a gain up to this part of the mean load is negligible
-OTHERS = 16  # views of each scene except the first, which has those of Fig. 8
-CORRELATED = -0.5  # rank correlation up to which the shortest vector predicts u
+NOTHING = 0.02  # our limit: a gain up to this fraction of the mean load is negligible
+OTHERS = 16  # number of views of each scene, except the first scene, which has the views of Fig. 8
+CORRELATED = -0.5  # the shortest vector counts as a predictor of u if their rank correlation is at most this
 OWN = "centre", "mirrors", "glass", "random-12", "random-30"
 
 

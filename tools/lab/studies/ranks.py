@@ -42,7 +42,7 @@ TURNS, ENOUGH_S, WEAK_ENOUGH_S, QUIET = 3, 5, 2, 0.05
 
 
 def measurable_ranks():
-    """({number of ranks to measure: cores that they have together}, result of `raya ping`)"""
+    """({number of ranks to measure: number of cores that these ranks have together}, result of `raya ping`)"""
     here, ping = {1: 1}, None
     for ranks in powers(min(max(2 * os.cpu_count(), 4), 16))[1:]:
         one = json.loads(on_ranks(ranks, ["ping"]))
@@ -55,7 +55,7 @@ def measurable_ranks():
 
 
 def work_of(machine, report):
-    """Measured seconds of one rank: tracing, other kernels and commands, and the rest of the render."""
+    """{part: measured seconds of a render on one rank}: tracing; other kernels and commands; rest of the render."""
     commands = report["measured"]["commands"]
     device = 1e-9 * sum(c["total_ns"] for c in commands)
     trace = 1e-9 * sum(c["total_ns"] for c in commands if c["label"] == machine.label)
@@ -63,7 +63,8 @@ def work_of(machine, report):
 
 
 def measure(renders, device, enough_s=ENOUGH_S):
-    """{ranks: arguments of a render} -> {ranks: (seconds of each render, report of the fastest)}. Raises InputError for --device."""
+    """Renders on ranks. renders: {ranks: arguments of a render}. Returns {ranks: (seconds of each render, report of the fastest render)}. Raises
+    InputError for --device."""
     first = render_on_ranks(1, renders[1])  # builds the kernels
     if first["device"]["name"] != device:
         raise raya.InputError(f"study ranks uses the default device of its ranks, {first['device']['name']}, not {device}: omit --device, "
@@ -79,7 +80,7 @@ def measure(renders, device, enough_s=ENOUGH_S):
 
 
 def scaling_of(machine, scaling, trials, here):
-    """Rows of measured efficiency: modelled cycles that a core does in a second, relative to one rank."""
+    """Rows of measured efficiency: modelled cycles per second and core, relative to one rank."""
     def rate(ranks):
         seconds, report = trials[ranks]
         return sum(report["load"]["per_pe"]) / min(seconds) / cores_of(report, ranks, here)
@@ -96,12 +97,12 @@ def scaling_of(machine, scaling, trials, here):
 
 
 def cores_of(report, ranks, here):
-    """Cores that the ranks have together. A device that is not a CPU counts as one core."""
+    """Number of cores that the ranks have together. A device that is not a CPU counts as one core."""
     return here[ranks] if report["device"]["platform"] == "Portable Computing Language" else ranks
 
 
 def processor_time():
-    """(busy, total) seconds of all processors, and the seconds of this process with its finished children."""
+    """(busy seconds of all processors, total seconds of all processors, processor seconds of this process and its finished children)"""
     with open("/proc/stat", encoding="utf-8") as file:
         ticks = [int(word) / os.sysconf("SC_CLK_TCK") for word in file.readline().split()[1:9]]
     own = sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
@@ -209,7 +210,7 @@ def findings_of_model(summary, checks):
 
 
 def findings_of_measures(scaling, share, ping):
-    """share: part of the host's processor time that other programs used."""
+    """share: fraction of the host's processor time that other programs used."""
     kinds = [f"{machine}, {name}: " + ", ".join(f"{r['measured efficiency']:.2f} on {r['ranks']}"
                                                 for _, r in some[some["ranks"] > 1].iterrows())
              for (machine, name), some in scaling.groupby(["machine", "scaling"], sort=False)]

@@ -18,10 +18,11 @@ from raya.lab.mappings import squarest_grid
 HALF, CLOSE, VIEWS = 0.5, 0.9, 8
 GRID = "2-D, A x B PEs"
 FIXED, ROOT, LIKE = "p = 16", "p = sqrt(P)", "p = sqrt(P) or W / sqrt(P)"
-# Rounded. Where P > W the rows of a PE lie P / W apart; its next pixel lies sqrt(W W / P) to the side for W / sqrt(P).
+# Offsets, rounded to integers. If P > W, consecutive rows of a PE are P / W rows apart. With p = W / sqrt(P), a PE's next pixel is
+# sqrt(W W / P) pixels to the side.
 OFFSETS = {FIXED: lambda w, p: 16, ROOT: lambda w, p: round(p**0.5), LIKE: lambda w, p: round(min(p**0.5, w / p**0.5)),
            "column split": lambda w, p: 0}
-PLAIN = [*OFFSETS, GRID, "random"]  # with the cyclic fold, or without a fold
+PLAIN = [*OFFSETS, GRID, "random"]  # mappings with the cyclic fold, and those without a fold
 FOLDED = [f"{name}, block fold" for name in OFFSETS]
 
 
@@ -53,7 +54,7 @@ def scale(lab, scenes):
     rows = efficiencies(image)
     of_views = [efficiencies(view.trace) for view in ensemble.views]
     between = (rows["P"] > side) & (rows["P"] < side * side)
-    largest = int(image.max()) * image.size / int(image.sum())  # cost of the largest pixel over the mean pixel
+    largest = int(image.max()) * image.size / int(image.sum())  # cost of the most expensive pixel / mean cost of a pixel
     halves = pd.DataFrame([half_of(name, rows) for name in ["upper bound", *PLAIN, *FOLDED]])
     texts = [f"{name}: {pes or 'none'}" for name, pes, _ in halves[1:1 + len(PLAIN)].itertuples(index=False)]
     means = means_of(of_views)
@@ -78,7 +79,7 @@ def scale(lab, scenes):
 
 
 def half_of(name, rows):
-    """The largest P up to which the efficiency is at least 50 %, and the speed-up there; 0 if there is none."""
+    """(largest P up to which the efficiency is at least 50 %, speed-up for this P); 0 if there is no such P."""
     some = rows[(rows[name] >= HALF).cummin()]
     pes, efficiency = some[["P", name]].iloc[-1] if len(some) else (0, 0.0)
     return {"mapping": name, "50 % or more up to P": int(pes), "speed-up there": efficiency * pes}
@@ -108,8 +109,8 @@ def finding_of_2d(between):
 
 
 def finding_of_resonance(between, side):
-    """Offsets that cancel out. The next row of a PE is s = P / W rows further on, where the offset shifts it by s p columns: by none if
-    s p is a multiple of W."""
+    """Offsets that have no effect. The next row of a PE is s = P / W rows further on, where the offset shifts the PE's pixel by s p columns:
+    if s p is a multiple of W, it does not shift it at all."""
     lost = {name: [str(p) for p in between["P"] if p % side == 0 and p // side * OFFSETS[name](side, p) % side == 0]
             for name in (FIXED, ROOT, LIKE)}
     words = [f"{name} for P = {', '.join(pes)}" for name, pes in lost.items() if pes]
@@ -120,7 +121,8 @@ def finding_of_resonance(between, side):
 
 
 def claim_of_2d(between, of_views):
-    """2-D is necessary if no cyclic mapping keeps up on any array with more PEs than columns; it is not if one keeps up on all."""
+    """Verdict on the claim that a 2-D mapping is necessary, for arrays with more PEs than columns: reproduced if a cyclic mapping is about as
+    fast as 2-D on none of them, not reproduced if one is on all of them."""
     over = {name: [estimate([v[name][i] / v[GRID][i] for v in of_views]) for i in between.index]
             for name in (FIXED, ROOT, LIKE)}
     none = all(e.high < CLOSE for estimates in over.values() for e in estimates)

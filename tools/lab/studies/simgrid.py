@@ -24,24 +24,24 @@ from raya.lab import Comparison, Page, Plot, Series, Table, papers, study
 from raya.lab.programs import sibling_program, output_of
 from raya.lab.voxels import even_scene, run_on_torus
 
-GOAL, BUFFER = 10, 4  # %: accepted difference; messages of a class that a port buffers
+GOAL, BUFFER = 10, 4  # accepted difference in %; number of messages of a class that a port buffers
 UNLIMITED = {"buffer": 1 << 20}  # buffers that never fill up
 NO_LINKS = {"one_way": 0, "both_ways": 0}
-# Each machine adds one effect to the one before; the last one is the complete machine.
+# Each machine adds one effect to the previous machine; the last one is the complete machine.
 EFFECTS = {"computing alone": {"message_cycles": 0, "word_cycles": 0, **NO_LINKS, **UNLIMITED},
            "+ processors handle messages": {**NO_LINKS, **UNLIMITED}, "+ links take time": {"both_ways": 3.4e6, **UNLIMITED},
            "+ both ways share a link": UNLIMITED, "+ finite buffers": {}}
 
 
 def missing():
-    """Message if simgrid_replay was not built, else an empty string."""
+    """Error message if simgrid_replay was not built, else an empty string."""
     return "" if sibling_program("simgrid_replay") else (
         "there is no program simgrid_replay next to raya; remedy: `tools/setup --studies`, which installs SimGrid (Debian: "
         "libsimgrid-dev), then build again")
 
 
 def ask_simgrid(result, changes):
-    """(messages, ms) simulated by SimGrid."""
+    """(number of messages, finish time in ms) of a simulation by SimGrid."""
     with tempfile.TemporaryDirectory(prefix="raya-simgrid-") as folder:
         platform, replay = os.path.join(folder, "platform.xml"), os.path.join(folder, "replay.txt")
         messages = result.write_replay(platform, replay, **changes)
@@ -94,7 +94,7 @@ def simgrid(lab, scenes):
 
 
 def findings_of(rows):
-    """Sentences on the difference of the two simulators, and on the effect, other than computing, that takes most."""
+    """Sentences on the difference between the two simulators, and on the effect that takes most time apart from computing."""
     worst = rows.loc[rows["difference (%)"].abs().idxmax()]
     most, where = abs(worst["difference (%)"]), f"{worst['torus']}, inject {worst['inject']}, {worst['machine']}"
     near = (f"On all {len(rows)} machines the two times differ by less than {GOAL} %, at most by {most:.2g} % ({where})."

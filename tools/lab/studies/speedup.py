@@ -17,7 +17,7 @@ import raya
 from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, each_of, estimate, one_of, papers,
                       prediction_text, study, verdict, verdict_among, with_paper)
 
-OFFSET = 16  # the paper's for 256 PEs
+OFFSET = 16  # the paper's offset for 256 PEs
 COLUMNS = {"p = 0": lambda pes: 0 * pes, "p = 16": lambda pes: 0 * pes + OFFSET,
            "p = round(sqrt(P))": lambda pes: np.rint(np.sqrt(pes)).astype(int)}
 
@@ -108,7 +108,7 @@ def comparisons_of(rows, grids, mean, ratios, fewer, more):
 
 
 def claims_of(views):
-    """Claims on the paper's own case: 256 PEs, views of its scene."""
+    """Claims for the paper's configuration: 256 PEs, views of its scene."""
     def of(column):
         return np.array([rows[f"{column}, cyclic fold"] for rows, _ in views])  # [view, P - 1]
 

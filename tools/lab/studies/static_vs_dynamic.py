@@ -29,7 +29,7 @@ ROOT = "cyclic, p = sqrt(P)"
 
 
 def request_cycles(factor):
-    """Budget cycles from a request to its answer: one word to the root, two words back."""
+    """Budget cycles from a PE's request for work to the answer: one word to the root, two words back."""
     ms = 2 * SPA["rotation_sync_ms"] + 1e3 * 3 / SPA["link_words_per_s"]
     return math.floor(1e6 * ms / (factor * SPA["cycle_ns"]) + 0.5)
 
@@ -44,7 +44,7 @@ def static_mappings(size, pes):
 
 
 def plans(overhead):
-    """(name, kind, whether requests cost time, plan of raya.schedule()) of each strategy; a hybrid starts with the grid mapping."""
+    """[(name, kind, True if requests take time, plan for raya.schedule())] of the strategies. A hybrid starts with the grid mapping."""
     for chunk, share in ((1, 0), (16, 0), (64, 0), (16, 0.5), (16, 0.9), (1, 0.9)):
         kind = "hybrid" if share else "dynamic"
         name = f"{kind}:{chunk}" + (f", share {share}" if share else "")
@@ -54,7 +54,7 @@ def plans(overhead):
 
 
 def outcomes_of(label, image, sizes, overhead):
-    """A row of each strategy and number of PEs."""
+    """Table with a row for each strategy and number of PEs."""
     size, total, rows = len(image), int(image.sum()), []
     for pes in sizes:
         bound = raya.lower_bound(image, pes)
@@ -82,7 +82,8 @@ def best_of(rows, kind):
 
 
 def counts_of(scenes):
-    """Numbers of cases (scene and P) in which no static strategy is near the bound, a hybrid is, and a hybrid beats all static ones."""
+    """{name: number of cases}; a case is a scene with a number of PEs: all cases; no static strategy is near the bound; a hybrid is near the
+    bound; a hybrid beats all static strategies."""
     fixed, hybrid = (pd.concat([best_of(rows, kind) for rows in scenes]) for kind in ("static", "hybrid"))
     return {"cases": len(fixed), "no static one near the bound": (fixed["makespan / lower bound"] > NEAR).sum(),
             "hybrid near the bound": (hybrid["makespan / lower bound"] <= NEAR).sum(),
@@ -128,7 +129,7 @@ def static_vs_dynamic(lab, scenes):
 
 
 def first_below(rows, limit):
-    """The first number of PEs at which the efficiency is below the limit; 0: at none."""
+    """Smallest number of PEs at which the efficiency is below the limit; 0 if there is none."""
     below = rows["P"][rows["efficiency"] < limit]
     return below.iloc[0] if len(below) else 0
 
@@ -203,7 +204,7 @@ def queue_of(rows, overhead):
 
 
 def collapse_finding(rows, size):
-    """Cyclic mappings in which every PE's pixels lie in one column, as the offset repeats with the period of the shared rows."""
+    """Cyclic mappings that give every PE pixels of one column only, because the shift by the offset repeats with the period of the shared rows."""
     texts = []
     for name in ("cyclic, p = 16", ROOT):
         for pes in sorted(rows["P"].unique()):

@@ -20,12 +20,12 @@ from raya.lab import Claim, Comparison, Page, Picture, Table, measured, one_of, 
 from raya.lab.laboratory import SPA, format_for
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, host_model, run_on_spa
 
-ENOUGH_S = 10  # no further run after this many seconds of measuring
+ENOUGH_S = 10  # total seconds of measuring after which no further run starts
 NEAR = 0.05  # our limit: relative difference up to which gains count as equal
 
 
 def job_gain(one_ms, array_ms):
-    """Speed-up of Kohata & Ito's whole job, display included, for given computing times of one PE and of all PEs."""
+    """Speed-up of Kohata & Ito's complete job, including display, for given computing times of one PE and of all PEs."""
     rest = papers.OBJECTS_MS + papers.IMAGE_MS + papers.DISPLAY_MS
     return (one_ms + rest) / (array_ms + rest)
 
@@ -121,7 +121,7 @@ def rows_of(size, array, one, here, in_paper):
 
 def comparisons_of(size, array, one, speedup, balance, reference):
     display = "with the printed display of 1,130 ms"
-    cycle_ms = 100e-6 * FACTOR  # a budget cycle by the clock
+    cycle_ms = 100e-6 * FACTOR  # ms of a budget cycle, with the clock model's factor
     rows = [(f"{size} PEs: objects", "ms", papers.OBJECTS_MS, array["objects"], "words divided by the host's rate"),
             (f"{size} PEs: compute", "ms", papers.COMPUTE_MS, array["compute"], "the paper's scene differs from ours"),
             (f"{size} PEs: image transfer", "ms", papers.IMAGE_MS, array["image"],

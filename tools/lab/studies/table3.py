@@ -17,7 +17,7 @@ from raya.lab.spa import CLOCK, FACTOR, FACTORS, smoothing_runs
 
 
 def at_factor(runs, factor):
-    """The figures of the conclusions at one factor of the clock."""
+    """The figures that the conclusions use, for one factor of the clock model."""
     rows, near = runs.rows(factor), runs.times(factor)[:17]
     first, last = rows.iloc[0], rows.iloc[-1]
     saved, lost = first["trace"] - last["trace"], last["filtering"] - first["filtering"]

@@ -79,7 +79,7 @@ def claims_of(runs, rows, filtered):
 
 
 def mean_factor(*times):
-    """Geometric mean of the factors, up or down, by which two times differ from the printed ones."""
+    """Geometric mean of the factors (>= 1) by which two times differ from the printed times."""
     return np.exp(np.abs(np.log(np.divide(times, (papers.SUPERSAMPLE_0_MS, papers.SUPERSAMPLE_16_MS)))).mean())
 
 

@@ -28,7 +28,7 @@ def turn_of(lab, scene, size):
 
 
 def choices_of(u, root):
-    """Offsets chosen by frame 1 and by the odd frames, and the mean u of the even frames with each of them."""
+    """The offsets that are best for frame 1 and for the odd frames, and the mean u of the even frames with each of these offsets."""
     odd, even = u[0::2], u[1::2]
     first, half = int(u[0].argmin()), int(odd.mean(0).argmin())
     return {"best p of frame 1": first, "its u": even[:, first].mean(), "best p of odd frames": half,
