@@ -7,14 +7,14 @@ What is the mean imbalance of {scene} over a full turn of the camera, for three 
 """
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Table, estimate, one_of, series_by
+from raya.lab import Page, Plot, Table, estimate, first_scene, series_by
 
 MAPPINGS = {"column split": {"mapping": "column"}, "cyclic, p = 16": {"offset": 16},
             "tiles 8 x 8": {"mapping": "tiles:8x8"}}
 
 
 def run(lab, scenes):
-    scene, size, frames = one_of(scenes), lab.size(128), 12
+    scene, size, frames = first_scene(scenes), lab.size(128), 12
     rows = []
     for frame in range(frames):
         cost = lab.costs(scene.turned(360 * frame / frames), size).trace

@@ -38,7 +38,7 @@ auto quick_of(std::size_t few, const Container& all) {
 /// For tests of many combinations: returns all values if thorough(), otherwise a single value, a different one at each
 /// call.
 template <class Container>
-Container all_or_next(const Container& all) {
+Container quick_rotating(const Container& all) {
     static std::size_t turn = 0;
     return thorough() ? all : Container{all[turn++ % all.size()]};
 }

@@ -1,4 +1,4 @@
-# CPack runs this script on the staged installation before it packs it. It makes the files follow Debian's policy and finds the packages to depend on.
+# Adapts the staged installation to Debian's policy and finds the packages that raya depends on. CPack runs this script before it packs the files.
 set(staged ${CPACK_TEMPORARY_INSTALL_DIRECTORY})
 set(doc ${staged}/usr/share/doc/raya)
 
@@ -25,7 +25,7 @@ string(REPLACE "\n" "\n " licence "${licence}")
 file(WRITE ${doc}/copyright
      "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: raya
-Comment: The program holds code of headers of other packages; their terms are in /usr/share/doc/raya/licences/.
+Comment: The program contains code of headers of other packages; their terms are in /usr/share/doc/raya/licences/.
 
 Files: *
 Copyright: ${copyright}

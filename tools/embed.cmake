@@ -1,4 +1,5 @@
-# Writes OUTPUT, a C++ file with a map of path to text for FILES (paths below ROOT, separated by |); see host/embedded.hpp.
+# Writes OUTPUT, a C++ file with a map from paths to the texts of the files; see host/embedded.hpp.
+#   cmake -DROOT=DIR "-DFILES=PATH|PATH..." -DOUTPUT=FILE -P tools/embed.cmake     FILES: paths below ROOT, separated by |
 string(REPLACE "|" ";" files "${FILES}")
 set(text "// Made by tools/embed.cmake; edit the files that it contains.\n#include \"host/embedded.hpp\"\n\nnamespace raya {\n\n")
 string(APPEND text "const std::map<std::string, std::string>& embedded_files() {\n")

@@ -1,5 +1,5 @@
-# Installation (`cmake --install build --prefix DIR`) and Debian package (tools/package). The program finds all files relative to itself, so the
-# folder can be moved.
+# Defines the installation (`cmake --install build --prefix DIR`) and the Debian package (tools/package). The program finds all files relative to
+# itself, so the installed folder can be moved.
 include(GNUInstallDirs)
 set(doc ${CMAKE_INSTALL_DATADIR}/doc/raya)
 
@@ -48,7 +48,7 @@ install(FILES ${number_headers} DESTINATION ${number}/number)
 install(FILES kernels/number/example/harmonic.cpp kernels/number/example/harmonic.cl DESTINATION ${doc}/kernels/number/example)
 install(FILES ${PROJECT_BINARY_DIR}/raya-number.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig)
 
-# The Debian package. CPack packs the installation of an existing build; debhelper would compile everything again from a source package, and would
+# The Debian package. CPack packs the installation of an existing build. debhelper would compile everything again from a source package, and would
 # need the version in a second file.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "the raya authors")

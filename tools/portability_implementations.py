@@ -7,19 +7,20 @@ FETCHED = "implementations"  # folder in the build folder to which tools/portabi
 
 
 class Implementation:
-    """Starts programs on one implementation. `slow`: run fewer cases on it. `lacking`: reason why it cannot run, with a remedy. `of_device`:
-    its driver may be installed without its device. `budget`: maximum seconds to compile a kernel.
+    """An OpenCL implementation, on which run() starts programs. slow: it runs fewer cases. unavailable: reason why it cannot run, with a remedy, or
+    None. needs_device: its driver may be installed on a machine without its device. budget: maximum seconds to compile a kernel.
 
-    `watches`: the implementation detects faults in kernels and reports them only on stderr, with exit code 0. raya prints nothing on stderr
-    if all is well, so every line there is a fault. (Oclgrind's --log is not used, because each OpenCL context truncates that file.)
+    reports_faults: the implementation detects faults in kernels and reports them only on stderr, with exit code 0. raya prints nothing to stderr
+    without an error, so every line there is a fault. (Oclgrind's --log is not used, because each OpenCL context truncates that file.)
     """
 
-    def __init__(self, name, variables=None, prefix=(), slow=False, lacking=None, watches=False, of_device=False, budget=60):
-        self.name, self.prefix, self.slow, self.lacking, self.watches = name, list(prefix), slow, lacking, watches
-        self.variables, self.of_device, self.budget = dict(variables or {}), of_device, budget
+    def __init__(self, name, variables=None, prefix=(), slow=False, unavailable=None, reports_faults=False, needs_device=False, budget=60):
+        self.name, self.prefix, self.slow, self.unavailable, self.reports_faults = name, list(prefix), slow, unavailable, reports_faults
+        self.variables, self.needs_device, self.budget = dict(variables or {}), needs_device, budget
 
     def run(self, command, scratch, limit, more=None):
-        """(exit code, None after `limit` seconds; stdout and stderr; stdout; faults found by an implementation with `watches`)"""
+        """Runs a command. Returns (exit code, None after `limit` seconds; stdout and stderr; stdout; text of the faults that the implementation
+        reported)."""
         # Ignores OpenCL variables in the caller's environment, such as a CI job's choice of an implementation.
         chosen = ("RAYA_", "POCL_", "OCL_ICD_", "OCLGRIND_", "RUSTICL_", "CL_CONFIG_")
         inherited = {k: v for k, v in os.environ.items() if not k.startswith(chosen)}
@@ -29,12 +30,12 @@ class Implementation:
             done = subprocess.run(self.prefix + command, env=variables, capture_output=True, text=True, timeout=limit,
                                   errors="replace", stdin=subprocess.DEVNULL)
         except subprocess.TimeoutExpired as late:
-            return None, f"not done after {limit} s", "", self.found_by_itself((late.stderr or b"").decode(errors="replace"))
-        return done.returncode, done.stdout + done.stderr, done.stdout, self.found_by_itself(done.stderr)
+            return None, f"not done after {limit} s", "", self.reported_faults((late.stderr or b"").decode(errors="replace"))
+        return done.returncode, done.stdout + done.stderr, done.stdout, self.reported_faults(done.stderr)
 
-    def found_by_itself(self, stderr):
-        """The first line of stderr, and the number of further lines; an empty text without `watches`."""
-        lines = [line.strip() for line in stderr.splitlines() if line.strip()] if self.watches else []
+    def reported_faults(self, stderr):
+        """The first line of stderr and the number of further lines; empty if the implementation does not report faults."""
+        lines = [line.strip() for line in stderr.splitlines() if line.strip()] if self.reports_faults else []
         return "" if not lines else lines[0] + (f" (and {len(lines) - 1} more lines)" if len(lines) > 1 else "")
 
 
@@ -48,9 +49,9 @@ def icd(name):
     return VENDORS / f"{name}.icd"
 
 
-def variants_of(name, driver, lacking, variants):
+def variants_of(name, driver, unavailable, variants):
     """Implementations of one driver. `driver`: its .icd file; `variants`: [(suffix of the name, environment variables)]."""
-    return [Implementation(name + more, {"OCL_ICD_VENDORS": str(driver), **variables}, lacking=lacking) for more, variables in variants]
+    return [Implementation(name + more, {"OCL_ICD_VENDORS": str(driver), **variables}, unavailable=unavailable) for more, variables in variants]
 
 
 def known_implementations(build):
@@ -64,21 +65,21 @@ def known_implementations(build):
         driver = (build / FETCHED / f"{file}.icd").absolute()
         found += variants_of(name, driver, None if driver.exists() else "not set up (tools/portability --setup fetches it)", variants)
     # Kernels are compiled unoptimised, because Oclgrind 21.10 does not support all optimised code. Oclgrind takes build options as an argument.
-    found.append(Implementation("Oclgrind", prefix=["oclgrind", "--build-options", "-cl-opt-disable"], slow=True, watches=True,
-                                lacking=None if shutil.which("oclgrind") else "not installed (Debian: oclgrind)"))
+    found.append(Implementation("Oclgrind", prefix=["oclgrind", "--build-options", "-cl-opt-disable"], slow=True, reports_faults=True,
+                                unavailable=None if shutil.which("oclgrind") else "not installed (Debian: oclgrind)"))
     # One lane, because rusticl's compiler takes a minute for a kernel with 16 lanes.
     rusticl = {"OCL_ICD_VENDORS": str(icd("rusticl")), "RUSTICL_ENABLE": "llvmpipe", "RAYA_NUMBER_LANES": "1"}
     found.append(Implementation("rusticl llvmpipe", rusticl, slow=True, budget=300,
-                                lacking=None if icd("rusticl").exists() else "not installed (Debian: mesa-opencl-icd)"))
+                                unavailable=None if icd("rusticl").exists() else "not installed (Debian: mesa-opencl-icd)"))
     others = sorted(p for p in VENDORS.glob("*.icd") if p.stem not in ("pocl", "rusticl", "mesa"))
-    found += [Implementation(p.stem, {"OCL_ICD_VENDORS": str(p)}, of_device=True) for p in others]
+    found += [Implementation(p.stem, {"OCL_ICD_VENDORS": str(p)}, needs_device=True) for p in others]
     if not any(word in p.stem.lower() for p in others for word in ("nvidia", "amd", "rocm", "intel", "gpu")):
-        found.append(Implementation("GPU", lacking="no GPU's driver is installed"))
+        found.append(Implementation("GPU", unavailable="no GPU's driver is installed"))
     return found
 
 
-def note_missing_devices(implementations, raya):
+def mark_missing_devices(implementations, raya):
     """Marks implementations whose driver has no device here, such as a GPU's, as unable to run."""
     for implementation in implementations:
-        if implementation.of_device and implementation.run([raya, "devices"], tempfile.gettempdir(), 120)[0] == 3:
-            implementation.lacking = "its driver is installed, and shows no device"
+        if implementation.needs_device and implementation.run([raya, "devices"], tempfile.gettempdir(), 120)[0] == 3:
+            implementation.unavailable = "its driver is installed, and shows no device"

@@ -49,8 +49,8 @@ def unpack(wheel, folder):
                 path.chmod(0o755 if ".so" in path.name else 0o644)
 
 
-def cpu_that_llvm_14_lacks(cpuinfo):
-    """LLVM 14's name of a CPU with the same features, for CPUs that LLVM 14 does not know; None for a CPU that it knows.
+def llvm_14_substitute(cpuinfo):
+    """LLVM 14's name of a CPU with the same features, for a CPU that LLVM 14 does not know; None for a CPU that LLVM 14 knows.
 
     LLVM 14 calls AMD CPUs after family 25 "generic", a name that its own compiler rejects. It takes Zen 4 for Zen 3, which is family 25 too
     but has no AVX-512, and aborts on vectors of 16 floats ("Cannot emit physreg copy instruction")."""
@@ -62,9 +62,9 @@ def cpu_that_llvm_14_lacks(cpuinfo):
     return "skylake-avx512" if wide else "haswell"
 
 
-def name_cpu(library, cpu):
-    """Patches our copy of PoCL 3.0 to use this CPU name, as PoCL 3.0 has no setting for it: replaces pocl_get_llvm_cpu_name()'s call of LLVM,
-    and the check of its result, by a constant. Addresses of code and constants are file offsets."""
+def patch_cpu_name(library, cpu):
+    """Patches the fetched copy of PoCL 3.0 to use this CPU name, because PoCL 3.0 has no setting for it: replaces the call of LLVM in
+    pocl_get_llvm_cpu_name(), and the check of its result, by a constant. Addresses of code and constants are file offsets."""
     content = bytearray(library.read_bytes())
     calls = [match.start(1) for match in re.finditer(rb"\x55\x53\x48\x83\xec\x08(\xe8....\x48\x85\xd2\x74\x30)\x48\x89\xc5", content, re.DOTALL)]
     text = content.find(b"\0" + cpu.encode() + b"\0") + 1
@@ -86,7 +86,7 @@ def set_up_one(packages, target, cpuinfo):
     asked = packages.read_text()
     stamp = target / "packages.txt"
     if driver_file.exists() and stamp.exists() and stamp.read_text() == asked:
-        print(f"{name}: is here, {size_text(target)} in {target}")
+        print(f"{name}: already set up, {size_text(target)} in {target}")
         return
     pins = re.findall(r"^([^#\s]\S*)", asked, re.MULTILINE)
     print(f"{name}: fetching {', '.join(pins)}", flush=True)
@@ -98,9 +98,9 @@ def set_up_one(packages, target, cpuinfo):
         drivers = sorted(unpacked.glob(DRIVERS[name]))
         if len(drivers) != 1:
             raise SetupError(f"{name}: no driver {DRIVERS[name]} in {', '.join(w.name for w in wheels)}")
-        cpu = cpu_that_llvm_14_lacks(cpuinfo) if name == "pocl-3.0" else None
+        cpu = llvm_14_substitute(cpuinfo) if name == "pocl-3.0" else None
         if cpu:
-            name_cpu(drivers[0], cpu)
+            patch_cpu_name(drivers[0], cpu)
         (unpacked / "packages.txt").write_text(asked)
         driver_file.unlink(missing_ok=True)
         shutil.rmtree(target, ignore_errors=True)

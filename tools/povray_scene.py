@@ -12,7 +12,7 @@ Differences between POV-Ray and the shading of kernels/README.md, and how the sc
 - Polygons become triangles, and the triangles of one surface a mesh, which POV-Ray intersects fastest.
 - Checkers are cubes. They are stretched along the axis that the checker ignores.
 
-Entities of other dialects are refused, with their line. Exit code 1 if the file cannot be converted.
+Exit codes: 0 done; 1 the file cannot be converted (the message names the line), for example because of an entity of another NFF dialect.
 """
 import math
 import sys

@@ -19,7 +19,7 @@ constexpr std::uint32_t kWidth = RAYA_BVH_WIDTH;
 // Upper bound of the traversal's rounding error in the position of a box side, for ray origins with coordinates up to
 // `reach`. Along each axis the kernel computes the distance t to a side as side * (1 / D) - O * (1 / D), with rounded
 // results, so t has an error of at most 4 2^-24 (|side| + |O|) / |D|. The bound has a margin of a factor of 2.
-double walk_error(double side, double reach) { return 8 * 0x1p-24 * (std::abs(side) + reach); }
+double traversal_error(double side, double reach) { return 8 * 0x1p-24 * (std::abs(side) + reach); }
 
 float below(double x) {
     const auto nearest = static_cast<float>(x);
@@ -31,8 +31,8 @@ Bounds bounds_of(const Box& box, double reach) {
     Bounds bounds{};
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
-        bounds.low[a] = below(box.min[axis] - walk_error(box.min[axis], reach));
-        bounds.high[a] = above(box.max[axis] + walk_error(box.max[axis], reach));
+        bounds.low[a] = below(box.min[axis] - traversal_error(box.min[axis], reach));
+        bounds.high[a] = above(box.max[axis] + traversal_error(box.max[axis], reach));
     }
     return bounds;
 }
@@ -70,7 +70,7 @@ std::uint32_t kind_of(const PackedJob& job, const NumberFormat& format, std::uin
     const bool is_polygon = number >= objects.spheres && number < objects.spheres + objects.planes + objects.polygons;
     const std::uint32_t corners = is_polygon ? polygon_words(job, number)[RAYA_POLYGON_CORNERS] : 0;
     if (!format.is_fp32()) return corners > kManyCorners ? RAYA_LINK_POLYGON : RAYA_LINK_OBJECT;
-    if (is_polygon) return corners <= RAYA_BVH_MOST_CORNERS ? RAYA_LINK_FACES : RAYA_LINK_POLYGON;
+    if (is_polygon) return corners <= RAYA_BVH_MAX_CORNERS ? RAYA_LINK_FACES : RAYA_LINK_POLYGON;
     return number < objects.spheres ? RAYA_LINK_SPHERES : RAYA_LINK_CONES;
 }
 
@@ -151,7 +151,7 @@ class BvhWriter {
 
     std::uint32_t put_faces(std::span<const BvhItem> items) {
         const bool triangles = std::all_of(items.begin(), items.end(), [&](const BvhItem& item) {
-            return polygon_words(job_, item.number)[RAYA_POLYGON_CORNERS] < RAYA_BVH_MOST_CORNERS;
+            return polygon_words(job_, item.number)[RAYA_POLYGON_CORNERS] < RAYA_BVH_MAX_CORNERS;
         });
         const std::uint32_t row = take_rows(triangles ? RAYA_BVH_TRIANGLES : RAYA_BVH_FACES);
         for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
@@ -217,15 +217,15 @@ class BvhWriter {
 };
 
 struct BvhItems {
-    std::vector<BvhItem> items;        // empty if the hit regions are unbounded
-    std::vector<std::uint32_t> apart;  // large objects, listed separately, ascending
-    double reach = -1;                 // the boxes are valid for ray origins with coordinates up to this; -1: none
+    std::vector<BvhItem> items;           // empty if the hit regions are unbounded
+    std::vector<std::uint32_t> separate;  // large objects, listed separately, ascending
+    double reach = -1;                    // the boxes are valid for ray origins with coordinates up to this; -1: none
 };
 
 // Objects that nearly every ray reaches (the ground below a scene, walls around it) are listed separately: testing such
-// an object for V rays at once costs a ray less than visiting a leaf. If there are more than kMaxApart of them, none is
-// listed separately.
-constexpr std::size_t kMaxApart = 8;
+// an object for V rays at once costs a ray less than visiting a leaf. If there are more than kMaxSeparate such objects,
+// none is listed separately.
+constexpr std::size_t kMaxSeparate = 8;
 constexpr float kLargeArea = 1.0F / 8;  // an object is large if its box has a larger fraction of the whole box's area
 
 void separate_large_items(BvhItems& all) {
@@ -233,9 +233,9 @@ void separate_large_items(BvhItems& all) {
     for (const BvhItem& item : all.items) extend(whole, item.box);
     const auto is_large = [&](const BvhItem& item) { return area(item.box) > kLargeArea * area(whole); };
     const auto large = static_cast<std::size_t>(std::count_if(all.items.begin(), all.items.end(), is_large));
-    if (large > kMaxApart) return;
+    if (large > kMaxSeparate) return;
     for (const BvhItem& item : all.items)
-        if (is_large(item)) all.apart.push_back(item.number);
+        if (is_large(item)) all.separate.push_back(item.number);
     std::erase_if(all.items, is_large);
 }
 
@@ -270,17 +270,18 @@ AccelSummary append_bvh(PackedJob& job, const NumberFormat& format) {
     raya_bvh header{};
     header.reach = static_cast<float>(all.reach);
     header.root = tree.items.empty() ? RAYA_NO_TREE : writer.put(tree.root);
-    const std::size_t at = job.words().size(), end = at + kWordsOf<raya_bvh> + all.apart.size();
+    const std::size_t at = job.words().size(), end = at + kWordsOf<raya_bvh> + all.separate.size();
     const std::size_t rows_at = (end + kWidth - 1) / kWidth * kWidth;
     if (writer.words().size() / kWidth > RAYA_LINK_ROW)
-        throw UserError(fmt::format("--accel bvh packs to {} rows of 64 bytes, more than its links can address",
-                                    writer.words().size() / kWidth));
-    header.apart = static_cast<std::uint32_t>(all.apart.size());
-    header.apart_at = static_cast<std::uint32_t>(at + kWordsOf<raya_bvh>);
+        throw UserError(fmt::format(
+            "--accel bvh: the BVH needs {} rows of 64 bytes, more than its links can address; use fewer objects",
+            writer.words().size() / kWidth));
+    header.separate = static_cast<std::uint32_t>(all.separate.size());
+    header.separate_at = static_cast<std::uint32_t>(at + kWordsOf<raya_bvh>);
     header.rows_at = static_cast<std::uint32_t>(rows_at);
     std::vector<std::uint32_t> words(rows_at - at);
     put_record(words, 0, header);
-    std::copy(all.apart.begin(), all.apart.end(), words.begin() + kWordsOf<raya_bvh>);
+    std::copy(all.separate.begin(), all.separate.end(), words.begin() + kWordsOf<raya_bvh>);
     words.insert(words.end(), writer.words().begin(), writer.words().end());
     job.append(words);
     raya_job with_tree = job.header();
@@ -288,7 +289,7 @@ AccelSummary append_bvh(PackedJob& job, const NumberFormat& format) {
     job.set_header(with_tree);
     return {.kind = AccelKind::kBvh,
             .words = words.size(),
-            .apart = header.apart,
+            .separate = header.separate,
             .nodes = tree.nodes.size(),
             .leaves = writer.leaves(),
             .depth = tree.depth};

@@ -56,13 +56,13 @@ std::uint32_t put_list(GridLists& lists, const std::vector<std::uint32_t>& words
                        std::span<const std::uint32_t> list) {
     const auto end_of_spheres = std::lower_bound(list.begin(), list.end(), objects.spheres);
     const auto spheres = static_cast<std::size_t>(end_of_spheres - list.begin());
-    const auto in_word = [&](std::size_t from) { return std::min<std::size_t>(spheres - from, RAYA_MOST_ROWS); };
+    const auto in_word = [&](std::size_t from) { return std::min<std::size_t>(spheres - from, RAYA_MAX_ROWS); };
     const auto word_from = [&](std::size_t from, std::size_t row) {
         return voxel_word(row, in_word(from), from + in_word(from) < list.size());
     };
     const std::uint32_t word = word_from(0, lists.numbers.size());
     for (std::size_t i = 0; i < spheres; ++i) {
-        if (i > 0 && i % RAYA_MOST_ROWS == 0)
+        if (i > 0 && i % RAYA_MAX_ROWS == 0)
             put_link(lists, word_from(i, lists.numbers.size() + 1), RAYA_NO_OBJECT_HERE);
         put_sphere(lists, words, objects, list[i]);
     }
@@ -106,11 +106,11 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
 
 Partition accel_partition(const PackedJob& job, const NumberFormat& format, const Accel& accel) {
     if (accel.divisions) return partition(job, format, *accel.divisions);
-    const std::vector<std::uint32_t> apart = large_objects(job, format);
-    const HitRegions rest(job, format, kMinReach, apart);
+    const std::vector<std::uint32_t> separate = large_objects(job, format);
+    const HitRegions rest(job, format, kMinReach, separate);
     // If the hit regions are unbounded, every object is in every list, so one voxel is enough.
     const double voxels = rest.known() ? std::max(1.0, kVoxelsPerObject * static_cast<double>(rest.size())) : 1;
-    return partition(job, format, divisions_for(job, format, static_cast<std::uint64_t>(voxels), apart), apart);
+    return partition(job, format, divisions_for(job, format, static_cast<std::uint64_t>(voxels), separate), separate);
 }
 
 AccelSummary append_grid(PackedJob& job, const Partition& p) {
@@ -120,21 +120,21 @@ AccelSummary append_grid(PackedJob& job, const Partition& p) {
     std::size_t next = at + kWordsOf<raya_grid_words>;
     const auto place = [&](std::size_t count) { return word_number(std::exchange(next, next + count)); };
     header.grid = p.grid;
-    header.apart = word_number(p.apart.size());
-    header.apart_at = place(p.apart.size());
+    header.separate = word_number(p.separate.size());
+    header.separate_at = place(p.separate.size());
     header.voxels_at = place(lists.voxels.size());
     next = padded_to_rows(next);  // a row of four words is one aligned memory access
     header.rows_at = place(lists.rows.size());
     header.numbers_at = place(lists.numbers.size());
     if (next > kMaxWords || lists.numbers.size() > RAYA_ROW_NUMBER)
-        throw UserError(
-            fmt::format("--accel grid packs to {} words, more than 32-bit indices address; use fewer voxels", next));
+        throw UserError(fmt::format(
+            "--accel grid: the grid needs {} words, more than 32-bit indices can address; use fewer voxels", next));
     std::vector<std::uint32_t> words(next - end);
     put_record(words, at - end, header);
     const auto put = [&](const std::vector<std::uint32_t>& from, std::uint32_t to) {
         std::copy(from.begin(), from.end(), words.begin() + static_cast<std::ptrdiff_t>(to - end));
     };
-    put(p.apart, header.apart_at);
+    put(p.separate, header.separate_at);
     put(lists.voxels, header.voxels_at);
     put(lists.rows, header.rows_at);
     put(lists.numbers, header.numbers_at);
@@ -146,7 +146,7 @@ AccelSummary append_grid(PackedJob& job, const Partition& p) {
             .words = words.size(),
             .divisions = {p.grid.divisions[0], p.grid.divisions[1], p.grid.divisions[2]},
             .copies = p.copies(),
-            .apart = header.apart};
+            .separate = header.separate};
 }
 
 }  // namespace raya

@@ -47,15 +47,15 @@ void widen(Box& box, double by) {
 
 // Squared distances from a point to the nearest and the farthest point of a box.
 double nearest_square(const Vec3& p, const Box& box) {
-    Vec3 apart;
+    Vec3 distance;
     for (int axis = 0; axis < 3; ++axis)
-        apart[axis] = std::max({box.min[axis] - p[axis], p[axis] - box.max[axis], 0.0});
-    return apart.length2();
+        distance[axis] = std::max({box.min[axis] - p[axis], p[axis] - box.max[axis], 0.0});
+    return distance.length2();
 }
 double farthest_square(const Vec3& p, const Box& box) {
-    Vec3 apart;
-    for (int axis = 0; axis < 3; ++axis) apart[axis] = std::max(p[axis] - box.min[axis], box.max[axis] - p[axis]);
-    return apart.length2();
+    Vec3 distance;
+    for (int axis = 0; axis < 3; ++axis) distance[axis] = std::max(p[axis] - box.min[axis], box.max[axis] - p[axis]);
+    return distance.length2();
 }
 
 double segment_distance(const Vec3& p, const Vec3& from, const Vec3& along) {
@@ -78,12 +78,12 @@ bool HitRegion::touches(const Box& part) const {
 }
 
 HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double reach,
-                       const std::vector<std::uint32_t>& apart)
+                       const std::vector<std::uint32_t>& separate)
     : words_(&job.words()), objects_(job.header().objects) {
     const std::uint32_t first_polygon = objects_.spheres + objects_.planes;
     for (std::uint32_t number = 0; number < first_polygon + objects_.polygons + objects_.cones; ++number)
         if ((number < objects_.spheres || number >= first_polygon) &&
-            !std::binary_search(apart.begin(), apart.end(), number))
+            !std::binary_search(separate.begin(), separate.end(), number))
             numbers_.push_back(number);
     const int quarter = 1 << (format.exponent_bits - 2);
     unit_ = std::ldexp(format.truncates ? 1.0 : 0.5, -format.fraction_bits) + 0x1p-24;
@@ -131,19 +131,19 @@ HitRegion HitRegions::polygon(std::size_t at) const {
     HitRegion region;
     region.normal = vector(at + RAYA_PLANE_NORMAL);
     region.middle = real(at + RAYA_PLANE_DISTANCE);
-    double bent = 0, away = 0;  // maximum distance of a corner: from the plane; from a ray's origin
+    double off_plane = 0, max_distance = 0;  // maximum distance of a corner: from the plane; from a ray's origin
     std::size_t corner = (*words_)[at + RAYA_POLYGON_CORNERS_AT];
     for (std::size_t i = (*words_)[at + RAYA_POLYGON_CORNERS]; i > 0; --i, corner += RAYA_CORNER_WORDS) {
         const Vec3 place = vector(corner);
         region.box.extendBy(place);
-        bent = std::max(bent, std::abs(region.normal.dot(place) - region.middle));
-        away = std::max(away, farthest(place));
+        off_plane = std::max(off_plane, std::abs(region.normal.dot(place) - region.middle));
+        max_distance = std::max(max_distance, farthest(place));
     }
-    const double margin = 32 * unit_ * away;  // covers the kernel's margin: RAYA_MARGIN is 16 or 8 times u
-    const double aside = 16 * unit_ * away + 8 * std::sqrt(smallest_);
+    const double margin = 32 * unit_ * max_distance;  // covers the kernel's margin: RAYA_MARGIN is 16 or 8 times u
+    const double aside = 16 * unit_ * max_distance + 8 * std::sqrt(smallest_);
     const double to_plane = std::abs(region.middle) + std::sqrt(3.0) * reach_;
     widen(region.box, margin + aside);
-    region.half = 5 * unit_ * (to_plane + 2 * away) + 4 * smallest_ * (1 + away) + aside + bent;
+    region.half = 5 * unit_ * (to_plane + 2 * max_distance) + 4 * smallest_ * (1 + max_distance) + aside + off_plane;
     return region;
 }
 
@@ -187,14 +187,14 @@ HitRegion HitRegions::cone(std::size_t at) const {
     const double height = real(at + RAYA_CONE_HEIGHT), slope = real(at + RAYA_CONE_SLOPE);
     const double r0 = real(at + RAYA_CONE_RADIUS), r1 = std::abs(r0 + slope * height);
     const double size = cone_size(at), error = cone_error(at, size);
-    const double beyond = 8 * unit_ * size;  // error of the position z along the axis, at z = 0 and z = h
+    const double z_error = 8 * unit_ * size;  // error of the position z along the axis, at z = 0 and z = h
     const double shift = 6 * unit_ * farthest(vector(at + RAYA_CONE_BASE)) + 12 * unit_ * size + 8 * smallest_;
     const Vec3 axis = vector(at + RAYA_CONE_AXIS).normalized();
     region.centre = vector(at + RAYA_CONE_BASE);
     region.along = height * axis;
     double widest = 0;
-    for (const auto& [z, radius] : {std::pair{-beyond, r0}, std::pair{height + beyond, r1}}) {
-        const double inner = radius + std::abs(slope) * beyond;
+    for (const auto& [z, radius] : {std::pair{-z_error, r0}, std::pair{height + z_error, r1}}) {
+        const double inner = radius + std::abs(slope) * z_error;
         const double outer = std::sqrt(inner * inner + error);
         widest = std::max(widest, outer);
         Vec3 arm;
@@ -203,10 +203,10 @@ HitRegion HitRegions::cone(std::size_t at) const {
         region.box.extendBy(region.centre + z * axis + arm);
     }
     widen(region.box, shift);
-    region.around = widest + beyond + shift;
+    region.around = widest + z_error + shift;
     region.normal = axis;
     region.middle = axis.dot(region.centre) + 0.5 * height;
-    region.half = 0.5 * height + beyond + shift;
+    region.half = 0.5 * height + z_error + shift;
     return region;
 }
 

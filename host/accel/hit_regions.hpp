@@ -30,20 +30,20 @@ struct HitRegion {
     bool touches(const Box& part) const;
 };
 
-/// One region per finite object of a job, without the separate objects (`apart`), in the order of object numbers.
+/// One region per finite object of a job, without the separate objects, in the order of object numbers.
 /// Computed from the job's words, and so from the same numbers that the kernels use. The job must outlive this object.
 class HitRegions {
   public:
     /// `reach`: maximum magnitude of the coordinates of ray origins, in multiples of the scene's extent
-    /// (scene_extent()), at least 2. `apart`: numbers of the excluded objects, ascending.
+    /// (scene_extent()), at least 2. `separate`: numbers of the excluded objects, ascending.
     HitRegions(const PackedJob& job, const NumberFormat& format, double reach = 2,
-               const std::vector<std::uint32_t>& apart = {});
+               const std::vector<std::uint32_t>& separate = {});
 
     /// Returns true if every object has a bounded region. Otherwise a hit may be anywhere within far() of its ray's
     /// origin.
     bool known() const { return known_; }
     /// Maximum magnitude of the coordinates of ray origins. The regions are valid for rays from such origins whose
-    /// direction has length 1 up to rounding (rays for which is_wide() in kernels/grid/walk.clh is false).
+    /// direction has length 1 up to rounding (rays for which is_wide() in kernels/grid/traversal.clh is false).
     double reach() const { return reach_; }
     /// Radius margin: how much a sphere's region exceeds its radius at most, for ray origins with coordinates up to
     /// `reach` extents. Does not include the error of results flushed to 0.

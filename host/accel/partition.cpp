@@ -25,7 +25,7 @@ double largest_coordinate(const Box& box) {
 // Upper bound of the distance between a point of a ray and the voxel to which the traversal assigns the point, due to
 // rounding errors. The distance t to a plane has a relative error of 3 2^-24, so the point on the plane has an error of
 // 3 2^-24 |plane - O|; the first voxel is computed by five operations on numbers of that magnitude.
-double walk_error(const Box& box, double reach) { return 16 * 0x1p-24 * (reach + largest_coordinate(box)); }
+double traversal_error(const Box& box, double reach) { return 16 * 0x1p-24 * (reach + largest_coordinate(box)); }
 
 // Returns the box of the partition: the bounding box of all regions, with a margin for the traversal's rounding errors,
 // so that the traversal finds points on the border of a region inside the box.
@@ -34,7 +34,7 @@ Box box_around(const HitRegions& regions) {
     if (regions.size() == 0) return Box(Vec3(-0.5), Vec3(0.5));
     if (!regions.known()) return Box(Vec3(-4 * regions.far()), Vec3(4 * regions.far()));
     for (std::size_t i = 0; i < regions.size(); ++i) box.extendBy(regions.region(i).box);
-    const Vec3 margin(2 * walk_error(box, regions.reach()));
+    const Vec3 margin(2 * traversal_error(box, regions.reach()));
     return Box(box.min - margin, box.max + margin);
 }
 
@@ -143,9 +143,9 @@ void check_divisions(const Divisions& d) {
 // doubled up to kMax as long as regions stay bounded and grow by at most kShareOfVoxel of a voxel's shortest side. A
 // ray from farther away is tested against all objects.
 double reach_for(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
-                 const std::vector<std::uint32_t>& apart) {
+                 const std::vector<std::uint32_t>& separate) {
     constexpr double kMin = 2, kMax = 1024, kShareOfVoxel = 1.0 / 16;
-    const HitRegions regions(job, format, kMin, apart);
+    const HitRegions regions(job, format, kMin, separate);
     if (!regions.known() || job.header().objects.planes == 0) return kMin;
     const Box box = box_around(regions);
     double side = std::numeric_limits<double>::infinity();
@@ -153,7 +153,7 @@ double reach_for(const PackedJob& job, const NumberFormat& format, const Divisio
         side = std::min(side, (box.max[axis] - box.min[axis]) / divisions[static_cast<std::size_t>(axis)]);
     double reach = kMin;
     while (reach < kMax && regions.slack(2 * reach) <= kShareOfVoxel * side &&
-           HitRegions(job, format, 2 * reach, apart).known())
+           HitRegions(job, format, 2 * reach, separate).known())
         reach *= 2;
     return reach;
 }
@@ -211,25 +211,25 @@ Divisions cubes(const Vec3& sides, double voxels) {
 }  // namespace
 
 Partition partition(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
-                    const std::vector<std::uint32_t>& apart) {
+                    const std::vector<std::uint32_t>& separate) {
     check_divisions(divisions);
-    const HitRegions regions(job, format, reach_for(job, format, divisions, apart), apart);
+    const HitRegions regions(job, format, reach_for(job, format, divisions, separate), separate);
     const Box box = box_around(regions);
     Partition p;
     p.grid = grid_over(box, divisions, regions.reach());
     p.starts.assign(std::size_t{raya_voxels(p.grid)} + 1, 0);
-    p.apart = apart;
+    p.separate = separate;
     p.distinct = regions.size();
     if (regions.known())
-        fill_lists(p, regions, Voxels(p.grid, walk_error(box, regions.reach())), divisions);
+        fill_lists(p, regions, Voxels(p.grid, traversal_error(box, regions.reach())), divisions);
     else
         register_everywhere(p, regions, divisions);
     return p;
 }
 
 Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::uint64_t voxels,
-                        const std::vector<std::uint32_t>& apart) {
-    const HitRegions regions(job, format, 2, apart);
+                        const std::vector<std::uint32_t>& separate) {
+    const HitRegions regions(job, format, 2, separate);
     if (!regions.known()) return {1, 1, 1};
     const Box box = box_around(regions);
     const RegionSizes sizes(regions);

@@ -24,36 +24,36 @@ struct TooManyEntries : UserError {
 /// are in no list, because every ray is tested against them.
 struct Partition {
     raya_grid grid{};
-    std::vector<std::uint32_t> starts;   // [voxels + 1]: voxel v lists objects[starts[v]] .. objects[starts[v + 1] - 1]
-    std::vector<std::uint32_t> objects;  // concatenated lists, each ascending
-    std::vector<std::uint32_t> apart;    // separate objects: finite, in no list, ascending; tested for every ray
-    std::uint64_t distinct = 0;          // number of objects in the lists: all finite ones except `apart`
+    std::vector<std::uint32_t> starts;    // [voxels + 1]: voxel v lists objects[starts[v] .. starts[v + 1] - 1]
+    std::vector<std::uint32_t> objects;   // concatenated lists, each ascending
+    std::vector<std::uint32_t> separate;  // separate objects: finite, in no list, ascending; tested for every ray
+    std::uint64_t distinct = 0;           // number of objects in the lists: all finite ones except `separate`
     /// Number of list entries beyond the first one of each object.
     std::uint64_t copies() const { return objects.size() - distinct; }
 };
 
-/// Divides the bounding box of all finite objects except the separate ones (`apart`: object numbers, ascending) into
+/// Divides the bounding box of all finite objects except the separate ones (`separate`: object numbers, ascending) into
 /// voxels. If there are no such objects, the box is the unit cube around the origin. Uses the rounded numbers in the
 /// job's words, as the kernels do.
 ///
 /// Registration is conservative, so that hits do not depend on the voxels through which the traversal passes. Consider
 /// a ray whose origin O has coordinates up to `grid.reach` in magnitude and whose direction D has length 1 up to
-/// rounding (is_wide() in kernels/grid/walk.clh is false). If a kernel with that format computes a hit of an object at
-/// distance t, then the voxel in which the traversal is at distance t lists the object, in spite of the traversal's
-/// rounding errors. If the hit regions are unbounded (HitRegions::known() is false: Y < 10, squares of lengths that
-/// overflow the format, or cones too steep for it), every object is in every list, the box contains all points within
-/// RAYA_FAR, and the reach is RAYA_FAR.
+/// rounding, so that is_wide() in kernels/grid/traversal.clh is false. If a kernel with that format computes a hit of
+/// an object at distance t, then the voxel in which the traversal is at distance t lists the object, in spite of the
+/// traversal's rounding errors. If the hit regions are unbounded (HitRegions::known() is false: Y < 10, squares of
+/// lengths that overflow the format, or cones too steep for it), every object is in every list, the box contains all
+/// points within RAYA_FAR, and the reach is RAYA_FAR.
 ///
 /// Throws UserError if a division is 0 or there are more than kMaxPartitionVoxels voxels, and TooManyEntries if the
 /// lists are too long.
 Partition partition(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
-                    const std::vector<std::uint32_t>& apart = {});
+                    const std::vector<std::uint32_t>& separate = {});
 
 /// Returns divisions of an acceleration grid into about `voxels` (1..2^24) voxels that are nearly cubes. Returns fewer
 /// voxels if the lists would otherwise have more than 16 entries per voxel and more than 16 per object on average, and
 /// 1x1x1 if the hit regions are unbounded.
 Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::uint64_t voxels,
-                        const std::vector<std::uint32_t>& apart = {});
+                        const std::vector<std::uint32_t>& separate = {});
 
 /// The partition of `--accel grid`. With given divisions it covers the whole scene. Otherwise large_objects() are
 /// listed separately, and the box of the other objects is divided into kVoxelsPerObject voxels per object: a ground

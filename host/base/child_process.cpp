@@ -108,8 +108,8 @@ int ChildProcess::wait() {
 std::optional<WorkerOrder> worker_order(int argc, const char* const* argv) {
     if (argc != 3 || std::string_view(argv[1]) != kWorker) return {};
     WorkerOrder order = read_json(argv[2], {kWorker}, [](const Json& json) {
-        set_verbosity(kErrorsOnly + static_cast<int>(json.at("verbosity").whole(kDetailed - kErrorsOnly)));
-        return WorkerOrder{json.at("task").text(), static_cast<int>(json.at("lines").whole(INT_MAX)),
+        set_verbosity(kErrorsOnly + static_cast<int>(json.at("verbosity").integer(kDetailed - kErrorsOnly)));
+        return WorkerOrder{json.at("task").text(), static_cast<int>(json.at("lines").integer(INT_MAX)),
                            json.at("settings")};
     });
     ::fcntl(order.lines, F_SETFD, FD_CLOEXEC);

@@ -31,7 +31,7 @@ class JsonText : public std::streambuf {
     bool number_float(double number, const std::string&) { return place(number); }
     bool string(std::string& text) { return place(std::move(text)); }
     bool binary(const Library::binary_t&) { return false; }
-    bool start_array(std::size_t) { return open(Json::list()); }
+    bool start_array(std::size_t) { return open(Json::array()); }
     bool start_object(std::size_t) { return open(Json::object()); }
     bool end_array() { return close(); }
     bool end_object() { return close(); }
@@ -106,8 +106,8 @@ Library JsonText::library_of(const Json& json) {
     return std::visit(each, json.value_);
 }
 
-// Returns the path of the value at that position, such as "rows[3].ms: "; empty if there is none. Uses that the
-// positions of values ascend in the order of the text.
+// Returns the path of the value at that position, such as "rows[3].ms: "; empty if there is none. Relies on
+// the positions of values ascending in the order of the text.
 std::string JsonText::path_of(const Json* json, std::uint32_t position) {
     std::string path;
     while (json->position_ != position) {
@@ -143,7 +143,7 @@ Json::Json(std::initializer_list<Member> members) : Json(object()) {
 
 Json Json::object() { return Json(Tree{.is_object = true}); }
 
-Json Json::list() { return Json(Tree{}); }
+Json Json::array() { return Json(Tree{}); }
 
 Json::Tree* Json::tree(bool object) const {
     const auto* const box = std::get_if<Box<Tree>>(&value_);
@@ -173,7 +173,7 @@ Json& Json::operator[](std::string_view key) {
 }
 
 void Json::push_back(Json element) {
-    if (is_null()) *this = list();
+    if (is_null()) *this = array();
     if (!tree(false)) refuse(" is not an array");
     tree(false)->elements.push_back(std::move(element));
 }
@@ -207,7 +207,7 @@ double Json::number() const {
     refuse(" is not a number");
 }
 
-std::uint64_t Json::whole(std::uint64_t max) const {
+std::uint64_t Json::integer(std::uint64_t max) const {
     const auto* const given = std::get_if<std::int64_t>(&value_);
     if (given != nullptr && *given < 0) refuse(" is negative");
     const auto* const whole = std::get_if<std::uint64_t>(&value_);
@@ -222,7 +222,7 @@ const std::vector<Json>& Json::elements() const {
     return tree(false)->elements;
 }
 
-std::vector<std::string> Json::texts() const {
+std::vector<std::string> Json::strings() const {
     std::vector<std::string> all;
     for (const Json& element : elements()) all.push_back(element.text());
     return all;

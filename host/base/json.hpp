@@ -53,10 +53,10 @@ class Json {
     Json(std::string_view text) : Json(std::string(text)) {}               // NOLINT
     Json(const char* text) : Json(std::string(text)) {}                    // NOLINT
     template <std::integral T>
-    Json(T whole)  // NOLINT
+    Json(T integer)  // NOLINT
         : value_(static_cast<std::conditional_t<std::is_same_v<T, bool>, bool,
                                                 std::conditional_t<std::is_signed_v<T>, std::int64_t, std::uint64_t>>>(
-              whole)) {}
+              integer)) {}
     Json(std::floating_point auto number) : value_(double{number}) {}  // NOLINT
     template <class T>
     Json(const std::optional<T>& value) : Json(value ? Json(*value) : Json()) {}  // NOLINT
@@ -67,7 +67,7 @@ class Json {
     Json(const std::array<T, N>& list) : Json(std::vector<Json>(list.begin(), list.end())) {}  // NOLINT
 
     static Json object();
-    static Json list();
+    static Json array();
 
     bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
     bool is_text() const { return std::holds_alternative<Box<std::string>>(value_); }
@@ -86,16 +86,16 @@ class Json {
     /// The member of that name. Throws JsonError if it is missing.
     const Json& at(std::string_view key) const;
 
-    /// The value as the given type. Throw JsonError if it has another type; whole() also if it is not an integer in
+    /// The value as the given type. Throw JsonError if it has another type; integer() also if it is not an integer in
     /// 0..`max`.
     const std::string& text() const;
     double number() const;
-    std::uint64_t whole(std::uint64_t max = UINT64_MAX) const;
+    std::uint64_t integer(std::uint64_t max = UINT64_MAX) const;
     const std::vector<Json>& elements() const;
     /// The names of an object's members in the order in which they were added; empty for other types.
     const std::vector<std::string>& keys() const;
     /// The elements of an array of strings. Throws JsonError for other values.
-    std::vector<std::string> texts() const;
+    std::vector<std::string> strings() const;
 
     /// Serialises the value, in one line or with `indent` blanks per level. Bytes that are not UTF-8, as a path or a
     /// driver's name may contain, become U+FFFD.
@@ -158,10 +158,10 @@ auto read_json(const std::string& text, const JsonSource& from, Read&& read) {
     }
 }
 
-inline constexpr std::uint64_t kLargestJson = 64'000'000;  // bytes of a file
+inline constexpr std::uint64_t kMaxJsonBytes = 64'000'000;  // bytes of a file
 
 /// Reads a JSON file into a string for read_json(). Throws UserError, as `from` formats it, if the file cannot be read.
 std::string json_text(const std::filesystem::path& file, const JsonSource& from, Pipes pipes = Pipes::kRefused,
-                      std::uint64_t max_bytes = kLargestJson);
+                      std::uint64_t max_bytes = kMaxJsonBytes);
 
 }  // namespace raya

@@ -12,9 +12,9 @@ namespace raya {
 
 std::string progress_line(const std::string& what, const std::optional<Done>& done, double seconds) {
     constexpr int kWidth = 40;
-    constexpr double kEnough = 0.001;  // minimum completed fraction for an estimate of the remaining time
+    constexpr double kMinFraction = 0.001;  // minimum completed fraction for an estimate of the remaining time
     const double share = done ? done->share : 0;
-    if (share < kEnough) return fmt::format("{} ... {:.0f} s", what, seconds);
+    if (share < kMinFraction) return fmt::format("{} ... {:.0f} s", what, seconds);
     const int filled = static_cast<int>(share * kWidth);
     const double left = done->seconds / share - seconds;
     return fmt::format("[{}{}] {:3.0f} %  {}", std::string(filled, '#'), std::string(kWidth - filled, '.'),

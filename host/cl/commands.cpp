@@ -2,13 +2,9 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -18,10 +14,6 @@
 
 namespace raya {
 namespace {
-
-// Events occupy memory of the driver until their times are read, so a session waits for the device and reads the times
-// when this many commands are pending.
-constexpr std::size_t kMaxPending = 4096;
 
 HostMemory::Kind memory_kind(bool pinned) { return pinned ? HostMemory::Kind::kPinned : HostMemory::Kind::kPlain; }
 
@@ -46,8 +38,6 @@ SharedContext& shared_context(const cl::Device& device) {
     }
     return shared->second;
 }
-
-std::string copied(const std::string& from, const std::string& to) { return from + " -> " + to; }
 
 }  // namespace
 
@@ -86,7 +76,7 @@ Program Session::build(const std::string& name, const std::string& source,
     const std::scoped_lock lock(shared.building);
     const auto known = shared.programs.find({all, source});
     if (known != shared.programs.end()) return known->second;
-    const StepLog::Step building = step("build " + name);
+    const SpanLog::Span building = span("build " + name);
     const Clock::time_point start = Clock::now();
     Program program(context_, device_, name, source, all);
     if (logs_builds_) log_kernel_build("build", name, program.options(), start);
@@ -100,7 +90,9 @@ void Session::save_binaries() const {
     for (const auto& [what, program] : shared_context(device_).programs) program.save_binary();
 }
 
-std::jthread Session::compiling() const { return announces_ ? raya::announce_compiling(info_.name) : std::jthread(); }
+std::jthread Session::compile_notice() const {
+    return announces_compiling_ ? raya::announce_compiling(info_.name) : std::jthread();
+}
 
 cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const {
     if (count == 0) throw std::invalid_argument(fmt::format("buffer '{}': OpenCL has no empty buffers", name));
@@ -113,6 +105,11 @@ cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::si
     bytes_taken_ += count * element_bytes;
     return guarded(fmt::format("allocating buffer '{}' ({} bytes)", name, count * element_bytes),
                    [&] { return cl::Buffer(context_, CL_MEM_READ_WRITE, count * element_bytes); });
+}
+
+std::unique_ptr<HostMemory> Session::host_memory(const std::string& name, std::size_t bytes) const {
+    return guarded(fmt::format("allocating {} bytes of host memory for '{}'", bytes, name),
+                   [&] { return std::make_unique<HostMemory>(context_, *queue_, memory_kind(pinned_), bytes); });
 }
 
 void Session::check_range(const std::string& label, const std::string& buffer, std::size_t size, std::size_t offset,
@@ -130,14 +127,6 @@ void Session::check_blocks(const std::string& label, const std::string& buffer, 
         throw std::out_of_range(fmt::format("'{}': {} blocks of {} elements from {} on exceed buffer '{}' of {}", label,
                                             blocks, at.pitch, at.first, buffer, size));
     }
-}
-
-template <class Enqueue>
-void Session::submit(const std::string& what, CommandRecord record, Enqueue&& enqueue) {
-    if (pending_.size() >= kMaxPending) finish();
-    cl::Event event;
-    guarded(what, [&] { enqueue(&event); });
-    pending_.push_back({std::move(record), std::move(event)});
 }
 
 void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes) {
@@ -173,115 +162,6 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
     if (builds_ == nullptr) return;
     for (KernelBuild& build : *builds_)
         if (build.program() == program()) build.launch_s += seconds_since(start);
-}
-
-void Session::write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
-                          std::size_t bytes, const void* from) {
-    if (bytes == 0) return;
-    if (pinned_ || bytes <= staging_->half_bytes())
-        return write_staged(label, to, name, offset, bytes, static_cast<const std::byte*>(from));
-    submit(fmt::format("'{}': writing {} bytes into buffer '{}'", label, bytes, name),
-           {.label = label, .kind = "write", .bytes = bytes, .object = name},
-           [&](cl::Event* event) { queue_->enqueueWriteBuffer(to, CL_TRUE, offset, bytes, from, nullptr, event); });
-}
-
-void Session::read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
-                         std::size_t bytes, void* to) {
-    if (bytes == 0) return;
-    if (pinned_) return read_staged(label, from, name, offset, bytes, static_cast<std::byte*>(to));
-    submit(fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name),
-           {.label = label, .kind = "read", .bytes = bytes, .object = name},
-           [&](cl::Event* event) { queue_->enqueueReadBuffer(from, CL_TRUE, offset, bytes, to, nullptr, event); });
-}
-
-void Session::write_staged(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
-                           std::size_t bytes, const std::byte* from) {
-    for (std::size_t done = 0; done < bytes; done += staging_->half_bytes()) {
-        const std::size_t part = std::min(bytes - done, staging_->half_bytes());
-        const std::string what = fmt::format("'{}': writing {} bytes into buffer '{}'", label, part, name);
-        const Staging::Place place = guarded(what, [&] { return staging_->take(part); });
-        std::memcpy(place.bytes, from + done, part);
-        submit(what, {.label = label, .kind = "write", .bytes = part, .object = name}, [&](cl::Event* event) {
-            queue_->enqueueWriteBuffer(to, CL_FALSE, offset + done, part, place.bytes, nullptr, event);
-            place.half.used_by(*event);
-        });
-    }
-}
-
-void Session::read_staged(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
-                          std::size_t bytes, std::byte* to) {
-    std::optional<Staging::Place> before;  // staging memory of the previous part, which starts at byte `taken`
-    std::size_t taken = 0;
-    const std::string what = fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name);
-    const auto take = [&](std::size_t part) {
-        guarded(what, [&] { before->half.wait(); });
-        std::memcpy(to + taken, before->bytes, part);
-        taken += part;
-    };
-    for (std::size_t done = 0; done < bytes; done += staging_->half_bytes()) {
-        const std::size_t part = std::min(bytes - done, staging_->half_bytes());
-        const Staging::Place place = guarded(what, [&] { return staging_->take(part); });
-        submit(what, {.label = label, .kind = "read", .bytes = part, .object = name}, [&](cl::Event* event) {
-            queue_->enqueueReadBuffer(from, CL_FALSE, offset + done, part, place.bytes, nullptr, event);
-            place.half.used_by(*event);
-        });
-        guarded(what, [&] { queue_->flush(); });
-        if (before) take(staging_->half_bytes());
-        before.emplace(place);
-    }
-    take(bytes - taken);
-}
-
-std::unique_ptr<HostMemory> Session::host_memory(const std::string& name, std::size_t bytes) const {
-    return guarded(fmt::format("allocating {} bytes of host memory for '{}'", bytes, name),
-                   [&] { return std::make_unique<HostMemory>(context_, *queue_, memory_kind(pinned_), bytes); });
-}
-
-void Session::read_async(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
-                         std::size_t bytes, HostMemory& to, std::size_t to_offset) {
-    if (bytes == 0) return;
-    submit(fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name),
-           {.label = label, .kind = "read", .bytes = bytes, .object = name}, [&](cl::Event* event) {
-               queue_->enqueueReadBuffer(from, CL_FALSE, offset, bytes, to.bytes() + to_offset, nullptr, event);
-               to.used_by(*event);
-           });
-}
-
-void Session::wait_for(const std::string& label, HostMemory& memory) {
-    guarded(fmt::format("'{}': waiting for a read", label), [&] { memory.wait(); });
-}
-
-void Session::copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes) {
-    if (bytes == 0) return;
-    submit(fmt::format("'{}': copying {} bytes of buffer '{}' into buffer '{}'", label, bytes, from.name, to.name),
-           {.label = label, .kind = "copy", .bytes = bytes, .object = copied(from.name, to.name)},
-           [&](cl::Event* event) {
-               queue_->enqueueCopyBuffer(from.memory, to.memory, from.offset, to.offset, bytes, nullptr, event);
-           });
-}
-
-void Session::copy_rows(const std::string& label, const Place& from, std::size_t from_pitch, const Place& to,
-                        std::size_t to_pitch, std::size_t bytes, std::size_t rows) {
-    if (bytes == 0 || rows == 0) return;
-    submit(fmt::format("'{}': copying {} rows of {} bytes of buffer '{}' into buffer '{}'", label, rows, bytes,
-                       from.name, to.name),
-           {.label = label, .kind = "copy", .bytes = bytes * rows, .object = copied(from.name, to.name)},
-           [&](cl::Event* event) {
-               queue_->enqueueCopyBufferRect(from.memory, to.memory, {from.offset, 0, 0}, {to.offset, 0, 0},
-                                             {bytes, rows, 1}, from_pitch, 0, to_pitch, 0, nullptr, event);
-           });
-}
-
-void Session::fill_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t bytes,
-                         const void* value, std::size_t value_bytes) {
-    submit(fmt::format("'{}': filling buffer '{}' of {} bytes", label, name, bytes),
-           {.label = label, .kind = "fill", .bytes = bytes, .object = name}, [&](cl::Event* event) {
-               cl_event filled = nullptr;
-               const cl_int code =
-                   clEnqueueFillBuffer((*queue_)(), to(), value, value_bytes, 0, bytes, 0, nullptr, &filled);
-               if (code != CL_SUCCESS) throw cl::Error(code, "clEnqueueFillBuffer");
-               *event = cl::Event(filled);
-           });
 }
 
 CommandRecord Session::finished(const Pending& pending) const {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "host/cl/device.hpp"
+#include "host/cl/error_names.hpp"
 #include "host/cl/memory.hpp"
 #include "host/cl/opencl.hpp"
 #include "host/cl/profile.hpp"
@@ -157,16 +158,16 @@ class Session {
         fill_bytes(label, to.memory(), to.name(), to.bytes(), &value, sizeof(T));
     }
 
-    /// For traces: from now on, step() and build() add entries to `steps`, which must outlive the session, and the
+    /// For traces: from now on, span() and build() add entries to `spans`, which must outlive the session, and the
     /// profile contains the arguments of the next `launches` kernel launches, with their names if the program is built
     /// after this call.
-    void observe(StepLog& steps, std::size_t launches) {
-        steps_ = &steps;
+    void observe(SpanLog& spans, std::size_t launches) {
+        spans_ = &spans;
         recorded_launches_ = launches;
     }
 
-    /// Enables the messages of compiling().
-    void announce_compiling() { announces_ = true; }
+    /// Enables the messages of compile_notice().
+    void announce_compiling() { announces_compiling_ = true; }
 
     /// From now on, adds an entry to `builds` for each program that is built, with the time of the first launches of
     /// its kernels. A null pointer ends the recording.
@@ -177,10 +178,10 @@ class Session {
 
     /// Returns the thread of announce_compiling() (base/progress.hpp), or an empty one if messages are not enabled.
     /// Keep it while kernels are compiled and launched for the first time.
-    [[nodiscard]] std::jthread compiling() const;
+    [[nodiscard]] std::jthread compile_notice() const;
 
-    /// Starts a host step, which ends when the returned object is destroyed. Records it in the StepLog of observe().
-    [[nodiscard]] StepLog::Step step(const std::string& name) const { return StepLog::Step(steps_, name); }
+    /// Starts a host span, which ends when the returned object is destroyed. Records it in the SpanLog of observe().
+    [[nodiscard]] SpanLog::Span span(const std::string& name) const { return SpanLog::Span(spans_, name); }
 
     /// Submits all enqueued commands to the device (clFlush): until then a driver may defer them. Does not wait.
     void flush();
@@ -235,6 +236,10 @@ class Session {
     void submit(const std::string& what, CommandRecord record, Enqueue&& enqueue);
     CommandRecord finished(const Pending& pending) const;
 
+    // Events occupy memory of the driver until their times are read, so a session waits for the device and reads the
+    // times when this many commands are pending.
+    static constexpr std::size_t kMaxPending = 4096;
+
     cl::Device device_;
     DeviceInfo info_;
     mutable std::uint64_t bytes_taken_ = 0;
@@ -248,9 +253,17 @@ class Session {
     bool logs_builds_ = logs_kernel_builds();
     std::vector<KernelBuild>* builds_ = nullptr;
     std::set<std::pair<cl_kernel, std::size_t>> launched_;  // kernel, group size; if builds are recorded or logged
-    bool announces_ = false;
-    StepLog* steps_ = nullptr;
+    bool announces_compiling_ = false;
+    SpanLog* spans_ = nullptr;
     std::size_t recorded_launches_ = 0;  // number of further launches whose arguments are recorded
 };
+
+template <class Enqueue>
+void Session::submit(const std::string& what, CommandRecord record, Enqueue&& enqueue) {
+    if (pending_.size() >= kMaxPending) finish();
+    cl::Event event;
+    guarded(what, [&] { enqueue(&event); });
+    pending_.push_back({std::move(record), std::move(event)});
+}
 
 }  // namespace raya

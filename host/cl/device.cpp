@@ -64,19 +64,19 @@ std::vector<std::size_t> usable_of(const std::string& type, const std::vector<De
     return found;
 }
 
-std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t turn) {
+std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t ordinal) {
     for (const char* type : {"gpu", "cpu", "other"}) {
         const std::vector<std::size_t> found = usable_of(type, devices);
-        if (!found.empty()) return found[turn % found.size()];
+        if (!found.empty()) return found[ordinal % found.size()];
     }
     throw DeviceError("no available OpenCL device has a compiler; see clinfo; devices:" + list_of(devices));
 }
 
-/// Returns entry `turn` modulo the number of entries of a comma-separated list.
-std::string entry_of(const std::string& list, std::size_t turn) {
+/// Returns entry `ordinal` modulo the number of entries of a comma-separated list.
+std::string entry_of(const std::string& list, std::size_t ordinal) {
     const auto entries = static_cast<std::size_t>(1 + std::count(list.begin(), list.end(), ','));
     std::size_t begin = 0;
-    for (std::size_t i = turn % entries; i > 0; --i) begin = list.find(',', begin) + 1;
+    for (std::size_t i = ordinal % entries; i > 0; --i) begin = list.find(',', begin) + 1;
     return list.substr(begin, list.find(',', begin) - begin);
 }
 
@@ -162,7 +162,7 @@ DeviceInfo device_info(const cl::Device& device) {
     });
 }
 
-std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices, std::size_t turn) {
+std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices, std::size_t ordinal) {
     if (devices.empty()) {
         const std::string limit = memory_limit();
         throw DeviceError(fmt::format(
@@ -170,8 +170,8 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
             "environment variable OCL_ICD_VENDORS, which may hide it, and the output of clinfo",
             limit.empty() ? "" : fmt::format("raise {}, which may be too low for a driver, ", limit)));
     }
-    const std::string one = entry_of(wanted, turn);
-    if (one.empty()) return default_index(devices, turn);
+    const std::string one = entry_of(wanted, ordinal);
+    if (one.empty()) return default_index(devices, ordinal);
     const std::size_t found = named_index(one, devices);
     if (found == devices.size()) {
         throw DeviceError(fmt::format(
@@ -186,7 +186,7 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
     return found;
 }
 
-cl::Device choose_device(const std::string& name_part, std::size_t turn) {
+cl::Device choose_device(const std::string& name_part, std::size_t ordinal) {
     const std::vector<cl::Device> devices = all_devices();
     if (devices.empty())
         if (const std::string problem = driver_cache_problem(); !problem.empty()) throw DeviceError(problem);
@@ -194,7 +194,7 @@ cl::Device choose_device(const std::string& name_part, std::size_t turn) {
     for (const cl::Device& device : devices) infos.push_back(device_info(device));
     const char* fallback = std::getenv("RAYA_DEVICE");
     const std::string wanted = name_part.empty() && fallback != nullptr ? fallback : name_part;
-    const std::size_t index = device_index(wanted, infos, turn);
+    const std::size_t index = device_index(wanted, infos, ordinal);
     log_message(kVerbose, fmt::format("device {}: {} ({}, {}, driver {})", index, infos[index].name,
                                       infos[index].platform, infos[index].version, infos[index].driver));
     return devices[index];

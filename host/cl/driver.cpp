@@ -236,12 +236,12 @@ void set_driver_cache_folder() {
 }
 
 std::string driver_cache_problem() {
-    constexpr std::size_t kEnough = 1 << 20;  // bytes; more than a compiled kernel takes
+    constexpr std::size_t kProbeBytes = 1 << 20;  // bytes; more than a compiled kernel takes
     const fs::path folder = variable(kVariable), probe = folder / fmt::format("raya-{}", ::getpid());
     try {
         std::error_code error;
         fs::create_directories(folder, error);
-        write_whole_file(probe, std::string(kEnough, 'x'));
+        write_whole_file(probe, std::string(kProbeBytes, 'x'));
         fs::remove(probe, error);
         return {};
     } catch (const UserError& error) {

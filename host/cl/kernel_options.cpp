@@ -32,7 +32,7 @@ void check_tuning(const KernelTuning& more) {
 void check_kernel_options(const KernelOptions& options, const DeviceInfo& device) {
     if (std::find(kLanes.begin(), kLanes.end(), options.lanes) == kLanes.end())
         throw UserError(fmt::format("--lanes {}: must be 1, 4, 8 or 16", options.lanes));
-    const std::uint32_t max_size = largest_group_size(device);
+    const std::uint32_t max_size = max_group_size_of(device);
     if (options.group_size < 1 || options.group_size > max_size)
         throw UserError(
             fmt::format("--group {}: must be 1..{} work-items on {}", options.group_size, max_size, device.name));
@@ -41,7 +41,7 @@ void check_kernel_options(const KernelOptions& options, const DeviceInfo& device
     check_tuning(options.more);
 }
 
-std::uint32_t largest_group_size(const DeviceInfo& device) {
+std::uint32_t max_group_size_of(const DeviceInfo& device) {
     return static_cast<std::uint32_t>(std::min<std::size_t>(kMaxGroup, device.max_group_size));
 }
 

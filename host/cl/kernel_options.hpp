@@ -73,7 +73,7 @@ std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false);
 bool filters_are_valid(const NumberFormat& format, double extent);
 
 /// The maximum group size of the kernels on this device.
-std::uint32_t largest_group_size(const DeviceInfo& device);
+std::uint32_t max_group_size_of(const DeviceInfo& device);
 
 /// Returns true if the device's compiler has an option that limits registers (NVIDIA).
 bool supports_register_limit(const DeviceInfo& device);
@@ -81,7 +81,7 @@ bool supports_register_limit(const DeviceInfo& device);
 /// The value of RAYA_TREES in kernels built with these options.
 std::uint32_t trees_of(const KernelOptions& options);
 
-/// Throws UserError for lanes other than 1, 4, 8, 16, a group size outside 1..largest_group_size(), more than 31
+/// Throws UserError for lanes other than 1, 4, 8, 16, a group size outside 1..max_group_size_of(), more than 31
 /// bounces, or tuning parameters outside their ranges.
 void check_kernel_options(const KernelOptions& options, const DeviceInfo& device);
 

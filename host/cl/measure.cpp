@@ -124,7 +124,7 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
     return best;
 }
 
-ClockAnchor anchor_between(std::uint64_t before, std::uint64_t queued, std::uint64_t after) {
+ClockOffset clock_offset_of(std::uint64_t before, std::uint64_t queued, std::uint64_t after) {
     if (before <= queued && queued <= after) return {};
     const std::uint64_t half = (after - before) / 2;
     return {.same_clock = false,
@@ -132,21 +132,22 @@ ClockAnchor anchor_between(std::uint64_t before, std::uint64_t queued, std::uint
             .uncertainty_ns = half + (after - before) % 2};
 }
 
-ClockAnchor clock_anchor(Session& session) {
-    if (!session.profile().timed()) throw std::logic_error("clock_anchor: the device does not time its commands");
+ClockOffset measure_clock_offset(Session& session) {
+    if (!session.profile().timed())
+        throw std::logic_error("measure_clock_offset: the device does not time its commands");
     constexpr int kTries = 16;
-    Buffer<std::uint32_t> word = session.buffer<std::uint32_t>("anchor of clocks", 1);
+    Buffer<std::uint32_t> word = session.buffer<std::uint32_t>("clock offset", 1);
     std::uint64_t shortest = ~std::uint64_t{0};
-    ClockAnchor best;
+    ClockOffset best;
     for (int i = 0; i < kTries; ++i) {
         session.clear_profile();
         const std::uint64_t before = host_clock_ns();
-        session.fill("anchor", word, 0);
+        session.fill("clock offset", word, 0);
         const std::uint64_t after = host_clock_ns();
         const std::uint64_t queued = session.profile().commands().back().queued;
         if (after - before >= shortest) continue;
         shortest = after - before;
-        best = anchor_between(before, queued, after);
+        best = clock_offset_of(before, queued, after);
     }
     session.clear_profile();
     return best;

@@ -50,10 +50,10 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
 /// each: the time at which the command was queued lies between the two. Uses the command with the shortest interval.
 /// Later drift of the clocks is not detected. Clears the session's profile. Throws std::logic_error if the session does
 /// not time its commands.
-ClockAnchor clock_anchor(Session& session);
+ClockOffset measure_clock_offset(Session& session);
 
 /// The clock offset that follows from one command, which was queued at `queued` (device clock) between `before` and
 /// `after` (host clock). Times in ns.
-ClockAnchor anchor_between(std::uint64_t before, std::uint64_t queued, std::uint64_t after);
+ClockOffset clock_offset_of(std::uint64_t before, std::uint64_t queued, std::uint64_t after);
 
 }  // namespace raya

@@ -38,11 +38,11 @@ Staging::Staging(const cl::Context& context, const cl::CommandQueue& queue, Host
 
 Staging::Place Staging::take(std::size_t bytes) {
     if (bytes > half_bytes() - used_) {
-        turn_ = (turn_ + 1) % halves_.size();
-        halves_[turn_].wait();
+        current_half_ = (current_half_ + 1) % halves_.size();
+        halves_[current_half_].wait();
         used_ = 0;
     }
-    HostMemory& half = halves_[turn_];
+    HostMemory& half = halves_[current_half_];
     const Place place{half, half.bytes() + used_};
     used_ = std::min(half_bytes(), (used_ + bytes + kAlignment - 1) / kAlignment * kAlignment);
     return place;

@@ -115,7 +115,7 @@ class Staging {
 
   private:
     std::array<HostMemory, 2> halves_;
-    std::size_t turn_ = 0, used_ = 0;  // index of the current half; bytes reserved in it
+    std::size_t current_half_ = 0, used_ = 0;  // index of the current half; bytes reserved in it
 };
 
 }  // namespace raya

@@ -44,30 +44,30 @@ std::uint64_t host_clock_ns() {
            static_cast<std::uint64_t>(time.tv_nsec);
 }
 
-StepLog::Step::Step(StepLog* log, const std::string& name) : log_(log) {
+SpanLog::Span::Span(SpanLog* log, const std::string& name) : log_(log) {
     if (verbosity() >= kVerbose) {
         logged_name_ = name;
         started_ = host_clock_ns();
     }
     if (log_ == nullptr) return;
-    number_ = log_->steps_.size();
-    log_->steps_.push_back({name, host_clock_ns(), 0, log_->depth_++});
+    number_ = log_->spans_.size();
+    log_->spans_.push_back({name, host_clock_ns(), 0, log_->depth_++});
 }
 
-StepLog::Step::~Step() {
+SpanLog::Span::~Span() {
     if (!logged_name_.empty())
         log_message(kVerbose,
                     fmt::format("{}: {:.3f} s", logged_name_, 1e-9 * static_cast<double>(host_clock_ns() - started_)));
     if (log_ == nullptr) return;
-    log_->steps_[number_].ended = host_clock_ns();
+    log_->spans_[number_].ended = host_clock_ns();
     --log_->depth_;
 }
 
-std::vector<HostStep> StepLog::steps() const {
-    std::vector<HostStep> all = steps_;
+std::vector<HostSpan> SpanLog::spans() const {
+    std::vector<HostSpan> all = spans_;
     const std::uint64_t now = host_clock_ns();
-    for (HostStep& step : all)
-        if (step.ended == 0) step.ended = now;
+    for (HostSpan& span : all)
+        if (span.ended == 0) span.ended = now;
     return all;
 }
 

@@ -1,4 +1,4 @@
-// Structs for timed device commands, timed host steps, and a device's peak rates.
+// Structs for timed device commands, timed host spans, and a device's peak rates.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -61,50 +61,50 @@ std::uint64_t host_clock_ns();
 
 /// The offset of a device's clock: a device time plus `offset_ns` is the same time on the host's clock,
 /// host_clock_ns().
-struct ClockAnchor {
+struct ClockOffset {
     bool same_clock = true;  // the device uses the host's clock, so offset_ns is 0
     std::int64_t offset_ns = 0;
     std::uint64_t uncertainty_ns = 0;  // offset_ns is correct within +- uncertainty_ns; 0 for the same clock
 };
 
-/// A timed part of the host program's work (a span, in tracing terms). Two steps are either nested or disjoint.
-struct HostStep {
+/// A timed part of the host program's work (a span, in tracing terms). Two spans are either nested or disjoint.
+struct HostSpan {
     std::string name;
     std::uint64_t started = 0, ended = 0;  // host_clock_ns()
-    std::size_t depth = 0;                 // number of enclosing steps
+    std::size_t depth = 0;                 // number of enclosing spans
 };
 
-/// Records the steps of the host.
-class StepLog {
+/// Records the spans of the host.
+class SpanLog {
   public:
-    /// A step, which lasts as long as this object. When it ends, it is logged at level kVerbose (host/base/log.hpp). It
+    /// A span, which lasts as long as this object. When it ends, it is logged at level kVerbose (host/base/log.hpp). It
     /// is recorded in `log`, unless that is a null pointer.
-    class Step {
+    class Span {
       public:
-        Step(StepLog* log, const std::string& name);
-        ~Step();
-        Step(const Step&) = delete;
-        Step& operator=(const Step&) = delete;
+        Span(SpanLog* log, const std::string& name);
+        ~Span();
+        Span(const Span&) = delete;
+        Span& operator=(const Span&) = delete;
 
       private:
-        StepLog* log_;
+        SpanLog* log_;
         std::size_t number_ = 0;
-        std::string logged_name_{};  // empty: the step is not logged
+        std::string logged_name_{};  // empty: the span is not logged
         std::uint64_t started_ = 0;
     };
 
-    /// Runs `action` as a step and returns its result.
+    /// Runs `action` as a span and returns its result.
     template <class Action>
     decltype(auto) during(const std::string& name, Action&& action) {
-        const Step step(this, name);
+        const Span span(this, name);
         return std::forward<Action>(action)();
     }
 
-    /// All steps in the order in which they began. A step that is still running gets the current time as its end.
-    std::vector<HostStep> steps() const;
+    /// All spans in the order in which they began. A span that is still running gets the current time as its end.
+    std::vector<HostSpan> spans() const;
 
   private:
-    std::vector<HostStep> steps_;
+    std::vector<HostSpan> spans_;
     std::size_t depth_ = 0;
 };
 

@@ -14,12 +14,12 @@ TunedSource& source_in_use() {
 
 }  // namespace
 
-TunedValues default_values(const DeviceInfo& device, const TunedFor& what) {
+TunedValues default_values(const DeviceInfo& device, const TuningKey& key) {
     constexpr std::uint32_t kSphereBatch = 16;  // fastest on llvmpipe (docs/tuning.md)
-    const bool ring_of_all = !what.torus && what.accel == RAYA_ACCEL_NONE;
+    const bool ring_of_all = !key.torus && key.accel == RAYA_ACCEL_NONE;
     return {.lanes = default_lanes(device),
-            .group = default_group_size(device, what.torus),
-            .batch = ring_of_all && what.fp32 && device.max_loop_iterations > 0 ? kSphereBatch : 0};
+            .group = default_group_size(device, key.torus),
+            .batch = ring_of_all && key.fp32 && device.max_loop_iterations > 0 ? kSphereBatch : 0};
 }
 
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values) {
@@ -39,17 +39,17 @@ ScopedTunedSource::ScopedTunedSource(TunedSource source) : before_(std::move(sou
 }
 ScopedTunedSource::~ScopedTunedSource() { source_in_use() = std::move(before_); }
 
-KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TunedFor& what) {
+KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key) {
     const bool links_named = kernels.link_move != LinkMove::kAutomatic;
     kernels.link_origin = links_named ? "options" : "";
     if (kernels.lanes == 0 && kernels.group_size == 0) {
-        const auto tuned = source_in_use() ? source_in_use()(device, what) : std::nullopt;
-        kernels = with_values(kernels, tuned ? tuned->values : default_values(device, what));
+        const auto tuned = source_in_use() ? source_in_use()(device, key) : std::nullopt;
+        kernels = with_values(kernels, tuned ? tuned->values : default_values(device, key));
         kernels.origin = tuned ? tuned->origin : "defaults";
         if (!links_named && kernels.link_move != LinkMove::kAutomatic) kernels.link_origin = kernels.origin;
         return kernels;
     }
-    const TunedValues defaults = default_values(device, what);
+    const TunedValues defaults = default_values(device, key);
     if (!kernels.lanes) kernels.lanes = defaults.lanes;
     if (!kernels.group_size) kernels.group_size = defaults.group;
     if (!kernels.more.sphere_batch) kernels.more.sphere_batch = defaults.batch;

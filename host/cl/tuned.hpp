@@ -14,11 +14,11 @@
 namespace raya {
 
 /// The kind of render that a set of values was tuned for.
-struct TunedFor {
+struct TuningKey {
     bool torus = false;                     // false: a ring
     std::uint32_t accel = RAYA_ACCEL_NONE;  // acceleration structure of a ring
     bool fp32 = true;                       // false: a reduced format
-    bool operator==(const TunedFor&) const = default;
+    bool operator==(const TuningKey&) const = default;
 };
 
 /// The tuned parameters. 0 means the default, except for lanes and group, which always have a value.
@@ -42,7 +42,7 @@ inline constexpr std::array<std::pair<const char*, std::uint32_t TunedValues::*>
      {"link_exchange", &TunedValues::link_exchange}}};
 
 /// The default values for a device that was not tuned.
-TunedValues default_values(const DeviceInfo& device, const TunedFor& what);
+TunedValues default_values(const DeviceInfo& device, const TuningKey& key);
 
 /// Returns `kernels` with these values, but with its own link_move unless that is kAutomatic. Throws UserError if
 /// link_exchange is out of range.
@@ -54,7 +54,7 @@ struct TunedChoice {
     std::string origin;
 };
 /// Returns the tuned values for a device and a kind of render; nothing if there are none.
-using TunedSource = std::function<std::optional<TunedChoice>(const DeviceInfo&, const TunedFor&)>;
+using TunedSource = std::function<std::optional<TunedChoice>(const DeviceInfo&, const TuningKey&)>;
 
 /// While this object exists, renders of this process for which the user sets neither lanes nor group size use the
 /// values from `source`. Without such an object, as in `raya verify`, they use the defaults.
@@ -73,6 +73,6 @@ class ScopedTunedSource {
 /// is the default, and `origin` is "options". Otherwise the values and `origin` are those of the tuned source; without
 /// tuned values they are the defaults, and `origin` is "defaults". `link_origin` is "options" if the user has set the
 /// link move, `origin` if the tuned values set it, and empty if it stays kAutomatic.
-KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TunedFor& what);
+KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key);
 
 }  // namespace raya

@@ -43,7 +43,7 @@ struct BenchCommand {
 };
 
 // Checks --tolerance, --page and --compare before measuring. Returns the baseline, empty without --compare.
-BenchReport checked_files(const BenchCommand& command) {
+BenchReport read_baseline(const BenchCommand& command) {
     if (!(command.tolerance >= 0 && command.tolerance <= 100))
         throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance));
     if (!command.page.empty()) check_page_name("--page", command.page);
@@ -53,12 +53,12 @@ BenchReport checked_files(const BenchCommand& command) {
 
 void check_comparable(const BenchCommand& command, const BenchReport& baseline, const BenchReport& now) {
     if (command.baseline.empty() || rows_in_common(baseline, now) > 0) return;
-    const BenchMeasurement &was = baseline.rows.front(), &is = now.rows.front();
+    const BenchMeasurement &old_row = baseline.rows.front(), &new_row = now.rows.front();
     throw UserError(fmt::format(
         "{}: contains no row of this run: it has {}, {}, {}, {}, {} lanes, group {}; this run has {}, {}, {}, {}, {} "
         "lanes, group {}; remedy: the same scene and options, or a new baseline (raya bench --report)",
-        command.baseline, was.scene, was.size, was.array, was.format, was.lanes, was.group_size, is.scene, is.size,
-        is.array, is.format, is.lanes, is.group_size));
+        command.baseline, old_row.scene, old_row.size, old_row.array, old_row.format, old_row.lanes, old_row.group_size,
+        new_row.scene, new_row.size, new_row.array, new_row.format, new_row.lanes, new_row.group_size));
 }
 
 void finish(const BenchCommand& command, const BenchReport& baseline, BenchReport now) {
@@ -76,8 +76,8 @@ void finish(const BenchCommand& command, const BenchReport& baseline, BenchRepor
                result.text);
     std::fflush(stdout);
     if (result.failed())
-        throw CheckFailure{fmt::format("{}: of {} {} slower by more than {} %, {} with a different image",
-                                       command.baseline, counted(result.compared, "row"), result.slower,
+        throw CheckFailure{fmt::format("{}: {} of {} slower by more than {} %, {} with a different image",
+                                       command.baseline, result.slower, counted(result.compared, "row"),
                                        command.tolerance, result.other_images)};
     fmt::print("{} compared, none slower by more than {} %, all images equal\n", counted(result.compared, "row"),
                command.tolerance);
@@ -112,13 +112,13 @@ std::vector<BenchRow> rows_of(const BenchCommand& command, Session& session, con
 
 std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session, const Scene& scene,
                                    const RingSettings& settings, const std::vector<NumberFormat>& formats) {
-    RingSettings flushing = settings;
-    flushing.kernels.sources.more_options.emplace_back("-cl-denorms-are-zero");
+    RingSettings flushed_settings = settings;
+    flushed_settings.kernels.sources.more_options.emplace_back("-cl-denorms-are-zero");
     std::vector<BenchRow> rows;
     for (const NumberFormat& format : formats) {
         std::ranges::move(rows_of(command, session, scene, settings, format), std::back_inserter(rows));
         if (!command.denormals) continue;
-        for (BenchRow& row : rows_of(command, session, scene, flushing, format)) {
+        for (BenchRow& row : rows_of(command, session, scene, flushed_settings, format)) {
             row.flushed = true;
             row.result.kernel += ", flushed";
             rows.push_back(std::move(row));
@@ -129,13 +129,13 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
 }
 
 // Refuses options that would have no effect.
-void refuse_ignored(const CLI::App& parsed, const BenchCommand& command) {
+void refuse_unused_options(const CLI::App& parsed, const BenchCommand& command) {
     if (std::ranges::count(command.variants, "torus") < std::max(1L, std::ssize(command.variants))) return;
     for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
         if (parsed.count(option) > 0)
             throw UserError(
-                fmt::format("{} with --variants torus, which has 4x4x4 nodes without a memory limit: leave out {}, or "
-                            "add the variant none",
+                fmt::format("{} with --variants torus: the torus has 4x4x4 nodes without a memory limit; leave out {}, "
+                            "or add the variant none",
                             option, option));
 }
 
@@ -147,7 +147,7 @@ Scene scene_of(const BenchCommand& command) {
     return scene;
 }
 
-// --build.
+// Measures compilation, for --build.
 BenchReport time_builds(const BenchCommand& command, Session& session, const Scene& scene, const RingSettings& settings,
                         const std::vector<NumberFormat>& formats) {
     const std::vector<std::string> variants =
@@ -170,11 +170,11 @@ void print_tables(const BenchCommand& command, Session& session, const std::vect
 void bench(const CLI::App& parsed, BenchCommand command) {
     Warnings warnings;
     warn_of_build_options(warnings);
-    refuse_ignored(parsed, command);
+    refuse_unused_options(parsed, command);
     check_build_options(command);
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
-    const BenchReport baseline = checked_files(command);
+    const BenchReport baseline = read_baseline(command);
     const std::vector<NumberFormat> formats =
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
     command.render.format.clear();

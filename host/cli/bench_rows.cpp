@@ -107,17 +107,17 @@ BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, 
 
 BenchRow render_row(Session& session, const Scene& scene, const RingSettings& settings, const NumberFormat& format,
                     const std::string& variant) {
-    const TunedFor what = Workload{variant, format}.what();
+    const TuningKey key = Workload{variant, format}.key();
     RingSettings s = settings;
     s.format = format;
-    if (what.torus) {
+    if (key.torus) {
         const TorusSettings t = torus_of(s);
         const std::string array = fmt::format("4x4x4 nodes, torus3d, 4x4x4 voxels, {} bounces", t.bounces);
         return row_of(make_measurement("torus", scene, s, array), format,
                       std::make_shared<TorusRenderer>(session, scene, t), events_of_torus,
                       [](const TorusResult& r) { return r.render_s; });
     }
-    s.accel = {.kind = static_cast<AccelKind>(what.accel)};
+    s.accel = {.kind = static_cast<AccelKind>(key.accel)};
     return row_of(make_measurement("render, " + variant, scene, s, array_text(s)), format,
                   std::make_shared<RingRenderer>(session, scene, s), events_of_ring,
                   [](const RingResult& r) { return r.render_s; });
@@ -130,8 +130,8 @@ void check_rows(const std::vector<BenchRow>& rows) {
         const bool same_counts = row.result.kernel != first.result.kernel || row.events == first.events;
         if (row.result.hash == first.result.hash && row.result.rays == first.result.rays && same_counts) continue;
         throw DeviceError(fmt::format(
-            "{}: {}, {} lanes: the image or its counts differ from {}, {} lanes: {} and {}; the device or its compiler "
-            "is wrong",
+            "{}: {}, {} lanes: the image or its counts differ from {}, {} lanes: {} and {}: the device or its compiler "
+            "is wrong; run raya verify to find the error",
             row.result.format, row.result.kernel, row.result.lanes, first.result.kernel, first.result.lanes,
             row.result.hash, first.result.hash));
     }

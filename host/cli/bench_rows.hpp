@@ -39,8 +39,8 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
 /// kernel in event counts. Skips rows that flush denormal numbers.
 void check_rows(const std::vector<BenchRow>& rows);
 
-/// Takes `samples` time samples of each row. A sample is the mean time of as many images as take 20 ms. The rows take
-/// turns, so that a disturbance of the computer affects all of them.
+/// Takes `samples` time samples of each row. A sample is the mean time of as many images as take 20 ms. The rows
+/// alternate, so that other programs disturb all of them equally.
 void take_samples(std::vector<BenchRow>& rows, std::uint32_t samples);
 
 /// Prints the rays per second, times, speed-up and slow-down of each row.

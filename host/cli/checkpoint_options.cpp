@@ -71,8 +71,8 @@ void check_checkpoint_options(const CLI::App& command, const CheckpointOptions& 
 CheckpointFile::CheckpointFile(const CheckpointOptions& options) : options_(options) {
     hooks_.band_s = std::clamp(options.every_s / 4, kMinBandS, kMaxBandS);
     hooks_.due = [this] { return due(); };
-    hooks_.keep = [this](const RingState& state, const StateSettings& settings) { save(state, settings); };
-    hooks_.resume = [this](const StateSettings& settings, const RingState& like) { return load(settings, like); };
+    hooks_.save = [this](const RingState& state, const StateSettings& settings) { save(state, settings); };
+    hooks_.resume = [this](const StateSettings& settings, const RingState& shape) { return load(settings, shape); };
 }
 
 bool CheckpointFile::due() const {
@@ -87,10 +87,10 @@ void CheckpointFile::save(const RingState& state, const StateSettings& settings)
     save_s_ = std::chrono::duration<double>(saved_ - start).count();
 }
 
-std::optional<RingState> CheckpointFile::load(const StateSettings& settings, const RingState& like) const {
+std::optional<RingState> CheckpointFile::load(const StateSettings& settings, const RingState& shape) const {
     if (!options_.resume || !fs::exists(options_.file)) return {};
     try {
-        const RingState state = read_state(read_file(options_.file), settings, like);
+        const RingState state = read_state(read_file(options_.file), settings, shape);
         if (!is_quiet())
             print_log(fmt::format("raya: {}: continuing at {:.1f} %, after {:.1f} s\n", options_.file,
                                   100 * state.share, state.seconds));

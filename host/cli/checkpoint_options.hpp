@@ -38,7 +38,7 @@ class CheckpointFile {
   private:
     bool due() const;
     void save(const RingState& state, const StateSettings& settings);
-    std::optional<RingState> load(const StateSettings& settings, const RingState& like) const;
+    std::optional<RingState> load(const StateSettings& settings, const RingState& shape) const;
 
     const CheckpointOptions& options_;
     RingCheckpointing hooks_;

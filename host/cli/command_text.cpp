@@ -34,10 +34,10 @@ bool starts_with_one_of(const std::string& text, const std::vector<std::string>&
     return std::any_of(starts.begin(), starts.end(), [&](const std::string& one) { return text.starts_with(one); });
 }
 
-constexpr std::size_t kIndent = 2;        // blanks before names below a heading
-constexpr std::size_t kFarIndent = 6;     // blanks before descriptions below the names
-constexpr std::size_t kLongestName = 24;  // longer names have a separate line
-constexpr std::size_t kTwoColumns = 60;   // minimum line width for descriptions next to the names
+constexpr std::size_t kIndent = 2;          // blanks before names below a heading
+constexpr std::size_t kFarIndent = 6;       // blanks before descriptions below the names
+constexpr std::size_t kMaxNameColumn = 24;  // longer names have a separate line
+constexpr std::size_t kTwoColumns = 60;     // minimum line width for descriptions next to the names
 
 struct Entry {
     std::string name, description;
@@ -163,15 +163,15 @@ class HelpPage {
     }
 
     void widen_for(const std::string& name) {
-        if (name.size() <= kLongestName) longest_ = std::max(longest_, name.size());
+        if (name.size() <= kMaxNameColumn) max_name_ = std::max(max_name_, name.size());
     }
 
     std::string line_of(const Entry& entry) const {
         const bool two_columns = width_ >= kTwoColumns;
-        const std::size_t column = two_columns ? kIndent + longest_ + 2 : kFarIndent;
+        const std::size_t column = two_columns ? kIndent + max_name_ + 2 : kFarIndent;
         std::string text = std::string(kIndent, ' ') + entry.name;
         if (entry.description.empty()) return text + '\n';
-        if (two_columns && entry.name.size() <= longest_)
+        if (two_columns && entry.name.size() <= max_name_)
             text += std::string(column - text.size(), ' ');
         else
             text += '\n' + std::string(column, ' ');
@@ -179,7 +179,7 @@ class HelpPage {
     }
 
     std::size_t width_;
-    std::size_t longest_ = 0;
+    std::size_t max_name_ = 0;
 };
 
 }  // namespace

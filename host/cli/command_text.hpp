@@ -11,9 +11,9 @@ struct OptionText {
     std::vector<std::string> names{};    // "-o", "--output"; or "SCENE" for a positional argument
     std::string value{};                 // placeholder of the value: "FILE.json", "N|WxH"; empty: a flag
     std::string default_value{};         // empty: no default, or `help` contains it
-    std::string help{};                  //
+    std::string help{};                  // the full text
     std::string group{};                 // heading above the option in help
-    bool required = false;               //
+    bool required = false;               // must be given
     bool repeated = false;               // may have several values
     std::vector<std::string> choices{};  // legal values; empty if they are not a finite list
 

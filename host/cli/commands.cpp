@@ -130,7 +130,7 @@ int flush_stdout(Ranks& ranks, int code) {
 
 // Lets only rank 0 report a signal. Called before the start of MPI, which takes long enough for a signal to arrive.
 void silence_signals_of_other_ranks() {
-    const std::optional<Launch> launch = launched();
+    const std::optional<Launch> launch = find_launch();
     if (launch && launch->rank != 0) suppress_interrupt_message();
 }
 
@@ -141,7 +141,7 @@ void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
         if (command->get_name() != "render" && command->get_name() != "ping")
             command->preparse_callback([name = command->get_name()](std::size_t) {
                 throw UserError(fmt::format(
-                    "{} runs in one process, only render and ping in several; start it without mpirun", name));
+                    "{} runs in one process: only render and ping support several; start it without mpirun", name));
             });
 }
 
@@ -157,7 +157,7 @@ int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
 
 // Reports an error that happens in every process before ranks exist. Only the first process prints it.
 int fail_at_start(const std::string& text, int code) {
-    const std::optional<Launch> launch = launched();
+    const std::optional<Launch> launch = find_launch();
     return !launch || launch->rank == 0 ? Ranks::alone().fail(text, code) : code;
 }
 

@@ -42,12 +42,12 @@ RingSettings settings_of(const ExploreCommand& command, const Scene& scene) {
     RingSettings settings = ring_settings(command.render, scene);
     if (settings.dynamic)
         throw UserError(fmt::format(
-            "{}: a dynamic mapping; the explorer shows static mappings only: choose cyclic, column, rows, blocks, "
+            "{}: a dynamic mapping: the explorer shows static mappings only; choose cyclic, column, rows, blocks, "
             "grid, tiles or random{}",
             command.render.mapping.empty() ? "--machine " + command.render.machine
                                            : "--mapping " + command.render.mapping,
             command.render.mapping.empty() ? " with --mapping" : ""));
-    settings.keep_costs = true;
+    settings.record_costs = true;
     return settings;
 }
 

@@ -27,8 +27,9 @@ struct NamedFile {
 };
 
 /// Throws UserError if an output is the same file as an input or another output, also under another name (links), or if
-/// an output is not writable. Checks the files of the command's options and `more_outputs`. Called before the callback
-/// of every command; a command whose output names are derived passes them as `more_outputs` before it writes.
+/// an output is not writable. Checks the files of the command's options and `more_outputs`. The parser calls it before
+/// the callback of every command. A command that derives further output names from an option calls it again with them
+/// before it writes.
 void check_files(const CLI::App& command, const std::vector<NamedFile>& more_outputs = {});
 
 }  // namespace raya

@@ -37,7 +37,7 @@ std::vector<Frame> frames_on_path(const FrameOptions& o, const View& view) {
     FrameRange range{1, static_cast<std::uint32_t>(cameras.size())};
     if (!o.frames.empty()) range = parse_frames(o.frames);
     if (range.first < 1 || range.last > cameras.size())
-        throw UserError(fmt::format("--frames {}: {} has {}, frames 1 to {}", o.frames, o.camera_path,
+        throw UserError(fmt::format("--frames {}: {} has {}; choose frames of 1 to {}", o.frames, o.camera_path,
                                     counted(cameras.size(), "camera"), cameras.size()));
     std::vector<Frame> frames;
     for (std::uint32_t n = range.first; n <= range.last; ++n) frames.push_back({n, cameras[n - 1]});

@@ -29,14 +29,14 @@ std::optional<std::string> hash_of_file(const fs::path& file) try {
 }
 
 Json json_of(const FrameEntry& e) {
-    Json files = Json::list();
+    Json files = Json::array();
     for (const auto& [name, hash] : e.files) files.push_back({{"name", name}, {"hash", hash}});
     return {{"number", e.number},       {"settings", e.settings}, {"pixels", e.pixels},
             {"imbalance", e.imbalance}, {"speed_up", e.speed_up}, {"files", files}};
 }
 
 FrameEntry entry_of(const Json& json) {
-    FrameEntry e{static_cast<std::uint32_t>(json.at("number").whole(UINT32_MAX)),
+    FrameEntry e{static_cast<std::uint32_t>(json.at("number").integer(UINT32_MAX)),
                  json.at("settings").text(),
                  json.at("pixels").text(),
                  json.at("imbalance").number(),
@@ -112,7 +112,7 @@ const FrameEntry& FrameRecord::add(FrameEntry entry, const std::vector<std::stri
     const std::uint32_t number = entry.number;
     entries_.insert_or_assign(number, std::move(entry));
     added_.insert(number);
-    if (Clock::now() - written_ >= 20 * writing_) write();
+    if (Clock::now() - last_write_ >= 20 * write_duration_) write();
     return entries_.at(number);
 }
 
@@ -125,11 +125,11 @@ void FrameRecord::write() {
     const Clock::time_point start = Clock::now();
     const FolderLock lock(file_);
     read();
-    Json frames = Json::list();
+    Json frames = Json::array();
     for (const auto& [number, entry] : entries_) frames.push_back(json_of(entry));
     write_whole_file(file_, Json{{"kind", kKind}, {"raya", raya_version()}, {"frames", frames}}.dump(2) + "\n");
-    written_ = Clock::now();
-    writing_ = written_ - start;
+    last_write_ = Clock::now();
+    write_duration_ = last_write_ - start;
 }
 
 std::string frame_record_file(const std::string& image) {

@@ -47,8 +47,8 @@ class FrameRecord {
     std::filesystem::path file_;
     std::map<std::uint32_t, FrameEntry> entries_;  // by frame number
     std::set<std::uint32_t> added_;                // numbers of the frames that this object added
-    Clock::time_point written_{};
-    Clock::duration writing_{};  // duration of the last write
+    Clock::time_point last_write_{};
+    Clock::duration write_duration_{};  // duration of the last write
 };
 
 /// Returns the path of the record for `image`: "turn-frames.json" for "turn.png".

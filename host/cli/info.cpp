@@ -50,11 +50,11 @@ void add_options(CLI::App& command, InfoCommand& options) {
 std::vector<MachineNeeds> needs_of_machines(const CLI::App& parsed, const InfoCommand& command, SceneNeeds& needs) {
     if (parsed.count("--machine") > 0) {
         refuse_options_of_other_machines(parsed, machine_named(command.render.machine));
-        return {needs.of(command.render.machine)};
+        return {needs.needs_of(command.render.machine)};
     }
     std::vector<MachineNeeds> all;
     for (const Machine& machine : machines()) try {
-            all.push_back(needs.of(machine.name));
+            all.push_back(needs.needs_of(machine.name));
         } catch (const UserError& error) {
             all.push_back({.machine = machine.name,
                            .format = {},

@@ -95,13 +95,13 @@ std::string grouped(const CommandText& command, Heading&& make_heading) {
     return text;
 }
 
-bool take_same_options(const CommandText& a, const CommandText& b) {
-    const auto alike = [](const std::vector<OptionText>& x, const std::vector<OptionText>& y) {
+bool have_same_options(const CommandText& a, const CommandText& b) {
+    const auto equal = [](const std::vector<OptionText>& x, const std::vector<OptionText>& y) {
         return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const OptionText& p, const OptionText& q) {
             return p.names == q.names && p.value == q.value && p.default_value == q.default_value && p.help == q.help;
         });
     };
-    return alike(a.arguments, b.arguments) && alike(a.options, b.options);
+    return equal(a.arguments, b.arguments) && equal(a.options, b.options);
 }
 
 std::string examples(const CommandText& command) {
@@ -127,7 +127,7 @@ std::string commands_below(const CommandText& command, const std::string& path) 
     while (!left.empty()) {
         const CommandText& first = *left.front();
         const auto others = std::stable_partition(left.begin(), left.end(),
-                                                  [&](const auto* one) { return take_same_options(*one, first); });
+                                                  [&](const auto* one) { return have_same_options(*one, first); });
         for (auto one = left.begin(); one != others; ++one)
             text += ".TP\n" + synopsis(**one, path + ' ' + (*one)->name) + line((*one)->summary);
         text += ".RS\n" + grouped(without(first, command.options), [](const std::string&) { return std::string(); });

@@ -6,21 +6,22 @@ namespace raya {
 namespace {
 
 /// Returns Damerau's edit distance from `a` to `b` without repeated edits of a character (optimal string alignment).
-std::size_t edits(const std::string& a, const std::string& b) {
-    std::vector<std::vector<std::size_t>> of(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+    std::vector<std::vector<std::size_t>> distance(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
     for (std::size_t i = 0; i <= a.size(); ++i) {
         for (std::size_t j = 0; j <= b.size(); ++j) {
             if (i == 0 || j == 0) {
-                of[i][j] = i + j;
+                distance[i][j] = i + j;
                 continue;
             }
             const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
-            of[i][j] = std::min({of[i - 1][j] + 1, of[i][j - 1] + 1, of[i - 1][j - 1] + change});
+            distance[i][j] =
+                std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1, distance[i - 1][j - 1] + change});
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                of[i][j] = std::min(of[i][j], of[i - 2][j - 2] + 1);
+                distance[i][j] = std::min(distance[i][j], distance[i - 2][j - 2] + 1);
         }
     }
-    return of[a.size()][b.size()];
+    return distance[a.size()][b.size()];
 }
 
 }  // namespace
@@ -28,12 +29,12 @@ std::size_t edits(const std::string& a, const std::string& b) {
 std::string nearest_name(const std::string& word, const std::vector<std::string>& names) {
     constexpr std::size_t kMinPrefix = 3;
     std::string nearest;
-    std::size_t smallest = word.size() / 3 + 1;
+    std::size_t min_distance = word.size() / 3 + 1;
     for (const std::string& name : names) {
         const bool begins = word.size() >= kMinPrefix && name.starts_with(word);
-        const std::size_t distance = begins ? 0 : edits(word, name);
-        if (distance >= smallest) continue;
-        smallest = distance;
+        const std::size_t distance = begins ? 0 : edit_distance(word, name);
+        if (distance >= min_distance) continue;
+        min_distance = distance;
         nearest = name;
     }
     return nearest;

@@ -35,8 +35,8 @@ Json without_folders(Json report) {
     const Json *const scene = report.find("scene"), *const warnings = report.find("warnings");
     if (scene != nullptr && scene->is_text() && warnings != nullptr) {
         const std::string file = scene->text();
-        Json shorter = Json::list();
-        for (const std::string& text : warnings->texts())
+        Json shorter = Json::array();
+        for (const std::string& text : warnings->strings())
             shorter.push_back(text.starts_with(file + ':') ? text.substr(file.rfind('/') + 1) : text);
         report["warnings"] = shorter;
     }
@@ -52,7 +52,7 @@ void check_kind(const Json& report) {
     for (const char* known : {kRenderReportKind, kBenchReportKind, kVerifyReportKind, "raya gpu_day"})
         if (name == known) return;
     if (kind == nullptr && (report.find("measured") != nullptr || report.find("devices") != nullptr))
-        throw JsonError("a report of an older raya, which does not name the command that wrote it");
+        throw JsonError("a report of an older raya, without the command that wrote it; write the report again");
     throw JsonError("valid JSON, but not a report of raya render, bench, verify or gpu_day");
 }
 

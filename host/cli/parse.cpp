@@ -29,7 +29,7 @@ std::vector<std::uint32_t> parse_sizes(const std::string& text) {
 ImageSize parse_image_size(const std::string& text) {
     const std::vector<std::uint32_t> sides = parse_sizes(text);
     if (sides.empty() || sides.size() > 2)
-        throw UserError(fmt::format("--size {}: must be N or WxH, 1..{} pixels a side", text, kLargestSide));
+        throw UserError(fmt::format("--size {}: must be N or WxH, 1..{} pixels a side", text, kMaxSide));
     return {sides.front(), sides.back()};
 }
 

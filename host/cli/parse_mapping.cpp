@@ -27,18 +27,18 @@ std::optional<std::uint32_t> parse_number(std::string_view text, std::uint32_t m
     return number;
 }
 
-// Parses "4x8", with both numbers in 1..kLargestSide, into a raya_pair(); empty for other texts.
+// Parses "4x8", with both numbers in 1..kMaxSide, into a raya_pair(); empty for other texts.
 std::optional<std::uint32_t> parse_pair(std::string_view text) {
     const std::size_t cross = text.find('x');
     if (cross == std::string_view::npos) return {};
-    const auto first = parse_number(text.substr(0, cross), 1, kLargestSide);
-    const auto second = parse_number(text.substr(cross + 1), 1, kLargestSide);
+    const auto first = parse_number(text.substr(0, cross), 1, kMaxSide);
+    const auto second = parse_number(text.substr(cross + 1), 1, kMaxSide);
     if (!first || !second) return {};
     return raya_pair(*first, *second);
 }
 
 constexpr std::uint32_t kDefaultSeed = 1;
-constexpr std::uint32_t kLargestSeed = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kMaxSeed = std::numeric_limits<std::uint32_t>::max();
 
 // Parses `rest`, the text after the colon, into the mapping's parameter. Throws UserError with the legal form.
 std::uint32_t parse_parameter(const MappingText& mapping, std::string_view rest) {
@@ -46,15 +46,15 @@ std::uint32_t parse_parameter(const MappingText& mapping, std::string_view rest)
     std::string legal = mapping.name() + ", without a parameter";
     if (mapping.rule.kind == RAYA_GRID) {
         parameter = parse_pair(rest);
-        legal = fmt::format("grid:AxB with A rows of B PEs, each 1..{}", kLargestSide);
+        legal = fmt::format("grid:AxB with A rows of B PEs, each 1..{}", kMaxSide);
     } else if (mapping.rule.kind == RAYA_TILES) {
         parameter = parse_pair(rest);
-        legal = fmt::format("tiles:WxH with the sides of a tile in pixels, each 1..{}", kLargestSide);
+        legal = fmt::format("tiles:WxH with the sides of a tile in pixels, each 1..{}", kMaxSide);
     } else if (mapping.rule.kind == RAYA_RANDOM) {
-        parameter = parse_number(rest, 0, kLargestSeed);
-        legal = fmt::format("random:seed with a seed 0..{}, or random", kLargestSeed);
-    } else if (mapping.leaves_offset) {
-        parameter = parse_number(rest, 0, kLargestSide - 1);
+        parameter = parse_number(rest, 0, kMaxSeed);
+        legal = fmt::format("random:seed with a seed 0..{}, or random", kMaxSeed);
+    } else if (mapping.takes_offset_option) {
+        parameter = parse_number(rest, 0, kMaxSide - 1);
         legal = "cyclic:p with an offset p 0..W-1, less than the image's width, or cyclic";
     }
     if (!parameter) throw UserError(fmt::format("--mapping {}: must be {}", mapping.text, legal));
@@ -66,7 +66,7 @@ std::uint32_t parse_parameter(const MappingText& mapping, std::string_view rest)
         fmt::format("--mapping {}: must be dynamic:CHUNK[,OVERHEAD] or hybrid:CHUNK[,OVERHEAD[,SHARE]] with "
                     "CHUNK 1..{} pixels per request, OVERHEAD 0..{} cycles per request, SHARE 0..1 of the pixels "
                     "assigned statically",
-                    text, kLargestChunk, kLargestOverhead));
+                    text, kMaxChunk, kMaxOverhead));
 }
 
 std::vector<std::string_view> split_at_commas(std::string_view text) {
@@ -91,7 +91,7 @@ MappingText parse_mapping(const std::string& text) {
     struct Name {
         const char* name;
         MappingRule rule;  // the rule if there is no parameter
-        bool needs_parameter = false, leaves_offset = false;
+        bool needs_parameter = false, takes_offset_option = false;
     };
     static const Name names[] = {{"cyclic", cyclic_mapping(0), false, true},
                                  {"column", column_mapping()},
@@ -106,10 +106,10 @@ MappingText parse_mapping(const std::string& text) {
     if (found == std::end(names))
         throw UserError(fmt::format("--mapping {}: no such mapping; mappings: {}, dynamic:CHUNK, hybrid:CHUNK", text,
                                     fmt::join(mapping_forms(), ", ")));
-    MappingText mapping{text, found->rule, found->leaves_offset};
+    MappingText mapping{text, found->rule, found->takes_offset_option};
     if (colon == std::string::npos && !found->needs_parameter) return mapping;
     mapping.rule.parameter = parse_parameter(mapping, colon == std::string::npos ? "" : text.substr(colon + 1));
-    mapping.leaves_offset = false;
+    mapping.takes_offset_option = false;
     return mapping;
 }
 

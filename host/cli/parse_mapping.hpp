@@ -19,9 +19,9 @@ namespace raya {
 ///     tiles:WxH          tiles of W x H pixels round robin; W and H divide the image's sides
 ///     random:seed        pixels at random, equally many for each PE; "random" alone: seed 1
 struct MappingText {
-    std::string text;           // as given on the command line
-    MappingRule rule{};         // mappings with slots: cyclic fold; --fold may change it
-    bool leaves_offset = true;  // "cyclic" without p
+    std::string text;                 // as given on the command line
+    MappingRule rule{};               // mappings with slots: cyclic fold; --fold may change it
+    bool takes_offset_option = true;  // "cyclic" without p
 
     /// Returns the part of `text` before the colon.
     std::string name() const { return text.substr(0, text.find(':')); }

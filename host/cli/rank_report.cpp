@@ -7,25 +7,26 @@ namespace raya {
 std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts, const RankWork& work) {
     if (!ranks.many()) return {};
     const DeviceInfo& device = session.device();
-    const Json own = {{"rank", ranks.rank()},
-                      {"host", ranks.host()},
-                      {parts, work.parts},
-                      {"device",
-                       {{"name", device.name},
-                        {"platform", device.platform},
-                        {"version", device.version},
-                        {"compute_units", device.compute_units},
-                        {"lanes", work.lanes},
-                        {"group_size", work.group_size},
-                        {"bytes_taken", session.bytes_taken()}}},
-                      {"build_s", work.build_s},
-                      {"render_s", work.render_s},
-                      {"messages_sent", work.traffic.messages},
-                      {"bytes_sent", work.traffic.bytes},
-                      {"waiting_s", work.traffic.waiting_s},
-                      {"commands", commands_json(work.commands, true)}};
+    const Json this_rank = {{"rank", ranks.rank()},
+                            {"host", ranks.host()},
+                            {parts, work.parts},
+                            {"device",
+                             {{"name", device.name},
+                              {"platform", device.platform},
+                              {"version", device.version},
+                              {"compute_units", device.compute_units},
+                              {"lanes", work.lanes},
+                              {"group_size", work.group_size},
+                              {"bytes_taken", session.bytes_taken()}}},
+                            {"build_s", work.build_s},
+                            {"render_s", work.render_s},
+                            {"messages_sent", work.traffic.messages},
+                            {"bytes_sent", work.traffic.bytes},
+                            {"waiting_s", work.traffic.waiting_s},
+                            {"commands", commands_json(work.commands, true)}};
     std::vector<Json> all;
-    for (const std::string& text : ranks.gather(own.dump())) all.push_back(Json::parse(text, {"the report of a rank"}));
+    for (const std::string& text : ranks.gather(this_rank.dump()))
+        all.push_back(Json::parse(text, {"the report of a rank"}));
     return all;
 }
 

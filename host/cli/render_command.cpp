@@ -36,7 +36,7 @@ void check_replay(const CLI::App& parsed, const TorusOptions& t) {
 
 void check_output_files(const CLI::App& parsed, const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
-    if (!launched())  // mpirun may connect raya to a pseudoterminal
+    if (!find_launch())  // mpirun may connect raya to a pseudoterminal
         for (const std::string& file : {command.image, command.cost, command.mask, packets})
             refuse_bytes_on_terminal(file);
     tone_of(command.tone, command.image);
@@ -53,7 +53,7 @@ void check_output_files(const CLI::App& parsed, const RenderCommand& command) {
 SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks) {
     SceneInput input;
     if (ranks.first()) {
-        input = recorder.steps().during("read scene", [&] { return read_scene(options.scene, options.strict); });
+        input = recorder.spans().during("read scene", [&] { return read_scene(options.scene, options.strict); });
         change_view(options.view, input.scene);
     }
     if (!ranks.many()) return input;
@@ -75,7 +75,7 @@ void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Devic
     }
     try {
         const DevicePeak peak =
-            recorder.steps().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
+            recorder.spans().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
         report.measured.roofline = roofline(peak, works, report.measured.commands);
         constexpr double kMaxScatter = 0.15;  // relative to the best sample
         if (peak.scatter > kMaxScatter)

@@ -33,10 +33,10 @@ struct RenderCommand {
     CheckpointOptions checkpoint;
     TraceOptions trace;
     bool profile = false, cache_kernels = false, summary = true;
-    bool prints = true;                             // print the table of --profile
-    ProgressCallback progress{};                    // empty: progress bar on a terminal
-    PixelSubset pixels{};                           // torus: pixels that get primary rays
-    bool keep_costs = false, keep_packets = false;  // store costs or packets in Render
+    bool prints = true;                               // print the table of --profile
+    ProgressCallback progress{};                      // empty: progress bar on a terminal
+    PixelSubset pixels{};                             // torus: pixels that get primary rays
+    bool record_costs = false, keep_packets = false;  // store costs or packets in Render
 
     /// The options whose files get frame numbers with --frames, and their values (empty: not given).
     std::vector<std::pair<const char*, std::string>> files() const {

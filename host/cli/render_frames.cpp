@@ -110,7 +110,8 @@ void check_frames(const RenderCommand& command) {
     for (const auto& [option, given] : of_one_image)
         if (given)
             throw UserError(fmt::format(
-                "{} is for a single image; render the frame by itself, with the view in its report (--report)",
+                "{} with --frames: only for a single image; render the frame alone, with the view in its report "
+                "(--report)",
                 option));
 }
 

@@ -158,7 +158,7 @@ void check_slot_options(const RenderOptions& o, const MappingText& mapping, cons
         throw UserError(fmt::format(
             "--fold {} with --mapping {}: {} has no slots to fold; leave out --fold, or choose cyclic or column",
             o.fold, mapping.text, mapping.name()));
-    if (o.offset && !mapping.leaves_offset && *o.offset != mapping.rule.parameter)
+    if (o.offset && !mapping.takes_offset_option && *o.offset != mapping.rule.parameter)
         throw UserError(fmt::format("--offset {} with --mapping {}: the mapping's offset is {}; leave out one of them",
                                     *o.offset, mapping.text, mapping.rule.parameter));
     if (o.offset && *o.offset >= image.width)
@@ -178,7 +178,8 @@ MappingText requested_mapping(const RenderOptions& o, const Machine& machine) {
 MappingRule rule_of(const MappingText& mapping, const RenderOptions& o, const Machine& machine, std::uint32_t width) {
     if (!mapping.rule.has_slots()) return mapping.rule;
     const std::uint32_t default_offset = machine.mapping.has_slots() ? machine.mapping.parameter % width : 0;
-    const std::uint32_t offset = mapping.leaves_offset ? o.offset.value_or(default_offset) : mapping.rule.parameter;
+    const std::uint32_t offset =
+        mapping.takes_offset_option ? o.offset.value_or(default_offset) : mapping.rule.parameter;
     return cyclic_mapping(offset, o.fold.empty() ? Fold::kCyclic : parse_fold(o.fold));
 }
 
@@ -207,9 +208,9 @@ Accel accel_of(const RenderOptions& o, const RingSettings& settings, const Scene
 ImageSize image_size(const RenderOptions& o, const Scene& scene) {
     ImageSize size = {static_cast<std::uint32_t>(scene.view.width), static_cast<std::uint32_t>(scene.view.height)};
     if (!o.size.empty()) size = parse_image_size(o.size);
-    if (size.width > kLargestSide || size.height > kLargestSide)
+    if (size.width > kMaxSide || size.height > kMaxSide)
         throw UserError(
-            fmt::format("--size {}x{}: both sides must be 1..{} pixels", size.width, size.height, kLargestSide));
+            fmt::format("--size {}x{}: both sides must be 1..{} pixels", size.width, size.height, kMaxSide));
     return size;
 }
 

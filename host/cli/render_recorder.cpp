@@ -17,7 +17,7 @@
 namespace raya {
 namespace {
 
-// Prefix of the names of Session's build steps.
+// Prefix of the names of Session's build spans.
 constexpr std::string_view kBuild = "build ";
 
 }  // namespace
@@ -55,8 +55,8 @@ RenderRecorder::RenderRecorder(const TraceOptions& trace, bool profile) : trace_
 
 void RenderRecorder::observe(Session& session, Ranks& ranks) {
     if (!traces() && !profile_) return;
-    session.observe(steps_, traces() ? trace_.events : 0);
-    if (traces() && session.profile().timed()) anchor_ = clock_anchor(session);
+    session.observe(spans_, traces() ? trace_.events : 0);
+    if (traces() && session.profile().timed()) clock_offset_ = measure_clock_offset(session);
     if (traces() && ranks.many()) compare_clocks(ranks);
 }
 
@@ -73,9 +73,9 @@ void RenderRecorder::compare_clocks(Ranks& ranks) {
 
 void RenderRecorder::gather(Session& session, Ranks& ranks) {
     if (!traces() || !ranks.many()) return;
-    TraceFile own(trace_.events / ranks.count());
-    if (!ranks.first()) add_measured(own, session, ranks.rank());
-    const TraceFile::Part part = own.part();
+    TraceFile this_rank(trace_.events / ranks.count());
+    if (!ranks.first()) add_measured(this_rank, session, ranks.rank());
+    const TraceFile::Part part = this_rank.part();
     const std::vector<std::string> names = ranks.gather(part.names), texts = ranks.gather(part.text);
     const std::vector<std::uint64_t> events = ranks.all_gather(part.events), left_out = ranks.all_gather(part.left_out);
     for (std::size_t rank = 1; rank < texts.size(); ++rank)
@@ -83,13 +83,13 @@ void RenderRecorder::gather(Session& session, Ranks& ranks) {
 }
 
 void RenderRecorder::add_measured(TraceFile& file, Session& session, std::uint32_t rank) {
-    add_host_steps(file, steps_.steps(), begin_, {rank, many_});
-    add_device_commands(file, session.device().name, session.profile(), anchor_, begin_, {rank, many_});
+    add_host_spans(file, spans_.spans(), begin_, {rank, many_});
+    add_device_commands(file, session.device().name, session.profile(), clock_offset_, begin_, {rank, many_});
 }
 
 std::vector<ProgramBuild> RenderRecorder::builds() const {
     std::vector<ProgramBuild> builds;
-    for (const HostStep& s : steps_.steps())
+    for (const HostSpan& s : spans_.spans())
         if (s.name.starts_with(kBuild))
             builds.push_back({s.name.substr(kBuild.size()), 1e-9 * static_cast<double>(s.ended - s.started)});
     return builds;

@@ -1,4 +1,4 @@
-// Records the host's steps and clock offsets of a render for --profile and --trace, and writes the trace.
+// Records the host's spans and clock offsets of a render for --profile and --trace, and writes the trace.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -31,13 +31,13 @@ void check_trace(const CLI::App& command, const TraceOptions& trace);
 
 class RenderRecorder {
   public:
-    /// `profile`: records the time of each build. Without trace and profile only the steps run by steps() are recorded.
+    /// `profile`: records the time of each build. Without trace and profile only the spans run by spans() are recorded.
     RenderRecorder(const TraceOptions& trace, bool profile);
 
     bool traces() const { return !trace_.file.empty(); }
-    StepLog& steps() { return steps_; }
+    SpanLog& spans() { return spans_; }
 
-    /// Records the session's steps from now on. For a trace, measures the offset of the device's clock to the host's,
+    /// Records the session's spans from now on. For a trace, measures the offset of the device's clock to the host's,
     /// and of this rank's clock to rank 0's.
     void observe(Session& session, Ranks& ranks);
 
@@ -47,7 +47,7 @@ class RenderRecorder {
     /// Returns the seconds of each program's build, in order.
     std::vector<ProgramBuild> builds() const;
 
-    /// With --trace: writes the host's steps, the commands in the session's profile, and the events that `add_machine`
+    /// With --trace: writes the host's spans, the commands in the session's profile, and the events that `add_machine`
     /// adds. Warns if events beyond --trace-events are omitted.
     void write(Session& session, const std::function<void(TraceFile&)>& add_machine);
 
@@ -58,12 +58,12 @@ class RenderRecorder {
     const TraceOptions& trace_;
     bool profile_;
     std::uint64_t begin_ = host_clock_ns();  // time 0 of the trace
-    StepLog steps_;
-    ClockAnchor anchor_;                   // offset of the device's clock
+    SpanLog spans_;
+    ClockOffset clock_offset_;             // offset of the device's clock
     RankClock clock_;                      // offset of this rank's clock to rank 0's
     bool many_ = false;                    // several ranks
     std::vector<TraceFile::Part> others_;  // on rank 0: the events of the other ranks
-    Json clocks_ = Json::list();           // offset and uncertainty of each rank's clock
+    Json clocks_ = Json::array();          // offset and uncertainty of each rank's clock
 };
 
 }  // namespace raya

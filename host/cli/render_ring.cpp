@@ -87,7 +87,7 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     SceneInput& input = run.input;
     const Scene& scene = input.scene;
     RingSettings settings = ring_settings(run.options, scene);
-    settings.keep_costs = command.keep_costs || !command.cost.empty();
+    settings.record_costs = command.record_costs || !command.cost.empty();
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     Session& session = run.session();
     RingRenderer renderer(session, scene, settings, ranks);
@@ -102,7 +102,7 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     RenderReport report = make_report(command, input, settings, session.device(), result);
     report.ranks = of_ranks;
     report.measured.earlier_s = result.earlier_s;
-    recorder.steps().during("write images",
+    recorder.spans().during("write images",
                             [&] { write_images(command, result, image_attributes(report, scene.name)); });
     if (command.roofline()) {
         run.progress.stage("measuring the device's peak");
@@ -111,7 +111,7 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     }
     run.progress.end();
     report.warnings = input.warnings.texts();
-    recorder.steps().during("write report", [&] { write_report(command, report); });
+    recorder.spans().during("write report", [&] { write_report(command, report); });
     checkpoint.remove();
     const ProgressBar tracing(recorder.traces(), "writing the trace");
     recorder.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });

@@ -62,13 +62,14 @@ Session& RenderRun::session() {
     tuned_.reset(new ScopedTunedSource(use_tuned(options.no_tuned, &input.warnings)));
     if (ranks.first()) warn_of_build_options(input.warnings);
     progress.stage("preparing");
-    device_ = recorder.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
+    device_ =
+        recorder.spans().during("choose device", [&] { return choose_device(options.device, ranks.rank_on_host()); });
     // Loads OpenImageIO after the OpenCL drivers. Both use TBB, a process keeps the first TBB that it loads, and
     // Intel's OpenCL runtime needs a newer version than OpenImageIO.
     for (const std::string& image : images_)
         if (ranks.first() && !image.empty()) load_encoder(image);
-    own_session_.emplace(recorder.steps().during("open device", [&] { return Session(device_, timing_); }));
-    session_ = &*own_session_;
+    opened_session_.emplace(recorder.spans().during("open device", [&] { return Session(device_, timing_); }));
+    session_ = &*opened_session_;
     if (ranks.first()) session_->announce_compiling();
     recorder.observe(*session_, ranks);
     return *session_;

@@ -67,7 +67,7 @@ class RenderRun {
     std::vector<std::string> images_;  // image files of the command, for their encoders
     std::unique_ptr<ScopedTunedSource> tuned_;
     cl::Device device_;
-    std::optional<Session> own_session_;
+    std::optional<Session> opened_session_;
     Session* session_ = nullptr;
 };
 

@@ -62,7 +62,7 @@ TorusResult render_or_find_queue(TorusRenderer& renderer, RenderProgress& progre
         return render_with_progress(renderer, progress, outputs);
     } catch (const TorusDeadlock& deadlock) {
         progress.stage("searching a sufficient queue length");
-        const QueueFound found = find_longer_queue(deadlock.figures.queue, renderer.queue_trial());
+        const QueueSearchResult found = find_longer_queue(deadlock.figures.queue, renderer.queue_trial());
         throw TorusDeadlock(deadlock.figures, queue_remedy(found));
     }
 }
@@ -103,8 +103,8 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
 }
 
 void write_images(const RenderCommand& command, const TorusResult& result, const RenderReport& report,
-                  const Scene& scene, TorusOutputs& outputs, StepLog& steps) {
-    const StepLog::Step step(&steps, "write images");
+                  const Scene& scene, TorusOutputs& outputs, SpanLog& spans) {
+    const SpanLog::Span span(&spans, "write images");
     write_main_image(command, result.image, image_attributes(report, scene.name));
     if (outputs.packets) write_whole_file(command.torus.packets, outputs.packets->finish());
 }
@@ -120,8 +120,8 @@ void write_replay(const ReplayFiles& files, const raya_torus& torus, const Histo
 }
 
 void add_asynchronous_time(TorusReport& report, const RenderCommand& command, const TorusSettings& settings,
-                           const History& history, StepLog& steps) {
-    report.modelled.asynchronous = steps.during("simulate", [&] { return simulate(settings.torus, history).time(); });
+                           const History& history, SpanLog& spans) {
+    report.modelled.asynchronous = spans.during("simulate", [&] { return simulate(settings.torus, history).time(); });
     if (!command.torus.replay.empty()) write_replay(ReplayFiles(command.torus.packets), settings.torus, history);
 }
 
@@ -170,9 +170,9 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     if (outputs.history) {
         run.progress.stage("simulating");
         history = outputs.history->finish();
-        add_asynchronous_time(*report.torus, command, settings, *history, recorder.steps());
+        add_asynchronous_time(*report.torus, command, settings, *history, recorder.spans());
     }
-    write_images(command, result, report, scene, outputs, recorder.steps());
+    write_images(command, result, report, scene, outputs, recorder.spans());
     if (command.roofline()) {
         run.progress.stage("measuring the device's peak");
         add_profile(report, recorder, run.device(), settings.format, torus_kernel_work(settings, result),
@@ -180,7 +180,7 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     }
     run.progress.end();
     report.warnings = input.warnings.texts();
-    recorder.steps().during("write report", [&] { write_report(command, report); });
+    recorder.spans().during("write report", [&] { write_report(command, report); });
     const ProgressBar tracing(recorder.traces(), "writing the trace");
     recorder.write(session, [&](TraceFile& file) { outputs.trace->add_to(file, result, command.trace.pes); });
     return Render{.report = std::move(report),

@@ -125,7 +125,7 @@ MachineNeeds SceneNeeds::of_torus(const RenderOptions& options) {
     return all;
 }
 
-MachineNeeds SceneNeeds::of(const std::string& machine) {
+MachineNeeds SceneNeeds::needs_of(const std::string& machine) {
     RenderOptions options = render_;
     options.machine = machine;
     return machine_named(machine).kind == MachineKind::kTorus ? of_torus(options) : of_ring(options);

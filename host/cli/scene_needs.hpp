@@ -20,9 +20,9 @@ class SceneNeeds {
     /// Returns the machine's memory needs with accelerators none, bvh and grid, or only with the accelerator of
     /// --accel. Throws UserError if the machine does not support the options' values. It is no error if the scene
     /// does not fit.
-    MachineNeeds of(const std::string& machine);
+    MachineNeeds needs_of(const std::string& machine);
 
-    /// Returns the formats of the machines for which of() was called.
+    /// Returns the formats of the machines for which needs_of() was called.
     std::vector<FormatFit> formats() const { return formats_; }
 
   private:

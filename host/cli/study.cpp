@@ -81,9 +81,10 @@ void check_study(const StudyCommand& command) {
         if (is_study(scene) && !fs::exists(scene, error))
             throw UserError(fmt::format(
                 "{} is a study, not a scene; run one study at a time, or all of them with raya study all", scene));
-    constexpr std::uint32_t kSmallest = 17, kLargest = 4096;  // the width must exceed the paper's offset, 16
-    if (command.size && (*command.size < kSmallest || *command.size > kLargest))
-        throw UserError(fmt::format("--size {}: must be {}..{} pixels a side", *command.size, kSmallest, kLargest));
+    constexpr std::uint32_t kMinStudySide = 17, kMaxStudySide = 4096;  // the width must exceed the paper's offset, 16
+    if (command.size && (*command.size < kMinStudySide || *command.size > kMaxStudySide))
+        throw UserError(
+            fmt::format("--size {}: must be {}..{} pixels a side", *command.size, kMinStudySide, kMaxStudySide));
     const std::vector<double>& n = command.network;
     const auto is_time = [](double time) { return time >= 0 && time <= 1e9; };
     if (!n.empty() && (n.size() != 2 || !std::ranges::all_of(n, is_time)))
@@ -145,9 +146,9 @@ fs::path package_folder(const fs::path& program) {
 
 // Refuses a module folder in which other users can change files.
 void check_folder(const fs::path& folder) {
-    struct stat is {};
-    ::stat(folder.c_str(), &is);
-    const std::string why = other_writers(folder / "raya", {::geteuid(), is.st_uid}, Sticky::kRefused);
+    struct stat status {};
+    ::stat(folder.c_str(), &status);
+    const std::string why = other_writers(folder / "raya", {::geteuid(), status.st_uid}, Sticky::kRefused);
     if (!why.empty()) throw UserError(fmt::format("refused to run '{}': {}; remedy: chmod go-w", folder.string(), why));
 }
 

@@ -50,12 +50,12 @@ std::vector<Workload> workloads_of(const TuneCommand& command) {
         for (const std::string& variant :
              command.variants.empty() ? Names{"none", "grid", "bvh", "torus"} : command.variants) {
             all.push_back({variant, parse_format(format)});
-            all.back().what();  // throws for an unknown variant
+            all.back().key();  // throws for an unknown variant
         }
     return all;
 }
 
-TrialProgress watch_of(const Workload& workload, const Space& space) {
+TrialProgress progress_printer(const Workload& workload, const Space& space) {
     return [=](const TunedValues& values, double seconds) {
         if (shows_progress())
             show_status(fmt::format("tuning {}: {} ... {:.0f} s", workload.name(), change_text(space, values, values),
@@ -111,7 +111,7 @@ void print_tunings(const std::vector<Tuning>& tunings) {
 }
 
 TunedEntry entry_of(const Tuning& tuning, const std::string& scene) {
-    return {tuning.workload.what(), tuning.best, 1 / tuning.ratio, scene};
+    return {tuning.workload.key(), tuning.best, 1 / tuning.ratio, scene};
 }
 
 void tune_device(const CLI::App& parsed, TuneCommand& command) {
@@ -138,7 +138,8 @@ void tune_device(const CLI::App& parsed, TuneCommand& command) {
     const std::string date = utc_text("%Y-%m-%d");
     for (const Workload& workload : workloads) {
         settings.seconds = left / static_cast<double>(workloads.size() - tunings.size());
-        tunings.push_back(tune(device, workload, settings, watch_of(workload, space_of(device, workload.what()))));
+        tunings.push_back(
+            tune(device, workload, settings, progress_printer(workload, space_of(device, workload.key()))));
         left = std::max(0.0, left - tunings.back().seconds);
         const std::string scene = render.scene.empty() ? "own" : render.scene;
         save_tuned(device, {date, {entry_of(tunings.back(), scene)}});

@@ -70,9 +70,9 @@ DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const V
 }
 
 Json report_of(const std::vector<DeviceChecks>& all, Depth depth) {
-    Json devices = Json::list();
+    Json devices = Json::array();
     for (const DeviceChecks& one : all) {
-        Json checks = Json::list();
+        Json checks = Json::array();
         for (const Check& check : one.checks) checks.push_back(to_json(check));
         devices.push_back({{"name", one.name},
                            {"platform", one.platform},

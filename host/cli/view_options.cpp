@@ -20,7 +20,8 @@ constexpr const char* kLight = "must be a position X,Y,Z, or position and colour
 
 constexpr std::size_t kShown = 60;  // maximum bytes of a value in messages
 
-/// Parses comma-separated numbers. Returns an empty vector if one is malformed or its magnitude exceeds kLargestLength.
+/// Parses comma-separated numbers. Returns an empty vector if one is malformed or its magnitude exceeds
+/// kMaxSceneLength.
 std::vector<double> numbers_of(std::string_view text) {
     std::vector<double> numbers;
     while (true) {
@@ -28,7 +29,7 @@ std::vector<double> numbers_of(std::string_view text) {
         double number = 0;
         const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
         const bool whole = error == std::errc{} && end == field.data() + field.size();
-        if (!whole || !(std::abs(number) <= kLargestLength)) return {};
+        if (!whole || !(std::abs(number) <= kMaxSceneLength)) return {};
         numbers.push_back(number);
         if (field.size() == text.size()) return numbers;
         text.remove_prefix(field.size() + 1);

@@ -50,10 +50,10 @@ ToneCodes::ToneCodes(const Tone& tone)
     : curve_(tone.curve), factor_(std::exp2(tone.exposure)), borders_(borders_of(tone)) {}
 
 std::array<std::uint8_t, 3> ToneCodes::operator()(const float* rgb) const {
-    constexpr double kLargest = std::numeric_limits<float>::max();
+    constexpr double kMaxFloat = std::numeric_limits<float>::max();
     std::array<double, 3> v{};
     for (std::size_t i = 0; i < 3; ++i)
-        v[i] = std::isnan(rgb[i]) ? 0 : factor_ * std::clamp<double>(rgb[i], -kLargest, kLargest);
+        v[i] = std::isnan(rgb[i]) ? 0 : factor_ * std::clamp<double>(rgb[i], -kMaxFloat, kMaxFloat);
     const double bright = luminance(v);
     const double less = curve_ == ToneCurve::kReinhard && bright > 0 ? 1 / (1 + bright) : 1;
     std::array<std::uint8_t, 3> codes{};

@@ -36,11 +36,11 @@ std::string accel_text(const Accel& accel);
 /// Size of an acceleration structure, for reports.
 struct AccelSummary {
     AccelKind kind = AccelKind::kNone;
-    std::uint64_t words = 0;   // its 32-bit words in the job
-    Divisions divisions{};     // of a grid
-    std::uint64_t copies = 0;  // of a grid: entries in the voxels' lists beyond one per object
-    std::uint32_t apart = 0;   // finite objects in no list and no leaf: every ray is tested against them
-    std::uint64_t nodes = 0;   // of a BVH
+    std::uint64_t words = 0;     // its 32-bit words in the job
+    Divisions divisions{};       // of a grid
+    std::uint64_t copies = 0;    // of a grid: entries in the voxels' lists beyond one per object
+    std::uint32_t separate = 0;  // finite objects in no list and no leaf: every ray is tested against them
+    std::uint64_t nodes = 0;     // of a BVH
     std::uint64_t leaves = 0;
     std::uint32_t depth = 0;  // nodes on the longest path from the root of a BVH
 };

@@ -9,7 +9,7 @@
 
 namespace raya {
 
-inline constexpr std::uint32_t kLargestSide = 16384;  // pixels
+inline constexpr std::uint32_t kMaxSide = 16384;  // pixels
 
 struct ImageSize {
     std::uint32_t width = 0, height = 0;  // pixels
@@ -56,13 +56,13 @@ inline MappingRule tiles_mapping(std::uint32_t width, std::uint32_t height) {
 /// Pixels are assigned to the PEs at random; the numbers of pixels of any two PEs differ by at most one.
 inline MappingRule random_mapping(std::uint32_t seed) { return {RAYA_RANDOM, seed}; }
 
-inline constexpr std::uint32_t kLargestChunk = kLargestSide * kLargestSide;  // pixels: the largest image
-inline constexpr std::uint64_t kLargestOverhead = 1'000'000'000;  // cycles; times the largest image's pixels: < 2^58
+inline constexpr std::uint32_t kMaxChunk = kMaxSide * kMaxSide;  // pixels: the largest image
+inline constexpr std::uint64_t kMaxOverhead = 1'000'000'000;     // cycles; times the largest image's pixels: < 2^58
 
 /// A dynamic distribution: PEs request pixels at run time.
 struct DynamicPlan {
-    std::uint32_t chunk = 1;     // pixels per request, 1..kLargestChunk
-    std::uint64_t overhead = 0;  // cycles that a request costs the PE, 0..kLargestOverhead
+    std::uint32_t chunk = 1;     // pixels per request, 1..kMaxChunk
+    std::uint64_t overhead = 0;  // cycles that a request costs the PE, 0..kMaxOverhead
     double static_share = 0;     // fraction of its statically mapped pixels that a PE renders first, 0..1; 0: none
 
     bool operator==(const DynamicPlan&) const = default;
@@ -71,7 +71,7 @@ struct DynamicPlan {
 /// Returns true if all members of `plan` are in their ranges.
 inline bool is_plan(const DynamicPlan& plan) {
     const bool is_share = !std::signbit(plan.static_share) && plan.static_share <= 1;  // no NaN, no -0
-    return plan.chunk >= 1 && plan.chunk <= kLargestChunk && plan.overhead <= kLargestOverhead && is_share;
+    return plan.chunk >= 1 && plan.chunk <= kMaxChunk && plan.overhead <= kMaxOverhead && is_share;
 }
 
 }  // namespace raya

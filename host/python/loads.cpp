@@ -118,10 +118,11 @@ py::dict schedule(const py::array& costs, const std::string& plan, const std::st
 // lack different pairs, for p = 0 all rows lack the same one.
 std::uint64_t neighbour_rotations(raya_mapping mapping) {
     if (raya_has_slots(mapping) && mapping.pes <= mapping.width) mapping.height = std::min(mapping.height, 2u);
-    std::uint64_t turns = 0;
+    std::uint64_t rotations = 0;
     for (raya_u32 side = 0; side < RAYA_SIDES; ++side)
-        for (const Leg& leg : shortest_route(mapping.pes, neighbour_distances(mapping, side))) turns += leg.turns();
-    return turns;
+        for (const Leg& leg : shortest_route(mapping.pes, neighbour_distances(mapping, side)))
+            rotations += leg.rotations();
+    return rotations;
 }
 
 std::uint64_t rotations(std::uint32_t width, std::uint32_t height, const std::string& mapping, Number offset,
@@ -158,7 +159,7 @@ py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::stri
         return ms;
     };
     std::vector<double> again(first.width), smooth(first.width), ring(first.width);
-    std::vector<std::uint64_t> turns(first.width);
+    std::vector<std::uint64_t> rotations(first.width);
     if (method == AntialiasMethod::kSupersample) {
         if (!supersample) throw py::value_error("supersample: the costs of supersampling are required");
         const CostImage cost = cost_image_of(*supersample);
@@ -170,9 +171,9 @@ py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::stri
             const std::uint32_t share = largest_share(mapping);
             const SmoothingCycles cycles = smoothing_cycles(method, share);
             smooth[p] = static_cast<double>(cycles.filter + cycles.compare) * *spa.cycle_ns * 1e-6;
-            turns[p] = neighbour_rotations(mapping);
+            rotations[p] = neighbour_rotations(mapping);
             const double words_ms = 1e3 * 3.0 * share / *spa.link_words_per_s;
-            ring[p] = static_cast<double>(turns[p]) * (*spa.rotation_sync_ms + words_ms);
+            ring[p] = static_cast<double>(rotations[p]) * (*spa.rotation_sync_ms + words_ms);
         }
     py::dict all;
     all["offset"] = copy_of(offsets);
@@ -181,7 +182,7 @@ py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::stri
     all["smooth_ms"] = copy_of(smooth);
     all["supersample_ms"] = copy_of(again);
     all["ring_ms"] = copy_of(ring);
-    all["rotations"] = copy_of(turns);
+    all["rotations"] = copy_of(rotations);
     return all;
 }
 

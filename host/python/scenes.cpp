@@ -57,7 +57,8 @@ Scene without_lights(Scene scene) {
 
 Scene example(const std::string& name) {
     const auto file = embedded_files().find("scenes/" + name + ".nff");
-    if (file == embedded_files().end()) throw UserError(fmt::format("example '{}': no such scene", name));
+    if (file == embedded_files().end())
+        throw UserError(fmt::format("example '{}': no such scene; name a file of scenes/ without .nff", name));
     Scene scene = parse_nff(file->second, file->first);
     scene.name = name;
     return scene;

@@ -148,7 +148,7 @@ std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict
     RenderCommand command = parse_options(program, options);
     command.pixels = pixels;
     command.render.scene = scene.name;
-    command.keep_costs = keeps_costs || !command.cost.empty();
+    command.record_costs = keeps_costs || !command.cost.empty();
     command.keep_packets = keeps_packets;
     command.summary = command.prints = false;
     command.progress = [&progress](double share) {

@@ -36,6 +36,13 @@ class PythonSession {
     std::mutex mutex_;
 };
 
+/// Holder of a render in the Python class Result.
+using Result = std::shared_ptr<Render>;
+using ResultClass = py::class_<Render, Result>;
+
+/// Adds the members for renders on a torus to the Python class Result.
+void add_torus_results(py::module_& module, ResultClass& result);
+
 // Each adds the functions and classes of one source file to the Python module.
 void add_scenes(py::module_& module);
 void add_renders(py::module_& module);

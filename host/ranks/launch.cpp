@@ -37,8 +37,8 @@ double rank_timeout_s() {
     return *seconds;
 }
 
-// The deadline is necessary because MPI_Init_thread may block forever if another process ends before it calls that
-// function.
+// The deadline is necessary: MPI_Init_thread may block forever if another process ends before it calls
+// MPI_Init_thread.
 std::unique_ptr<Transport> open_transport(const Launch& launch) {
     const double limit_s = rank_timeout_s();
     const std::uint32_t count = launch.count.value_or(0);
@@ -66,7 +66,7 @@ std::uint32_t usable_cores() {
 
 void share_cores(const Ranks& ranks) {
     const auto cores = static_cast<std::uint32_t>(::sysconf(_SC_NPROCESSORS_ONLN));
-    const std::uint32_t threads = threads_of_rank(usable_cores(), cores, ranks.of_host());
+    const std::uint32_t threads = threads_of_rank(usable_cores(), cores, ranks.ranks_on_host());
     ::setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 0);
 }
 
@@ -79,7 +79,7 @@ std::string build_text() {
 
 }  // namespace
 
-std::optional<Launch> launch_of(const std::function<const char*(const char*)>& variable) {
+std::optional<Launch> launch_from(const std::function<const char*(const char*)>& variable) {
     struct Names {
         const char *rank, *count;
     };
@@ -92,12 +92,12 @@ std::optional<Launch> launch_of(const std::function<const char*(const char*)>& v
     return {};
 }
 
-std::optional<Launch> launched() {
-    return launch_of([](const char* name) -> const char* { return std::getenv(name); });
+std::optional<Launch> find_launch() {
+    return launch_from([](const char* name) -> const char* { return std::getenv(name); });
 }
 
 std::unique_ptr<Ranks> open_ranks() {
-    const std::optional<Launch> launch = launched();
+    const std::optional<Launch> launch = find_launch();
     if (!launch || launch->count == 1u) return nullptr;
     auto ranks = std::make_unique<Ranks>(open_transport(*launch));
     if (launch->count && *launch->count != ranks->count()) {

@@ -16,10 +16,10 @@ struct Launch {
     std::optional<std::uint32_t> count;  // empty if the launcher does not set it
 };
 
-/// Returns what the launcher has set, or empty if no launcher has started this process. launch_of() reads environment
-/// variables with `variable` instead of std::getenv.
-std::optional<Launch> launch_of(const std::function<const char*(const char*)>& variable);
-std::optional<Launch> launched();
+/// Return rank and count as set by the launcher; empty if no launcher has started this process. launch_from() reads
+/// environment variables with `variable` instead of std::getenv.
+std::optional<Launch> launch_from(const std::function<const char*(const char*)>& variable);
+std::optional<Launch> find_launch();
 
 /// Connects the ranks if a launcher has started more than one, else returns nullptr. Must be called before OpenCL is
 /// used, because it sets POCL_MAX_PTHREAD_COUNT (unless it is set) to this rank's share of the host's cores. Throws

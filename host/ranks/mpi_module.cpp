@@ -25,7 +25,7 @@ namespace raya {
 namespace {
 
 // Maximum bytes of an MPI message, whose length is an int. Longer messages are split.
-constexpr std::size_t kPiece = std::size_t{1} << 30;
+constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 30;
 constexpr int kFailureTag = 1;
 
 void check(int result, const char* call) {
@@ -138,10 +138,10 @@ class MpiTransport final : public Transport {
     }
 
     [[noreturn]] void abort(int code) override {
-        constexpr double kMost = 5;  // maximum duration of MPI_Abort, seconds
-        const Deadline deadline(kMost, "", code);
-        std::this_thread::sleep_for(
-            std::chrono::milliseconds(200));  // MPICH's mpirun may lose output written just before
+        constexpr double kAbortLimit_s = 5;  // maximum duration of MPI_Abort
+        const Deadline deadline(kAbortLimit_s, "", code);
+        // MPICH's mpirun may lose output that is written just before MPI_Abort.
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
         MPI_Abort(MPI_COMM_WORLD, code);
         std::_Exit(code);  // only if MPI_Abort returns, which the MPI standard allows
     }
@@ -155,8 +155,8 @@ class MpiTransport final : public Transport {
   private:
     template <class Byte, class Call>
     static void for_pieces(std::span<Byte> bytes, Call&& call) {
-        for (std::size_t begin = 0; begin < bytes.size(); begin += kPiece)
-            call(bytes.subspan(begin, std::min(kPiece, bytes.size() - begin)));
+        for (std::size_t begin = 0; begin < bytes.size(); begin += kMaxMessageBytes)
+            call(bytes.subspan(begin, std::min(kMaxMessageBytes, bytes.size() - begin)));
     }
 
     int ranks_of_host() const {
@@ -178,9 +178,9 @@ class MpiTransport final : public Transport {
     MPI_Request& next_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }
 
     // Waits until all requests are complete; returns false after `limit_s` seconds. Ranks may share cores, so the wait
-    // polls without sleeping only for the time of a typical message (spin_s_), and then sleeps between polls. It does
-    // not yield instead: the scheduler prefers a thread that wakes up to computing threads, but not a thread that
-    // yields.
+    // polls without sleeping only for the time of a typical message (spin_s_), and then sleeps between polls. It sleeps
+    // rather than yields, because the scheduler prefers a thread that wakes up to computing threads, but does not
+    // prefer a thread that yields.
     bool complete(std::vector<MPI_Request>& requests, double limit_s) {
         constexpr auto kSleep = std::chrono::microseconds(20);
         const Clock::time_point start = Clock::now();
@@ -198,10 +198,10 @@ class MpiTransport final : public Transport {
     }
 
     void receive_failure() {
-        int there = 0;
+        int available = 0;
         MPI_Status status;
-        check(MPI_Iprobe(MPI_ANY_SOURCE, kFailureTag, failures_, &there, &status), "MPI_Iprobe");
-        if (!there) return;
+        check(MPI_Iprobe(MPI_ANY_SOURCE, kFailureTag, failures_, &available, &status), "MPI_Iprobe");
+        if (!available) return;
         int size = 0;
         MPI_Get_count(&status, MPI_BYTE, &size);
         std::string message(static_cast<std::size_t>(size), ' ');

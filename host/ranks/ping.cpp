@@ -11,36 +11,37 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kLongestPing = 4 << 20;
+constexpr std::uint64_t kMaxPingBytes = 4 << 20;
 
 // The transport does not send empty messages, so the shortest message has one byte.
-constexpr std::uint64_t kMessages[] = {1, 64, 1 << 10, 4 << 10, 16 << 10, 64 << 10, 256 << 10, 1 << 20, kLongestPing};
-constexpr std::uint64_t kGathers[] = {136, 1088, 8704, 69632};  // bytes: the status of 1, 8, 64 and 512 torus nodes
+constexpr std::uint64_t kMessageBytes[] = {1,        64,        1 << 10, 4 << 10,      16 << 10,
+                                           64 << 10, 256 << 10, 1 << 20, kMaxPingBytes};
+constexpr std::uint64_t kGatherBytes[] = {136, 1088, 8704, 69632};  // bytes: the status of 1, 8, 64 and 512 torus nodes
 
-// Short messages are repeated more often. All messages together have at most 1 GB.
+// Short messages are repeated more often. All messages together amount to at most 1 GB.
 int repetitions_of(std::uint64_t bytes) { return bytes <= (64 << 10) ? 300 : 20; }
 
 template <class Call>
 double minimum_seconds(int repetitions, Call&& call) {
-    double least = std::numeric_limits<double>::max();
+    double minimum = std::numeric_limits<double>::max();
     for (int i = 0; i < repetitions; ++i) {
         const Clock::time_point start = Clock::now();
         call();
-        least = std::min(least, seconds_since(start));
+        minimum = std::min(minimum, seconds_since(start));
     }
-    return least;
+    return minimum;
 }
 
 // Returns half of the minimum round-trip time; valid only in rank 0.
 MessageTime message_time(Ranks& ranks, std::uint32_t partner, std::uint64_t bytes) {
     std::vector<std::byte> block(bytes);
     if (ranks.rank() != 0 && ranks.rank() != partner) return {bytes, 0};
-    const double both = minimum_seconds(repetitions_of(bytes), [&] {
+    const double round_trip_s = minimum_seconds(repetitions_of(bytes), [&] {
         if (ranks.first()) ranks.send(partner, std::span<const std::byte>(block));
         ranks.receive(ranks.first() ? partner : 0, std::span(block));
         if (!ranks.first()) ranks.send(0, std::span<const std::byte>(block));
     });
-    return {bytes, both / 2};
+    return {bytes, round_trip_s / 2};
 }
 
 MessageTime gather_time(Ranks& ranks, std::uint64_t bytes) {
@@ -51,7 +52,7 @@ MessageTime gather_time(Ranks& ranks, std::uint64_t bytes) {
 }
 
 Json json_of(const std::vector<MessageTime>& times) {
-    Json list = Json::list();
+    Json list = Json::array();
     for (const MessageTime& time : times) list.push_back({{"bytes", time.bytes}, {"seconds", time.seconds}});
     return list;
 }
@@ -97,14 +98,15 @@ PingReport ping(Ranks& ranks) {
     for (std::uint32_t rank = ranks.first() ? ranks.count() - 1 : 0; rank > 0; --rank)
         if (hosts[rank] != hosts[0]) report.partner = rank;
     ranks.broadcast(report.partner);
-    for (const std::uint64_t bytes : kMessages) report.messages.push_back(message_time(ranks, report.partner, bytes));
-    for (const std::uint64_t bytes : kGathers) report.gathers.push_back(gather_time(ranks, bytes));
+    for (const std::uint64_t bytes : kMessageBytes)
+        report.messages.push_back(message_time(ranks, report.partner, bytes));
+    for (const std::uint64_t bytes : kGatherBytes) report.gathers.push_back(gather_time(ranks, bytes));
     if (ranks.first()) report.network = fitted_network(report.messages);
     return report;
 }
 
 Json PingReport::json() const {
-    Json places = Json::list();
+    Json places = Json::array();
     for (const RankPlace& place : ranks)
         places.push_back({{"host", place.host}, {"threads", place.threads}, {"cores", place.cores}});
     return {{"kind", "raya ping"},

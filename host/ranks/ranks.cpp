@@ -14,7 +14,7 @@ namespace raya {
 namespace {
 
 // Transport of a single rank: communication is a no-op.
-class NoTransport final : public Transport {
+class SingleRankTransport final : public Transport {
   public:
     std::uint32_t rank() const override { return 0; }
     std::uint32_t count() const override { return 1; }
@@ -38,26 +38,26 @@ std::uint64_t bytes_of(std::span<const Outgoing> out) {
     return bytes;
 }
 
-constexpr int kTries = 16;
+constexpr int kClockRequests = 16;
 
-// Answers kTries requests of a rank with this rank's time.
-void answer(Ranks& ranks, std::uint32_t rank, const std::function<std::uint64_t()>& now) {
-    for (int i = 0; i < kTries; ++i) {
-        char asked = 0;
-        ranks.receive(rank, std::span(&asked, 1));
+// Answers kClockRequests requests of a rank with this rank's time.
+void answer_clock_requests(Ranks& ranks, std::uint32_t rank, const std::function<std::uint64_t()>& now) {
+    for (int i = 0; i < kClockRequests; ++i) {
+        char request = 0;
+        ranks.receive(rank, std::span(&request, 1));
         const std::uint64_t time = now();
         ranks.send(rank, std::span(&time, 1));
     }
 }
 
-// Requests rank 0's time kTries times, and returns the clock offset with the minimum uncertainty.
-RankClock ask(Ranks& ranks, const std::function<std::uint64_t()>& now) {
+// Requests rank 0's time kClockRequests times, and returns the clock offset with the minimum uncertainty.
+RankClock request_clock(Ranks& ranks, const std::function<std::uint64_t()>& now) {
     RankClock best{0, UINT64_MAX};
-    for (int i = 0; i < kTries; ++i) {
-        const char question = 1;
+    for (int i = 0; i < kClockRequests; ++i) {
+        const char request = 1;
         std::uint64_t time = 0;
         const std::uint64_t before = now();
-        ranks.send(0, std::span(&question, 1));
+        ranks.send(0, std::span(&request, 1));
         ranks.receive(0, std::span(&time, 1));
         const std::uint64_t half = (now() - before) / 2;
         if (half < best.uncertainty_ns) best = {static_cast<std::int64_t>(time - (before + half)), half};
@@ -68,7 +68,7 @@ RankClock ask(Ranks& ranks, const std::function<std::uint64_t()>& now) {
 }  // namespace
 
 Ranks& Ranks::alone() {
-    static Ranks only(std::make_unique<NoTransport>());
+    static Ranks only(std::make_unique<SingleRankTransport>());
     return only;
 }
 
@@ -78,14 +78,14 @@ Ranks::Ranks(std::unique_ptr<Transport> transport)
 }
 
 void Ranks::find_host() {
-    constexpr std::size_t kLongest = 256;
-    std::array<char, kLongest> own{};
-    host().copy(own.data(), kLongest);
-    const std::vector<std::array<char, kLongest>> hosts = all_gather(own);
+    constexpr std::size_t kMaxNameBytes = 256;
+    std::array<char, kMaxNameBytes> own{};
+    host().copy(own.data(), kMaxNameBytes);
+    const std::vector<std::array<char, kMaxNameBytes>> hosts = all_gather(own);
     for (std::uint32_t rank = 0; rank < count_; ++rank)
         if (hosts[rank] == own) host_ranks_.push_back(rank);
-    of_host_ = static_cast<std::uint32_t>(host_ranks_.size());
-    on_host_ =
+    ranks_on_host_ = static_cast<std::uint32_t>(host_ranks_.size());
+    rank_on_host_ =
         static_cast<std::uint32_t>(std::find(host_ranks_.begin(), host_ranks_.end(), rank_) - host_ranks_.begin());
 }
 
@@ -141,14 +141,14 @@ void Ranks::wait() {
 
 void Ranks::wait_for_first_on_host() {
     const char done = 1;
-    char told = 0;
+    char received = 0;
     std::vector<Outgoing> out;
     std::vector<Incoming> in;
-    if (on_host_ == 0)
-        for (std::uint32_t i = 1; i < of_host_; ++i)
+    if (rank_on_host_ == 0)
+        for (std::uint32_t i = 1; i < ranks_on_host_; ++i)
             out.push_back({host_ranks_[i], kHostTag, std::as_bytes(std::span(&done, 1))});
     else
-        in.push_back({host_ranks_[0], kHostTag, std::as_writable_bytes(std::span(&told, 1))});
+        in.push_back({host_ranks_[0], kHostTag, std::as_writable_bytes(std::span(&received, 1))});
     start(out, in);
     wait();
 }
@@ -158,15 +158,15 @@ int Ranks::fail(const std::string& text, int code) {
         print_log(fmt::format("raya: {}\n", text));
         return code;
     }
-    return end_all(fmt::format("rank {} on {}: {}", rank_, host(), text), code);
+    return abort_all(fmt::format("rank {} on {}: {}", rank_, host(), text), code);
 }
 
-int Ranks::fail(const RankFailure& failure) { return end_all(failure.what(), failure.code); }
+int Ranks::fail(const RankFailure& failure) { return abort_all(failure.what(), failure.code); }
 
-int Ranks::end_all(const std::string& whole, int code) {
-    if (!first()) transport_->report_failure(whole, code);
+int Ranks::abort_all(const std::string& message, int code) {
+    if (!first()) transport_->report_failure(message, code);
     suppress_interrupt_message();  // mpirun also ends this rank, by a signal
-    print_log(fmt::format("raya: {}\n", whole));
+    print_log(fmt::format("raya: {}\n", message));
     transport_->abort(code);
     return code;
 }
@@ -178,8 +178,8 @@ int Ranks::close(int code) {
 }
 
 RankClock rank_clock(Ranks& ranks, const std::function<std::uint64_t()>& now) {
-    if (!ranks.first()) return ask(ranks, now);
-    for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) answer(ranks, rank, now);
+    if (!ranks.first()) return request_clock(ranks, now);
+    for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) answer_clock_requests(ranks, rank, now);
     return {};
 }
 

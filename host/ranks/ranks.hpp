@@ -43,8 +43,8 @@ class Ranks {
     std::uint32_t count() const { return count_; }
     bool first() const { return rank_ == 0; }  // rank 0 reads, prints and writes
     bool many() const { return count_ > 1; }
-    std::uint32_t on_host() const { return on_host_; }  // index of this rank among those of its host
-    std::uint32_t of_host() const { return of_host_; }  // number of ranks of this host
+    std::uint32_t rank_on_host() const { return rank_on_host_; }    // index of this rank among those of its host
+    std::uint32_t ranks_on_host() const { return ranks_on_host_; }  // number of ranks of this host
     std::string host() const { return transport_->host(); }
     std::string library() const { return transport_->library(); }
 
@@ -71,7 +71,7 @@ class Ranks {
     std::vector<T> all_gather(const T& own) {
         return all_gather(std::span(&own, 1), std::vector<std::size_t>(count_, 1));
     }
-    /// The same if the number of elements of each rank is known: sizes[rank].
+    /// As above, if the number of elements of each rank is known: sizes[rank].
     template <Sendable T>
     std::vector<T> all_gather(std::span<const T> own, std::vector<std::size_t> sizes) {
         std::size_t all = 0;
@@ -117,30 +117,30 @@ class Ranks {
     /// Throws RankFailure in rank 0 if another rank has failed. To be called during long computations.
     void poll_failures() { transport_->poll_failures(); }
 
-    /// Collective: calls work() first in one rank of each host, then in the host's other ranks, so that these find the
-    /// results in caches on disk. Returns when all ranks have finished.
+    /// Collective: calls work() first in one rank of each host, then in the host's other ranks, which find the results
+    /// in caches on disk. Returns when all ranks have finished.
     template <std::invocable Work>
-    void one_first_on_each_host(Work&& work) {
-        if (on_host_ == 0) work();
+    void one_rank_per_host_first(Work&& work) {
+        if (rank_on_host_ == 0) work();
         wait_for_first_on_host();
-        if (on_host_ > 0) work();
+        if (rank_on_host_ > 0) work();
         all_gather('\0');
     }
 
     const RankTraffic& traffic() const { return traffic_; }
 
-    /// Reports an error of this rank, which is printed once, and ends all ranks with that exit code. With a single
+    /// Reports an error of this rank and ends all ranks with that exit code. The error is printed once. With a single
     /// rank, prints the error and returns the code.
     int fail(const std::string& text, int code);
 
-    /// The same for a failure that another rank has reported.
+    /// As above, for a failure that another rank has reported.
     int fail(const RankFailure& failure);
 
     /// Collective: closes the transport and returns the maximum of all exit codes.
     int close(int code);
 
   private:
-    int end_all(const std::string& whole, int code);
+    int abort_all(const std::string& message, int code);
     static constexpr int kPlainTag = 0, kHostTag = 1;
 
     void broadcast_bytes(std::span<std::byte> bytes);
@@ -153,7 +153,7 @@ class Ranks {
 
     std::unique_ptr<Transport> transport_;
     std::uint32_t rank_, count_;
-    std::uint32_t on_host_ = 0, of_host_ = 1;
+    std::uint32_t rank_on_host_ = 0, ranks_on_host_ = 1;
     std::vector<std::uint32_t> host_ranks_;  // ranks of this host, ascending
     RankTraffic traffic_;
 };

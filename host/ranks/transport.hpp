@@ -42,8 +42,8 @@ struct RankFailure : std::runtime_error {
 /// Seconds that a failed rank waits before its report. The delay increases with the rank, so that if several ranks
 /// fail, only the first one reports and ends all ranks.
 inline double failure_delay_s(std::uint32_t rank) {
-    constexpr double kTurn = 0.25, kMost = 3;
-    return std::min(kTurn * rank, kMost);
+    constexpr double kDelayPerRank = 0.25, kMaxDelay = 3;
+    return std::min(kDelayPerRank * rank, kMaxDelay);
 }
 
 /// All ranks must make the same collective calls in the same order, each from one thread. Every wait has a time limit,
@@ -97,14 +97,14 @@ class Deadline {
     Deadline(double limit_s, std::string text, int code)
         : watch_([this, limit_s, text = std::move(text), code] {
               std::unique_lock lock(mutex_);
-              if (ended_.wait_for(lock, std::chrono::duration<double>(limit_s), [this] { return over_; })) return;
+              if (ended_.wait_for(lock, std::chrono::duration<double>(limit_s), [this] { return cancelled_; })) return;
               if (!text.empty() && ::write(STDERR_FILENO, text.data(), text.size()) < 0) std::_Exit(code);
               std::_Exit(code);
           }) {}
     ~Deadline() {
         {
             const std::lock_guard lock(mutex_);
-            over_ = true;
+            cancelled_ = true;
         }
         ended_.notify_one();
         watch_.join();
@@ -115,7 +115,7 @@ class Deadline {
   private:
     std::mutex mutex_{};
     std::condition_variable ended_{};
-    bool over_ = false;
+    bool cancelled_ = false;
     std::thread watch_;  // declared last, because the thread uses the members above
 };
 

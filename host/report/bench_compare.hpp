@@ -12,7 +12,7 @@ struct BenchComparison {
     int compared = 0;                    // number of rows that both runs have
     int slower = 0;                      // number of these that are slower by more than the tolerance
     int other_images = 0;                // number of these with another image hash
-    Json rows = Json::list();            // rows of both runs: key, rates now and before, verdict
+    Json rows = Json::array();           // rows of both runs: key, rates now and before, verdict
     std::vector<std::string> remarks{};  // differences of device, driver or version
     bool failed() const { return slower + other_images > 0; }
 };

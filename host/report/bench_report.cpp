@@ -30,7 +30,7 @@ Json row_json(const BenchMeasurement& row) {
 
 BenchMeasurement row_of(const Json& json) {
     const auto text = [&](const char* key) { return json.at(key).text(); };
-    const auto number = [&](const char* key) { return static_cast<std::uint32_t>(json.at(key).whole(INT32_MAX)); };
+    const auto number = [&](const char* key) { return static_cast<std::uint32_t>(json.at(key).integer(INT32_MAX)); };
     return {.kernel = text("kernel"),
             .scene = text("scene"),
             .size = text("size"),
@@ -38,7 +38,7 @@ BenchMeasurement row_of(const Json& json) {
             .format = text("format"),
             .lanes = number("lanes"),
             .group_size = number("group"),
-            .rays = json.at("rays").whole(),
+            .rays = json.at("rays").integer(),
             .best_s = json.at("ms").at("best").number() * 1e-3,
             .median_s = json.at("ms").at("median").number() * 1e-3,
             .samples = static_cast<int>(number("samples")),
@@ -60,12 +60,12 @@ BenchReport report_of(const Json& json) {
                        .driver = device.at("driver").text(),
                        .rows = {}};
     for (const Json& row : json.at("rows").elements()) report.rows.push_back(row_of(row));
-    if (report.rows.empty()) throw JsonError("it has no rows of rates");
+    if (report.rows.empty()) throw JsonError("the report has no measurements");
     std::set<std::string> measured;
     for (const BenchMeasurement& row : report.rows) {
         const std::string name = fmt::format("row {} of {} lanes", row.format, row.lanes);
         if (!is_valid_time(row.best_s) || !is_valid_time(row.median_s) || row.rays == 0)
-            throw JsonError(name + " has rays or times that are not positive");
+            throw JsonError(name + ": rays and times must be positive");
         if (!measured.insert(measured_json(row).dump()).second) throw JsonError(name + " occurs twice");
     }
     return report;
@@ -81,7 +81,7 @@ Json measured_json(const BenchMeasurement& row) {
 Json rates_json(const BenchMeasurement& row) { return {{"best", row.best_rate()}, {"median", row.median_rate()}}; }
 
 Json to_json(const BenchReport& report) {
-    Json rows = Json::list();
+    Json rows = Json::array();
     for (const BenchMeasurement& row : report.rows) rows.push_back(row_json(row));
     Json json = {{"kind", kBenchReportKind},
                  {"raya", report.raya},
@@ -91,7 +91,7 @@ Json to_json(const BenchReport& report) {
                    {"version", report.version},
                    {"driver", report.driver}}},
                  {"rows", rows}};
-    Json builds = Json::list();
+    Json builds = Json::array();
     for (const BenchBuild& one : report.builds)
         builds.push_back({{"kernel", one.kernel},
                           {"variant", one.variant},

@@ -43,7 +43,7 @@ std::string profile_table(double build_s, const std::vector<ProgramBuild>& build
 }
 
 Json commands_json(const std::vector<LabelSummary>& commands, bool waits) {
-    Json json = Json::list();
+    Json json = Json::array();
     for (const LabelSummary& c : commands) {
         json.push_back({{"label", c.label},
                         {"kind", c.kind},
@@ -61,7 +61,7 @@ Json commands_json(const std::vector<LabelSummary>& commands, bool waits) {
 }
 
 Json builds_json(const std::vector<ProgramBuild>& builds) {
-    Json json = Json::list();
+    Json json = Json::array();
     for (const ProgramBuild& b : builds) json.push_back({{"program", b.name}, {"seconds", b.seconds}});
     return json;
 }

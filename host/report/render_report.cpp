@@ -9,7 +9,7 @@ namespace raya {
 namespace {
 
 Json skipped_json(const std::vector<NffRemark>& skipped) {
-    Json json = Json::list();
+    Json json = Json::array();
     for (const NffRemark& remark : skipped)
         json.push_back({{"what", remark.what}, {"count", remark.count}, {"line", remark.line}});
     return json;
@@ -79,9 +79,12 @@ Json accel_json(const std::optional<AccelSummary>& a) {
     if (!a) return {{"kind", "none"}};
     if (a->kind == AccelKind::kBvh)
         return {{"kind", "bvh"},     {"nodes", a->nodes}, {"leaves", a->leaves},
-                {"depth", a->depth}, {"words", a->words}, {"apart", a->apart}};
-    return {
-        {"kind", "grid"}, {"divisions", a->divisions}, {"copies", a->copies}, {"words", a->words}, {"apart", a->apart}};
+                {"depth", a->depth}, {"words", a->words}, {"apart", a->separate}};
+    return {{"kind", "grid"},
+            {"divisions", a->divisions},
+            {"copies", a->copies},
+            {"words", a->words},
+            {"apart", a->separate}};
 }
 
 // Operations of all events, by the modelled PEs' instruction budget.

@@ -56,12 +56,13 @@ std::string accel_line(const RenderReport& r) {
     const EventCounts& e = r.events;
     const auto rays = static_cast<double>(ray_count(e));
     const double tests = static_cast<double>(test_count(e)) / rays, steps = static_cast<double>(e[RAYA_STEPS]) / rays;
-    const std::string apart = a.apart ? fmt::format(", {} listed separately", a.apart) : "";
+    const std::string separate = a.separate ? fmt::format(", {} listed separately", a.separate) : "";
     if (a.kind == AccelKind::kBvh)
         return fmt::format("bvh     {}, {}, depth {}{}; {:.1f} tests and {:.1f} nodes a ray\n",
-                           counted(a.nodes, "node"), counted(a.leaves, "leaf", "leaves"), a.depth, apart, tests, steps);
+                           counted(a.nodes, "node"), counted(a.leaves, "leaf", "leaves"), a.depth, separate, tests,
+                           steps);
     return fmt::format("grid    {}x{}x{} voxels, {} of objects{}; {:.1f} tests and {:.1f} steps a ray\n",
-                       a.divisions[0], a.divisions[1], a.divisions[2], counted(a.copies, "copy", "copies"), apart,
+                       a.divisions[0], a.divisions[1], a.divisions[2], counted(a.copies, "copy", "copies"), separate,
                        tests, steps);
 }
 
@@ -86,8 +87,8 @@ std::string ranks_line(const RenderReport& r) {
     std::set<std::string> hosts;
     for (const Json& rank : r.ranks) {
         waiting = std::max(waiting, rank.at("waiting_s").number());
-        messages += rank.at("messages_sent").whole();
-        bytes += rank.at("bytes_sent").whole();
+        messages += rank.at("messages_sent").integer();
+        bytes += rank.at("bytes_sent").integer();
         hosts.insert(rank.at("host").text());
     }
     return fmt::format("ranks   {} on {}; {}, {} sent; longest wait for others {:.3f} s\n", r.ranks.size(),

@@ -136,7 +136,7 @@ Json peak_json(const DevicePeak& p) {
 }
 
 Json roofline_json(const Roofline& roofline) {
-    Json rows = Json::list();
+    Json rows = Json::array();
     for (const RooflineRow& r : roofline.rows) {
         const double operations = as_double(r.work.all_operations());
         rows.push_back({{"label", r.work.label},

@@ -62,7 +62,7 @@ Json need_json(const AccelNeed& n) {
 }
 
 Json machine_json(const MachineNeeds& m) {
-    Json needs = Json::list();
+    Json needs = Json::array();
     for (const AccelNeed& need : m.needs) needs.push_back(need_json(need));
     return {{"name", m.machine},  {"pes", m.pes},
             {"format", m.format}, {"pe_memory_bytes", m.memory_bytes},
@@ -71,7 +71,7 @@ Json machine_json(const MachineNeeds& m) {
 
 template <class T>
 Json list_json(const std::vector<T>& list, Json (*one)(const T&)) {
-    Json json = Json::list();
+    Json json = Json::array();
     for (const T& element : list) json.push_back(one(element));
     return json;
 }
@@ -201,7 +201,7 @@ std::string summary_text(const SceneReport& r) {
 Json vector_json(const Vec3& v) { return std::array{v.x, v.y, v.z}; }
 
 Json view_json(const Scene& scene) {
-    Json lights = Json::list();
+    Json lights = Json::array();
     for (const Light& light : scene.lights)
         lights.push_back(
             {{"position", vector_json(light.position)}, {"colour", vector_json(light_colour(scene, light))}});

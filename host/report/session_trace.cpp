@@ -18,8 +18,8 @@ std::string name_of(const std::string& process, const TraceRank& rank) {
 // Converts times on the device's clock to nanoseconds since the start of the trace.
 class DeviceTimes {
   public:
-    DeviceTimes(const ClockAnchor& anchor, std::uint64_t begin)
-        : shift_(anchor.offset_ns - static_cast<std::int64_t>(begin)) {}
+    DeviceTimes(const ClockOffset& offset, std::uint64_t begin)
+        : shift_(offset.offset_ns - static_cast<std::int64_t>(begin)) {}
 
     std::uint64_t at(std::uint64_t device_ns, std::uint64_t not_before) {
         const std::int64_t shifted = static_cast<std::int64_t>(device_ns) + shift_;
@@ -64,26 +64,26 @@ std::uint32_t free_track(TraceFile& trace, std::uint32_t process, std::vector<st
     return track;
 }
 
-Json clock_json(const ClockAnchor& anchor) {
+Json clock_json(const ClockOffset& offset) {
     return {
-        {"same_as_host", anchor.same_clock},
-        {"offset_ns", anchor.offset_ns},
-        {"uncertainty_ns", anchor.uncertainty_ns},
-        {"note", anchor.same_clock ? "device times are on the host's clock (CLOCK_MONOTONIC_RAW)"
+        {"same_as_host", offset.same_clock},
+        {"offset_ns", offset.offset_ns},
+        {"uncertainty_ns", offset.uncertainty_ns},
+        {"note", offset.same_clock ? "device times are on the host's clock (CLOCK_MONOTONIC_RAW)"
                                    : "host time = device time + offset, from one command between two readings of the "
                                      "host's clock; drift is not corrected"}};
 }
 
 }  // namespace
 
-void add_host_steps(TraceFile& trace, const std::vector<HostStep>& steps, std::uint64_t begin, const TraceRank& rank) {
+void add_host_spans(TraceFile& trace, const std::vector<HostSpan>& spans, std::uint64_t begin, const TraceRank& rank) {
     const TraceTrack track = {process_of(kTraceHost, rank), 1};
     trace.name_process(track.process, name_of("host (measured)", rank));
     trace.name_track(track, "steps");
-    for (const HostStep& s : steps) trace.slice(track, s.name, s.started - begin, s.ended - begin);
+    for (const HostSpan& s : spans) trace.slice(track, s.name, s.started - begin, s.ended - begin);
 }
 
-void add_device_commands(TraceFile& trace, const std::string& device, const Profile& profile, const ClockAnchor& anchor,
+void add_device_commands(TraceFile& trace, const std::string& device, const Profile& profile, const ClockOffset& offset,
                          std::uint64_t begin, const TraceRank& rank) {
     if (!profile.timed()) {
         trace.metadata()["device"] = "left out: the device does not time its commands";
@@ -91,7 +91,7 @@ void add_device_commands(TraceFile& trace, const std::string& device, const Prof
     }
     const std::uint32_t process = process_of(kTraceDevice, rank);
     trace.name_process(process, name_of(fmt::format("device: {} (measured)", device), rank));
-    DeviceTimes times(anchor, begin);
+    DeviceTimes times(offset, begin);
     std::vector<std::uint64_t> busy_until;
     for (const CommandRecord& c : profile.commands()) {
         const std::uint64_t start = times.at(c.started, 0), end = times.at(c.ended, start);
@@ -99,7 +99,7 @@ void add_device_commands(TraceFile& trace, const std::string& device, const Prof
         trace.slice({process, track}, c.label, start, end, arguments_of(c));
         busy_until[track - 1] = end;
     }
-    trace.metadata()["device_clock"] = clock_json(anchor);
+    trace.metadata()["device_clock"] = clock_json(offset);
     if (times.moved() > 0) trace.metadata()["device_times_moved"] = times.moved();
 }
 

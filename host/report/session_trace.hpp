@@ -1,4 +1,4 @@
-// Adds measured times to a trace file. The host's steps and the device's commands appear as two processes.
+// Adds measured times to a trace file. The host's spans and the device's commands appear as two processes.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,8 +14,8 @@ struct TraceRank {
     bool named = false;
 };
 
-/// Adds one track with the host's steps. `begin`: host_clock_ns() at the start of the trace; no step starts earlier.
-void add_host_steps(TraceFile& trace, const std::vector<HostStep>& steps, std::uint64_t begin,
+/// Adds one track with the host's spans. `begin`: host_clock_ns() at the start of the trace; no step starts earlier.
+void add_host_spans(TraceFile& trace, const std::vector<HostSpan>& spans, std::uint64_t begin,
                     const TraceRank& rank = {});
 
 /// Adds a slice for each command from start to end, with its four times on the device's clock, its bytes, and details
@@ -23,7 +23,7 @@ void add_host_steps(TraceFile& trace, const std::vector<HostStep>& steps, std::u
 /// times overlap are put in further tracks. Times that are out of order or before `begin` are moved to the nearest
 /// valid time. The metadata contains their number and the offset between the clocks. For a device that does not time
 /// its commands, adds only a remark to the metadata.
-void add_device_commands(TraceFile& trace, const std::string& device, const Profile& profile, const ClockAnchor& anchor,
+void add_device_commands(TraceFile& trace, const std::string& device, const Profile& profile, const ClockOffset& offset,
                          std::uint64_t begin, const TraceRank& rank = {});
 
 }  // namespace raya

@@ -26,8 +26,8 @@ void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool d
                         antialias_name(method)));
     if (method == AntialiasMethod::kNone || mapping.kind != RAYA_RANDOM) return;
     throw UserError(fmt::format(
-        "--antialias {} with --mapping {}: random: neighbours are on PEs all over the ring; use cyclic, column, rows, "
-        "blocks, grid or tiles",
+        "--antialias {} with --mapping {}: the neighbours of a pixel are on random PEs of the ring; use cyclic, "
+        "column, rows, blocks, grid or tiles",
         antialias_name(method), mapping_text(mapping)));
 }
 

@@ -43,7 +43,7 @@ struct PeWords {
 class Bus {
   public:
     Bus(Session& session, Communication& counted, std::uint32_t pes, Ranks& ranks = Ranks::alone())
-        : session_(session), counted_(counted), ranks_(ranks), pes_(pes), here_(own_segment(pes, ranks)) {}
+        : session_(session), counted_(counted), ranks_(ranks), pes_(pes), segment_(own_segment(pes, ranks)) {}
 
     /// Sends words from the host to all PEs, by writing them to the device buffer `to`. The PEs copy them into their
     /// memories at the start of a kernel.
@@ -53,9 +53,10 @@ class Bus {
     /// from.rows must equal to.rows.
     void send(const Buffer<float>& own, PeWords from, Buffer<float>& blocks, PeWords to, std::size_t words);
 
-    /// Broadcasts `words` words of each row of one PE to all others. Each device has one buffer `heard`, with space for
-    /// the words of every PE of the ring.
-    void broadcast_from(const Buffer<float>& own, PeWords from, Buffer<float>& heard, PeWords to, std::size_t words);
+    /// Broadcasts `words` words of each row of one PE to all others. Each device has one buffer `all_blocks`, with
+    /// space for the words of every PE of the ring.
+    void broadcast_from(const Buffer<float>& own, PeWords from, Buffer<float>& all_blocks, PeWords to,
+                        std::size_t words);
 
     /// Counts one gather. Its data may be read by several calls of gather().
     void begin_gather() { counted_.gathers += 1; }
@@ -77,7 +78,7 @@ class Bus {
     Communication& counted_;
     Ranks& ranks_;
     std::uint32_t pes_;
-    PeSegment here_;
+    PeSegment segment_;
 };
 
 /// One block in the memory of each PE, and the rotations that move all blocks. The device needs a second buffer,
@@ -95,19 +96,19 @@ class Ring {
     void load(const Buffer<float>& own, std::size_t own_words, std::size_t begin);
 
     /// Every PE sends its block to the next PE in the direction, with wrap-around at the end of the ring.
-    void rotate(Turn turn);
+    void rotate(RingDirection direction);
 
-    /// For each PE i, copies the block of PE (i + distance) mod P from `heard` into the block of PE i. `heard`: blocks
-    /// that were broadcast over the bus, [PE of all ranks][rows][row_words]. Not counted.
-    void take(const Buffer<float>& heard, std::size_t distance);
+    /// For each PE i, copies the block of PE (i + distance) mod P from `all_blocks` into the block of PE i.
+    /// `all_blocks`: blocks that were broadcast over the bus, [PE of all ranks][rows][row_words]. Not counted.
+    void take(const Buffer<float>& all_blocks, std::size_t distance);
 
     /// Current blocks of the PEs of this rank's segment, [PE][rows][row_words].
     Buffer<float>& blocks() { return front_; }
 
   private:
-    void turn_here(Turn turn);
-    void send_block(Turn turn);
-    void receive_block(Turn turn);
+    void rotate_within_rank(RingDirection direction);
+    void send_block(RingDirection direction);
+    void receive_block(RingDirection direction);
     /// Copies `blocks` blocks. `first` and `at` are the indices of the first source and destination block.
     void move(const char* label, const Buffer<float>& from, std::size_t first, Buffer<float>& to, std::size_t at,
               std::size_t blocks);
@@ -115,7 +116,7 @@ class Ring {
     Session& session_;
     Communication& counted_;
     Ranks& ranks_;
-    PeSegment here_;
+    PeSegment segment_;
     std::size_t pes_, rows_, row_words_, block_words_;
     Buffer<float> front_, back_;
     std::vector<float> outgoing_, incoming_;  // block sent to, and block received from, another rank

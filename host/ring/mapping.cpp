@@ -22,7 +22,7 @@ void check_tiles(const raya_mapping& m) {
     const std::uint32_t w = raya_first_of(m.parameter), h = raya_second_of(m.parameter);
     if (m.width % w == 0 && m.height % h == 0) return;
     throw UserError(
-        fmt::format("--mapping {}: tiles must divide the image of {} x {} pixels; the nearest that do are tiles:{}x{}",
+        fmt::format("--mapping {}: tiles must divide the image of {} x {} pixels; the nearest are tiles:{}x{}",
                     mapping_text(m), m.width, m.height, nearest_divisor(m.width, w), nearest_divisor(m.height, h)));
 }
 
@@ -48,8 +48,8 @@ void check_offset(const raya_mapping& m) {
 
 raya_mapping make_mapping(const MappingRule& rule, const ImageSize& image, std::uint32_t pes) {
     const auto [width, height] = image;
-    if (width < 1 || width > kLargestSide || height < 1 || height > kLargestSide)
-        throw UserError(fmt::format("--size {}x{}: both sides must be 1..{} pixels", width, height, kLargestSide));
+    if (width < 1 || width > kMaxSide || height < 1 || height > kMaxSide)
+        throw UserError(fmt::format("--size {}x{}: both sides must be 1..{} pixels", width, height, kMaxSide));
     const raya_mapping mapping{width, height, pes, rule.parameter, rule.kind};
     check_pes(rule, mapping);
     if (rule.kind == RAYA_TILES) check_tiles(mapping);

@@ -37,10 +37,10 @@ void NeighbourExchange::exchange_by_rotation(const Buffer<float>& own, raya_u32 
                                              const Arrived& arrived) {
     for (const Leg& leg : shortest_route(pes_, distances_[side])) {
         ring_.load(own, capacity_, begin);
-        std::uint32_t turns = 0;
+        std::uint32_t rotations = 0;
         for (const std::uint32_t stop : leg.stops) {
-            for (; turns < stop; ++turns) ring_.rotate(leg.turn);
-            arrived({ring_.blocks(), side, leg.turn == Turn::kDown ? stop : pes_ - stop, begin});
+            for (; rotations < stop; ++rotations) ring_.rotate(leg.direction);
+            arrived({ring_.blocks(), side, leg.direction == RingDirection::kDown ? stop : pes_ - stop, begin});
         }
     }
 }

@@ -11,7 +11,7 @@ namespace raya {
 namespace {
 
 constexpr std::uint64_t kWaitingRayWords = 7;  // a pending ray on the stack: origin, direction, weight
-constexpr std::uint64_t kWalkWords = 32;       // current ray, hit, normal, mirror direction, tint, sum, counters
+constexpr std::uint64_t kRayTreeWords = 32;    // current ray, hit, normal, mirror direction, tint, sum, counters
 constexpr std::uint64_t kPixelBytes = 12;
 
 [[noreturn]] void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes,
@@ -26,7 +26,7 @@ constexpr std::uint64_t kPixelBytes = 12;
 }  // namespace
 
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
-    PeMemory memory{.job_words = demand.job_words, .tree_words = kWalkWords + kWaitingRayWords * demand.bounces};
+    PeMemory memory{.job_words = demand.job_words, .tree_words = kRayTreeWords + kWaitingRayWords * demand.bounces};
     const bool exchanges = demand.antialias != AntialiasMethod::kNone;
     std::uint32_t& varied = exchanges ? memory.band_pixels : memory.block_pixels;
     if (exchanges) memory.block_pixels = demand.share;

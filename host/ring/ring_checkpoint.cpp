@@ -14,8 +14,8 @@
 namespace raya {
 namespace {
 
-constexpr std::uint32_t kFirstBands = 64;    // the first band is 1 / kFirstBands of a share
-constexpr std::uint32_t kFewestOfLane = 16;  // minimum pixels per lane of the first band: fewer would leave lanes idle
+constexpr std::uint32_t kFirstBands = 64;        // the first band is 1 / kFirstBands of a share
+constexpr std::uint32_t kMinPixelsPerLane = 16;  // of the first band: with fewer, lanes would be idle
 
 std::string words_hash(const std::vector<std::uint32_t>& words) {
     return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
@@ -81,32 +81,32 @@ RingState RingRenderer::host_state(const RingResult& result) const {
         RingState::Pass& pass = s.passes.emplace_back();
         pass.cycles.resize(counters_[i].cycles.size());
         pass.events.resize(counters_[i].events.size());
-        if (result.phases[i].kept_cost) pass.costs = result.phases[i].kept_cost->cycles;
+        if (result.phases[i].recorded_cost) pass.costs = result.phases[i].recorded_cost->cycles;
     }
-    if (result.all.kept_cost) s.all_costs = result.all.kept_cost->cycles;
+    if (result.all.recorded_cost) s.all_costs = result.all.recorded_cost->cycles;
     return s;
 }
 
 RingState RingRenderer::checkpoint_state(const RingResult& result) {
     RingState s = host_state(result);
-    session_.read("keep pixels", pixels_, s.pixels);
-    if (contrast_) session_.read("keep marks", contrast_->marks(), s.marks);
+    session_.read("save pixels", pixels_, s.pixels);
+    if (contrast_) session_.read("save marks", contrast_->marks(), s.marks);
     for (std::size_t i = 0; i < counters_.size(); ++i) {
-        session_.read("keep counters", counters_[i].cycles, s.passes[i].cycles);
-        session_.read("keep counters", counters_[i].events, s.passes[i].events);
+        session_.read("save counters", counters_[i].cycles, s.passes[i].cycles);
+        session_.read("save counters", counters_[i].events, s.passes[i].events);
     }
     return s;
 }
 
 void RingRenderer::save_checkpoint(std::uint32_t pass, PixelRange range, RingResult& result) {
-    const StepLog::Step step = session_.step("keep state");
+    const SpanLog::Span span = session_.span("save checkpoint");
     prepare_memory(result);  // also copies the gathered pixels into the image
     RingState s = checkpoint_state(result);
     s.pass = pass;
     s.window = range.block;
     s.next = range.begin;
     s.share = (pass + 1.0 * range.begin / share_) / static_cast<double>(counters_.size());
-    checkpointing_->keep(s, state_settings());
+    checkpointing_->save(s, state_settings());
 }
 
 void RingRenderer::resume(RingResult& result) {
@@ -115,12 +115,12 @@ void RingRenderer::resume(RingResult& result) {
     if (checkpointing_ == nullptr) return;
     if (ranks_.many()) throw UserError("a render on several ranks cannot save checkpoints; start raya without mpirun");
     const std::uint32_t at_once = settings_.kernels.lanes * settings_.kernels.group_size;
-    band_ = std::max(share_ / kFirstBands, kFewestOfLane * at_once);
+    band_ = std::max(share_ / kFirstBands, kMinPixelsPerLane * at_once);
     if (!checkpointing_->resume) return;
     prepare_memory(result);
     resumed_ = checkpointing_->resume(state_settings(), host_state(result));
     if (!resumed_) return;
-    const StepLog::Step step = session_.step("resume");
+    const SpanLog::Span span = session_.span("resume");
     RingState& s = *resumed_;
     earlier_s_ = s.seconds;
     communication_ = s.communication;
@@ -130,9 +130,9 @@ void RingRenderer::resume(RingResult& result) {
     for (std::size_t i = 0; i < counters_.size(); ++i) {
         session_.write("resume", counters_[i].cycles, s.passes[i].cycles);
         session_.write("resume", counters_[i].events, s.passes[i].events);
-        if (result.phases[i].kept_cost) result.phases[i].kept_cost->cycles = std::move(s.passes[i].costs);
+        if (result.phases[i].recorded_cost) result.phases[i].recorded_cost->cycles = std::move(s.passes[i].costs);
     }
-    if (result.all.kept_cost) result.all.kept_cost->cycles = std::move(s.all_costs);
+    if (result.all.recorded_cost) result.all.recorded_cost->cycles = std::move(s.all_costs);
 }
 
 }  // namespace raya

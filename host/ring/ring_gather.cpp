@@ -95,14 +95,14 @@ void RingRenderer::collect(std::vector<T>& own, std::size_t of_pe, const Take& t
 // Copies the pixels of the last gather into the image, and allocates the host memory for the next gather in advance, as
 // the first access to new memory is slow. trace() calls this function while the device traces.
 void RingRenderer::prepare_memory(RingResult& result) {
-    const StepLog::Step step = session_.step("make room");
+    const SpanLog::Span span = session_.span("prepare memory");
     if (result.image.rgb.empty() && ranks_.first()) result.image = black(settings_.mapping);
     place_gathered(result);
     gathered_.resize(pixels_.size());
 }
 
 void RingRenderer::gather(PixelRange range, RingResult& result) {
-    const StepLog::Step step = session_.step("gather");
+    const SpanLog::Span span = session_.span("gather");
     const raya_mapping& m = settings_.mapping;
     std::uint64_t owned = 0;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
@@ -138,22 +138,22 @@ void RingRenderer::place(const PeSegment& pes, PixelRange range, std::span<const
 // Reads the cost of each pixel for reports. The modelled machine does not make this transfer, so it is not counted.
 void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
     if (!records_costs()) return;
-    const StepLog::Step step = session_.step("collect costs");
+    const SpanLog::Span span = session_.span("collect costs");
     for (std::size_t i = 0; i < counters_.size(); ++i) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
         collect(cycles, window_, [&](const PeSegment& pes, std::span<const std::uint64_t> counted) {
             for_each_pixel(settings_.mapping, pes, range, [&](std::size_t pe, std::size_t pixel, std::size_t to) {
                 const std::uint64_t cost = counted[pe * window_ + pixel];
-                result.phases[i].kept_cost->cycles[to] = cost;
-                if (counters_.size() > 1) result.all.kept_cost->cycles[to] += cost;
+                result.phases[i].recorded_cost->cycles[to] = cost;
+                if (counters_.size() > 1) result.all.recorded_cost->cycles[to] += cost;
             });
         });
     }
 }
 
 void RingRenderer::collect_marks(RingResult& result) {
-    const StepLog::Step step = session_.step("collect marks");
+    const SpanLog::Span span = session_.span("collect marks");
     if (ranks_.first()) result.mask = black(settings_.mapping);
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
@@ -168,7 +168,7 @@ void RingRenderer::collect_marks(RingResult& result) {
 }
 
 void RingRenderer::collect_events(RingResult& result) {
-    const StepLog::Step step = session_.step("collect events");
+    const SpanLog::Span span = session_.span("collect events");
     const auto cycles = cycles_of_events();
     std::vector<std::uint64_t> all(settings_.mapping.pes);
     for (std::size_t i = 0; i < counters_.size(); ++i) {

@@ -17,30 +17,30 @@ namespace {
 // not pay if an accelerator reads only few of many words. Returns false if the words do not fit, or if the copying loop
 // could exceed the device's limit of loop iterations.
 bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel) {
-    constexpr std::size_t kMostCopied = 64 * 1024;
-    constexpr std::size_t kFewTurns = 4096;
-    if (device.max_loop_iterations > 0 && job.words().size() > kFewTurns) return false;
+    constexpr std::size_t kMaxCopiedBytes = 64 * 1024;
+    constexpr std::size_t kMaxCopiedWords = 4096;
+    if (device.max_loop_iterations > 0 && job.words().size() > kMaxCopiedWords) return false;
     const std::size_t bytes = 4 * job.words().size() + 32;  // 32: padding to whole rows, and the work-group's own data
-    return bytes <=
-           (accel != AccelKind::kNone ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
+    return bytes <= (accel != AccelKind::kNone ? std::min(kMaxCopiedBytes, device.local_memory_bytes)
+                                               : device.local_memory_bytes);
 }
 
-constexpr std::size_t kTestsOfWalk = 20;  // approximate number of tests for a ray with an accelerator
+constexpr std::size_t kTestsPerRay = 20;  // approximate, with an accelerator
 
 // Returns the maximum work of a launch, in tests and traversal steps of a lane's rays, so that the device does not
 // exceed its limit of loop iterations. `step`: maximum work by which a lane may exceed its limit, which it checks only
 // after each ray and its shadow rays. The constants convert work to iterations. Measured with the images of `raya
 // verify` on llvmpipe: 12 iterations per test were too few and 16 enough. A BVH step has one iteration for each of
-// sixteen boxes and some more. kTurnsOfLaunch is for the loop that copies words.
-double most_work(AccelKind accel, double step, const DeviceInfo& device) {
-    constexpr double kTurnsOfTest = 24, kTurnsOfStep = 96, kTurnsOfLaunch = 8192;
+// sixteen boxes and some more. kIterationsPerLaunch is for the loop that copies words.
+double max_launch_work(AccelKind accel, double step, const DeviceInfo& device) {
+    constexpr double kIterationsPerTest = 24, kIterationsPerStep = 96, kIterationsPerLaunch = 8192;
     if (device.max_loop_iterations == 0) return 1u << 31;
-    const double turns = accel == AccelKind::kNone ? kTurnsOfTest : kTurnsOfStep;
-    return std::max(1.0, (device.max_loop_iterations - kTurnsOfLaunch) / turns - step);
+    const double iterations = accel == AccelKind::kNone ? kIterationsPerTest : kIterationsPerStep;
+    return std::max(1.0, (device.max_loop_iterations - kIterationsPerLaunch) / iterations - step);
 }
 
 PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
-    const StepLog::Step step = session.step("pack scene");
+    const SpanLog::Span span = session.span("pack scene");
     return pack_for_ring(scene, settings, scale);
 }
 
@@ -48,7 +48,7 @@ RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSett
     const LengthScale scale = length_scale(scene, settings.format);
     RingJob all{packed(session, scene, settings, scale), {}, 0, scale, scene.object_count()};
     if (settings.accel.kind == AccelKind::kNone) return all;
-    const StepLog::Step step = session.step("divide scene");
+    const SpanLog::Span span = session.span("divide scene");
     const Clock::time_point start = Clock::now();
     all.accel = append_accel(all.job, settings);
     all.accel_s = seconds_since(start);
@@ -100,12 +100,12 @@ LaunchWork launch_work(const RingSettings& settings, const KernelOptions& option
     constexpr double kTestsPerLaunch = 2e8;  // a quarter of a second on two CPU cores
     constexpr double kRaysPerPixel = 6;      // typical
     const double tests_of_ray = static_cast<double>(
-        settings.accel.kind != AccelKind::kNone ? std::min(kTestsOfWalk, objects) : std::max<std::size_t>(1, objects));
-    const double most = most_work(settings.accel.kind, tests_of_ray * static_cast<double>(1 + lights), device);
+        settings.accel.kind != AccelKind::kNone ? std::min(kTestsPerRay, objects) : std::max<std::size_t>(1, objects));
+    const double max = max_launch_work(settings.accel.kind, tests_of_ray * static_cast<double>(1 + lights), device);
     const double first = kTestsPerLaunch / (1.0 * pes * options.group_size * options.lanes);
-    const auto bounded = [&](double work) { return static_cast<std::uint32_t>(std::clamp(work, 1.0, most)); };
+    const auto bounded = [&](double work) { return static_cast<std::uint32_t>(std::clamp(work, 1.0, max)); };
     return {bounded(std::max(first, kRaysPerPixel * tests_of_ray)), bounded(kRaysPerPixel * tests_of_ray),
-            bounded(most)};
+            bounded(max)};
 }
 
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
@@ -152,7 +152,7 @@ RingJob make_ring_job(const Session& session, const Scene& scene, const RingSett
     }
     RingJob all = pack_ring_job(session, scene, settings);
     if (!ranks.many()) return all;
-    const StepLog::Step step = session.step("send scene");
+    const SpanLog::Span span = session.span("send scene");
     RingFigures f{all.accel, all.accel_s, all.scale, all.objects, all.job.has_patches()};
     std::vector<std::uint32_t> words = all.job.words();
     ranks.broadcast(f);

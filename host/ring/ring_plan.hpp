@@ -26,7 +26,7 @@ struct RingSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
-    bool keep_costs = false;  // record the cost of each pixel, 8 bytes on the host; implied by `dynamic`
+    bool record_costs = false;  // record the cost of each pixel, 8 bytes on the host; implied by `dynamic`
     Accel accel;
     KernelChoice kernels;
     std::uint64_t device_pixels = 1 << 22;  // pixels of all PEs on the device at a time, 20 bytes each; anti-aliased

@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-PeSegment segment_here(const raya_mapping& m, const Ranks& ranks) {
+PeSegment checked_segment(const raya_mapping& m, const Ranks& ranks) {
     if (m.pes < ranks.count())
         throw UserError(fmt::format(
             "{} ranks for {} PEs: a rank needs at least one PE; start {} ranks or fewer, or use more PEs (--pes)",
@@ -27,8 +27,8 @@ PeSegment segment_here(const raya_mapping& m, const Ranks& ranks) {
 std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings, std::uint32_t ranks) {
     if (settings.antialias.method != AntialiasMethod::kNone) return memory.block_pixels;
     const std::uint32_t pes = (settings.mapping.pes + ranks - 1) / ranks;  // maximum number of PEs of a rank
-    const std::uint64_t most = std::max<std::uint64_t>(1, settings.device_pixels / pes);
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory.block_pixels, most));
+    const std::uint64_t max_pixels = std::max<std::uint64_t>(1, settings.device_pixels / pes);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory.block_pixels, max_pixels));
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
     : session_(session),
       ranks_(ranks),
       settings_(checked(settings, session.device())),
-      pes_(segment_here(settings_.mapping, ranks)),
+      pes_(checked_segment(settings_.mapping, ranks)),
       job_(make_ring_job(session, scene, settings_, ranks)),
       share_(largest_share(settings_.mapping)),
       memory_(plan_pe_memory(settings_.machine, pe_demand(settings_, scene.name, job_.job.words().size()))),
@@ -46,12 +46,12 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
       broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.job.words().size())),
       pixels_(session.buffer<float>("pixel blocks", 3ull * pes_.count * window_)),
       marks_(session.buffer<std::uint8_t>("no marks", 1)) {
-    ranks_.one_first_on_each_host([this] { build(); });
+    ranks_.one_rank_per_host_first([this] { build(); });
 }
 
 void RingRenderer::build() {
-    const StepLog::Step building = session_.step("set up device");
-    const std::jthread notice = session_.compiling();
+    const SpanLog::Span building = session_.span("set up device");
+    const std::jthread notice = session_.compile_notice();
     const Clock::time_point start = Clock::now();
     const KernelOptions options = kernel_options(settings_, job_.job, job_.accel, session_.device());
     Kernels kernels(session_, options, settings_.kernels.sources);
@@ -89,7 +89,7 @@ void RingRenderer::build_exchange(KernelOptions options) {
 RingResult RingRenderer::render(const ProgressCallback& progress, const RingCheckpointing* checkpointing) {
     session_.clear_profile();
     communication_ = {};
-    const StepLog::Step rendering = session_.step("render");
+    const SpanLog::Span rendering = session_.span("render");
     started_ = Clock::now();
     checkpointing_ = checkpointing;
     const RankTraffic before = ranks_.traffic();
@@ -128,23 +128,23 @@ void RingRenderer::render_block(std::uint32_t block, RingResult& result, const P
 }
 
 void RingRenderer::prepare(RingResult& result) {
-    const StepLog::Step step = session_.step("prepare");
+    const SpanLog::Span span = session_.span("prepare");
     const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
     std::optional<CostImage> none;
     if (records_costs() && ranks_.first())
         none = CostImage{settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
-    if (counters_.size() > 1) result.all.kept_cost = none;
+    if (counters_.size() > 1) result.all.recorded_cost = none;
     for (PassCounters& counters : counters_) {
         Phase phase;
         phase.name = result.phases.empty() ? kTracePass : kSupersamplePass;
-        phase.kept_cost = none;
+        phase.recorded_cost = none;
         result.phases.push_back(std::move(phase));
         tracer_->clear(counters);
     }
 }
 
 void RingRenderer::trace(PixelRange range, RingResult& result, const ProgressCallback& progress) {
-    const StepLog::Step step = session_.step(kTracePass);
+    const SpanLog::Span span = session_.span(kTracePass);
     const double passes = static_cast<double>(counters_.size());
     const auto report = [&](double done) {
         ranks_.poll_failures();
@@ -158,7 +158,7 @@ void RingRenderer::trace(PixelRange range, RingResult& result, const ProgressCal
 }
 
 void RingRenderer::supersample(RingResult& result, const ProgressCallback& progress) {
-    const StepLog::Step step = session_.step(kSupersamplePass);
+    const SpanLog::Span span = session_.span(kSupersamplePass);
     if (!resumed_ || resumed_->pass == 0) contrast_->apply(pixels_, *exchange_);
     PixelRange range{0, 0, share_};
     const auto report = [&](double done) {
@@ -175,7 +175,7 @@ void RingRenderer::supersample(RingResult& result, const ProgressCallback& progr
 // OpenCL work-groups cannot distribute pixels among each other at run time, so the dynamic distribution is simulated
 // from the pixels' costs.
 void RingRenderer::simulate_schedule(RingResult& result) {
-    const StepLog::Step step = session_.step("simulate schedule");
+    const SpanLog::Span span = session_.span("simulate schedule");
     const Schedule schedule = dynamic_schedule(result.cost(), settings_.mapping, *settings_.dynamic);
     result.requests = schedule.requests;
     result.all.load = result.phases.front().load = schedule.load;

@@ -39,7 +39,7 @@ class RingRenderer {
     const LengthScale& scale() const { return job_.scale; }
 
   private:
-    bool records_costs() const { return settings_.keep_costs || settings_.dynamic.has_value(); }
+    bool records_costs() const { return settings_.record_costs || settings_.dynamic.has_value(); }
     bool polls_failures() const { return ranks_.many() && ranks_.first(); }  // failures of other ranks
     void build();
     void build_exchange(KernelOptions options);

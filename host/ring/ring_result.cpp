@@ -45,8 +45,8 @@ KernelWork neighbour_work(const std::string& label, std::uint64_t pixels, std::u
 }  // namespace
 
 const CostImage& Phase::cost() const {
-    if (!kept_cost) throw std::logic_error("the costs of pixels were not recorded: set RingSettings::keep_costs");
-    return *kept_cost;
+    if (!recorded_cost) throw std::logic_error("the costs of pixels were not recorded: set RingSettings::record_costs");
+    return *recorded_cost;
 }
 
 double trace_seconds(const RingResult& result) {
@@ -62,16 +62,16 @@ std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const Rin
     for (std::size_t i = 0; i < result.phases.size(); ++i)
         works.push_back(trace_work(settings, result, result.phases[i], i == 0));
     const std::uint64_t width = settings.mapping.width, height = settings.mapping.height;
-    // Numbers of pairs of a pixel and its left or right neighbour, and of a pixel and its neighbour above or below.
-    const std::uint64_t beside = 2 * (width - 1) * height, above = 2 * width * (height - 1);
+    // Numbers of pairs of a pixel and its left or right neighbour, and of a pixel and its upper or lower neighbour.
+    const std::uint64_t horizontal = 2 * (width - 1) * height, vertical = 2 * width * (height - 1);
     if (settings.antialias.method == AntialiasMethod::kFilter) {
-        works.push_back(neighbour_work("filter.sum_rows", beside, 1, 3));
-        works.push_back(neighbour_work("filter.sum_columns", above, 1, 3));
+        works.push_back(neighbour_work("filter.sum_rows", horizontal, 1, 3));
+        works.push_back(neighbour_work("filter.sum_columns", vertical, 1, 3));
         works.push_back(neighbour_work("filter.take_means", width * height, 1, 2));
     }
     // Operations per component, as in compare_cycles(): 4 to clamp both colours to 0..1, 1 difference, 1 comparison.
     if (settings.antialias.method == AntialiasMethod::kSupersample)
-        works.push_back(neighbour_work("supersample.compare", beside + above, 4 + 1 + 1, 2));
+        works.push_back(neighbour_work("supersample.compare", horizontal + vertical, 4 + 1 + 1, 2));
     return works;
 }
 

@@ -27,8 +27,8 @@ inline constexpr const char *kTracePass = "trace", *kSupersamplePass = "supersam
 struct Phase {
     std::string name;  // kTracePass, kSupersamplePass
     EventCounts events{};
-    Load load;                           // modelled cycles of each PE, from its own counters
-    std::optional<CostImage> kept_cost;  // only with RingSettings::keep_costs
+    Load load;                               // modelled cycles of each PE, from its own counters
+    std::optional<CostImage> recorded_cost;  // only with RingSettings::record_costs
 
     /// Modelled cycles of each pixel. Throws std::logic_error if they were not recorded.
     const CostImage& cost() const;

@@ -78,12 +78,12 @@ Json header_of(const RingState& s, const StateSettings& settings) {
 // Throws UserError for the first setting that differs. Hashes are last, so that a named option is reported if possible.
 void check_settings(const Json& of, const StateSettings& settings) {
     for (const auto& [name, value] : settings) {
-        const std::string& kept = of.at(name).text();
-        if (kept == value) continue;
+        const std::string& saved = of.at(name).text();
+        if (saved == value) continue;
         if (name.starts_with("another")) throw UserError("was rendered with " + name);
         if (value == "yes" || value == "no")
             throw UserError(fmt::format("was rendered {} {}", value == "yes" ? "without" : "with", name));
-        throw UserError(fmt::format("was rendered with {} {:.80}, not {}", name, kept, value));
+        throw UserError(fmt::format("was rendered with {} {:.80}, not {}", name, saved, value));
     }
 }
 
@@ -106,12 +106,12 @@ RingState read_state(std::string_view bytes, const StateSettings& settings, Ring
     const std::size_t end = bytes.find('\n');
     const Json header = Json::parse(std::string(bytes.substr(0, end)), {"damaged header"});
     check_settings(header.at("of"), settings);
-    state.pass = static_cast<std::uint32_t>(header.at("pass").whole(1));
-    state.window = static_cast<std::uint32_t>(header.at("window").whole(UINT32_MAX));
-    state.next = static_cast<std::uint32_t>(header.at("next").whole(UINT32_MAX));
+    state.pass = static_cast<std::uint32_t>(header.at("pass").integer(1));
+    state.window = static_cast<std::uint32_t>(header.at("window").integer(UINT32_MAX));
+    state.next = static_cast<std::uint32_t>(header.at("next").integer(UINT32_MAX));
     state.share = header.at("share").number();
     state.seconds = header.at("seconds").number();
-    if (header.at("passes").whole() != state.passes.size()) throw UserError("damaged");
+    if (header.at("passes").integer() != state.passes.size()) throw UserError("damaged");
     Reader from(bytes.substr(end + 1));
     from.take_raw(&state.communication, sizeof state.communication);
     for_each_vector(state, [&](auto& values) { from.take(values); });

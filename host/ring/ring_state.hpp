@@ -43,21 +43,21 @@ inline constexpr std::string_view kStateMagic = "raya state 2\n";
 
 std::string state_bytes(const RingState& state, const StateSettings& settings);
 
-/// Reads a checkpoint. The vectors of `like` must have the sizes of this render. Throws UserError, whose text does not
+/// Reads a checkpoint. The vectors of `shape` must have the sizes of this render. Throws UserError, whose text does not
 /// contain the file's name, if the bytes are not a checkpoint, are damaged, or belong to a different render; then the
 /// text contains the first setting that differs.
-RingState read_state(std::string_view bytes, const StateSettings& settings, RingState like);
+RingState read_state(std::string_view bytes, const StateSettings& settings, RingState shape);
 
 /// Callbacks for the checkpoints of a render.
 struct RingCheckpointing {
     /// Target duration of a band, seconds.
     double band_s = 2;
-    /// `due` is called after each band. If it returns true, `keep` is called with the state and must save it.
+    /// `due` is called after each band. If it returns true, `save` is called with the state.
     std::function<bool()> due;
-    std::function<void(const RingState&, const StateSettings&)> keep;
+    std::function<void(const RingState&, const StateSettings&)> save;
     /// Returns the checkpoint to resume, or empty to start from the beginning. Arguments: the renderer's settings, and
     /// a state whose vectors have the right sizes.
-    std::function<std::optional<RingState>(const StateSettings&, const RingState& like)> resume;
+    std::function<std::optional<RingState>(const StateSettings&, const RingState& shape)> resume;
 };
 
 }  // namespace raya

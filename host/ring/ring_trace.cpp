@@ -57,12 +57,12 @@ class RingTimeline {
     }
 
     // Adds a tracing phase with a counter of live rays. A PE of this machine traces one ray at a time, so the number of
-    // live rays is the number of PEs that are tracing. The counter has at most kMostPoints points after the first.
+    // live rays is the number of PEs that are tracing. The counter has at most kMaxPoints points after the first.
     void trace_rays(const std::string& name, const Load& load) {
-        constexpr std::size_t kMostPoints = 512;
+        constexpr std::size_t kMaxPoints = 512;
         std::vector<std::uint64_t> ends = load.per_pe;
         std::sort(ends.begin(), ends.end());
-        const std::size_t step = (ends.size() + kMostPoints - 1) / kMostPoints;
+        const std::size_t step = (ends.size() + kMaxPoints - 1) / kMaxPoints;
         count_rays(0, static_cast<double>(ends.end() - std::upper_bound(ends.begin(), ends.end(), 0u)));
         for (std::size_t i = 0; i < ends.size(); i += step) {
             const std::size_t last = std::min(i + step, ends.size()) - 1;

@@ -16,9 +16,9 @@ std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeMethod method, 
         std::ranges::count_if(distances, [](std::uint32_t distance) { return distance > 0; }));
     if (method == ExchangeMethod::kBus) return distant * mapping.pes;
     if (method == ExchangeMethod::kBroadcast) return distant > 0 ? mapping.pes : 0;
-    std::uint64_t turns = 0;
-    for (const Leg& leg : shortest_route(mapping.pes, distances)) turns += leg.turns();
-    return turns;
+    std::uint64_t rotations = 0;
+    for (const Leg& leg : shortest_route(mapping.pes, distances)) rotations += leg.rotations();
+    return rotations;
 }
 
 }  // namespace
@@ -29,8 +29,8 @@ std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya
         for (std::uint32_t column = 0; column < mapping.width; ++column) {
             const raya_pixel pixel = {row, column};
             if (!raya_has_neighbour(mapping, pixel, side)) continue;
-            const raya_pixel beside = raya_neighbour(pixel, side);
-            const std::uint32_t from = raya_owner(mapping, beside.row, beside.column);
+            const raya_pixel adjacent = raya_neighbour(pixel, side);
+            const std::uint32_t from = raya_owner(mapping, adjacent.row, adjacent.column);
             const std::uint32_t to = raya_owner(mapping, row, column);
             found[from >= to ? from - to : from + (mapping.pes - to)] = true;
         }
@@ -42,22 +42,22 @@ std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya
 
 std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances) {
     if (distances.empty()) return {};
-    // The blocks at the first `down` distances are fetched by downward turns, the others by upward turns. A block at
-    // distance d arrives after d downward turns or P - d upward turns. Tries every split.
+    // Downward rotations fetch the blocks at the first `down` distances, upward rotations the others. A block at
+    // distance d arrives after d downward or P - d upward rotations. Tries every split.
     std::size_t down = 0;
-    std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t min_rotations = std::numeric_limits<std::uint64_t>::max();
     for (std::size_t n = 0; n <= distances.size(); ++n) {
         const std::uint64_t downwards = n ? distances[n - 1] : 0,
                             upwards = n < distances.size() ? pes - distances[n] : 0;
-        if (downwards + upwards < fewest) {
-            fewest = downwards + upwards;
+        if (downwards + upwards < min_rotations) {
+            min_rotations = downwards + upwards;
             down = n;
         }
     }
     const auto split = distances.begin() + static_cast<std::ptrdiff_t>(down);
     std::vector<Leg> legs;
-    if (down) legs.push_back({Turn::kDown, {distances.begin(), split}});
-    if (split != distances.end()) legs.push_back({Turn::kUp, {}});
+    if (down) legs.push_back({RingDirection::kDown, {distances.begin(), split}});
+    if (split != distances.end()) legs.push_back({RingDirection::kUp, {}});
     for (auto d = distances.end(); d != split;) legs.back().stops.push_back(pes - *--d);
     return legs;
 }

@@ -10,15 +10,16 @@
 namespace raya {
 
 /// Direction of a rotation: every PE sends its block to the PE with the next lower (kDown) or next higher (kUp) number.
-enum class Turn { kDown, kUp };
+enum class RingDirection { kDown, kUp };
 
-/// A sequence of rotations (turns) in one direction, starting with each PE's own block. After s turns downwards, PE i
-/// holds the block of PE (i + s) mod P; after s turns upwards, that of PE (i - s) mod P.
+/// A sequence of rotations in one direction, starting with each PE's own block. After s downward rotations, PE i holds
+/// the block of PE (i + s) mod P; after s upward rotations, that of PE (i - s) mod P.
 struct Leg {
-    Turn turn = Turn::kDown;
-    std::vector<std::uint32_t> stops;  // turns after which the blocks are used, ascending; 0: each PE's own block
+    RingDirection direction = RingDirection::kDown;
+    std::vector<std::uint32_t> stops;  // numbers of rotations after which the blocks are used, ascending; 0: each PE's
+                                       // own block
 
-    std::uint32_t turns() const { return stops.empty() ? 0 : stops.back(); }
+    std::uint32_t rotations() const { return stops.empty() ? 0 : stops.back(); }
 };
 
 /// Returns all d in 0..P-1, ascending, for which some PE i owns a pixel whose neighbour on `side`
@@ -27,7 +28,7 @@ struct Leg {
 std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya_u32 side);
 
 /// Returns the legs, at most one in each direction and the downward one first, that bring the blocks at all `distances`
-/// with the minimum number of turns.
+/// with the minimum number of rotations.
 std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances);
 
 /// How neighbours' pixels are exchanged. The ring moves data of all PEs at the same time, the bus data of one PE at a

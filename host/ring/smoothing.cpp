@@ -16,7 +16,7 @@ RingFilter::RingFilter(Kernels& kernels, const ExchangeSetup& setup)
 }
 
 void RingFilter::apply(Buffer<float>& pixels, NeighbourExchange& exchange) {
-    const StepLog::Step step = setup_.session.step("filter");
+    const SpanLog::Span span = setup_.session.span("filter");
     sum_line(pixels, exchange, "filter.sum_rows", RAYA_LEFT, RAYA_RIGHT);
     sum_line(pixels, exchange, "filter.sum_columns", RAYA_ABOVE, RAYA_BELOW);
     setup_.session.launch("filter.take_means", take_means_, setup_.pes.count, setup_.group_size, setup_.broadcast,

@@ -8,11 +8,11 @@ namespace raya {
 namespace {
 
 // Returns the work of the next launch, so that it takes about `aim` seconds. `work`: work of the last launch, which
-// took `seconds`; `most`: maximum. The work grows at most by a factor of kMostGrowth.
-std::uint32_t next_work(std::uint32_t work, std::uint32_t most, double seconds, double aim) {
-    constexpr double kMostGrowth = 4;
-    const double growth = seconds * kMostGrowth > aim ? aim / seconds : kMostGrowth;
-    return static_cast<std::uint32_t>(std::clamp(growth * work, 1.0, 1.0 * most));
+// took `seconds`; `max`: maximum. The work grows at most by a factor of kMaxGrowth.
+std::uint32_t next_work(std::uint32_t work, std::uint32_t max, double seconds, double aim) {
+    constexpr double kMaxGrowth = 4;
+    const double growth = seconds * kMaxGrowth > aim ? aim / seconds : kMaxGrowth;
+    return static_cast<std::uint32_t>(std::clamp(growth * work, 1.0, 1.0 * max));
 }
 
 std::size_t saved_tree_words(const KernelOptions& options, std::uint32_t pes) {
@@ -31,7 +31,7 @@ Tracer::Tracer(Kernels& kernels, const PeSegment& pes, std::uint32_t capacity, c
       build_options_(kernels.program(TraceKernel::kFile).options()),
       kernel_(kernels.get<TraceKernel>()),
       progress_(session_.buffer<raya_trace_progress>("progress", pes.count)),
-      saved_trees_(session_.buffer<std::uint32_t>("kept trees", saved_tree_words(options_, pes.count))) {}
+      saved_trees_(session_.buffer<std::uint32_t>("saved trees", saved_tree_words(options_, pes.count))) {}
 
 PassCounters Tracer::make_counters(const std::string& pass) const {
     return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, std::size_t{pes_.count} * capacity_),
@@ -54,7 +54,7 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
                    const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                    const ProgressCallback& progress, const std::function<void()>& meanwhile) {
     const double aim = progress ? 0.5 : 1.0;  // seconds
-    std::uint32_t work = progress ? work_.watched : work_.first;
+    std::uint32_t work = progress ? work_.with_progress : work_.first;
     begin(label, range.begin);
     for (bool first = true, done = false; !done; first = false) {
         work = guard_.begin(session_, label, work, progress_, saved_trees_, pixels, counters.cycles, counters.events);
@@ -72,7 +72,7 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
             continue;
         }
         done = state.done;
-        work = next_work(work, work_.most, seconds_since(start), aim);
+        work = next_work(work, work_.max, seconds_since(start), aim);
         if (!progress) continue;
         const double all = 1.0 * pes_.count * (range.end - range.begin), begun = 1.0 * pes_.count * range.begin;
         progress(done ? 1.0 : (static_cast<double>(state.taken) - begun) / all);

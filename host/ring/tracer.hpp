@@ -27,10 +27,10 @@ struct PixelRange {
 };
 
 /// Limits of the work of one lane in one launch, in tests and traversal steps of its rays: `first` for the first
-/// launch, or `watched` if progress is shown. Later launches are scaled to take one second (half a second if progress
-/// is shown), with `most` as the maximum.
+/// launch, or `with_progress` if progress is shown. Later launches are scaled to take one second, or half a second if
+/// progress is shown, with `max` as the maximum.
 struct LaunchWork {
-    std::uint32_t first = 0, watched = 0, most = 0;
+    std::uint32_t first = 0, with_progress = 0, max = 0;
 };
 
 using TraceKernel = DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::uint32_t>&, Uint<"word_count">,

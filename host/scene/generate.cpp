@@ -17,7 +17,7 @@ constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // parts per unit to
 
 void check_count(const char* kind, int count) {
     if (count < 1 || count > kMaxSpheres)
-        throw UserError(fmt::format("{}: {} spheres: must lie in 1..{}", kind, count, kMaxSpheres));
+        throw UserError(fmt::format("{}: {} spheres: must be 1..{}", kind, count, kMaxSpheres));
 }
 
 /// A view of the cube [-1, 1]^3 towards one of its corners; the cube fills most of the image.
@@ -85,8 +85,7 @@ Scene generate_uniform(int count, std::array<int, 3> voxels) {
     std::int64_t total = 1;
     for (const int along : voxels) {
         if (along < 1 || along > kMaxVoxelsPerAxis)
-            throw UserError(
-                fmt::format("uniform: {} voxels along an axis: must lie in 1..{}", along, kMaxVoxelsPerAxis));
+            throw UserError(fmt::format("uniform: {} voxels along an axis: must be 1..{}", along, kMaxVoxelsPerAxis));
         total *= along;
     }
     if (total > kMaxVoxels) throw UserError(fmt::format("uniform: {} voxels: at most {}", total, kMaxVoxels));
@@ -161,7 +160,7 @@ Scene generate_centre() {
 }
 
 Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
-    constexpr int kTries = 200;  // maximum number of redraws of a sphere that touches another one
+    constexpr int kMaxRedraws = 200;  // maximum number of redraws of a sphere that touches another one
     enum { kGlass, kMirror, kMatt, kFloor };
     Scene scene;
     scene.name = fmt::format("cluster{}.nff", seed);
@@ -177,7 +176,7 @@ Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
     SplitMix random(seed);
     for (int i = 0; i < shape.spheres(); ++i) {
         Sphere sphere = draw_sphere(random, shape);
-        for (int tries = 0; tries < kTries && touches(sphere, scene.spheres); ++tries)
+        for (int tries = 0; tries < kMaxRedraws && touches(sphere, scene.spheres); ++tries)
             sphere = draw_sphere(random, shape);
         sphere.surface = i < shape.glass ? kGlass : i < shape.glass + shape.mirrors ? kMirror : kMatt;
         scene.spheres.push_back(sphere);

@@ -9,12 +9,12 @@
 
 namespace raya {
 
-inline constexpr int kHighestBallsLevel = 6;    // 597,871 spheres
-inline constexpr int kHighestLatticeSize = 64;  // 274,625 spheres, 811,200 cylinders
-inline constexpr int kHighestGearsSize = 16;    // 598,017 polygons
-inline constexpr int kMaxSpheres = 1'000'000;   // of generate_uniform() and generate_random()
-inline constexpr int kMaxVoxelsPerAxis = 256;   // of generate_uniform()
-inline constexpr int kMaxVoxels = 1'048'576;    // of generate_uniform()
+inline constexpr int kMaxBallsLevel = 6;       // 597,871 spheres
+inline constexpr int kMaxLatticeSize = 64;     // 274,625 spheres, 811,200 cylinders
+inline constexpr int kMaxGearsSize = 16;       // 598,017 polygons
+inline constexpr int kMaxSpheres = 1'000'000;  // of generate_uniform() and generate_random()
+inline constexpr int kMaxVoxelsPerAxis = 256;  // of generate_uniform()
+inline constexpr int kMaxVoxels = 1'048'576;   // of generate_uniform()
 
 /// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six). This keeps files short
 /// and makes them equal on all platforms, although sines and cosines differ in the last bits.

@@ -134,8 +134,8 @@ void add_node(Scene& scene, int size, const std::array<int, 3>& node) {
 }  // namespace
 
 Scene generate_balls(int level) {
-    if (level < 0 || level > kHighestBallsLevel)
-        throw UserError(fmt::format("balls: level {}: must lie in 0..{}", level, kHighestBallsLevel));
+    if (level < 0 || level > kMaxBallsLevel)
+        throw UserError(fmt::format("balls: level {}: must be 0..{}", level, kMaxBallsLevel));
     Scene scene;
     scene.name = fmt::format("balls{}.nff", level);
     scene.background = {0.078, 0.361, 0.753};
@@ -149,8 +149,8 @@ Scene generate_balls(int level) {
 }
 
 Scene generate_gears(int size) {
-    if (size < 1 || size > kHighestGearsSize)
-        throw UserError(fmt::format("gears: size {}: must lie in 1..{}", size, kHighestGearsSize));
+    if (size < 1 || size > kMaxGearsSize)
+        throw UserError(fmt::format("gears: size {}: must be 1..{}", size, kMaxGearsSize));
     Scene scene;
     scene.name = fmt::format("gears{}.nff", size);
     scene.background = {0.078, 0.361, 0.753};
@@ -173,8 +173,8 @@ Scene generate_gears(int size) {
 }
 
 Scene generate_lattice(int size) {
-    if (size < 1 || size > kHighestLatticeSize)
-        throw UserError(fmt::format("lattice: size {}: must lie in 1..{}", size, kHighestLatticeSize));
+    if (size < 1 || size > kMaxLatticeSize)
+        throw UserError(fmt::format("lattice: size {}: must be 1..{}", size, kMaxLatticeSize));
     Scene scene;
     scene.name = fmt::format("lattice{}.nff", size);
     scene.background = {0.078, 0.361, 0.753};

@@ -11,9 +11,9 @@
 namespace raya {
 namespace {
 
-// Margins as exponents of two. kSpare: minimum margin to the format's lower limits of a scene that is not scaled.
-// kHorizon: margin above the largest length of a scaled scene with planes, which extend to the horizon.
-constexpr double kSpare = 2, kHorizon = 6;
+// Margins as exponents of two. kMinMargin: minimum margin to the format's lower limits of a scene that is not scaled.
+// kPlaneMargin: margin above the largest length of a scaled scene with planes, which extend to the horizon.
+constexpr double kMinMargin = 2, kPlaneMargin = 6;
 
 /// Calls visit(length) for each length that must not be flushed to 0, because the job has its square or kernels divide
 /// by it.
@@ -48,9 +48,9 @@ ScaleRange margins_of(const LengthScale& scale, const NumberFormat& format) {
 }
 
 int exponent_for(const ScaleRange& margins, bool has_planes) {
-    if (margins.above >= 0 && margins.below >= kSpare) return 0;
+    if (margins.above >= 0 && margins.below >= kMinMargin) return 0;
     return static_cast<int>(
-        std::floor(std::min((margins.above - margins.below + 1) / 2, margins.above - (has_planes ? kHorizon : 0))));
+        std::floor(std::min((margins.above - margins.below + 1) / 2, margins.above - (has_planes ? kPlaneMargin : 0))));
 }
 
 [[noreturn]] void refuse(const Scene& scene, const LengthScale& scale, const NumberFormat& format) {

@@ -18,8 +18,8 @@
 namespace raya {
 namespace {
 
-constexpr int kLargestSide = 16384;    // pixels
-constexpr double kLargestShare = 100;  // for Kd, Ks, T: above 1 is unphysical, above 100 probably a typing error
+constexpr int kMaxResolution = 16384;  // pixels
+constexpr double kMaxShare = 100;      // for Kd, Ks, T: above 1 is unphysical, above 100 probably a typing error
 constexpr int kMaxVertices = 1'000'000'000;
 
 class NffReader {
@@ -54,24 +54,23 @@ class NffReader {
         add_remark(*remarks_, what, tokens_.entity_line());
     }
 
-    double read_length(std::string_view what) { return tokens_.take_number(what, kLargestLength); }
+    double read_length(std::string_view what) { return tokens_.take_number(what, kMaxSceneLength); }
 
-    Vec3 read_vector(std::string_view what, double max = kLargestLength) {
+    Vec3 read_vector(std::string_view what, double max = kMaxSceneLength) {
         Vec3 vector;
         for (int axis = 0; axis < 3; ++axis) vector[axis] = tokens_.take_number(what, max);
         return vector;
     }
 
     Colour read_colour(std::string_view what) {
-        const Colour colour = read_vector(what, kLargestNumber);
+        const Colour colour = read_vector(what, kMaxNumber);
         if (!is_colour(colour)) refuse(fmt::format("{} is negative", what));
         return colour;
     }
 
     double read_share(std::string_view what) {
         const double share = tokens_.take_number(what);
-        if (share < 0 || share > kLargestShare)
-            refuse(fmt::format("{} is {}: must lie in 0..{}", what, share, kLargestShare));
+        if (share < 0 || share > kMaxShare) refuse(fmt::format("{} is {}: must be 0..{}", what, share, kMaxShare));
         return share;
     }
 
@@ -118,8 +117,8 @@ class NffReader {
             if (*part == "angle") view.angle_degrees = tokens_.take_number("angle");
             if (*part == "hither") view.hither = read_length("hither");
             if (*part == "resolution") {
-                view.width = tokens_.take_integer("the width", 1, kLargestSide);
-                view.height = tokens_.take_integer("the height", 1, kLargestSide);
+                view.width = tokens_.take_integer("the width", 1, kMaxResolution);
+                view.height = tokens_.take_integer("the height", 1, kMaxResolution);
             }
         }
         if (const std::string fault = view_error(view); !fault.empty()) refuse(fault);
@@ -175,7 +174,7 @@ class NffReader {
     void read_sphere() {
         Sphere sphere{read_vector("the centre"), 0, current_surface_};
         sphere.radius = read_length("the radius");
-        if (std::abs(sphere.radius) < kSmallestLength)
+        if (std::abs(sphere.radius) < kMinSceneLength)
             return remark_or_refuse("the radius of the sphere is zero", "sphere of radius 0, left out");
         scene_.spheres.push_back(sphere);
     }
@@ -237,10 +236,10 @@ class NffReader {
         cone.apex_radius = read_length("the apex radius");
         cone.surface = current_surface_;
         const auto [lower, upper] = std::minmax(cone.base_radius, cone.apex_radius);
-        if (std::max(-lower, upper) < kSmallestLength)
+        if (std::max(-lower, upper) < kMinSceneLength)
             return remark_or_refuse("both radii of the cone are zero", "cone without radius, left out");
         if (lower < 0 && upper > 0) refuse("one radius of the cone is negative, the other positive");
-        if ((cone.apex - cone.base).length() < kSmallestLength)
+        if ((cone.apex - cone.base).length() < kMinSceneLength)
             return remark_or_refuse("the height of the cone is zero", "cone without height, left out");
         scene_.cones.push_back(cone);
     }
@@ -257,7 +256,7 @@ class NffReader {
         Plane plane{unit_vector(given), read_length("the distance"), 0};
         if (plane.normal == Vec3(0)) refuse("the normal of the plane is zero");
         if (plane.normal != given) plane.distance /= given.length();
-        if (!(std::abs(plane.distance) <= kLargestLength))
+        if (!(std::abs(plane.distance) <= kMaxSceneLength))
             refuse("the plane is too far from the origin: at most 1e30 with a normal of length 1");
         plane.surface = take_flat_surface();
         scene_.planes.push_back(plane);
@@ -267,7 +266,7 @@ class NffReader {
         if (checker_) refuse("a second '#raya checker' before a plane or polygon has used the first");
         Checker checker{read_colour("the first colour"), read_colour("the second colour"), 0};
         checker.size = read_length("the size");
-        if (checker.size < kSmallestLength) refuse("the size of the checker must be positive");
+        if (checker.size < kMinSceneLength) refuse("the size of the checker must be positive");
         checker_ = checker;
         checker_line_ = tokens_.entity_line();
     }

@@ -7,11 +7,11 @@
 namespace raya {
 
 /// Maximum magnitude of colours, exponents and other numbers that are not lengths.
-inline constexpr double kLargestNumber = 1e9;
+inline constexpr double kMaxNumber = 1e9;
 
 /// Maximum magnitude of lengths. Products of four lengths must not overflow a double; the packer scales lengths into
 /// the range of the number format.
-inline constexpr double kLargestLength = 1e30;
+inline constexpr double kMaxSceneLength = 1e30;
 
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8; some editors write it
 
@@ -41,7 +41,7 @@ class NffTokens {
     std::string_view take_name(std::string_view what);
 
     /// Takes a finite number of at most `max` in magnitude; `what` describes it in messages ("the radius").
-    double take_number(std::string_view what, double max = kLargestNumber);
+    double take_number(std::string_view what, double max = kMaxNumber);
 
     /// Takes an integer in [lowest, highest]; `what` describes it in messages.
     int take_integer(std::string_view what, int lowest, int highest);

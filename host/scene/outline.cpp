@@ -50,7 +50,7 @@ OutlineCheck clean_outline(Polygon& polygon) {
         }
         mean += (v - vertices[0]) / static_cast<double>(vertices.size());
     }
-    if (size < kSmallestLength) return {OutlineFault::kNoArea, fmt::format("is smaller than {}", kSmallestLength)};
+    if (size < kMinSceneLength) return {OutlineFault::kNoArea, fmt::format("is smaller than {}", kMinSceneLength)};
 
     // Upper bound of the doubled area that rounding errors alone can give to collinear vertices.
     const double no_area = 1e-12 * size * size + 8 * kEpsilon * reach * size;
@@ -74,7 +74,7 @@ OutlineCheck clean_outline(Polygon& polygon) {
 std::string view_error(const View& view) {
     constexpr double kMinUpSine = 1e-6;  // minimum sine of the angle between viewing direction and up
     const Vec3 gaze = view.at - view.from;
-    if (gaze.length() < kSmallestLength) return "'from' and 'at' are the same point";
+    if (gaze.length() < kMinSceneLength) return "'from' and 'at' are the same point";
     if (!(view.angle_degrees > 0 && view.angle_degrees < 180))
         return fmt::format("the angle is {}: must lie between 0 and 180 degrees", view.angle_degrees);
     if (unit_vector(gaze).cross(unit_vector(view.up)).length() < kMinUpSine)
@@ -84,7 +84,7 @@ std::string view_error(const View& view) {
 
 bool is_colour(const Colour& colour) {
     const auto [lowest, highest] = std::minmax({colour.x, colour.y, colour.z});
-    return lowest >= 0 && highest <= kLargestNumber;
+    return lowest >= 0 && highest <= kMaxNumber;
 }
 
 }  // namespace raya

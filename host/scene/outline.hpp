@@ -9,7 +9,7 @@ namespace raya {
 /// Shorter lengths are treated as 0, because products of four lengths must not underflow a double. Scenes may use any
 /// unit: length_scale.hpp handles lengths that are too small for a number format compared with the scene's largest
 /// length.
-inline constexpr double kSmallestLength = 1e-30;
+inline constexpr double kMinSceneLength = 1e-30;
 
 /// Maximum distance of a vertex from the plane of its polygon, relative to the polygon's size (the longest side of its
 /// bounding box). Vertices with six digits deviate by about 1e-5. 1e-3 is one pixel of a polygon that spans 1,000
@@ -35,7 +35,7 @@ Vec3 unit_vector(const Vec3& v);
 /// Returns why a view is invalid, for example "'from' and 'at' are the same point", or empty if it is valid.
 std::string view_error(const View& view);
 
-/// Returns true if all components are in 0..kLargestNumber.
+/// Returns true if all components are in 0..kMaxNumber.
 bool is_colour(const Colour& colour);
 
 }  // namespace raya

@@ -222,7 +222,8 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     pack_objects(words, job, scene, faces, surface_at);
     if (words.size() > kMaxWords)
         throw UserError(
-            fmt::format("{}: packs to {} words, more than 32-bit indices can address", scene.name, words.size()));
+            fmt::format("{}: the scene needs {} words, more than 32-bit indices can address; use fewer objects",
+                        scene.name, words.size()));
 
     const bool has_patches =
         std::any_of(faces.begin(), faces.end(), [](const Face& f) { return !f.polygon->normals.empty(); });

@@ -15,23 +15,24 @@ AsyncSimulation::AsyncSimulation(const raya_torus& torus, const History& history
       history_(history),
       machine_(machine),
       task_of_message_(tasks_of_messages(history)),
-      arrived_(history.messages.size()),
+      delivered_(history.messages.size()),
       nodes_(raya_nodes(torus)),
       channels_(nodes_.size() * RAYA_LINKS) {
     for (std::uint32_t link = 0; link < channels_.size(); ++link) {
         Channel& channel = channels_[link];
         channel.start = link / RAYA_LINKS;
         channel.end = raya_link_end(torus, channel.start, link % RAYA_LINKS);
-        channel.back = channel.end * RAYA_LINKS + (link % RAYA_LINKS ^ 1u);
+        channel.opposite = channel.end * RAYA_LINKS + (link % RAYA_LINKS ^ 1u);
     }
     for (std::uint32_t task = 0; task < history.tasks.size(); ++task)
-        if (history.tasks[task].cause == HistoryTask::kInjection) nodes_[history.tasks[task].node].own.push_back(task);
+        if (history.tasks[task].cause == HistoryTask::kInjection)
+            nodes_[history.tasks[task].node].injection_tasks.push_back(task);
     result_.nodes.resize(nodes_.size());
     result_.links.resize(channels_.size());
 }
 
 void AsyncSimulation::schedule(double after, EventKind kind, std::uint32_t location, std::uint32_t version) {
-    events_.push({now_ + after, scheduled_++, kind, location, version});
+    events_.push({now_ + after, event_count_++, kind, location, version});
 }
 
 AsyncResult AsyncSimulation::run() {
@@ -41,7 +42,7 @@ AsyncResult AsyncSimulation::run() {
         events_.pop();
         handle(event);
     }
-    if (done_ < history_.tasks.size() || result_.delivered < history_.messages.size())
+    if (finished_tasks_ < history_.tasks.size() || result_.delivered < history_.messages.size())
         throw std::runtime_error(fmt::format("deadlock of the asynchronous torus: {} of {} messages delivered",
                                              result_.delivered, history_.messages.size()));
     return std::move(result_);
@@ -71,11 +72,11 @@ AsynchronousTime AsyncResult::time() const {
 }
 
 AsyncResult simulate(const raya_torus& torus, const History& history, const AsyncMachine& machine) {
-    if (machine.entering < 1 || machine.buffer < machine.entering)
+    if (machine.entry_slots < 1 || machine.buffer < machine.entry_slots)
         throw UserError(
-            fmt::format("a port of {} slots, of which {} must be free for a ray to enter a ring; use 1 or "
-                        "more to enter, and at least as many slots",
-                        machine.buffer, machine.entering));
+            fmt::format("ports of {} slots, {} of them free for a ray to enter a ring: the second number must be at "
+                        "least 1 and at most the first",
+                        machine.buffer, machine.entry_slots));
     check_history(history, raya_nodes(torus));
     return AsyncSimulation(torus, history, machine).run();
 }

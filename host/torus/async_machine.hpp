@@ -22,7 +22,7 @@
 //     the root.
 //   - Rays travel along the axes of the torus in a fixed order, so a ray waits only for rays on its own ring or on a
 //     ring of a later axis. A ring always has a free slot: a ray advances within a ring if the next output thread has
-//     one free slot, but enters the ring, from the main task or another axis, only if `entering` = 2 slots are free.
+//     one free slot. It enters the ring, from the main task or another axis, only if `entry_slots` = 2 slots are free.
 //     This is bubble flow control (V. Puente et al., "The Adaptive Bubble Router", J. Parallel and Distributed
 //     Computing 61, 2001).
 //   - The main task's queue accepts every arriving ray, even while the main task waits for a port.
@@ -42,8 +42,8 @@ struct AsyncMachine {
     double cycle_ns = kT805CycleNs;
     std::uint32_t message_cycles = kT805MessageCycles, word_cycles = kT805MessageWordCycles;
     double one_way = kT805OneWayBytesPerS, both_ways = kT805BothWaysBytesPerS;  // bytes/s; 0: transfers take no time
-    std::uint32_t buffer = 4;    // slots of an output thread for rays, and for returns; >= `entering`
-    std::uint32_t entering = 2;  // free slots that a ray needs to enter a ring; 1 allows deadlocks
+    std::uint32_t buffer = 4;       // slots of an output thread for rays, and for returns; >= `entry_slots`
+    std::uint32_t entry_slots = 2;  // free slots that a ray needs to enter a ring; 1 allows deadlocks
 };
 
 struct AsyncNode {
@@ -66,9 +66,9 @@ struct AsyncResult {
     AsynchronousTime time() const;
 };
 
-/// Simulates the history on the machine. The simulation is deterministic. Throws UserError if buffer < entering or
-/// entering is 0, std::logic_error for an invalid history (check_history), and std::runtime_error on a deadlock, which
-/// cannot happen with `entering` >= 2.
+/// Simulates the history on the machine. The simulation is deterministic. Throws UserError if buffer < entry_slots or
+/// entry_slots is 0, std::logic_error for an invalid history (check_history), and std::runtime_error on a deadlock,
+/// which is impossible with `entry_slots` >= 2.
 AsyncResult simulate(const raya_torus& torus, const History& history, const AsyncMachine& machine = {});
 
 /// Returns SimGrid's platform file (XML). It has a host for each node, named by the node's number, which does one

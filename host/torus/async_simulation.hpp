@@ -36,40 +36,40 @@ class AsyncSimulation {
         }
     };
 
-    // A message that waits until an output thread has `needs` free slots. It is in the input thread of channel `link`,
-    // or, if `link` is kNone, in the node's main task.
-    struct Waiting {
-        std::uint32_t link = kNone, message = 0, needs = 1;
+    // A message that waits until an output thread has `slots_needed` free slots. It is in the input thread of channel
+    // `link`, or, if `link` is kNone, in the node's main task.
+    struct BlockedMessage {
+        std::uint32_t link = kNone, message = 0, slots_needed = 1;
     };
 
     // One direction of a link: the output thread at its start, the transfer, and the input thread at its end.
     struct Channel {
-        std::uint32_t start = 0, end = 0, back = 0;  // nodes `start`, `end`; index of the opposite channel
+        std::uint32_t start = 0, end = 0, opposite = 0;  // nodes `start`, `end`; index of the opposite channel
         std::array<std::deque<std::uint32_t>, kClasses> out{};
-        std::array<std::vector<Waiting>, kClasses> waiting{};
-        std::array<bool, kClasses> taken{};      // [class]: the input thread's slot is occupied
-        std::optional<std::uint32_t> sending{};  // from the sender's job until the transfer ends
+        std::array<std::vector<BlockedMessage>, kClasses> blocked{};
+        std::array<bool, kClasses> input_occupied{};  // [class]: the input thread's slot is occupied
+        std::optional<std::uint32_t> sending{};       // from the sender's job until the transfer ends
         std::uint32_t sent_class = 0, version = 0;
         bool transferring = false;
-        double words_left = 0, rate = 0, since = 0, began = 0;  // words, words/ns, ns, ns
+        double words_left = 0, rate = 0, rate_since = 0, transfer_start = 0;  // words, words/ns, ns, ns
     };
 
     // Work of the communication task for one message at one end of channel `link`.
     struct MessageJob {
         std::uint32_t link = 0, message = 0;
-        bool arrives = false;
+        bool receiving = false;
     };
 
     struct Node {
         std::deque<MessageJob> jobs{};
         bool in_job = false;
-        std::deque<std::uint32_t> queue{};  // messages that wait for the main task
-        std::deque<std::uint32_t> own{};    // tasks that no message causes
-        std::uint32_t task = kNone;         // current task of the main task
-        std::uint32_t sent = 0;             // messages of `task` sent so far; kNone until its computation ends
+        std::deque<std::uint32_t> queue{};            // messages that wait for the main task
+        std::deque<std::uint32_t> injection_tasks{};  // tasks that no message causes
+        std::uint32_t task = kNone;                   // current task of the main task
+        std::uint32_t sent = 0;                       // sent messages of `task`; kNone until its computation ends
         bool computing = false;
-        double left = 0, since = 0;  // remaining computation at time `since`, ns
-        double port_since = 0;       // when the main task began to wait for a port, ns
+        double remaining = 0, remaining_since = 0;  // remaining computation at time `remaining_since`, ns
+        double blocked_since = 0;                   // when the main task began to wait for a port, ns
         std::uint32_t version = 0;
     };
 
@@ -91,24 +91,24 @@ class AsyncSimulation {
         return history_.messages[message].kind == RAYA_KIND_RETURN ? 0 : 1;
     }
     std::uint32_t next_channel(std::uint32_t node, std::uint32_t message) const;
-    bool enqueue(std::uint32_t link, const Waiting& from);
-    void admit_waiting(std::uint32_t link, std::uint32_t cls);
-    void start(std::uint32_t link);
+    bool enqueue(std::uint32_t link, const BlockedMessage& from);
+    void admit_blocked(std::uint32_t link, std::uint32_t cls);
+    void start_sending(std::uint32_t link);
     void begin_transfer(std::uint32_t link);
     void set_rate(std::uint32_t link);
     void end_transfer(std::uint32_t link);
-    void arrive(std::uint32_t link, std::uint32_t message);
+    void receive(std::uint32_t link, std::uint32_t message);
     void free_input(std::uint32_t link, std::uint32_t cls);
 
     const raya_torus& torus_;
     const History& history_;
     const AsyncMachine& machine_;
     std::vector<std::uint32_t> task_of_message_;
-    std::vector<bool> arrived_;
+    std::vector<bool> delivered_;
     std::vector<Node> nodes_;
     std::vector<Channel> channels_;
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
-    std::uint64_t scheduled_ = 0, done_ = 0;
+    std::uint64_t event_count_ = 0, finished_tasks_ = 0;
     double now_ = 0;
     AsyncResult result_;
 };

@@ -17,23 +17,23 @@ namespace {
 
 // Returns twice the length, or, if that does not fit a node although `tried` does, the longest queue that fits.
 std::uint32_t next_queue(std::uint32_t tried, const QueueTrial& trial) {
-    const auto fits = [&](std::uint32_t queue) { return trial.bytes(buffers_for(queue)) <= trial.limit; };
-    const std::uint32_t next = std::min(2 * tried, trial.most);
+    const auto fits = [&](std::uint32_t queue) { return trial.node_bytes(buffers_for(queue)) <= trial.node_memory; };
+    const std::uint32_t next = std::min(2 * tried, trial.max_queue);
     if (!fits(tried) || fits(next)) return next;
     const std::uint32_t longest = last_where(tried, next, fits);
     return longest > tried ? longest : next;
 }
 
-// Maximum number of entries in a trial's object lists: as many as take a fraction of a second.
-constexpr std::uint64_t kFewEntries = std::uint64_t{1} << 24;
+// Maximum number of entries in a trial's object lists. So many entries take a fraction of a second.
+constexpr std::uint64_t kMaxTrialEntries = std::uint64_t{1} << 24;
 
 std::uint64_t voxels_of(const Divisions& divisions) {
     return std::uint64_t{divisions[0]} * divisions[1] * divisions[2];
 }
 
-class PlanTrial {
+class PartitionTrial {
   public:
-    PlanTrial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels)
+    PartitionTrial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels)
         : job_(job), format_(format), voxels_(voxels) {}
 
     std::optional<NodeTrialResult> operator()(const std::array<std::uint32_t, 3>& nodes) {
@@ -41,10 +41,10 @@ class PlanTrial {
         for (std::size_t axis = 0; axis < 3; ++axis)
             while (tried.voxels[axis] < nodes[axis]) tried.voxels[axis] *= 2;
         const std::uint64_t voxels = voxels_of(tried.voxels);
-        if (voxels > kMaxPartitionVoxels || everywhere_ * voxels > kFewEntries) return {};
+        if (voxels > kMaxPartitionVoxels || objects_everywhere_ * voxels > kMaxTrialEntries) return {};
         try {
             const Partition cut = partition(job_, format_, tried.voxels);
-            everywhere_ = cut.objects.size() == cut.distinct * voxels ? cut.distinct : 0;
+            objects_everywhere_ = cut.objects.size() == cut.distinct * voxels ? cut.distinct : 0;
             // The assignment of voxels to nodes does not depend on the links.
             tried.words = fullest_node_words(job_, cut, make_torus(nodes, Links::kTorus3d));
             return tried;
@@ -60,21 +60,22 @@ class PlanTrial {
     // Number of objects if the last trial registered every object in every voxel, else 0. Formats for which no error
     // bound is known register every object in every voxel, for any number of voxels. Then more nodes do not help, and
     // the lists become long.
-    std::uint64_t everywhere_ = 0;
+    std::uint64_t objects_everywhere_ = 0;
 };
 
 constexpr std::uint64_t kPacketBytes = RAYA_PACKET_WORDS * sizeof(std::uint32_t);
 constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t);
 
-// Returns the longest queue in [least, most] that, together with `words` words, fits `memory` bytes; `least` must fit.
-std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t least,
-                            std::uint32_t most) {
-    return last_where(least, std::uint64_t{most} + 1,
+// Returns the longest queue in [min_queue, max_queue] that, together with `words` words, fits `memory` bytes;
+// `min_queue` must fit.
+std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t min_queue,
+                            std::uint32_t max_queue) {
+    return last_where(min_queue, std::uint64_t{max_queue} + 1,
                       [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; });
 }
 
 // A scene divided among the nodes, with buffers, and the memory of a node.
-struct Demand {
+struct MemoryDemand {
     const std::string& scene;
     const NodeMemories& memories;
     const raya_torus& torus;
@@ -121,7 +122,7 @@ std::array<std::uint32_t, 3> doubled(std::array<std::uint32_t, 3> nodes) {
 }
 
 // Returns options such as "--nodes 16x16x8"; empty if the scene does not fit any machine of up to 65,536 nodes.
-std::string larger_machine(const Demand& demand, const NodeTrial& trial) {
+std::string larger_machine(const MemoryDemand& demand, const NodeTrial& trial) {
     const std::uint32_t* const own = demand.torus.nodes;
     // A torus with sides I x J x 1 may be 2-D or 3-D. Assume 3-D, which needs at least as much memory.
     const Links links = demand.torus.sides[2] != own[2] ? Links::kTorus2d : Links::kTorus3d;
@@ -141,20 +142,20 @@ std::string larger_machine(const Demand& demand, const NodeTrial& trial) {
     return {};
 }
 
-std::string remedies(const Demand& demand, std::uint64_t words, std::uint32_t fewest, const NodeTrial& trial) {
+std::string remedies(const MemoryDemand& demand, std::uint64_t words, std::uint32_t min_queue, const NodeTrial& trial) {
     const std::uint32_t links = links_of_node(demand.torus);
     const std::uint64_t whole_kb = (demand.bytes(words) + 1023) / 1024;
     const std::string memory = fmt::format("--pe-memory {}", 1024 * whole_kb);
-    if (node_bytes(words, buffers_for(fewest), links) <= demand.limit)
+    if (node_bytes(words, buffers_for(min_queue), links) <= demand.limit)
         return fmt::format("use --queue {} or {}",
-                           longest_queue(words, links, demand.limit, fewest, demand.buffers.queue), memory);
+                           longest_queue(words, links, demand.limit, min_queue, demand.buffers.queue), memory);
     if (!trial) return "use " + memory;
     const std::string machine = larger_machine(demand, trial);
     if (machine.empty()) return fmt::format("no machine of up to {} nodes is large enough; use {}", kMaxNodes, memory);
     return fmt::format("use {} or {}", machine, memory);
 }
 
-[[noreturn]] void refuse(const Demand& demand, std::uint32_t fewest, const NodeTrial& trial) {
+[[noreturn]] void throw_does_not_fit(const MemoryDemand& demand, std::uint32_t min_queue, const NodeTrial& trial) {
     const std::uint32_t fullest = fullest_node(demand.memories);
     std::uint32_t fit = 0;
     for (std::uint32_t node = 0; node < demand.nodes(); ++node) fit += demand.bytes(demand.words(node)) <= demand.limit;
@@ -164,7 +165,7 @@ std::string remedies(const Demand& demand, std::uint64_t words, std::uint32_t fe
                     "buffers, a node has {}; {}",
                     demand.scene, fit, demand.nodes(), demand.nodes() - fit, node_text(demand.memories, fullest),
                     required_size_text(4 * words), required_size_text(demand.bytes(0)),
-                    available_size_text(demand.limit), remedies(demand, words, fewest, trial)),
+                    available_size_text(demand.limit), remedies(demand, words, min_queue, trial)),
         demand.bytes(words), demand.limit, demand.nodes(), fit, fullest);
 }
 
@@ -182,25 +183,25 @@ std::uint64_t node_bytes(std::uint64_t words, const NodeBuffers& buffers, std::u
            kReturnBytes * return_boxes * buffers.box;
 }
 
-QueueFound find_longer_queue(std::uint32_t queue, const QueueTrial& trial) {
-    QueueFound found{.queue = queue};
+QueueSearchResult find_longer_queue(std::uint32_t queue, const QueueTrial& trial) {
+    QueueSearchResult found{.queue = queue};
     try {
-        while (!found.ends && found.queue < trial.most) {
+        while (!found.completes && found.queue < trial.max_queue) {
             const std::uint32_t next = next_queue(found.queue, trial);
             const NodeBuffers buffers = buffers_for(next);
             if (!trial.fits_device(buffers)) break;
-            found.ends = trial.ends(buffers);
+            found.completes = trial.completes(buffers);
             found.queue = next;
         }
     } catch (const DeviceError&) {  // the device cannot allocate queues of this length
     }
-    found.bytes = trial.bytes(buffers_for(found.queue));
-    found.fits = found.bytes <= trial.limit;
+    found.bytes = trial.node_bytes(buffers_for(found.queue));
+    found.fits = found.bytes <= trial.node_memory;
     return found;
 }
 
-std::string queue_remedy(const QueueFound& found) {
-    if (!found.ends)
+std::string queue_remedy(const QueueSearchResult& found) {
+    if (!found.completes)
         return fmt::format(
             "no queue up to {} packets is long enough, and the device cannot hold longer ones; use fewer nodes",
             found.queue);
@@ -210,30 +211,30 @@ std::string queue_remedy(const QueueFound& found) {
 }
 
 NodeTrial make_node_trial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels) {
-    return PlanTrial(job, format, voxels);
+    return PartitionTrial(job, format, voxels);
 }
 
 NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
-                         std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t fewest,
+                         std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue,
                          const NodeTrial& trial) {
-    fewest = std::max(1u, fewest);
-    if (queue > 0 && queue < fewest)
+    min_queue = std::max(1u, min_queue);
+    if (queue > 0 && queue < min_queue)
         throw UserError(
             fmt::format("{}: --queue {}: the tree of a single ray may need {} packets; use --queue {} or more", scene,
-                        queue, fewest, fewest));
-    const std::uint32_t most = queue > 0 ? queue : std::max(default_queue(raya_nodes(torus)), fewest);
-    if (!memory_bytes) return buffers_for(most);
-    const Demand demand{scene, memories, torus, *memory_bytes, buffers_for(queue > 0 ? queue : fewest)};
+                        queue, min_queue, min_queue));
+    const std::uint32_t max_queue = queue > 0 ? queue : std::max(default_queue(raya_nodes(torus)), min_queue);
+    if (!memory_bytes) return buffers_for(max_queue);
+    const MemoryDemand demand{scene, memories, torus, *memory_bytes, buffers_for(queue > 0 ? queue : min_queue)};
     const std::uint64_t words = demand.words(fullest_node(memories));
-    if (demand.bytes(words) > *memory_bytes) refuse(demand, fewest, trial);
-    return buffers_for(longest_queue(words, links_of_node(torus), *memory_bytes, demand.buffers.queue, most));
+    if (demand.bytes(words) > *memory_bytes) throw_does_not_fit(demand, min_queue, trial);
+    return buffers_for(longest_queue(words, links_of_node(torus), *memory_bytes, demand.buffers.queue, max_queue));
 }
 
 bool fits_device(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceMemory& memory) {
     const std::uint64_t queues = kPacketBytes * nodes * buffers.queue;
     const std::uint64_t boxes = kPacketBytes * RAYA_LINKS * nodes * (std::uint64_t{1} + buffers.box);
     const std::uint64_t all = queues + 2 * boxes + 2 * boxes * kReturnBytes / kPacketBytes;
-    return std::max(queues, boxes) <= memory.one_buffer && all <= memory.all;
+    return std::max(queues, boxes) <= memory.max_buffer && all <= memory.total;
 }
 
 void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,

@@ -39,33 +39,33 @@ std::uint32_t last_where(std::uint64_t first, std::uint64_t above, const Holds& 
     return static_cast<std::uint32_t>(first);
 }
 
-inline constexpr std::uint32_t kLongestQueue = 1u << 30;  // packets
+inline constexpr std::uint32_t kMaxQueue = 1u << 30;  // packets
 
 /// Limits and callbacks of the search for a longer queue.
 struct QueueTrial {
-    std::function<std::uint64_t(const NodeBuffers&)> bytes;  // memory that the fullest node needs, bytes
-    std::uint64_t limit = UINT64_MAX;                        // memory of a node, bytes
-    std::uint32_t most = kLongestQueue;                      // longest queue to try, packets
-    std::function<bool(const NodeBuffers&)> fits_device;     // the device can hold the buffers of all nodes
+    std::function<std::uint64_t(const NodeBuffers&)> node_bytes;  // memory that the fullest node needs, bytes
+    std::uint64_t node_memory = UINT64_MAX;                       // memory of a node, bytes
+    std::uint32_t max_queue = kMaxQueue;                          // longest queue to try, packets
+    std::function<bool(const NodeBuffers&)> fits_device;          // the device can hold the buffers of all nodes
     // Returns true if the machine completes an image without a deadlock. Throws DeviceError if allocating the buffers
     // fails although fits_device() returned true.
-    std::function<bool(const NodeBuffers&)> ends;
+    std::function<bool(const NodeBuffers&)> completes;
 };
 
 /// Result of find_longer_queue().
-struct QueueFound {
+struct QueueSearchResult {
     std::uint32_t queue = 0;  // longest queue that was tried, packets
-    bool ends = false;        // the machine completes an image with this queue
+    bool completes = false;   // the machine completes an image with this queue
     bool fits = false;        // the queue fits the memory of a node
     std::uint64_t bytes = 0;  // memory that the fullest node needs
 };
 
 /// Doubles the queue length, starting from `queue`, until the machine completes an image. Before it exceeds a node's
 /// memory, it tries the longest queue that fits.
-QueueFound find_longer_queue(std::uint32_t queue, const QueueTrial& trial);
+QueueSearchResult find_longer_queue(std::uint32_t queue, const QueueTrial& trial);
 
 /// Text of the remedy for error messages: "--queue 74 is long enough (tried)".
-std::string queue_remedy(const QueueFound& found);
+std::string queue_remedy(const QueueSearchResult& found);
 
 /// Result of dividing the same job among another number of nodes.
 struct NodeTrialResult {
@@ -80,26 +80,26 @@ NodeTrial make_node_trial(const PackedJob& job, const NumberFormat& format, cons
 
 /// The scene or the buffers do not fit the nodes. `needed` is the memory that the fullest node needs.
 struct NodesDoNotFit : DoesNotFit {
-    NodesDoNotFit(const std::string& message, std::uint64_t needed, std::uint64_t memory, std::uint32_t all,
-                  std::uint32_t that_fit, std::uint32_t most_needed)
-        : DoesNotFit(message, needed, memory), nodes(all), fitting(that_fit), fullest(most_needed) {}
+    NodesDoNotFit(const std::string& message, std::uint64_t needed, std::uint64_t memory, std::uint32_t node_count,
+                  std::uint32_t fitting_nodes, std::uint32_t fullest_node)
+        : DoesNotFit(message, needed, memory), nodes(node_count), fitting(fitting_nodes), fullest(fullest_node) {}
 
-    std::uint32_t nodes, fitting, fullest;  // number of nodes, number that fit, number of the fullest
+    std::uint32_t nodes, fitting, fullest;  // number of nodes; number of nodes that fit; number of the fullest node
 };
 
 /// Chooses the capacity of the queues: `queue` packets if > 0, otherwise as many as fit `memory_bytes` (empty: no
 /// limit) together with the words of the fullest node, at most default_queue(). Mailboxes have the size that
 /// buffers_for() returns. Throws NodesDoNotFit if words and buffers exceed `memory_bytes`. The message states how many
 /// nodes fit, the voxels, objects and bytes of the fullest node, and a remedy: more memory, a shorter queue, or, if
-/// `trial` is given, a sufficient number of nodes, which `trial` finds in about a second. `fewest`: maximum number of
-/// packets that the ray tree of a single primary ray needs. Throws UserError if 0 < `queue` < `fewest`.
+/// `trial` is given, a sufficient number of nodes. `trial` finds it in about a second. `min_queue`: maximum number of
+/// packets that the ray tree of a single primary ray needs. Throws UserError if 0 < `queue` < `min_queue`.
 NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
-                         std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t fewest,
+                         std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue,
                          const NodeTrial& trial = {});
 
 /// Memory of a device, and maximum size of one buffer, in bytes.
 struct DeviceMemory {
-    std::uint64_t all = 0, one_buffer = 0;
+    std::uint64_t total = 0, max_buffer = 0;
 };
 
 /// Returns true if the queues and mailboxes of `nodes` nodes fit the device.

@@ -17,22 +17,22 @@ bool comes_before(const raya_head& a, const raya_head& b) {
     return raya_comes_before(a.path, a.state, b.path, b.state);
 }
 
-void put(std::vector<float>& colours, const raya_head& packet) {
+void append_contribution(std::vector<float>& colours, const raya_head& packet) {
     colours.insert(colours.end(), std::begin(packet.carries.colour), std::end(packet.carries.colour));
     colours.push_back(packet.weight);
 }
 
-// Returns the number of work-groups of `group` work-items: a work-item gets about 16 pixels or more, but fewer if its
+// Returns the number of work-groups of `group` work-items. A work-item gets at least about 16 pixels, or fewer if its
 // loops would otherwise exceed the device's limit of iterations.
 std::size_t groups_of(const Contributions& contributions, std::uint32_t group, const DeviceInfo& device) {
-    constexpr std::size_t kPixels = 16, kMostGroups = 4096;
+    constexpr std::size_t kPixelsPerItem = 16, kMaxGroups = 4096;
     const std::vector<std::uint32_t>& starts = contributions.starts;
     const std::size_t pixels = starts.size() - 1;
-    std::size_t groups = std::min(kMostGroups, pixels / (kPixels * group) + 1);
+    std::size_t groups = std::min(kMaxGroups, pixels / (kPixelsPerItem * group) + 1);
     if (device.max_loop_iterations == 0) return groups;
-    std::size_t most = 0;  // maximum number of contributions of a pixel
-    for (std::size_t i = 0; i < pixels; ++i) most = std::max<std::size_t>(most, starts[i + 1] - starts[i]);
-    return std::max(groups, 2 * pixels * (most + 2) / (std::size_t{group} * device.max_loop_iterations) + 1);
+    std::size_t max_count = 0;  // maximum number of contributions of a pixel
+    for (std::size_t i = 0; i < pixels; ++i) max_count = std::max<std::size_t>(max_count, starts[i + 1] - starts[i]);
+    return std::max(groups, 2 * pixels * (max_count + 2) / (std::size_t{group} * device.max_loop_iterations) + 1);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
         for (auto i = first; i != last; ++i) {
             if (i != first && !comes_before(returns[i[-1]], returns[*i]))
                 throw std::logic_error(fmt::format("pixel {}: two contributions of the same ray", pixel));
-            put(sorted.colours, returns[*i]);
+            append_contribution(sorted.colours, returns[*i]);
         }
     }
     return sorted;

@@ -15,52 +15,52 @@ constexpr std::uint64_t kLights = std::uint64_t{1} << kLightBits;
 
 // Finaliser of SplitMix64 (Steele, Lea & Flood 2014), the hash function: distributes neighbouring pixels over the
 // table.
-std::uint64_t scrambled(std::uint64_t x) {
+std::uint64_t hash_of(std::uint64_t x) {
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
     x = (x ^ x >> 27) * 0x94d049bb133111ebu;
     return x ^ x >> 31;
 }
 
-void require(bool right, std::size_t number, const char* what) {
-    if (!right) throw std::logic_error(fmt::format("history: {} {}", what, number));
+void require(bool condition, std::size_t number, const char* what) {
+    if (!condition) throw std::logic_error(fmt::format("history: {} {}", what, number));
 }
 
 constexpr std::uint32_t kUnset = UINT32_MAX;
 
-std::uint32_t number_of(std::size_t count) {
+std::uint32_t checked_index(std::size_t count) {
     if (count >= kUnset) throw std::logic_error("history: more than 2^32 - 2 tasks or messages");
     return static_cast<std::uint32_t>(count);
 }
 
 RayId id_of(std::uint32_t pixel, std::uint32_t path, std::uint32_t state) {
-    return {pixel, RayId::place_of(path, raya_state_level(state)), raya_state_light(state)};
+    return {pixel, RayId::tree_index_of(path, raya_state_level(state)), raya_state_light(state)};
 }
 
 }  // namespace
 
-std::uint32_t RayId::place_of(std::uint32_t path, std::uint32_t level) {
+std::uint32_t RayId::tree_index_of(std::uint32_t path, std::uint32_t level) {
     return level == 0 ? 1 : std::uint32_t{1} << level | path >> (32 - level);
 }
 
-RayId RayId::parent() const { return light != 0 ? RayId{pixel, place, 0} : RayId{pixel, place / 2, 0}; }
+RayId RayId::parent() const { return light != 0 ? RayId{pixel, tree_index, 0} : RayId{pixel, tree_index / 2, 0}; }
 
 std::uint64_t RayNumbers::number_of(const RayId& id) {
-    if (id.place == 0 || id.light >= kLights) throw std::logic_error("RayNumbers: invalid ray id");
-    if (3 * (taken_ + 1) > 2 * slots_.size()) grow();
-    Slot& slot = slot_of(std::uint64_t{id.pixel} << 32 | id.place, id.light);
-    if (slot.ray == 0) {
-        slot = {std::uint64_t{id.pixel} << 32 | id.place, next_++ << kLightBits | id.light};
-        ++taken_;
+    if (id.tree_index == 0 || id.light >= kLights) throw std::logic_error("RayNumbers: invalid ray id");
+    if (3 * (used_slots_ + 1) > 2 * slots_.size()) grow();
+    Slot& slot = slot_of(std::uint64_t{id.pixel} << 32 | id.tree_index, id.light);
+    if (slot.key == 0) {
+        slot = {std::uint64_t{id.pixel} << 32 | id.tree_index, next_number_++ << kLightBits | id.light};
+        ++used_slots_;
     }
     return slot.number_and_light >> kLightBits;
 }
 
 // Returns the slot of the ray, or the empty slot at which the caller must insert it.
-RayNumbers::Slot& RayNumbers::slot_of(std::uint64_t ray, std::uint64_t light) {
-    std::size_t at = scrambled(ray + scrambled(light));
+RayNumbers::Slot& RayNumbers::slot_of(std::uint64_t key, std::uint64_t light) {
+    std::size_t at = hash_of(key + hash_of(light));
     for (;; ++at) {
         Slot& slot = slots_[at & (slots_.size() - 1)];
-        if (slot.ray == 0 || (slot.ray == ray && slot.number_and_light % kLights == light)) return slot;
+        if (slot.key == 0 || (slot.key == key && slot.number_and_light % kLights == light)) return slot;
     }
 }
 
@@ -68,12 +68,12 @@ void RayNumbers::grow() {
     std::vector<Slot> old(2 * slots_.size());
     old.swap(slots_);
     for (const Slot& slot : old)
-        if (slot.ray != 0) slot_of(slot.ray, slot.number_and_light % kLights) = slot;
+        if (slot.key != 0) slot_of(slot.key, slot.number_and_light % kLights) = slot;
 }
 
 std::span<const HistoryMessage> History::sent_by(std::size_t task) const {
-    const std::size_t end = task + 1 < tasks.size() ? tasks[task + 1].first : messages.size();
-    return std::span(messages).subspan(tasks[task].first, end - tasks[task].first);
+    const std::size_t end = task + 1 < tasks.size() ? tasks[task + 1].first_message : messages.size();
+    return std::span(messages).subspan(tasks[task].first_message, end - tasks[task].first_message);
 }
 
 std::vector<std::uint32_t> tasks_of_messages(const History& history) {
@@ -90,26 +90,27 @@ std::vector<std::uint32_t> tasks_of_messages(const History& history) {
 
 void check_history(const History& history, std::uint32_t nodes) {
     const auto& [tasks, messages] = history;
-    require(tasks.empty() ? messages.empty() : tasks.front().first == 0, 0, "messages precede task");
+    require(tasks.empty() ? messages.empty() : tasks.front().first_message == 0, 0, "messages precede task");
     for (std::size_t t = 0; t < tasks.size(); ++t) {
-        const std::size_t end = t + 1 < tasks.size() ? tasks[t + 1].first : messages.size();
+        const std::size_t end = t + 1 < tasks.size() ? tasks[t + 1].first_message : messages.size();
         require(tasks[t].node < nodes, t, "invalid node of task");
-        require(tasks[t].first <= end && end <= messages.size(), t, "messages out of order in task");
-        for (std::size_t m = tasks[t].first; m < end; ++m) require(messages[m].task == t, m, "wrong task of message");
-        require(tasks[t].cause == HistoryTask::kInjection || tasks[t].cause < tasks[t].first, t,
+        require(tasks[t].first_message <= end && end <= messages.size(), t, "messages out of order in task");
+        for (std::size_t m = tasks[t].first_message; m < end; ++m)
+            require(messages[m].task == t, m, "wrong task of message");
+        require(tasks[t].cause == HistoryTask::kInjection || tasks[t].cause < tasks[t].first_message, t,
                 "the cause does not precede task");
     }
     const std::vector<std::uint32_t> caused = tasks_of_messages(history);
     for (std::size_t m = 0; m < messages.size(); ++m) {
-        const bool returns = messages[m].kind == RAYA_KIND_RETURN, causes = caused[m] != HistoryTask::kInjection;
+        const bool is_return = messages[m].kind == RAYA_KIND_RETURN, causes = caused[m] != HistoryTask::kInjection;
         require(messages[m].to < nodes && messages[m].words > 0, m, "invalid destination or no words of message");
-        require(causes != returns, m, returns ? "a task is caused by return" : "no task is caused by ray");
-        require(returns ? messages[m].to == RAYA_ROOT : messages[m].to == tasks[caused[m]].node, m,
+        require(causes != is_return, m, is_return ? "a task is caused by return" : "no task is caused by ray");
+        require(is_return ? messages[m].to == RAYA_ROOT : messages[m].to == tasks[caused[m]].node, m,
                 "wrong destination of message");
     }
 }
 
-HistoryRecorder::Ray& HistoryRecorder::ray_of(std::uint64_t number) {
+HistoryRecorder::RayProgress& HistoryRecorder::ray_of(std::uint64_t number) {
     if (number >= rays_.size()) rays_.resize(number + 1);
     return rays_[number];
 }
@@ -126,59 +127,61 @@ std::uint16_t HistoryRecorder::words_of(std::uint32_t kind) const {
     return static_cast<std::uint16_t>(kind == RAYA_KIND_RETURN ? packets_.return_words() : packets_.ray_words);
 }
 
-void HistoryRecorder::send(const Sent& sent) {
-    if (sent.message.kind != RAYA_KIND_RETURN) ray_of(sent.ray).message = number_of(history_.messages.size());
+void HistoryRecorder::append(const SentMessage& sent) {
+    if (sent.message.kind != RAYA_KIND_RETURN) ray_of(sent.ray).message = checked_index(history_.messages.size());
     history_.messages.push_back(sent.message);
 }
 
 void HistoryRecorder::add(const NodeWork& work) {
-    add_injection(work);
+    add_injection_tasks(work);
     const std::size_t first_task = history_.tasks.size();
-    add_processed(work);
-    add_packets(work, first_task);
+    add_processing_tasks(work);
+    add_messages(work, first_task);
 }
 
 // Adds a task for each new primary ray. The node has already processed the ray, or the ray is still in the queue slot
 // in which it was created.
-void HistoryRecorder::add_injection(const NodeWork& work) {
-    std::vector<Sent> made;
+void HistoryRecorder::add_injection_tasks(const NodeWork& work) {
+    std::vector<SentMessage> made;
     for (std::size_t slot = 0; slot < work.processed.size(); ++slot) {
         const raya_processed& t = work.processed[slot];
-        const raya_head& waits = work.queue[slot].head;
+        const raya_head& queued = work.queue[slot].head;
         const bool processed = t.state != RAYA_KIND_NONE;
-        const std::uint32_t state = processed ? t.state : waits.state;
+        const std::uint32_t state = processed ? t.state : queued.state;
         if (raya_state_kind(state) != RAYA_KIND_PRIMARY) continue;
-        const std::uint64_t ray = numbers_.number_of(id_of(processed ? t.pixel : waits.pixel, 0, state));
+        const std::uint64_t ray = numbers_.number_of(id_of(processed ? t.pixel : queued.pixel, 0, state));
         if (ray_of(ray).message != kUnset) continue;
-        const std::uint32_t to = processed ? work.node : destination_of(work.node, waits);
+        const std::uint32_t to = processed ? work.node : destination_of(work.node, queued);
         made.push_back({{.to = to, .words = words_of(RAYA_KIND_PRIMARY), .kind = RAYA_KIND_PRIMARY}, ray});
     }
     std::uint64_t cycles = uncharged_cycles_[work.node] + work.injection_cycles, left = made.size();
-    for (Sent& ray : made) {
+    for (SentMessage& ray : made) {
         const std::uint64_t share = cycles / left--;
         cycles -= share;
-        ray.message.task = number_of(history_.tasks.size());
-        history_.tasks.push_back({.node = work.node, .cycles = share, .first = number_of(history_.messages.size())});
-        send(ray);
+        ray.message.task = checked_index(history_.tasks.size());
+        history_.tasks.push_back(
+            {.node = work.node, .cycles = share, .first_message = checked_index(history_.messages.size())});
+        append(ray);
     }
     uncharged_cycles_[work.node] = cycles;
 }
 
-void HistoryRecorder::add_processed(const NodeWork& work) {
-    const std::uint32_t first_message = number_of(history_.messages.size());
+void HistoryRecorder::add_processing_tasks(const NodeWork& work) {
+    const std::uint32_t first_message = checked_index(history_.messages.size());
     for (const raya_processed& t : work.processed) {
         if (t.state == RAYA_KIND_NONE) continue;
-        Ray& ray = ray_of(numbers_.number_of(id_of(t.pixel, t.path, t.state)));
+        RayProgress& ray = ray_of(numbers_.number_of(id_of(t.pixel, t.path, t.state)));
         if (ray.message == kUnset) throw std::logic_error("history: a packet that no task sent");
-        ray.task = number_of(history_.tasks.size());
-        history_.tasks.push_back({.node = work.node, .cause = ray.message, .cycles = t.cycles, .first = first_message});
+        ray.task = checked_index(history_.tasks.size());
+        history_.tasks.push_back(
+            {.node = work.node, .cause = ray.message, .cycles = t.cycles, .first_message = first_message});
     }
 }
 
-// Adds the packets that this superstep's tasks created or changed. A packet with RAYA_STATE_FRESH may also be older and
-// waiting for a link; then the task that last processed its ray precedes `first_task`.
-void HistoryRecorder::add_packets(const NodeWork& work, std::size_t first_task) {
-    std::vector<Sent> made;
+// Adds the packets that this superstep's tasks created or changed. A packet with RAYA_STATE_FRESH may also be an older
+// packet that waits for a link; then the task that last processed its ray precedes `first_task`.
+void HistoryRecorder::add_messages(const NodeWork& work, std::size_t first_task) {
+    std::vector<SentMessage> made;
     for (const raya_packet& p : work.queue) {
         const raya_head& h = p.head;
         const std::uint32_t kind = raya_state_kind(h.state);
@@ -191,19 +194,20 @@ void HistoryRecorder::add_packets(const NodeWork& work, std::size_t first_task) 
         if (task == kUnset || task < first_task) continue;
         made.push_back({{task, destination_of(work.node, h), words_of(kind), static_cast<std::uint16_t>(kind)}, ray});
     }
-    std::ranges::stable_sort(made, {}, [](const Sent& sent) { return sent.message.task; });
+    std::ranges::stable_sort(made, {}, [](const SentMessage& sent) { return sent.message.task; });
     std::size_t next = 0;
     for (std::size_t task = first_task; task < history_.tasks.size(); ++task) {
-        history_.tasks[task].first = number_of(history_.messages.size());
-        for (; next < made.size() && made[next].message.task == task; ++next) send(made[next]);
+        history_.tasks[task].first_message = checked_index(history_.messages.size());
+        for (; next < made.size() && made[next].message.task == task; ++next) append(made[next]);
     }
 }
 
 History HistoryRecorder::finish() {
     for (std::uint32_t node = 0; node < uncharged_cycles_.size(); ++node)
         if (uncharged_cycles_[node] > 0)
-            history_.tasks.push_back(
-                {.node = node, .cycles = uncharged_cycles_[node], .first = number_of(history_.messages.size())});
+            history_.tasks.push_back({.node = node,
+                                      .cycles = uncharged_cycles_[node],
+                                      .first_message = checked_index(history_.messages.size())});
     check_history(history_, raya_nodes(torus_));
     return std::move(history_);
 }

@@ -1,5 +1,5 @@
-// History of a render on the torus: the computations of the nodes, the messages that they send, and which message
-// starts which computation, without supersteps. Neither depends on timing, so a history can be replayed with any
+// History of a render on the torus, without supersteps: the nodes' computations, the messages that they send, and the
+// message that starts each computation. None of these depends on timing, so a history can be replayed with any
 // schedule.
 #pragma once
 #include <cstddef>
@@ -18,11 +18,11 @@ struct RayId {
     std::uint32_t pixel = 0;  // row W + column, where W is the width of the image
     /// Number of the ray in the tree, as in a binary heap: 1 for the primary ray, 2 n for the reflected and 2 n + 1 for
     /// the refracted ray of ray n. At level l the number has l + 1 bits, so 31 bounces fit.
-    std::uint32_t place = 1;
+    std::uint32_t tree_index = 1;
     std::uint32_t light = 0;  // index of a shadow ray's light + 1, at most 65,535; 0 for other rays
 
-    /// Returns the `place` of the ray with this PATH (kernels/shared/packet.h) at this level, 0..31.
-    static std::uint32_t place_of(std::uint32_t path, std::uint32_t level);
+    /// Returns the `tree_index` of the ray with this path (kernels/shared/packet.h) at this level, 0..31.
+    static std::uint32_t tree_index_of(std::uint32_t path, std::uint32_t level);
 
     /// Returns the ray whose hit generated this reflected, refracted or shadow ray. Undefined for a primary ray.
     RayId parent() const;
@@ -37,19 +37,19 @@ class RayNumbers {
     std::uint64_t number_of(const RayId& id);
 
     /// Returns the next number, for a packet that is never looked up.
-    std::uint64_t next() { return next_++; }
+    std::uint64_t next_number() { return next_number_++; }
 
   private:
     struct Slot {
-        std::uint64_t ray = 0;               // pixel and place; 0: empty, since a place is never 0
+        std::uint64_t key = 0;               // pixel and tree_index; 0: empty, because a tree_index is never 0
         std::uint64_t number_and_light = 0;  // number: 48 bits; light: 16 bits
     };
-    Slot& slot_of(std::uint64_t ray, std::uint64_t light);
+    Slot& slot_of(std::uint64_t key, std::uint64_t light);
     void grow();
 
     std::vector<Slot> slots_ = std::vector<Slot>(1 << 10);  // a power of 2
-    std::size_t taken_ = 0;
-    std::uint64_t next_ = 0;
+    std::size_t used_slots_ = 0;
+    std::uint64_t next_number_ = 0;
 };
 
 /// A computation of one node that starts when its cause has arrived: the node processes one packet or generates one
@@ -60,7 +60,7 @@ struct HistoryTask {
     std::uint32_t node = 0;
     std::uint32_t cause = kInjection;  // message whose arrival starts the task
     std::uint64_t cycles = 0;          // modelled cycles of the computation
-    std::uint32_t first = 0;           // index of its first message; a task's messages are contiguous
+    std::uint32_t first_message = 0;   // index of its first message; a task's messages are contiguous
 };
 
 /// A packet that a task created or changed: a ray, sent to the node that processes it next, which may be the same node,
@@ -73,7 +73,7 @@ struct HistoryMessage {
 };
 
 /// Messages are in the order of their tasks. A message precedes the messages of the task that it causes: tasks[t].cause
-/// < tasks[t].first. The tasks of a node that have no cause are in the order of execution.
+/// < tasks[t].first_message. The tasks of a node that have no cause are in the order of execution.
 struct History {
     std::vector<HistoryTask> tasks;
     std::vector<HistoryMessage> messages;
@@ -101,33 +101,33 @@ class HistoryRecorder {
     void add(const NodeWork& work);
 
     /// Returns the history after check_history(). Must be called once, as the last call. The cycles of a node's tasks
-    /// sum to its cycles in the render. Injection cycles, also those of discarded rays, are divided equally among the
-    /// primary rays that the node generates in the superstep. A superstep without such a ray passes its injection
-    /// cycles on to the next one; what remains at the end is a separate task.
+    /// sum to its cycles in the render. Injection cycles, including those of discarded rays, are divided equally among
+    /// the primary rays that the node generates in the superstep. A superstep without such a ray passes its injection
+    /// cycles on to the next one. Cycles that remain at the end become a separate task.
     History finish();
 
   private:
-    struct Sent {
+    struct SentMessage {
         HistoryMessage message;
         std::uint64_t ray = 0;  // number of the ray; for a return, of the ray that it belongs to
     };
-    struct Ray {
+    struct RayProgress {
         std::uint32_t message = UINT32_MAX;  // last message that contained the ray
         std::uint32_t task = UINT32_MAX;     // last task that processed the ray
     };
-    Ray& ray_of(std::uint64_t number);
-    void add_injection(const NodeWork& work);
-    void add_processed(const NodeWork& work);
-    void add_packets(const NodeWork& work, std::size_t first_task);
+    RayProgress& ray_of(std::uint64_t number);
+    void add_injection_tasks(const NodeWork& work);
+    void add_processing_tasks(const NodeWork& work);
+    void add_messages(const NodeWork& work, std::size_t first_task);
     std::uint32_t destination_of(std::uint32_t node, const raya_head& packet) const;
     std::uint16_t words_of(std::uint32_t kind) const;
-    void send(const Sent& sent);
+    void append(const SentMessage& sent);
 
     raya_torus torus_;
     PacketCharge packets_;
     History history_;
     RayNumbers numbers_;
-    std::vector<Ray> rays_;                        // [ray number]
+    std::vector<RayProgress> rays_;                // [ray number]
     std::vector<std::uint64_t> uncharged_cycles_;  // [node]: injection cycles not yet part of a task
 };
 

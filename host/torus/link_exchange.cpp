@@ -30,18 +30,18 @@ LinkExchange::LinkExchange(Session& session, const NodeShare& share, std::uint32
       class_(packet_class),
       outboxes_(session.buffer<std::uint32_t>("outboxes", outbox_at(RAYA_LINKS, 0))),
       inboxes_(session.buffer<std::uint32_t>("inboxes", inbox_at(RAYA_LINKS, 0))),
-      sent_(session.buffer<std::uint32_t>("sent boxes", std::size_t{RAYA_LINKS} * share.inboxes())),
-      crossings_(find_crossings()) {}
+      sent_(session.buffer<std::uint32_t>("sent flags", std::size_t{RAYA_LINKS} * share.inboxes())),
+      rank_links_(find_rank_links()) {}
 
 void LinkExchange::clear() {
     const std::size_t outboxes = std::size_t{RAYA_LINKS} * nodes_;
     sent_flags_.assign(outboxes, 0);
     device_flags_ = sent_flags_;
-    session_.fill("clear boxes", sent_, 0);
+    session_.fill("clear mailboxes", sent_, 0);
     // Clears only the packet counts: mailboxes are large, and most of their memory pages are never used.
     const Session::Blocks zeros{.pitch = 1}, boxes{.pitch = box_words(capacity_)};
-    session_.copy_blocks("clear boxes", sent_, zeros, inboxes_, boxes, 1, sent_.size());
-    session_.copy_blocks("clear boxes", sent_, zeros, outboxes_, boxes, 1, outboxes);
+    session_.copy_blocks("clear mailboxes", sent_, zeros, inboxes_, boxes, 1, sent_.size());
+    session_.copy_blocks("clear mailboxes", sent_, zeros, outboxes_, boxes, 1, outboxes);
     visited_.assign(outboxes, 0);
     packets_.assign(std::size_t{RAYA_LINKS} * raya_nodes(torus_), 0);
     moved_ = 0;
@@ -50,11 +50,12 @@ void LinkExchange::clear() {
 void LinkExchange::use_kernel(const ExchangeKernel& kernel, std::uint32_t group, Buffer<std::uint32_t>& status) {
     std::vector<std::uint32_t> ends;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-        for (const std::uint32_t node : share_.own()) {
+        for (const std::uint32_t node : share_.own_nodes()) {
             const bool stays = torus_.sides[link / 2] > 1 && !crosses_ranks(link, node);
             ends.push_back(stays ? share_.slot_of(raya_link_end(torus_, node, link)) : RAYA_NO_SLOT);
         }
-    kernel_.emplace(KernelMove{kernel, group, status, session_.buffer<std::uint32_t>("ends of links", ends.size())});
+    kernel_.emplace(
+        KernelTransfer{kernel, group, status, session_.buffer<std::uint32_t>("ends of links", ends.size())});
     session_.write("scatter", kernel_->ends, ends);
 }
 
@@ -62,19 +63,19 @@ void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>
     std::fill(sent_flags_.begin(), sent_flags_.end(), 0);
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
         if (torus_.sides[link / 2] == 1) continue;
-        send(status, link, words);
-        if (!kernel_) copy_boxes(status, link);
+        count_transfers(status, link, words);
+        if (!kernel_) copy_mailboxes(status, link);
     }
     // The kernel sets the flags of its own transfers. If no link crosses ranks, these are all transfers.
-    if (!kernel_ || !crossings_.empty()) write_sent();
-    if (kernel_) launch();
+    if (!kernel_ || !rank_links_.empty()) write_sent_flags();
+    if (kernel_) launch_kernel();
 }
 
 // Counts the transfers over the links of one direction, and sets their flags in sent_flags_.
-void LinkExchange::send(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words) {
+void LinkExchange::count_transfers(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words) {
     for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
         const std::uint32_t packets = status.at(node, class_.outbox_status + link);
-        if (packets == 0 || inbox_full(status, link, node)) continue;
+        if (packets == 0 || inbox_occupied(status, link, node)) continue;
         if (share_.has(node)) sent_flags_[std::size_t{link} * nodes_ + share_.slot_of(node)] = 1;
         const std::uint64_t messages = class_.charged_status ? status.at(node, *class_.charged_status) : packets;
         packets_[std::size_t{node} * RAYA_LINKS + link] += messages;
@@ -83,16 +84,16 @@ void LinkExchange::send(const NodeStatus& status, std::uint32_t link, std::vecto
     }
 }
 
-void LinkExchange::copy_boxes(const NodeStatus& status, std::uint32_t link) {
+void LinkExchange::copy_mailboxes(const NodeStatus& status, std::uint32_t link) {
     const std::size_t pitch = box_words(capacity_);
-    for (const Span& span : spans(status, link))
+    for (const CopyRange& range : copy_ranges(status, link))
         session_.copy_blocks(class_.label + " " + link_name(link), outboxes_,
-                             {.pitch = pitch, .first = outbox_at(link, span.first)}, inboxes_,
-                             {.pitch = pitch, .first = inbox_at(link, span.first)}, box_words(span.packets),
-                             span.end - span.first);
+                             {.pitch = pitch, .first = outbox_at(link, range.first)}, inboxes_,
+                             {.pitch = pitch, .first = inbox_at(link, range.first)}, box_words(range.packets),
+                             range.end - range.first);
 }
 
-void LinkExchange::launch() {
+void LinkExchange::launch_kernel() {
     if (std::find(sent_flags_.begin(), sent_flags_.end(), 1u) == sent_flags_.end() && sent_flags_ == device_flags_)
         return;
     session_.launch(class_.label, kernel_->kernel, std::size_t{RAYA_LINKS} * nodes_, kernel_->group, kernel_->ends,
@@ -102,13 +103,13 @@ void LinkExchange::launch() {
     device_flags_ = sent_flags_;
 }
 
-void LinkExchange::write_sent() {
+void LinkExchange::write_sent_flags() {
     if (sent_flags_ == device_flags_) return;
     session_.write(class_.label, sent_, sent_flags_);
     device_flags_ = sent_flags_;
 }
 
-bool LinkExchange::inbox_full(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const {
+bool LinkExchange::inbox_occupied(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const {
     return status.at(raya_link_end(torus_, node, link), class_.inbox_status + link) > 0;
 }
 
@@ -116,14 +117,15 @@ bool LinkExchange::crosses_ranks(std::uint32_t link, std::uint32_t node) const {
     return share_.rank_of(raya_link_end(torus_, node, link)) != share_.rank_of(node);
 }
 
-LinkExchange::Face& LinkExchange::face(std::vector<Face>& faces, std::uint32_t rank, std::uint32_t link) const {
-    for (Face& f : faces)
-        if (f.rank == rank && f.link == link) return f;
-    return faces.emplace_back(Face{rank, link, {}, {}});
+LinkExchange::LinkMessage& LinkExchange::message_for(std::vector<LinkMessage>& messages, std::uint32_t rank,
+                                                     std::uint32_t link) const {
+    for (LinkMessage& m : messages)
+        if (m.rank == rank && m.link == link) return m;
+    return messages.emplace_back(LinkMessage{rank, link, {}, {}});
 }
 
-std::vector<LinkExchange::Crossing> LinkExchange::find_crossings() const {
-    std::vector<Crossing> found;
+std::vector<LinkExchange::RankLink> LinkExchange::find_rank_links() const {
+    std::vector<RankLink> found;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
         for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
             const std::uint32_t end = raya_link_end(torus_, node, link);
@@ -133,92 +135,92 @@ std::vector<LinkExchange::Crossing> LinkExchange::find_crossings() const {
     return found;
 }
 
-// Both ranks of a face read the number of packets in each mailbox from the status.
+// Sender and receiver of a message read the number of packets in each mailbox from the status.
 void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in) {
     outgoing_.clear();
     incoming_.clear();
-    for (const auto& [link, node, rank] : crossings_) {
+    for (const auto& [link, node, rank] : rank_links_) {
         const std::uint32_t packets = status.at(node, class_.outbox_status + link);
-        if (packets == 0 || inbox_full(status, link, node)) continue;
-        Face& f = face(share_.has(node) ? outgoing_ : incoming_, rank, link);
-        f.nodes.push_back(node);
-        f.packets.push_back(packets);
-        f.words += box_words(packets);
+        if (packets == 0 || inbox_occupied(status, link, node)) continue;
+        LinkMessage& m = message_for(share_.has(node) ? outgoing_ : incoming_, rank, link);
+        m.nodes.push_back(node);
+        m.packets.push_back(packets);
+        m.words += box_words(packets);
     }
-    const auto words_of = [](const std::vector<Face>& faces) {
-        return std::accumulate(faces.begin(), faces.end(), std::size_t{0},
-                               [](std::size_t words, const Face& f) { return words + f.words; });
+    const auto words_of = [](const std::vector<LinkMessage>& messages) {
+        return std::accumulate(messages.begin(), messages.end(), std::size_t{0},
+                               [](std::size_t words, const LinkMessage& m) { return words + m.words; });
     };
-    const auto tag = [&](const Face& f) {
-        return class_.tag * static_cast<int>(RAYA_LINKS) + static_cast<int>(f.link);
+    const auto tag = [&](const LinkMessage& m) {
+        return class_.tag * static_cast<int>(RAYA_LINKS) + static_cast<int>(m.link);
     };
     if (const std::size_t words = words_of(outgoing_);
         words > 0 && (!outgoing_words_ || outgoing_words_->size() < words))
-        outgoing_words_.emplace(session_.readback<std::uint32_t>(class_.label + " leaves", words));
+        outgoing_words_.emplace(session_.readback<std::uint32_t>(class_.label + " outgoing", words));
     std::size_t at = 0;
-    for (const Face& f : outgoing_) {
-        read_face(f, at);
-        at += f.words;
-        out.push_back({f.rank, tag(f), std::as_bytes(outgoing_words_->first(at).last(f.words))});
+    for (const LinkMessage& m : outgoing_) {
+        read_message(m, at);
+        at += m.words;
+        out.push_back({m.rank, tag(m), std::as_bytes(outgoing_words_->first(at).last(m.words))});
     }
     incoming_words_.resize(words_of(incoming_));
     std::span<std::uint32_t> to = incoming_words_;
-    for (const Face& f : incoming_) {
-        in.push_back({f.rank, tag(f), std::as_writable_bytes(to.first(f.words))});
-        to = to.subspan(f.words);
+    for (const LinkMessage& m : incoming_) {
+        in.push_back({m.rank, tag(m), std::as_writable_bytes(to.first(m.words))});
+        to = to.subspan(m.words);
     }
 }
 
-void LinkExchange::read_face(const Face& f, std::size_t to) {
-    for (std::size_t i = 0; i < f.nodes.size(); ++i) {
-        const std::size_t words = box_words(f.packets[i]);
-        session_.read(class_.label + " leaves", outboxes_, outbox_at(f.link, share_.slot_of(f.nodes[i])),
+void LinkExchange::read_message(const LinkMessage& m, std::size_t to) {
+    for (std::size_t i = 0; i < m.nodes.size(); ++i) {
+        const std::size_t words = box_words(m.packets[i]);
+        session_.read(class_.label + " outgoing", outboxes_, outbox_at(m.link, share_.slot_of(m.nodes[i])),
                       *outgoing_words_, to, words);
         to += words;
     }
 }
 
 void LinkExchange::wait_for_outgoing() {
-    if (outgoing_words_) session_.wait(class_.label + " leaves", *outgoing_words_);
+    if (outgoing_words_) session_.wait(class_.label + " outgoing", *outgoing_words_);
 }
 
 void LinkExchange::write_incoming() {
     std::span<const std::uint32_t> from = incoming_words_;
-    for (const Face& f : incoming_)
-        for (std::size_t i = 0; i < f.nodes.size(); ++i) {
-            const std::size_t words = box_words(f.packets[i]);
-            session_.write(class_.label + " arrives", inboxes_, from.first(words),
-                           inbox_at(f.link, share_.inbox(f.link, f.nodes[i])));
+    for (const LinkMessage& m : incoming_)
+        for (std::size_t i = 0; i < m.nodes.size(); ++i) {
+            const std::size_t words = box_words(m.packets[i]);
+            session_.write(class_.label + " incoming", inboxes_, from.first(words),
+                           inbox_at(m.link, share_.inbox(m.link, m.nodes[i])));
             from = from.subspan(words);
         }
 }
 
-std::uint64_t LinkExchange::cost(const Span& span) const {
-    return kCommandBytes + (span.end - span.first) * box_words(span.packets) * sizeof(std::uint32_t);
+std::uint64_t LinkExchange::copy_cost(const CopyRange& range) const {
+    return kCommandBytes + (range.end - range.first) * box_words(range.packets) * sizeof(std::uint32_t);
 }
 
-// Extends a span while that takes less time than another command. A span may include empty outboxes, which are copied
-// to empty inboxes.
-std::vector<LinkExchange::Span> LinkExchange::spans(const NodeStatus& status, std::uint32_t link) const {
-    std::vector<Span> found;
+// Extends a range if that takes less time than another command. A range may include empty outboxes; these are copied to
+// empty inboxes.
+std::vector<LinkExchange::CopyRange> LinkExchange::copy_ranges(const NodeStatus& status, std::uint32_t link) const {
+    std::vector<CopyRange> found;
     bool closed = true;
     for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
-        const std::uint32_t node = share_.own()[slot];
-        if (crosses_ranks(link, node) || inbox_full(status, link, node)) {
+        const std::uint32_t node = share_.own_nodes()[slot];
+        if (crosses_ranks(link, node) || inbox_occupied(status, link, node)) {
             closed = true;
             continue;
         }
         const std::uint32_t packets = status.at(node, class_.outbox_status + link);
         if (packets == 0) continue;
-        const Span alone{slot, slot + 1, packets};
+        const CopyRange single{slot, slot + 1, packets};
         if (!closed) {
-            const Span longer{found.back().first, slot + 1, std::max(found.back().packets, packets)};
-            if (cost(longer) <= cost(found.back()) + cost(alone)) {
+            const CopyRange longer{found.back().first, slot + 1, std::max(found.back().packets, packets)};
+            if (copy_cost(longer) <= copy_cost(found.back()) + copy_cost(single)) {
                 found.back() = longer;
                 continue;
             }
         }
-        found.push_back(alone);
+        found.push_back(single);
         closed = false;
     }
     return found;
@@ -227,7 +229,7 @@ std::vector<LinkExchange::Span> LinkExchange::spans(const NodeStatus& status, st
 void LinkExchange::visit_new_packets(const NodeStatus& status,
                                      const std::function<void(std::uint32_t, const raya_head&)>& visit) {
     for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
-        const std::uint32_t node = share_.own()[slot];
+        const std::uint32_t node = share_.own_nodes()[slot];
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t packets = status.at(node, class_.outbox_status + link);
             const std::size_t box = std::size_t{link} * nodes_ + slot;

@@ -48,8 +48,8 @@ class LinkExchange {
 
     /// For each link with both ends on this device: if its inbox is empty, transfers all packets of its outbox. With a
     /// kernel this takes one launch, labelled "LABEL". With copies it takes one command for each link direction,
-    /// labelled "LABEL +x" and so on. Several commands are used where an inbox in the range is not empty, or if the
-    /// lengths of the outboxes differ so much that copying the same length from all of them would take longer. Adds the
+    /// labelled "LABEL +x" and so on. A direction takes several commands if an inbox in the range is not empty, or if
+    /// the lengths of the outboxes differ so much that one command with the maximum length would take longer. Adds the
     /// words charged for each link to `words`, [node][link]. `status`, `words`, packets() and moved() cover all nodes
     /// of all ranks.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
@@ -63,7 +63,7 @@ class LinkExchange {
 
     Buffer<std::uint32_t>& outboxes() { return outboxes_; }
     Buffer<std::uint32_t>& inboxes() { return inboxes_; }
-    const Buffer<std::uint32_t>& sent() const { return sent_; }  // [link][slot]: 1 if the outbox was transferred
+    const Buffer<std::uint32_t>& sent_flags() const { return sent_; }  // [link][slot]: 1 if the outbox was transferred
 
     /// [node][link]: messages sent since clear().
     const std::vector<std::uint64_t>& packets() const { return packets_; }
@@ -77,34 +77,34 @@ class LinkExchange {
                            const std::function<void(std::uint32_t node, const raya_head& packet)>& visit);
 
   private:
-    /// What one command copies: the first `packets` packets of each mailbox of slots `first` to `end` - 1.
-    struct Span {
+    /// Mailboxes that one command copies: the first `packets` packets of each mailbox of slots `first` to `end` - 1.
+    struct CopyRange {
         std::uint32_t first, end, packets;
     };
-    void send(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words);
-    void copy_boxes(const NodeStatus& status, std::uint32_t link);
-    void launch();
-    void write_sent();
-    std::vector<Span> spans(const NodeStatus& status, std::uint32_t link) const;
-    std::uint64_t cost(const Span& span) const;  // time, in bytes that could be copied in it
-    bool inbox_full(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const;  // true if not empty
+    void count_transfers(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words);
+    void copy_mailboxes(const NodeStatus& status, std::uint32_t link);
+    void launch_kernel();
+    void write_sent_flags();
+    std::vector<CopyRange> copy_ranges(const NodeStatus& status, std::uint32_t link) const;
+    std::uint64_t copy_cost(const CopyRange& range) const;  // time, as a number of bytes that are copied in that time
+    bool inbox_occupied(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const;
     bool crosses_ranks(std::uint32_t link, std::uint32_t node) const;
 
     /// A link from this rank to another one, or from another one to this rank.
-    struct Crossing {
+    struct RankLink {
         std::uint32_t link, node, rank;  // node: start of the link; rank: the other rank
     };
 
-    /// Mailboxes of one link direction between two ranks. One message contains the used part of each of them.
-    struct Face {
+    /// Message from one rank to another: the used part of the mailboxes of one link direction between the ranks.
+    struct LinkMessage {
         std::uint32_t rank = 0, link = 0;
         std::vector<std::uint32_t> nodes;    // node at the start of each link, ascending
         std::vector<std::uint32_t> packets;  // [mailbox]: number of packets
         std::size_t words = 0;               // length of the message
     };
-    std::vector<Crossing> find_crossings() const;
-    Face& face(std::vector<Face>& faces, std::uint32_t rank, std::uint32_t link) const;
-    void read_face(const Face& face, std::size_t to);
+    std::vector<RankLink> find_rank_links() const;
+    LinkMessage& message_for(std::vector<LinkMessage>& messages, std::uint32_t rank, std::uint32_t link) const;
+    void read_message(const LinkMessage& message, std::size_t to);
 
     Session& session_;
     const NodeShare& share_;
@@ -112,19 +112,19 @@ class LinkExchange {
     std::uint32_t nodes_, capacity_;  // nodes_: number of nodes on this device
     PacketClass class_;
     Buffer<std::uint32_t> outboxes_, inboxes_, sent_;
-    struct KernelMove {
+    struct KernelTransfer {
         ExchangeKernel kernel;
         std::uint32_t group;
         Buffer<std::uint32_t>& status;
         Buffer<std::uint32_t> ends;  // [link][slot]: slot of the node at the other end, or RAYA_NO_SLOT
     };
-    std::optional<KernelMove> kernel_;
+    std::optional<KernelTransfer> kernel_;
     std::vector<std::uint32_t> sent_flags_, device_flags_;  // new contents of sent_, its present contents
-    std::vector<std::uint32_t> visited_;  // [link][slot]: packets of the outbox already visited
+    std::vector<std::uint32_t> visited_;                    // [link][slot]: packets of the outbox already visited
     std::vector<std::uint64_t> packets_;
     std::uint64_t moved_ = 0;
-    const std::vector<Crossing> crossings_;  // sorted by link, then by node
-    std::vector<Face> outgoing_, incoming_;
+    const std::vector<RankLink> rank_links_;  // sorted by link, then by node
+    std::vector<LinkMessage> outgoing_, incoming_;
     std::optional<Readback<std::uint32_t>> outgoing_words_;  // words of outgoing_, concatenated
     std::vector<std::uint32_t> incoming_words_;              // words of incoming_
     std::size_t box_words(std::uint32_t packets) const { return std::size_t{1 + packets} * class_.packet_words; }

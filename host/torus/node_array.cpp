@@ -9,7 +9,7 @@
 namespace raya {
 namespace {
 
-std::uint32_t largest_node(const NodeMemories& memories) {
+std::uint32_t max_node_words(const NodeMemories& memories) {
     std::uint32_t largest = 0;
     for (std::size_t i = 0; i + 1 < memories.starts.size(); ++i)
         largest = std::max(largest, memories.starts[i + 1] - memories.starts[i]);
@@ -19,20 +19,21 @@ std::uint32_t largest_node(const NodeMemories& memories) {
 constexpr std::size_t kRow = 4;  // words in a row; the words of each node start at a row
 
 // Kernels copy a node's words to local memory if these words and the work-group's own data fit there, and if the device
-// does not limit loop iterations. Devices that do are CPUs, whose local memory is not faster than global memory.
+// does not limit loop iterations. Devices that limit them are CPUs, whose local memory is no
+// faster than global memory.
 KernelOptions choose_words_local(KernelOptions options, const NodeMemories& memories, const DeviceInfo& device) {
     const std::size_t shared =
         std::max(RAYA_INJECT_WORDS(options.group_size, options.lanes), RAYA_ROUTE_WORDS(options.group_size));
-    const std::size_t bytes = sizeof(std::uint32_t) * (shared + kRow + largest_node(memories));
+    const std::size_t bytes = sizeof(std::uint32_t) * (shared + kRow + max_node_words(memories));
     options.words_local = options.words_local && bytes <= device.local_memory_bytes && device.max_loop_iterations == 0;
     return options;
 }
 
-constexpr const char* kFewerLoops = "fewer objects in a voxel (--voxels), a shorter --queue";
+constexpr const char* kLoopRemedy = "fewer objects in a voxel (--voxels), a shorter --queue";
 
-// Returns true if word `which` of any node's status is not 0.
-bool any_node(std::span<const std::uint32_t> status, std::size_t which) {
-    for (std::size_t at = which; at < status.size(); at += RAYA_STATUS_WORDS)
+// Returns true if status word `word` of any node is not 0.
+bool any_node_has(std::span<const std::uint32_t> status, std::size_t word) {
+    for (std::size_t at = word; at < status.size(); at += RAYA_STATUS_WORDS)
         if (status[at] > 0) return true;
     return false;
 }
@@ -67,7 +68,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       share_(share),
       ranks_(ranks),
       nodes_(share.nodes()),
-      node_words_(largest_node(memories)),
+      node_words_(max_node_words(memories)),
       options_(kernels.options()),
       plan_(settings, memories, share, buffers, options_, session_.device()),
       memories_(session_.buffer<std::uint32_t>("node memories", memories.words.size())),
@@ -75,7 +76,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       run_(session_.buffer<raya_run>("run", 1)),
       queues_(session_.buffer<raya_packet>("queues", std::size_t{nodes_} * buffers.queue)),
       status_(session_.buffer<std::uint32_t>("status", std::size_t{nodes_} * RAYA_STATUS_WORDS)),
-      inbox_of_link_(session_.buffer<std::uint32_t>("ways in", std::size_t{nodes_} * RAYA_LINKS)),
+      inbox_of_link_(session_.buffer<std::uint32_t>("inboxes of links", std::size_t{nodes_} * RAYA_LINKS)),
       returns_(session_.buffer<raya_head>("returns", share.has(RAYA_ROOT) ? buffers.queue : 1)),
       returns_readback_(session_.readback<raya_head>("returns", returns_.size())),
       events_(session_.buffer<std::uint64_t>("events", std::size_t{nodes_} * RAYA_EVENTS)),
@@ -96,15 +97,15 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
     session_.write("scatter", starts_, memories.starts);
     write_inbox_table();
     set_pixels(settings.pixels);
-    choose_link_move(kernels);
+    choose_link_method(kernels);
 }
 
 void NodeArray::write_inbox_table() {
-    std::vector<std::uint32_t> ways;
+    std::vector<std::uint32_t> inboxes;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-        for (const std::uint32_t node : share_.own())
-            ways.push_back(share_.inbox(link, raya_link_end(settings_.torus, node, link ^ 1u)));
-    session_.write("scatter", inbox_of_link_, ways);
+        for (const std::uint32_t node : share_.own_nodes())
+            inboxes.push_back(share_.inbox(link, raya_link_end(settings_.torus, node, link ^ 1u)));
+    session_.write("scatter", inbox_of_link_, inboxes);
 }
 
 void NodeArray::set_pixels(const PixelSubset& pixels) {
@@ -136,29 +137,29 @@ void NodeArray::clear() {
 }
 
 template <class Launch>
-void NodeArray::launch_all(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch) {
+void NodeArray::launch_until_done(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch) {
     const auto state = std::tie(queues_, ray_links_.outboxes(), ray_links_.inboxes(), return_links_.outboxes(),
                                 return_links_.inboxes(), returns_, status_, events_, made_, ended_);
     std::vector<std::uint32_t> status(std::size_t{nodes.count} * RAYA_STATUS_WORDS);
-    for (std::uint32_t again = 0;;) {
+    for (std::uint32_t resume = 0;;) {
         const auto begin = [&](auto&... parts) { return guard_.begin(session_, label, budget.work, parts...); };
-        launch(node_kernels::Work{std::apply(begin, state)}, node_kernels::Again{again});
-        if (budget.once && !guard_.has_copies()) return;
+        launch(node_kernels::Work{std::apply(begin, state)}, node_kernels::Resume{resume});
+        if (budget.single_launch && !guard_.has_copies()) return;
         session_.read(label, status_, status, std::size_t{nodes.first} * RAYA_STATUS_WORDS);
-        if (any_node(status, RAYA_STATUS_CUT)) {
-            std::apply([&](auto&... parts) { guard_.restore_state(session_, label, kFewerLoops, parts...); }, state);
+        if (any_node_has(status, RAYA_STATUS_CUT)) {
+            std::apply([&](auto&... parts) { guard_.restore_state(session_, label, kLoopRemedy, parts...); }, state);
             continue;
         }
-        if (!any_node(status, RAYA_STATUS_LEFT)) return;
-        again = 1;
+        if (!any_node_has(status, RAYA_STATUS_LEFT)) return;
+        resume = 1;
     }
 }
 
 void NodeArray::inject(Slots nodes) {
     if (nodes.count == 0) return;
-    launch_all("inject", nodes, plan_.inject(), [&](node_kernels::Work work, node_kernels::Again again) {
+    launch_until_done("inject", nodes, plan_.inject(), [&](node_kernels::Work work, node_kernels::Resume resume) {
         session_.launch("inject", inject_, nodes.count, options_.group_size, memories_, starts_, run_,
-                        node_kernels::First{nodes.first}, work, again,
+                        node_kernels::FirstNode{nodes.first}, work, resume,
                         local_words(RAYA_INJECT_WORDS(options_.group_size, options_.lanes)), queues_, status_, events_,
                         made_, ended_);
     });
@@ -166,27 +167,28 @@ void NodeArray::inject(Slots nodes) {
 
 void NodeArray::trace_voxel(Slots nodes, Reserve reserve) {
     if (nodes.count == 0) return;
-    launch_all("trace_voxel", nodes, plan_.trace_voxel(), [&](node_kernels::Work work, node_kernels::Again again) {
+    const auto launch = [&](node_kernels::Work work, node_kernels::Resume resume) {
         session_.launch("trace_voxel", trace_, nodes.count, options_.group_size, memories_, starts_, run_,
-                        node_kernels::First{nodes.first}, reserve, work, again, local_words(RAYA_COUNT_WORDS), queues_,
-                        status_, events_, made_, ended_, processed_);
-    });
+                        node_kernels::FirstNode{nodes.first}, reserve, work, resume, local_words(RAYA_COUNT_WORDS),
+                        queues_, status_, events_, made_, ended_, processed_);
+    };
+    launch_until_done("trace_voxel", nodes, plan_.trace_voxel(), launch);
 }
 
 void NodeArray::route() {
-    launch_all("route", all(), plan_.route(), [&](node_kernels::Work work, node_kernels::Again again) {
-        session_.launch("route", route_, nodes_, options_.group_size, memories_, starts_, run_, node_kernels::First{0},
-                        work, again, local_words(RAYA_ROUTE_WORDS(options_.group_size)), queues_, ray_links_.outboxes(),
-                        return_links_.outboxes(), returns_, status_, ended_);
+    launch_until_done("route", all(), plan_.route(), [&](node_kernels::Work work, node_kernels::Resume resume) {
+        session_.launch("route", route_, nodes_, options_.group_size, memories_, starts_, run_,
+                        node_kernels::FirstNode{0}, work, resume, local_words(RAYA_ROUTE_WORDS(options_.group_size)),
+                        queues_, ray_links_.outboxes(), return_links_.outboxes(), returns_, status_, ended_);
     });
 }
 
 void NodeArray::accept(Slots nodes, Reserve reserve, std::uint32_t superstep) {
     if (nodes.count == 0) return;
-    launch_all("accept", nodes, plan_.accept(), [&](node_kernels::Work work, node_kernels::Again again) {
+    launch_until_done("accept", nodes, plan_.accept(), [&](node_kernels::Work work, node_kernels::Resume resume) {
         session_.launch("accept", accept_, nodes.count, options_.group_size, memories_, starts_, run_, reserve,
-                        Uint<"turn">{superstep}, node_kernels::First{nodes.first}, inbox_of_link_, ray_links_.sent(),
-                        return_links_.sent(), work, again,
+                        Uint<"turn">{superstep}, node_kernels::FirstNode{nodes.first}, inbox_of_link_,
+                        ray_links_.sent_flags(), return_links_.sent_flags(), work, resume,
                         LocalMemory<std::uint32_t>{RAYA_ACCEPT_WORDS(options_.group_size)}, queues_,
                         ray_links_.inboxes(), return_links_.inboxes(), return_links_.outboxes(), returns_, status_,
                         ended_);
@@ -209,7 +211,7 @@ std::vector<std::uint64_t> NodeArray::exchange(const NodeStatus& status) {
     return words;
 }
 
-void NodeArray::arrive() {
+void NodeArray::finish_exchange() {
     if (!ranks_.many()) return;
     session_.flush();  // the device computes while the host waits
     ranks_.wait();
@@ -223,25 +225,27 @@ std::vector<std::uint64_t> NodeArray::link_packets() const {
     return packets;
 }
 
-NodeStatus NodeArray::look() {
+NodeStatus NodeArray::read_status() {
     std::vector<std::uint32_t> own(status_.size());
-    session_.read("look", status_, own);
-    if (any_node(own, RAYA_STATUS_CUT)) throw truncated_loops_error("look", session_.device().name, kFewerLoops);
+    session_.read("read status", status_, own);
+    if (any_node_has(own, RAYA_STATUS_CUT))
+        throw truncated_loops_error("read status", session_.device().name, kLoopRemedy);
     const std::vector<std::uint32_t> all =
-        ranks_.all_gather(std::span<const std::uint32_t>(own), sizes(RAYA_STATUS_WORDS));
+        ranks_.all_gather(std::span<const std::uint32_t>(own), rank_sizes(RAYA_STATUS_WORDS));
     const NodeStatus status(in_order_of_nodes(share_, ranks_.count(), all, RAYA_STATUS_WORDS));
-    plan_.look(status);
+    plan_.update(status);
     return status;
 }
 
-std::vector<std::size_t> NodeArray::sizes(std::size_t of_node) const {
+std::vector<std::size_t> NodeArray::rank_sizes(std::size_t per_node) const {
     std::vector<std::size_t> sizes;
-    for (std::uint32_t rank = 0; rank < ranks_.count(); ++rank) sizes.push_back(of_node * share_.nodes_of(rank).size());
+    for (std::uint32_t rank = 0; rank < ranks_.count(); ++rank)
+        sizes.push_back(per_node * share_.nodes_of(rank).size());
     return sizes;
 }
 
 void NodeArray::report_work(const NodeStatus& injected, const NodeWorkSink& sink) {
-    const NodeStatus status = look();
+    const NodeStatus status = read_status();
     const std::vector<std::uint64_t> cycles = cycles_of_nodes(injected, nodes_);
     std::vector<raya_processed> processed;
     std::vector<raya_packet> queue;
@@ -261,8 +265,8 @@ void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns
     session_.read("gather", returns_, 0, returns_readback_, 0, returns_pending_);
 }
 
-// Called in the superstep after the start of the readback. The readback is complete, because look() has waited for the
-// command queue in the meantime.
+// Called in the superstep after the start of the readback. The readback is complete, because read_status() has waited
+// for the command queue in the meantime.
 void NodeArray::gather_remaining(std::vector<raya_head>& returns) {
     if (returns_pending_ == 0) return;
     session_.wait("gather", returns_readback_);
@@ -273,7 +277,7 @@ void NodeArray::gather_remaining(std::vector<raya_head>& returns) {
 std::vector<std::uint64_t> NodeArray::read_events() {
     std::vector<std::uint64_t> own(events_.size());
     session_.read("read counters", events_, own);
-    const std::vector<std::uint64_t> all = ranks_.gather(std::span<const std::uint64_t>(own), sizes(RAYA_EVENTS));
+    const std::vector<std::uint64_t> all = ranks_.gather(std::span<const std::uint64_t>(own), rank_sizes(RAYA_EVENTS));
     return all.empty() ? all : in_order_of_nodes(share_, ranks_.count(), all, RAYA_EVENTS);
 }
 

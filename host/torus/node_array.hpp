@@ -17,18 +17,18 @@
 namespace raya {
 
 /// State of the whole machine in a superstep, computed from the status of all nodes.
-struct Census {
-    std::uint64_t live = 0;      // number of packets in queues and mailboxes
-    std::uint64_t full = 0;      // number of full queues
-    std::uint64_t progress = 0;  // 0 if no packet was processed or transferred
-    std::uint64_t cycles = 0;    // modelled cycles of the busiest node
-    std::uint32_t fullest = 0;   // packets in the fullest queue
-    bool all_made = true;        // all primary rays are generated
-    double scanned = 0;          // fraction of the image rows whose primary rays are generated
+struct MachineState {
+    std::uint64_t live = 0;           // number of packets in queues and mailboxes
+    std::uint64_t full_queues = 0;    // number of full queues
+    std::uint64_t progress = 0;       // 0 if no packet was processed or transferred
+    std::uint64_t max_cycles = 0;     // modelled cycles of the busiest node
+    std::uint32_t longest_queue = 0;  // packets in the fullest queue
+    bool all_injected = true;         // all primary rays are generated
+    double injected_fraction = 0;     // fraction of the image rows whose primary rays are generated
 };
 
 /// `capacity`: capacity of a queue, in packets.
-Census census_of(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity);
+MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity);
 
 /// Returns [node]: modelled cycles in the superstep.
 std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32_t nodes);
@@ -41,27 +41,29 @@ enum class Reserve : cl_uint {
 
 namespace node_kernels {
 
-using Words = const Buffer<std::uint32_t>&;
-using Run = const Buffer<raya_run>&;
-using First = Uint<"first_node">;        // slot of the first node of a launch
-using Work = Uint<"work">;               // work budget of a node in a launch
-using Again = Uint<"again">;             // 1: continue the work that the previous launch left
-using Own = LocalMemory<std::uint32_t>;  // local memory of a node's work-group
+using InputWords = const Buffer<std::uint32_t>&;
+using RunConstants = const Buffer<raya_run>&;
+using FirstNode = Uint<"first_node">;           // slot of the first node of a launch
+using Work = Uint<"work">;                      // work budget of a node in a launch
+using Resume = Uint<"resume">;                  // 1: continue where the previous launch ended
+using LocalWords = LocalMemory<std::uint32_t>;  // local memory of a node's work-group
 using Queues = Buffer<raya_packet>&;
-using Boxes = Buffer<std::uint32_t>&;
+using Mailboxes = Buffer<std::uint32_t>&;
 using Returns = Buffer<raya_head>&;  // returns that have reached the root
 using Status = Buffer<std::uint32_t>&;
 using Counters = Buffer<std::uint64_t>&;
 using Processed = Buffer<raya_processed>&;
 
-using Inject = DescribedKernel<"torus/inject.cl", "inject", Words, Words, Run, First, Work, Again, Own, Queues, Status,
-                               Counters, Counters, Counters>;
-using TraceVoxel = DescribedKernel<"torus/trace_voxel.cl", "trace_voxel", Words, Words, Run, First, Reserve, Work,
-                                   Again, Own, Queues, Status, Counters, Counters, Counters, Processed>;
-using Route = DescribedKernel<"torus/route.cl", "route", Words, Words, Run, First, Work, Again, Own, Queues, Boxes,
-                              Boxes, Returns, Status, Counters>;
-using Accept = DescribedKernel<"torus/accept.cl", "accept", Words, Words, Run, Reserve, Uint<"turn">, First, Words,
-                               Words, Words, Work, Again, Own, Queues, Boxes, Boxes, Boxes, Returns, Status, Counters>;
+using Inject = DescribedKernel<"torus/inject.cl", "inject", InputWords, InputWords, RunConstants, FirstNode, Work,
+                               Resume, LocalWords, Queues, Status, Counters, Counters, Counters>;
+using TraceVoxel =
+    DescribedKernel<"torus/trace_voxel.cl", "trace_voxel", InputWords, InputWords, RunConstants, FirstNode, Reserve,
+                    Work, Resume, LocalWords, Queues, Status, Counters, Counters, Counters, Processed>;
+using Route = DescribedKernel<"torus/route.cl", "route", InputWords, InputWords, RunConstants, FirstNode, Work, Resume,
+                              LocalWords, Queues, Mailboxes, Mailboxes, Returns, Status, Counters>;
+using Accept = DescribedKernel<"torus/accept.cl", "accept", InputWords, InputWords, RunConstants, Reserve, Uint<"turn">,
+                               FirstNode, InputWords, InputWords, InputWords, Work, Resume, LocalWords, Queues,
+                               Mailboxes, Mailboxes, Mailboxes, Returns, Status, Counters>;
 
 }  // namespace node_kernels
 
@@ -92,29 +94,29 @@ class NodeArray {
     void trace_voxel(Slots nodes, Reserve reserve);
     void route();
     /// Transfers rays and returns over the links of all nodes. Returns the words charged for each link,
-    /// [node][RAYA_LINKS]. Messages between ranks may still be in flight when it returns. arrive() waits for them;
-    /// before that, call accept() for inner nodes only.
+    /// [node][RAYA_LINKS]. Messages between ranks may still be in transit when it returns. finish_exchange() waits for
+    /// them; before that, call accept() for inner nodes only.
     std::vector<std::uint64_t> exchange(const NodeStatus& status);
-    void arrive();
+    void finish_exchange();
     void accept(Slots nodes, Reserve reserve, std::uint32_t superstep);
 
-    /// Reads the status of the nodes of all ranks; blocks. accept() resets the status words that are counted per
-    /// superstep.
-    NodeStatus look();
+    /// Reads the status of the nodes of all ranks; blocks. accept() resets the status words that count per superstep.
+    NodeStatus read_status();
 
     /// Passes the work of trace_voxel in each node to `sink`. Must be called after trace_voxel() and before route().
-    /// `injected`: the status that look() returned between inject() and trace_voxel(). Requires KernelOptions::costs
-    /// and a single rank.
+    /// `injected`: the status that read_status() returned between inject() and trace_voxel(). Requires
+    /// KernelOptions::costs and a single rank.
     void report_work(const NodeStatus& injected, const NodeWorkSink& sink);
 
-    /// In rank 0, appends the returns of the previous call's readback to `returns`, and starts to read back those that
-    /// now wait at the root. After the last superstep, gather_remaining() appends the returns of the last readback.
+    /// In rank 0, appends the returns of the previous call's readback to `returns`, and starts to read back the returns
+    /// that have now reached the root. After the last superstep, gather_remaining() appends the returns of the last
+    /// readback.
     void gather(const NodeStatus& status, std::vector<raya_head>& returns);
     void gather_remaining(std::vector<raya_head>& returns);
 
     /// In rank 0, passes to `sink` the messages in the outboxes of all ranks that the sending node created or changed.
     /// All ranks must call it in every superstep. An empty sink, which all ranks must pass alike, skips the superstep.
-    void record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
+    void record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
     std::vector<std::uint64_t> read_events();  // rank 0: [node][RAYA_EVENTS] of all nodes; others: empty
     PacketCounts read_made();                  // sum over all ranks
@@ -132,14 +134,14 @@ class NodeArray {
     NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
               const NodeShare& share, Ranks& ranks);
     void write_inbox_table();
-    void choose_link_move(Kernels& kernels);
+    void choose_link_method(Kernels& kernels);
     void use_kernel(const ExchangeKernel& kernel);
-    double exchange_seconds();
-    /// Repeats `launch(work, again)` until no node of `nodes` has work left.
+    double measure_exchange_s();
+    /// Repeats `launch(work, resume)` until no node of `nodes` has work left.
     template <class Launch>
-    void launch_all(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch);
-    std::vector<PacketRecord> records_of_all(const std::vector<PacketRecord>& own);
-    std::vector<std::size_t> sizes(std::size_t of_node) const;  // [rank]: `of_node` times its nodes
+    void launch_until_done(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch);
+    std::vector<PacketRecord> gather_records(const std::vector<PacketRecord>& own);
+    std::vector<std::size_t> rank_sizes(std::size_t per_node) const;  // [rank]: `per_node` times its nodes
     /// Local memory of a kernel: `shared` words, plus the node's words if kernels copy them there.
     LocalMemory<std::uint32_t> local_words(std::size_t shared) const;
     PacketCounts read_packets(const Buffer<std::uint64_t>& counters);

@@ -14,7 +14,7 @@
 namespace raya {
 namespace {
 
-using Numbers = std::span<const std::uint32_t>;  // object numbers in the scene, ascending
+using ObjectNumbers = std::span<const std::uint32_t>;  // object numbers in the scene, ascending
 
 // Finds the parts of a packed job.
 class JobParts {
@@ -57,7 +57,7 @@ std::size_t outline_words(const std::uint32_t* polygon) {
 
 // The objects of a voxel, separated by kind.
 struct VoxelLists {
-    Numbers all, spheres, polygons, cones;
+    ObjectNumbers all, spheres, polygons, cones;
 };
 
 VoxelLists lists_of(const JobParts& job, const Partition& partition, std::uint32_t voxel) {
@@ -71,7 +71,11 @@ VoxelLists lists_of(const JobParts& job, const Partition& partition, std::uint32
 class NodePacker {
   public:
     NodePacker(const PackedJob& job, const Partition& partition, const raya_torus& torus)
-        : job_(job), partition_(partition), torus_(torus), seen_(job_.surfaces(), 0), surface_at_(job_.surfaces(), 0) {
+        : job_(job),
+          partition_(partition),
+          torus_(torus),
+          last_search_(job_.surfaces(), 0),
+          surface_at_(job_.surfaces(), 0) {
         if (partition.starts.size() != std::size_t{raya_voxels(partition.grid)} + 1)
             throw std::logic_error("a partition must have one more start than voxels");
     }
@@ -85,7 +89,7 @@ class NodePacker {
                               std::uint64_t{h.lights} * RAYA_LIGHT_WORDS + voxels * kWordsOf<raya_voxel_memory> +
                               std::uint64_t{h.objects.planes} * RAYA_PLANE_WORDS;
         for (std::uint32_t local = 0; local < voxels; ++local) {
-            const VoxelLists lists = lists_of_local(node, local);
+            const VoxelLists lists = voxel_lists(node, local);
             words = padded_to_rows(words) + lists.all.size() + lists.spheres.size() * (RAYA_SPHERE_WORDS + 1) +
                     lists.polygons.size() * RAYA_POLYGON_WORDS + lists.cones.size() * RAYA_CONE_WORDS;
             for (const std::uint32_t number : lists.polygons) words += outline_words(job_.object(number));
@@ -108,11 +112,11 @@ class NodePacker {
         header.voxels = raya_node_voxels(torus_, partition_.grid, node);
         to.resize(start_ + kWordsOf<raya_node>);
         append_surfaces(node);
-        header.job.lights_at = here();
+        header.job.lights_at = current_offset();
         append_words(job_.at(job_.header.lights_at), std::size_t{job_.header.lights} * RAYA_LIGHT_WORDS);
-        header.voxels_at = here();
+        header.voxels_at = current_offset();
         to.resize(to.size() + header.voxels * kWordsOf<raya_voxel_memory>);
-        header.job.objects.planes_at = here();
+        header.job.objects.planes_at = current_offset();
         for (std::uint32_t i = 0; i < header.job.objects.planes; ++i) append_object(job_.plane(i), RAYA_PLANE_WORDS);
         const std::uint64_t objects = append_voxels(header);
         fill_row();
@@ -121,12 +125,12 @@ class NodePacker {
     }
 
   private:
-    VoxelLists lists_of_local(std::uint32_t node, std::uint32_t local) const {
+    VoxelLists voxel_lists(std::uint32_t node, std::uint32_t local) const {
         return lists_of(job_, partition_, raya_voxel_of_node(torus_, partition_.grid, node, local));
     }
 
     // Returns the current offset from the node's first word.
-    std::uint32_t here() const { return static_cast<std::uint32_t>(to_->size() - start_); }
+    std::uint32_t current_offset() const { return static_cast<std::uint32_t>(to_->size() - start_); }
 
     void append_words(const std::uint32_t* from, std::size_t words) { to_->insert(to_->end(), from, from + words); }
 
@@ -137,29 +141,29 @@ class NodePacker {
     }
 
     // Pads with zeros to a multiple of four words, at which rows and nodes must start.
-    void fill_row() { to_->resize(start_ + padded_to_rows(here())); }
+    void fill_row() { to_->resize(start_ + padded_to_rows(current_offset())); }
 
-    void need_surface(std::uint32_t at) {
+    void add_surface(std::uint32_t at) {
         const std::size_t surface = job_.surface(at);
-        if (std::exchange(seen_[surface], searches_) != searches_) surfaces_.push_back(surface);
+        if (std::exchange(last_search_[surface], search_number_) != search_number_) surfaces_.push_back(surface);
     }
 
     // Finds the surfaces of the node's objects, in the order of the scene.
     void find_surfaces(std::uint32_t node) {
-        ++searches_;
+        ++search_number_;
         surfaces_.clear();
         for (std::uint32_t i = 0; i < job_.header.objects.planes; ++i)
-            need_surface(job_.plane(i)[RAYA_OBJECT_SURFACE_AT]);
+            add_surface(job_.plane(i)[RAYA_OBJECT_SURFACE_AT]);
         const std::uint32_t voxels = raya_node_voxels(torus_, partition_.grid, node);
         for (std::uint32_t local = 0; local < voxels; ++local)
-            for (const std::uint32_t number : lists_of_local(node, local).all) need_surface(job_.surface_of(number));
+            for (const std::uint32_t number : voxel_lists(node, local).all) add_surface(job_.surface_of(number));
         std::sort(surfaces_.begin(), surfaces_.end());
     }
 
     void append_surfaces(std::uint32_t node) {
         find_surfaces(node);
         for (const std::size_t surface : surfaces_) {
-            surface_at_[surface] = here();
+            surface_at_[surface] = current_offset();
             const std::size_t at = kWordsOf<raya_job> + surface * RAYA_SURFACE_WORDS;
             append_words(job_.at(static_cast<std::uint32_t>(at)), RAYA_SURFACE_WORDS);
         }
@@ -168,7 +172,7 @@ class NodePacker {
     std::uint64_t append_voxels(const raya_node& header) {
         std::uint64_t objects = header.job.objects.planes;
         for (std::uint32_t local = 0; local < header.voxels; ++local) {
-            const VoxelLists lists = lists_of_local(header.number, local);
+            const VoxelLists lists = voxel_lists(header.number, local);
             const raya_voxel_memory voxel = append_voxel(lists, header.job.objects);
             put_record(*to_, start_ + header.voxels_at + local * kWordsOf<raya_voxel_memory>, voxel);
             objects += lists.all.size();
@@ -180,30 +184,30 @@ class NodePacker {
         raya_voxel_memory voxel{planes, 0, job_.header.objects.spheres};
         voxel.objects.spheres = static_cast<std::uint32_t>(lists.spheres.size());
         fill_row();
-        voxel.objects.spheres_at = here();
+        voxel.objects.spheres_at = current_offset();
         for (const std::uint32_t number : lists.spheres) append_words(job_.object(number), RAYA_SPHERE_WORDS);
         for (const std::uint32_t number : lists.spheres)
             to_->push_back(surface_at_[job_.surface(job_.surface_of(number))]);
         voxel.objects.cones = static_cast<std::uint32_t>(lists.cones.size());
-        voxel.objects.cones_at = here();
+        voxel.objects.cones_at = current_offset();
         for (const std::uint32_t number : lists.cones) append_object(job_.object(number), RAYA_CONE_WORDS);
         voxel.objects.polygons = static_cast<std::uint32_t>(lists.polygons.size());
-        voxel.objects.polygons_at = here();
+        voxel.objects.polygons_at = current_offset();
         append_polygons(lists.polygons);
-        voxel.numbers_at = here();
+        voxel.numbers_at = current_offset();
         append_words(lists.all.data(), lists.all.size());
         return voxel;
     }
 
-    void append_polygons(Numbers polygons) {
+    void append_polygons(ObjectNumbers polygons) {
         std::size_t record = to_->size();
         for (const std::uint32_t number : polygons) append_object(job_.object(number), RAYA_POLYGON_WORDS);
         for (const std::uint32_t number : polygons) {
             const std::uint32_t* const polygon = job_.object(number);
-            (*to_)[record + RAYA_POLYGON_CORNERS_AT] = here();
+            (*to_)[record + RAYA_POLYGON_CORNERS_AT] = current_offset();
             append_words(job_.at(polygon[RAYA_POLYGON_CORNERS_AT]), polygon[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS);
             if (polygon[RAYA_POLYGON_NORMALS_AT] != 0) {
-                (*to_)[record + RAYA_POLYGON_NORMALS_AT] = here();
+                (*to_)[record + RAYA_POLYGON_NORMALS_AT] = current_offset();
                 append_words(job_.at(polygon[RAYA_POLYGON_NORMALS_AT]), RAYA_PATCH_WORDS);
             }
             record += RAYA_POLYGON_WORDS;
@@ -213,8 +217,8 @@ class NodePacker {
     JobParts job_;
     const Partition& partition_;
     const raya_torus torus_;
-    std::uint32_t searches_ = 0;                // number of calls of find_surfaces()
-    std::vector<std::uint32_t> seen_;           // [surface]: number of the last call that found it
+    std::uint32_t search_number_ = 0;           // number of calls of find_surfaces()
+    std::vector<std::uint32_t> last_search_;    // [surface]: number of the last call that found it
     std::vector<std::size_t> surfaces_;         // surfaces found by the last call
     std::vector<std::uint32_t> surface_at_;     // [surface]: its offset in the node being packed
     std::vector<std::uint32_t>* to_ = nullptr;  // words of all nodes
@@ -247,9 +251,9 @@ NodeMemories pack_nodes(const PackedJob& job, const Partition& partition, const 
 
 std::uint64_t fullest_node_words(const PackedJob& job, const Partition& partition, const raya_torus& torus) {
     NodePacker packer(job, partition, torus);
-    std::uint64_t most = 0;
-    for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) most = std::max(most, packer.words(node));
-    return most;
+    std::uint64_t max_words = 0;
+    for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) max_words = std::max(max_words, packer.words(node));
+    return max_words;
 }
 
 }  // namespace raya

@@ -17,9 +17,9 @@ struct Brick {
     std::uint64_t nodes() const { return std::uint64_t{side(0)} * side(1) * side(2); }
 };
 
-class Divider {
+class NodeDivider {
   public:
-    explicit Divider(const raya_torus& torus) : torus_(torus), rank_of(raya_nodes(torus)) {}
+    explicit NodeDivider(const raya_torus& torus) : torus_(torus), rank_of(raya_nodes(torus)) {}
 
     // Divides a cuboid among the ranks `first` to `first` + `ranks` - 1; `ranks` must not exceed its number of nodes.
     void divide(const Brick& brick, std::uint32_t ranks, std::uint32_t first) {
@@ -27,15 +27,15 @@ class Divider {
         std::uint32_t axis = 0;
         for (std::uint32_t other : {1, 2})
             if (brick.side(other) > brick.side(axis)) axis = other;
-        const std::uint64_t layers = brick.side(axis), of_layer = brick.nodes() / layers;
+        const std::uint64_t layers = brick.side(axis), layer_nodes = brick.nodes() / layers;
         const std::uint64_t low_layers = layers / 2;
-        const std::uint64_t low_nodes = low_layers * of_layer, high_nodes = brick.nodes() - low_nodes;
+        const std::uint64_t low_nodes = low_layers * layer_nodes, high_nodes = brick.nodes() - low_nodes;
         const auto share =
             static_cast<std::uint64_t>(std::llround(double(ranks) * double(low_layers) / double(layers)));
-        const std::uint64_t least = ranks > high_nodes ? ranks - high_nodes : 1;
+        const std::uint64_t min_low = ranks > high_nodes ? ranks - high_nodes : 1;
         const auto low = static_cast<std::uint32_t>(
-            std::clamp<std::uint64_t>(share, least, std::min<std::uint64_t>(low_nodes, ranks - 1)));
-        const std::uint32_t middle = layer_for(brick, axis, low, ranks);
+            std::clamp<std::uint64_t>(share, min_low, std::min<std::uint64_t>(low_nodes, ranks - 1)));
+        const std::uint32_t middle = cut_layer(brick, axis, low, ranks);
         Brick below = brick, above = brick;
         below.end.at[axis] = above.first.at[axis] = middle;
         divide(below, low, first);
@@ -46,17 +46,17 @@ class Divider {
     std::vector<std::uint32_t> rank_of;
 
   private:
-    // Returns the layer at which the cuboid is cut, so that the lower part has about low / ranks of the nodes, and both
-    // parts have at least one node for each of their ranks.
-    std::uint32_t layer_for(const Brick& brick, std::uint32_t axis, std::uint32_t low, std::uint32_t ranks) const {
+    // Returns the layer at which to cut the cuboid: the lower part gets about low / ranks of the nodes, and both parts
+    // have at least one node for each of their ranks.
+    std::uint32_t cut_layer(const Brick& brick, std::uint32_t axis, std::uint32_t low, std::uint32_t ranks) const {
         const std::uint32_t layers = brick.side(axis);
-        const std::uint64_t of_layer = brick.nodes() / layers;
+        const std::uint64_t layer_nodes = brick.nodes() / layers;
         const auto layers_of = [&](std::uint64_t nodes) {
-            return static_cast<std::uint32_t>((nodes + of_layer - 1) / of_layer);
+            return static_cast<std::uint32_t>((nodes + layer_nodes - 1) / layer_nodes);
         };
         const auto wanted = static_cast<std::uint32_t>(std::llround(double(layers) * low / ranks));
-        const std::uint32_t most = layers - std::max(1u, layers_of(ranks - low));
-        return brick.first.at[axis] + std::clamp(wanted, std::max(1u, layers_of(low)), most);
+        const std::uint32_t max_layers = layers - std::max(1u, layers_of(ranks - low));
+        return brick.first.at[axis] + std::clamp(wanted, std::max(1u, layers_of(low)), max_layers);
     }
 
     void assign(const Brick& brick, std::uint32_t rank) {
@@ -76,7 +76,7 @@ std::vector<std::uint32_t> ranks_of_nodes(const raya_torus& torus, std::uint32_t
             fmt::format("{} ranks for {} nodes: a rank needs at least one node; start {} ranks or fewer, or use more "
                         "nodes (--nodes)",
                         ranks, raya_nodes(torus), raya_nodes(torus)));
-    Divider divider(torus);
+    NodeDivider divider(torus);
     divider.divide({{{0, 0, 0}}, {{torus.sides[0], torus.sides[1], torus.sides[2]}}}, ranks, 0);
     return divider.rank_of;
 }
@@ -110,9 +110,9 @@ bool NodeShare::is_inner(std::uint32_t node) const {
 }
 
 std::uint32_t NodeShare::max_nodes_of_rank() const {
-    std::size_t most = 0;
-    for (const std::vector<std::uint32_t>& nodes : nodes_of_) most = std::max(most, nodes.size());
-    return static_cast<std::uint32_t>(most);
+    std::size_t max_nodes = 0;
+    for (const std::vector<std::uint32_t>& nodes : nodes_of_) max_nodes = std::max(max_nodes, nodes.size());
+    return static_cast<std::uint32_t>(max_nodes);
 }
 
 std::uint32_t NodeShare::inbox(std::uint32_t link, std::uint32_t node) const {

@@ -24,20 +24,21 @@ class NodeShare {
 
     const raya_torus& torus() const { return torus_; }
     std::uint32_t rank() const { return rank_; }
-    std::uint32_t nodes() const { return static_cast<std::uint32_t>(own().size()); }  // number of nodes of this rank
-    std::uint32_t inner() const { return inner_; }                                    // inner nodes of this rank
+    /// Number of nodes, and of inner nodes, of this rank.
+    std::uint32_t nodes() const { return static_cast<std::uint32_t>(own_nodes().size()); }
+    std::uint32_t inner() const { return inner_; }
     std::uint32_t max_nodes_of_rank() const;
 
     /// Returns the nodes of a rank, or of this rank, indexed by slot.
     const std::vector<std::uint32_t>& nodes_of(std::uint32_t rank) const { return nodes_of_[rank]; }
-    const std::vector<std::uint32_t>& own() const { return nodes_of_[rank_]; }
+    const std::vector<std::uint32_t>& own_nodes() const { return nodes_of_[rank_]; }
     std::uint32_t rank_of(std::uint32_t node) const { return rank_of_[node]; }
     bool has(std::uint32_t node) const { return rank_of_[node] == rank_; }
     std::uint32_t slot_of(std::uint32_t node) const { return slot_of_[node]; }  // slot of the node in its rank
 
-    /// Number of inboxes for each link direction on this device: one per node of this rank, for the link that starts
-    /// there, indexed by slot; then the inboxes of links from other ranks, as many as the direction with the largest
-    /// number of such links needs.
+    /// Number of inboxes for each link direction on this device. First come the inboxes of links that start at nodes of
+    /// this rank, indexed by slot; then those of links from other ranks. The number is the same for all directions: the
+    /// maximum that one of them needs.
     std::uint32_t inboxes() const { return inboxes_; }
 
     /// Returns the index of the inbox of the link that starts at `node`. The link's start or end must be in this rank.
@@ -50,8 +51,8 @@ class NodeShare {
     std::uint32_t rank_, inner_ = 0, inboxes_ = 0;
     std::vector<std::uint32_t> rank_of_, slot_of_;
     std::vector<std::vector<std::uint32_t>> nodes_of_;
-    std::vector<std::vector<std::uint32_t>>
-        remote_starts_;  // [link]: nodes of other ranks whose link in this direction ends in this rank
+    // [link]: nodes of other ranks whose link in this direction ends in this rank
+    std::vector<std::vector<std::uint32_t>> remote_starts_;
 };
 
 /// Host copy of the nodes' status words: [node][RAYA_STATUS_WORDS].

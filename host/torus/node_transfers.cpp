@@ -13,12 +13,12 @@ std::uint64_t cycles_of(const NodeStatus& status, std::uint32_t node) {
     return status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)} << 32;
 }
 
-constexpr std::uint32_t kPackets = 32;  // packets in each mailbox of a measurement
-constexpr int kTimes = 5;               // repetitions; the shortest time is used
+constexpr std::uint32_t kMeasuredPackets = 32;  // packets in each mailbox of a measurement
+constexpr int kRepetitions = 5;                 // the shortest time is used
 
 bool is_return(const raya_head& packet) { return raya_state_kind(packet.state) == RAYA_KIND_RETURN; }
 
-// Returns true if a packet of an outbox is charged as a message and the outbox's node created or changed it.
+// Returns true if the model charges a packet of an outbox as a message and the outbox's node created or changed it.
 bool is_new_message(const raya_head& packet) {
     return packet.state & RAYA_STATE_FRESH && (!is_return(packet) || packet.state & RAYA_STATE_CHARGED);
 }
@@ -47,38 +47,38 @@ std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32
     return cycles;
 }
 
-Census census_of(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity) {
-    Census c;
+MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity) {
+    MachineState state;
     std::uint64_t rows = 0, done = 0;
     for (std::uint32_t node = 0; node < nodes; ++node) {
         const auto at = [&](std::uint32_t word) { return status.at(node, word); };
-        c.live += at(RAYA_STATUS_QUEUE) + at(RAYA_STATUS_HOST);
+        state.live += at(RAYA_STATUS_QUEUE) + at(RAYA_STATUS_HOST);
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-            c.live += at(RAYA_STATUS_OUTBOX + link) + at(RAYA_STATUS_INBOX + link) +
-                      at(RAYA_STATUS_RETURN_OUTBOX + link) + at(RAYA_STATUS_RETURN_INBOX + link);
-        c.fullest = std::max(c.fullest, at(RAYA_STATUS_QUEUE));
-        c.full += at(RAYA_STATUS_QUEUE) >= capacity;
-        c.progress += at(RAYA_STATUS_PROGRESS);
-        c.cycles = std::max(c.cycles, cycles_of(status, node));
-        c.all_made &= at(RAYA_STATUS_NEXT_ROW) >= at(RAYA_STATUS_ROWS);
+            state.live += at(RAYA_STATUS_OUTBOX + link) + at(RAYA_STATUS_INBOX + link) +
+                          at(RAYA_STATUS_RETURN_OUTBOX + link) + at(RAYA_STATUS_RETURN_INBOX + link);
+        state.longest_queue = std::max(state.longest_queue, at(RAYA_STATUS_QUEUE));
+        state.full_queues += at(RAYA_STATUS_QUEUE) >= capacity;
+        state.progress += at(RAYA_STATUS_PROGRESS);
+        state.max_cycles = std::max(state.max_cycles, cycles_of(status, node));
+        state.all_injected &= at(RAYA_STATUS_NEXT_ROW) >= at(RAYA_STATUS_ROWS);
         rows += at(RAYA_STATUS_ROWS);
         done += at(RAYA_STATUS_NEXT_ROW);
     }
-    c.scanned = rows ? static_cast<double>(done) / static_cast<double>(rows) : 1;
-    return c;
+    state.injected_fraction = rows ? static_cast<double>(done) / static_cast<double>(rows) : 1;
+    return state;
 }
 
-// Measures only on devices other than CPUs: on CPUs the kernel is at least as fast as copies (docs/tuning.md).
-void NodeArray::choose_link_move(Kernels& kernels) {
-    const LinkMove wanted = settings_.kernels.link_move;
+// Measures on devices other than CPUs. On CPUs the kernel is at least as fast as copies (docs/tuning.md).
+void NodeArray::choose_link_method(Kernels& kernels) {
+    const LinkMove chosen = settings_.kernels.link_move;
     const bool cpu = session_.device().type == "cpu";
-    links_origin_ = wanted != LinkMove::kAutomatic ? settings_.kernels.link_origin : cpu ? "defaults" : "measured";
-    if (wanted == LinkMove::kCopies) return;
+    links_origin_ = chosen != LinkMove::kAutomatic ? settings_.kernels.link_origin : cpu ? "defaults" : "measured";
+    if (chosen == LinkMove::kCopies) return;
     const auto kernel = kernels.get<ExchangeKernel>();
-    if (wanted == LinkMove::kKernel || cpu) return use_kernel(kernel);
-    const double by_copies = exchange_seconds();
+    if (chosen == LinkMove::kKernel || cpu) return use_kernel(kernel);
+    const double by_copies = measure_exchange_s();
     use_kernel(kernel);
-    if (exchange_seconds() < by_copies) return;
+    if (measure_exchange_s() < by_copies) return;
     ray_links_.use_copies();
     return_links_.use_copies();
     links_by_kernel_ = false;
@@ -90,10 +90,10 @@ void NodeArray::use_kernel(const ExchangeKernel& kernel) {
     links_by_kernel_ = true;
 }
 
-// Returns the seconds of an exchange over all links with kPackets packets in every outbox. The caller must clear() the
-// packets and counts afterwards.
-double NodeArray::exchange_seconds() {
-    const std::uint32_t packets = std::min(kPackets, buffers_.box);
+// Returns the seconds of an exchange over all links with kMeasuredPackets packets in every outbox. The caller must
+// clear() the packets and counts afterwards.
+double NodeArray::measure_exchange_s() {
+    const std::uint32_t packets = std::min(kMeasuredPackets, buffers_.box);
     NodeStatus status(raya_nodes(settings_.torus));
     for (std::uint32_t node = 0; node < raya_nodes(settings_.torus); ++node) {
         const auto put = [&](std::uint32_t word) {
@@ -103,28 +103,29 @@ double NodeArray::exchange_seconds() {
             if (settings_.torus.sides[link / 2] > 1) put(RAYA_STATUS_OUTBOX + link);
         if (node != RAYA_ROOT) put(RAYA_STATUS_RETURN_OUTBOX + raya_return_link(settings_.torus, node));
     }
-    for (std::uint32_t slot = 0; slot < nodes_; ++slot)
-        session_.write(
-            "measure links", status_,
-            std::span(status.words).subspan(std::size_t{share_.own()[slot]} * RAYA_STATUS_WORDS, RAYA_STATUS_WORDS),
-            std::size_t{slot} * RAYA_STATUS_WORDS);
+    for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
+        const std::size_t node = share_.own_nodes()[slot];
+        session_.write("measure links", status_,
+                       std::span(status.words).subspan(node * RAYA_STATUS_WORDS, RAYA_STATUS_WORDS),
+                       std::size_t{slot} * RAYA_STATUS_WORDS);
+    }
     ray_links_.clear();
     return_links_.clear();
     std::vector<std::uint64_t> words(std::size_t{raya_nodes(settings_.torus)} * RAYA_LINKS);
-    double least = std::numeric_limits<double>::max();
-    for (int i = 0; i <= kTimes; ++i) {
+    double min_s = std::numeric_limits<double>::max();
+    for (int i = 0; i <= kRepetitions; ++i) {
         session_.finish();
         const Clock::time_point start = Clock::now();
         ray_links_.exchange(status, words);
         return_links_.exchange(status, words);
         session_.finish();
         const double seconds = seconds_since(start);
-        if (i > 0) least = std::min(least, seconds);  // the first exchange may compile the kernel
+        if (i > 0) min_s = std::min(min_s, seconds);  // the first exchange may compile the kernel
     }
-    return least;
+    return min_s;
 }
 
-void NodeArray::record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
+void NodeArray::record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
     if (!sink) {
         ray_links_.visit_new_packets(status, {});
         return return_links_.visit_new_packets(status, {});
@@ -135,13 +136,13 @@ void NodeArray::record(const NodeStatus& status, std::uint32_t superstep, const 
     };
     ray_links_.visit_new_packets(status, take);
     return_links_.visit_new_packets(status, take);
-    std::vector<PacketRecord> records = ranks_.many() ? records_of_all(own) : std::move(own);
+    std::vector<PacketRecord> records = ranks_.many() ? gather_records(own) : std::move(own);
     std::stable_sort(records.begin(), records.end(),
                      [](const PacketRecord& a, const PacketRecord& b) { return a.source < b.source; });
     for (const PacketRecord& record : records) sink(record);
 }
 
-std::vector<PacketRecord> NodeArray::records_of_all(const std::vector<PacketRecord>& own) {
+std::vector<PacketRecord> NodeArray::gather_records(const std::vector<PacketRecord>& own) {
     return ranks_.gather(std::span(own), ranks_.all_gather(own.size()));
 }
 

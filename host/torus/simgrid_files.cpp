@@ -40,14 +40,14 @@ std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machin
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t end = raya_link_end(torus, node, link);
             if (!joined.insert(end).second) continue;
-            const std::string way = channel_name(node, link), wire = wire_name(torus, node, link);
-            links.add("    <link id=\"{}\" bandwidth=\"{:.17g}Bps\" latency=\"0\"/>\n", way, one_way);
+            const std::string direction = channel_name(node, link), wire = wire_name(torus, node, link);
+            links.add("    <link id=\"{}\" bandwidth=\"{:.17g}Bps\" latency=\"0\"/>\n", direction, one_way);
             if (link % 2 == 0)
                 links.add("    <link id=\"{}\" bandwidth=\"{:.17g}Bps\" latency=\"0\"/>\n", wire, both_ways);
             routes.add(
                 "    <route src=\"{}\" dst=\"{}\" symmetrical=\"NO\"><link_ctn id=\"{}\"/><link_ctn id=\"{}\"/>"
                 "</route>\n",
-                node, end, way, wire);
+                node, end, direction, wire);
         }
     }
     return "<?xml version='1.0'?>\n<!DOCTYPE platform SYSTEM \"https://simgrid.org/simgrid.dtd\">\n"
@@ -57,8 +57,8 @@ std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machin
 
 std::string simgrid_replay(const raya_torus& torus, const History& history, const AsyncMachine& machine) {
     Text replay;
-    replay.add("machine {} {} {} {} {}\n", raya_nodes(torus), machine.buffer, machine.entering, machine.message_cycles,
-               machine.word_cycles);
+    replay.add("machine {} {} {} {} {}\n", raya_nodes(torus), machine.buffer, machine.entry_slots,
+               machine.message_cycles, machine.word_cycles);
     for (std::size_t task = 0; task < history.tasks.size(); ++task) {
         const HistoryTask& t = history.tasks[task];
         replay.add("t {} {} {}\n", t.node, t.cycles,

@@ -14,15 +14,15 @@ namespace {
 // Returns C, the number of slabs in a row: the divisor of K for which the sides I C and J K / C differ least, the
 // smallest one in case of a tie. The product of the sides does not depend on C, so the smallest difference also gives
 // the ratio nearest to 1.
-std::uint32_t slabs_beside(const std::array<std::uint32_t, 3>& nodes) {
+std::uint32_t slabs_per_row(const std::array<std::uint32_t, 3>& nodes) {
     const std::uint32_t i = nodes[0], j = nodes[1], k = nodes[2];
-    const auto apart = [&](std::uint32_t c) {
+    const auto side_difference = [&](std::uint32_t c) {
         const std::uint32_t first = i * c, second = j * (k / c);
         return first > second ? first - second : second - first;
     };
     std::uint32_t best = 1;
     for (std::uint32_t c = 2; c <= k; ++c)
-        if (k % c == 0 && apart(c) < apart(best)) best = c;
+        if (k % c == 0 && side_difference(c) < side_difference(best)) best = c;
     return best;
 }
 
@@ -46,7 +46,7 @@ raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links) {
     check_nodes(nodes);
     const auto [i, j, k] = nodes;
     if (links == Links::kTorus3d) return {{i, j, k}, {i, j, k}, 1};
-    const std::uint32_t slabs = slabs_beside(nodes);
+    const std::uint32_t slabs = slabs_per_row(nodes);
     return {{i, j, k}, {i * slabs, j * (k / slabs), 1}, slabs};
 }
 

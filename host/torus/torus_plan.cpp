@@ -15,15 +15,17 @@
 namespace raya {
 namespace {
 
-PackedJob packed(const Session& session, const Scene& scene, const TorusSettings& settings, const LengthScale& scale) {
-    const StepLog::Step step = session.step("pack scene");
+PackedJob packed_job(const Session& session, const Scene& scene, const TorusSettings& settings,
+                     const LengthScale& scale) {
+    const SpanLog::Span span = session.span("pack scene");
     return pack_job(scene, job_settings(settings, scale));
 }
 
-PackedJob outline_of(const raya_job& header, bool has_patches) {
-    PackedJob outline(header, std::vector<std::uint32_t>(kWordsOf<raya_job>), has_patches);
-    outline.set_header(header);
-    return outline;
+// Returns a job that has only a header, no objects.
+PackedJob header_only_job(const raya_job& header, bool has_patches) {
+    PackedJob job(header, std::vector<std::uint32_t>(kWordsOf<raya_job>), has_patches);
+    job.set_header(header);
+    return job;
 }
 
 std::uint64_t fullest_words(const NodeMemories& memories) {
@@ -40,13 +42,14 @@ NodeBuffers buffers_of(const Scene& scene, const NodeMemories& memories, const T
 }
 
 // Packs the job and divides it among all nodes.
-TorusJob divide(const Session& session, const Scene& scene, const TorusSettings& s, const NodeShare& share,
-                const DeviceMemory& device) {
+TorusJob divide_scene(const Session& session, const Scene& scene, const TorusSettings& s, const NodeShare& share,
+                      const DeviceMemory& device) {
     const LengthScale scale = length_scale(scene, s.format);
-    const PackedJob job = packed(session, scene, s, scale);
-    const StepLog::Step step = session.step("divide scene");
+    const PackedJob job = packed_job(session, scene, s, scale);
+    const SpanLog::Span span = session.span("divide scene");
     const Partition partition = raya::partition(job, s.format, s.voxels);
-    TorusJob all{outline_of(job.header(), job.has_patches()), pack_nodes(job, partition, s.torus), scale, {}, 0, 0};
+    TorusJob all{
+        header_only_job(job.header(), job.has_patches()), pack_nodes(job, partition, s.torus), scale, {}, 0, 0};
     all.buffers = buffers_of(scene, all.memories, s, make_node_trial(job, s.format, s.voxels));
     check_device_memory(scene.name, all.buffers, share.max_nodes_of_rank(), session.device().name, device);
     set_windows(all.memories, s, job, partition);
@@ -56,7 +59,7 @@ TorusJob divide(const Session& session, const Scene& scene, const TorusSettings&
 }
 
 // Returns the memories of `nodes`, in this order.
-NodeMemories memories_of(const NodeMemories& all, const std::vector<std::uint32_t>& nodes) {
+NodeMemories select_memories(const NodeMemories& all, const std::vector<std::uint32_t>& nodes) {
     NodeMemories own;
     own.copies = all.copies;
     own.max_objects = all.max_objects;
@@ -70,7 +73,7 @@ NodeMemories memories_of(const NodeMemories& all, const std::vector<std::uint32_
 }
 
 // A job without the nodes' words, in the form that is sent to other ranks.
-struct TorusFigures {
+struct TorusJobHeader {
     raya_job header;
     bool has_patches;
     LengthScale scale;
@@ -79,21 +82,26 @@ struct TorusFigures {
     std::uint32_t max_objects;
 };
 
-void send_to_others(const TorusJob& all, const NodeShare& share, Ranks& ranks) {
+void send_to_ranks(const TorusJob& all, const NodeShare& share, Ranks& ranks) {
     const NodeMemories& m = all.memories;
-    TorusFigures f{
-        all.outline.header(), all.outline.has_patches(), all.scale, all.buffers, all.words, all.fullest_words, m.copies,
-        m.max_objects};
+    TorusJobHeader f{all.header_only.header(),
+                     all.header_only.has_patches(),
+                     all.scale,
+                     all.buffers,
+                     all.words,
+                     all.fullest_words,
+                     m.copies,
+                     m.max_objects};
     ranks.broadcast(f);
     for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) {
-        const NodeMemories of_rank = memories_of(m, share.nodes_of(rank));
+        const NodeMemories of_rank = select_memories(m, share.nodes_of(rank));
         ranks.send(rank, std::span<const std::uint32_t>(of_rank.starts));
         ranks.send(rank, std::span<const std::uint32_t>(of_rank.words));
     }
 }
 
 TorusJob receive_job(const NodeShare& share, Ranks& ranks) {
-    TorusFigures f;
+    TorusJobHeader f;
     ranks.broadcast(f);
     NodeMemories m;
     m.copies = f.copies;
@@ -102,7 +110,7 @@ TorusJob receive_job(const NodeShare& share, Ranks& ranks) {
     ranks.receive(0, std::span(m.starts));
     m.words.resize(m.starts.back());
     ranks.receive(0, std::span(m.words));
-    return {outline_of(f.header, f.has_patches), std::move(m), f.scale, f.buffers, f.words, f.fullest_words};
+    return {header_only_job(f.header, f.has_patches), std::move(m), f.scale, f.buffers, f.words, f.fullest_words};
 }
 
 }  // namespace
@@ -125,15 +133,15 @@ JobSettings job_settings(const TorusSettings& s, const LengthScale& scale) {
 
 void check_packets(const TorusSettings& s, const Scene& scene) {
     for (std::uint32_t axis = 0; axis < 3; ++axis)
-        if (s.voxels[axis] > RAYA_MOST_PLACES)
+        if (s.voxels[axis] > RAYA_MAX_PLACES)
             throw UserError(
-                fmt::format("--voxels {}: must be at most {} along an axis", sides_text(s.voxels), RAYA_MOST_PLACES));
-    if (scene.lights.size() > RAYA_MOST_LIGHTS)
-        throw UserError(fmt::format("{}: {} lights: packets of the torus name at most {}", scene.name,
-                                    scene.lights.size(), RAYA_MOST_LIGHTS));
+                fmt::format("--voxels {}: must be at most {} along an axis", sides_text(s.voxels), RAYA_MAX_PLACES));
+    if (scene.lights.size() > RAYA_MAX_LIGHTS)
+        throw UserError(fmt::format("{}: {} lights: the torus supports at most {}; use fewer, or a ring machine",
+                                    scene.name, scene.lights.size(), RAYA_MAX_LIGHTS));
 }
 
-TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
+TorusSettings checked_settings(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
     check_packets(s, scene);
     s.kernels = chosen(s.kernels, device, {.torus = true, .fp32 = s.format.is_fp32()});
     check_kernel_options({.lanes = s.kernels.lanes, .group_size = s.kernels.group_size, .bounces = s.bounces}, device);
@@ -180,20 +188,20 @@ NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
 }
 
 DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks) {
-    DeviceMemory least{device.global_memory_bytes, device.max_allocation_bytes};
-    for (const DeviceMemory& other : ranks.all_gather(least))
-        least = {std::min(least.all, other.all), std::min(least.one_buffer, other.one_buffer)};
-    return least;
+    DeviceMemory smallest{device.global_memory_bytes, device.max_allocation_bytes};
+    for (const DeviceMemory& other : ranks.all_gather(smallest))
+        smallest = {std::min(smallest.total, other.total), std::min(smallest.max_buffer, other.max_buffer)};
+    return smallest;
 }
 
 TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,
                         const NodeShare& share, const DeviceMemory& device, Ranks& ranks) {
     if (!ranks.first()) return receive_job(share, ranks);
-    TorusJob all = divide(session, scene, settings, share, device);
+    TorusJob all = divide_scene(session, scene, settings, share, device);
     if (!ranks.many()) return all;
-    const StepLog::Step step = session.step("send nodes");
-    send_to_others(all, share, ranks);
-    all.memories = memories_of(all.memories, share.own());
+    const SpanLog::Span span = session.span("send nodes");
+    send_to_ranks(all, share, ranks);
+    all.memories = select_memories(all.memories, share.own_nodes());
     return all;
 }
 

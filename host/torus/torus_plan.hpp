@@ -45,7 +45,7 @@ void check_packets(const TorusSettings& settings, const Scene& scene);
 
 /// Returns the settings with lanes and group size filled in. Throws UserError like check_packets(), and if the kernels
 /// cannot be built with the settings. Called before the scene is packed and memory is allocated.
-TorusSettings checked(TorusSettings settings, const Scene& scene, const DeviceInfo& device);
+TorusSettings checked_settings(TorusSettings settings, const Scene& scene, const DeviceInfo& device);
 
 /// Returns the number of pixels to trace.
 std::uint64_t pixels_of(const TorusSettings& settings);
@@ -57,8 +57,8 @@ void set_windows(NodeMemories& memories, const TorusSettings& settings, const Pa
                  const Partition& partition);
 
 struct TorusJob {
-    PackedJob outline;      // the job's header, without objects
-    NodeMemories memories;  // of this rank's nodes, by slot; but `copies` and `max_objects` are of all nodes
+    PackedJob header_only;  // the job's header, without objects
+    NodeMemories memories;  // of this rank's nodes, by slot; except `copies` and `max_objects`, which are of all nodes
     LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t words = 0;          // total of all nodes

@@ -19,11 +19,11 @@ namespace {
 // Returns the progress, 0..1: the fraction of image rows whose rays are generated, times the mean of two estimates. The
 // fraction of finished packets is accurate while all nodes compute, but too high at the end, when few packets take many
 // supersteps. The logarithmic decrease of live packets is accurate at the end, but too low before.
-double share_done(const Census& census, std::size_t returns, std::uint64_t max_live) {
-    const auto finished = static_cast<double>(returns), live = static_cast<double>(census.live);
-    if (live == 0) return census.scanned;
+double progress_of(const MachineState& state, std::size_t returns, std::uint64_t max_live) {
+    const auto finished = static_cast<double>(returns), live = static_cast<double>(state.live);
+    if (live == 0) return state.injected_fraction;
     const double decrease = 1 - std::log1p(live) / std::log1p(static_cast<double>(max_live));
-    return census.scanned * (finished / (finished + live) + decrease) / 2;
+    return state.injected_fraction * (finished / (finished + live) + decrease) / 2;
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ double share_done(const Census& census, std::size_t returns, std::uint64_t max_l
 // allocated.
 constexpr std::uint64_t kReservedReturns = 1 << 22;
 
-struct TorusRenderer::Parts {
+struct TorusRenderer::Impl {
     Session& session;
     Ranks& ranks;
     TorusSettings settings;
@@ -46,71 +46,73 @@ struct TorusRenderer::Parts {
     double build_s = 0;
 
     void build();
-    std::optional<DeadlockFigures> run(TorusResult& result, std::vector<raya_head>& returns,
-                                       const ProgressCallback& progress, const RenderObservers& observers);
+    std::optional<DeadlockFigures> run_supersteps(TorusResult& result, std::vector<raya_head>& returns,
+                                                  const ProgressCallback& progress, const RenderObservers& observers);
+    void add_superstep(TorusResult& result, const NodeStatus& status, const MachineState& state,
+                       const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const;
     void compute(NodeArray::Slots slots, Reserve reserve, bool injects, const NodeWorkSink& work);
     void compose(TorusResult& result, const std::vector<raya_head>& returns);
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
     void describe(TorusResult& result) const;
-    std::uint64_t node_bytes(const NodeBuffers& any) const;
+    std::uint64_t node_bytes(const NodeBuffers& buffers) const;
 };
 
 TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks) {
-    const TorusSettings chosen = checked(settings, scene, session.device());
+    const TorusSettings chosen = checked_settings(settings, scene, session.device());
     const NodeShare share(chosen.torus, ranks.count(), ranks.rank());
     const DeviceMemory device = smallest_device_memory(session.device(), ranks);
     TorusJob job = make_torus_job(session, scene, chosen, share, device, ranks);
-    const KernelOptions options = kernel_options(chosen, job.outline);
-    parts_.reset(new Parts{.session = session,
-                           .ranks = ranks,
-                           .settings = chosen,
-                           .scene = scene.name,
-                           .share = share,
-                           .device = device,
-                           .job = std::move(job),
-                           .options = options});
-    ranks.one_first_on_each_host([this] { parts_->build(); });
+    const KernelOptions options = kernel_options(chosen, job.header_only);
+    impl_.reset(new Impl{.session = session,
+                         .ranks = ranks,
+                         .settings = chosen,
+                         .scene = scene.name,
+                         .share = share,
+                         .device = device,
+                         .job = std::move(job),
+                         .options = options});
+    ranks.one_rank_per_host_first([this] { impl_->build(); });
 }
 
 TorusRenderer::~TorusRenderer() = default;
 
-const LengthScale& TorusRenderer::scale() const { return parts_->job.scale; }
+const LengthScale& TorusRenderer::scale() const { return impl_->job.scale; }
 
 void TorusRenderer::set_pixels(const PixelSubset& pixels) {
-    parts_->settings.pixels = pixels;
-    parts_->nodes->set_pixels(pixels);
+    impl_->settings.pixels = pixels;
+    impl_->nodes->set_pixels(pixels);
 }
 
 void TorusRenderer::set_queue(std::uint32_t queue) {
-    Parts& p = *parts_;
-    const NodeBuffers other = buffers_for(queue);
-    check_device_memory(p.scene, other, p.share.max_nodes_of_rank(), p.session.device().name, p.device);
-    p.job.buffers = other;
+    Impl& p = *impl_;
+    const NodeBuffers buffers = buffers_for(queue);
+    check_device_memory(p.scene, buffers, p.share.max_nodes_of_rank(), p.session.device().name, p.device);
+    p.job.buffers = buffers;
     p.build();
 }
 
-bool TorusRenderer::ends() {
+bool TorusRenderer::completes() {
     TorusResult result;
     std::vector<raya_head> returns;
-    return !parts_->run(result, returns, {}, {});
+    return !impl_->run_supersteps(result, returns, {}, {});
 }
 
 QueueTrial TorusRenderer::queue_trial() {
-    Parts& p = *parts_;
-    return {.bytes = [&p](const NodeBuffers& b) { return p.node_bytes(b); },
-            .limit = p.settings.memory_bytes.value_or(UINT64_MAX),
+    Impl& p = *impl_;
+    return {.node_bytes = [&p](const NodeBuffers& b) { return p.node_bytes(b); },
+            .node_memory = p.settings.memory_bytes.value_or(UINT64_MAX),
             .fits_device = [&p](const NodeBuffers& b) { return fits_device(b, p.share.max_nodes_of_rank(), p.device); },
-            .ends =
+            .completes =
                 [this](const NodeBuffers& b) {
                     set_queue(b.queue);
-                    return ends();
+                    return completes();
                 }};
 }
 
-void TorusRenderer::Parts::build() {
-    const StepLog::Step step = session.step("set up device");
-    const std::jthread notice = session.compiling();
+void TorusRenderer::Impl::build() {
+    const SpanLog::Span span = session.span("set up device");
+    const std::jthread notice = session.compile_notice();
     const Clock::time_point start = Clock::now();
     nodes = std::make_unique<NodeArray>(session, settings, job.memories, job.buffers, options, share, ranks);
     KernelOptions one_lane = options;
@@ -127,19 +129,19 @@ void TorusRenderer::Parts::build() {
 }
 
 TorusResult TorusRenderer::render(const ProgressCallback& progress, const RenderObservers& observers) {
-    Parts& p = *parts_;
+    Impl& p = *impl_;
     if (observers.work && !p.settings.history)
         throw std::logic_error("an observer of work needs TorusSettings::history");
     p.session.clear_profile();
     const Clock::time_point start = Clock::now();
-    const StepLog::Step rendering = p.session.step("render");
+    const SpanLog::Span rendering = p.session.span("render");
     const RankTraffic before = p.ranks.traffic();
     TorusResult result;
     std::vector<raya_head> returns;
     returns.reserve(std::min<std::uint64_t>(2 * pixels_of(p.settings), kReservedReturns));
     RenderObservers own = observers;
     if (!p.ranks.first()) own.supersteps = {};
-    if (const auto deadlock = p.run(result, returns, progress, own)) throw TorusDeadlock(*deadlock);
+    if (const auto deadlock = p.run_supersteps(result, returns, progress, own)) throw TorusDeadlock(*deadlock);
     if (p.ranks.first()) p.compose(result, returns);
     p.collect(result);
     result.render_s = seconds_since(start);
@@ -150,21 +152,29 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Render
 }
 
 // The computation of a superstep, before packets are transferred.
-void TorusRenderer::Parts::compute(NodeArray::Slots slots, Reserve reserve, bool injects, const NodeWorkSink& work) {
+void TorusRenderer::Impl::compute(NodeArray::Slots slots, Reserve reserve, bool injects, const NodeWorkSink& work) {
     if (injects) nodes->inject(slots);
     if (!work) return nodes->trace_voxel(slots, reserve);
-    const NodeStatus injected = nodes->look();
+    const NodeStatus injected = nodes->read_status();
     nodes->trace_voxel(slots, reserve);
     nodes->report_work(injected, work);
 }
 
+// Adds the counts of a superstep to the result, and passes them to `sink`. `words`: words charged for each link.
+void TorusRenderer::Impl::add_superstep(TorusResult& result, const NodeStatus& status, const MachineState& state,
+                                        const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const {
+    result.supersteps.push_back({state.max_cycles, *std::max_element(words.begin(), words.end()), state.live});
+    if (sink) sink({result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
+    for (std::size_t i = 0; i < words.size(); ++i) result.link_words[i] += words[i];
+}
+
 // Runs supersteps until the image is complete; on a deadlock, returns the state of the machine. All ranks read the
-// status of all nodes, so they take the same decisions. While packets are transferred between ranks, the inner nodes
-// already compute the next superstep.
-std::optional<DeadlockFigures> TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns,
-                                                         const ProgressCallback& progress,
-                                                         const RenderObservers& observers) {
-    const StepLog::Step step = session.step("supersteps");
+// status of all nodes, so they make the same decisions. While packets are transferred between ranks, the inner nodes
+// compute the next superstep.
+std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusResult& result, std::vector<raya_head>& returns,
+                                                                   const ProgressCallback& progress,
+                                                                   const RenderObservers& observers) {
+    const SpanLog::Span span = session.span("supersteps");
     nodes->clear();
     result.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
     Reserve reserve = Reserve::kWholeTree;
@@ -173,31 +183,27 @@ std::optional<DeadlockFigures> TorusRenderer::Parts::run(TorusResult& result, st
     compute(nodes->all(), reserve, true, observers.work);
     for (std::uint32_t superstep = 0;; ++superstep) {
         nodes->route();
-        const NodeStatus status = nodes->look();
+        const NodeStatus status = nodes->read_status();
         nodes->gather(status, returns);
         if (observers.packets)
-            nodes->record(status, superstep, superstep % observers.packets_every ? PacketSink{} : observers.packets);
+            nodes->record_packets(status, superstep,
+                                  superstep % observers.packets_every ? PacketSink{} : observers.packets);
         const std::vector<std::uint64_t> words = nodes->exchange(status);
         nodes->accept(nodes->inner(), reserve, superstep);
 
-        const Census census = census_of(status, raya_nodes(settings.torus), job.buffers.queue);
-        const std::uint64_t max_words = *std::max_element(words.begin(), words.end());
-        result.supersteps.push_back({census.cycles, max_words, census.live});
-        if (observers.supersteps)
-            observers.supersteps(
-                {result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
-        for (std::size_t i = 0; i < words.size(); ++i) result.link_words[i] += words[i];
-        max_live = std::max(max_live, census.live);
-        const bool ended = census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made;
-        if (progress) progress(ended ? 1 : share_done(census, returns.size(), max_live));
-        const bool injects = !census.all_made && census.fullest <= job.buffers.queue / 4;
-        // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep; so only
-        // three supersteps without progress are a deadlock.
-        stalled = census.progress == 0 && max_words == 0 ? stalled + 1 : 0;
+        const MachineState state = machine_state(status, raya_nodes(settings.torus), job.buffers.queue);
+        add_superstep(result, status, state, words, observers.supersteps);
+        max_live = std::max(max_live, state.live);
+        const bool ended = state.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && state.all_injected;
+        if (progress) progress(ended ? 1 : progress_of(state, returns.size(), max_live));
+        const bool injects = !state.all_injected && state.longest_queue <= job.buffers.queue / 4;
+        // Packets that a superstep accepts with a tight reserve count as progress in the next superstep. So only three
+        // supersteps without progress are a deadlock.
+        stalled = state.progress == 0 && result.supersteps.back().max_link_words == 0 ? stalled + 1 : 0;
         const Reserve next = stalled > 0 ? Reserve::kTight : Reserve::kWholeTree;
         const bool continues = !ended && stalled < 3;
         if (continues && nodes->inner().count > 0) compute(nodes->inner(), next, injects, observers.work);
-        nodes->arrive();
+        nodes->finish_exchange();
         nodes->accept(nodes->border(), reserve, superstep);
         if (ended) {
             nodes->gather_remaining(returns);
@@ -205,14 +211,14 @@ std::optional<DeadlockFigures> TorusRenderer::Parts::run(TorusResult& result, st
         }
         if (!continues)
             return DeadlockFigures{
-                scene, superstep, census.live, census.full, raya_nodes(settings.torus), job.buffers.queue};
+                scene, superstep, state.live, state.full_queues, raya_nodes(settings.torus), job.buffers.queue};
         if (nodes->border().count > 0) compute(nodes->border(), next, injects, observers.work);
         reserve = next;
     }
 }
 
-void TorusRenderer::Parts::compose(TorusResult& result, const std::vector<raya_head>& returns) {
-    const StepLog::Step step = session.step("compose");
+void TorusRenderer::Impl::compose(TorusResult& result, const std::vector<raya_head>& returns) {
+    const SpanLog::Span span = session.span("compose");
     result.contributions = returns.size();
     for (const raya_head& packet : returns) result.returns += (packet.state & RAYA_STATE_CHARGED) != 0;
     const std::uint32_t pixels = settings.width * settings.height;
@@ -220,8 +226,8 @@ void TorusRenderer::Parts::compose(TorusResult& result, const std::vector<raya_h
                     composer->compose(sort_contributions(returns, pixels))};
 }
 
-void TorusRenderer::Parts::collect(TorusResult& result) {
-    const StepLog::Step step = session.step("collect");
+void TorusRenderer::Impl::collect(TorusResult& result) {
+    const SpanLog::Span span = session.span("collect");
     const std::vector<std::uint64_t> events = nodes->read_events();
     const auto cycles = t805_cycles(settings.packets);
     std::vector<std::uint64_t> loads(raya_nodes(settings.torus));
@@ -232,7 +238,7 @@ void TorusRenderer::Parts::collect(TorusResult& result) {
     if (ranks.first()) result.load = load_of(std::move(loads));
     result.made = nodes->read_made();
     result.ended = nodes->read_ended();
-    const NodeStatus status = nodes->look();
+    const NodeStatus status = nodes->read_status();
     for (std::uint32_t node = 0; node < raya_nodes(settings.torus); ++node)
         result.queue_max = std::max<std::uint64_t>(result.queue_max, status.at(node, RAYA_STATUS_QUEUE_MAX));
     result.link_packets = nodes->link_packets();
@@ -242,7 +248,7 @@ void TorusRenderer::Parts::collect(TorusResult& result) {
 }
 
 // Throws std::logic_error if a packet was lost or duplicated: the image would be wrong.
-void TorusRenderer::Parts::check(const TorusResult& result) const {
+void TorusRenderer::Impl::check(const TorusResult& result) const {
     for (std::size_t kind = 1; kind < RAYA_KINDS; ++kind)
         if (result.made[kind] != result.ended[kind])
             throw std::logic_error(
@@ -259,11 +265,11 @@ void TorusRenderer::Parts::check(const TorusResult& result) const {
 }
 
 // Returns the memory of the fullest node in bytes.
-std::uint64_t TorusRenderer::Parts::node_bytes(const NodeBuffers& any) const {
-    return raya::node_bytes(job.fullest_words, any, links_of_node(settings.torus));
+std::uint64_t TorusRenderer::Impl::node_bytes(const NodeBuffers& buffers) const {
+    return raya::node_bytes(job.fullest_words, buffers, links_of_node(settings.torus));
 }
 
-void TorusRenderer::Parts::describe(TorusResult& result) const {
+void TorusRenderer::Impl::describe(TorusResult& result) const {
     result.copies = job.memories.copies;
     result.scale = job.scale;
     result.buffers = job.buffers;

@@ -39,15 +39,15 @@ class TorusRenderer {
     /// UserError if the queues do not fit the device, or DeviceError.
     void set_queue(std::uint32_t queue);
 
-    /// Runs the supersteps of an image without composing it. Returns true if they complete, false on a deadlock.
-    bool ends();
+    /// Runs the supersteps of an image without composing it. Returns false on a deadlock.
+    bool completes();
 
     /// Returns limits and callbacks for find_longer_queue(). The callbacks use this renderer and change its queues.
     QueueTrial queue_trial();
 
   private:
-    struct Parts;
-    std::unique_ptr<Parts> parts_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace raya

@@ -52,14 +52,14 @@ std::vector<std::uint64_t> message_cycles(const raya_torus& torus, const TorusRe
 // Returns the milliseconds that the busiest link takes for its transfers in both directions. Link 2 d of a node and
 // link 2 d + 1 of the node at its end are the two directions of one link.
 double busiest_link_ms(const raya_torus& torus, const TorusResult& result) {
-    double most = 0;
+    double max_ms = 0;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node)
         for (std::uint32_t up = 0; up < RAYA_LINKS; up += 2) {
             const std::size_t back = std::size_t{raya_link_end(torus, node, up)} * RAYA_LINKS + up + 1;
-            most = std::max(
-                most, t805_link_ms(result.link_words[std::size_t{node} * RAYA_LINKS + up], result.link_words[back]));
+            max_ms = std::max(
+                max_ms, t805_link_ms(result.link_words[std::size_t{node} * RAYA_LINKS + up], result.link_words[back]));
         }
-    return most;
+    return max_ms;
 }
 
 double stepwise_ms(const std::vector<Superstep>& supersteps) {
@@ -81,18 +81,18 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
     const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
     EventCounts primary{}, others = r.events;
     for (const std::size_t made : {RAYA_PRIMARY, RAYA_DISCARDED}) primary[made] = std::exchange(others[made], 0);
-    PacketCounts rays{}, followers = r.made;
-    rays[RAYA_KIND_PRIMARY] = std::exchange(followers[RAYA_KIND_PRIMARY], 0);
-    const auto opened = [&](const char* label) { return launches_of(r, label) * kWordBytes * r.copied_words; };
+    PacketCounts rays{}, secondary = r.made;
+    rays[RAYA_KIND_PRIMARY] = std::exchange(secondary[RAYA_KIND_PRIMARY], 0);
+    const auto copied_bytes = [&](const char* label) { return launches_of(r, label) * kWordBytes * r.copied_words; };
 
     KernelWork inject = work_of("inject", primary), trace = work_of("trace_voxel", others);
-    inject.bytes = opened("inject") + packet_bytes(rays);
+    inject.bytes = copied_bytes("inject") + packet_bytes(rays);
     trace.bytes =
-        opened("trace_voxel") + kWordBytes * RAYA_PACKET_WORDS * r.events[RAYA_STEPS] + packet_bytes(followers);
+        copied_bytes("trace_voxel") + kWordBytes * RAYA_PACKET_WORDS * r.events[RAYA_STEPS] + packet_bytes(secondary);
     trace.rays += primary[RAYA_PRIMARY];  // trace_voxel also traces the primary rays
     KernelWork route, accept, compose;
     route.label = "route";
-    route.bytes = opened("route") +
+    route.bytes = copied_bytes("route") +
                   2 * kWordBytes * (r.moved_rays * RAYA_PACKET_WORDS + r.made[RAYA_KIND_RETURN] * RAYA_RETURN_WORDS);
     accept.label = "accept";
     accept.bytes = 2 * kWordBytes * (r.moved_rays * RAYA_PACKET_WORDS + r.moved_returns * RAYA_RETURN_WORDS);

@@ -19,7 +19,7 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kBlock = 1 << 16;  // bytes of text compressed at a time
+constexpr std::size_t kCompressedBlock = 1 << 16;  // bytes of text compressed at a time
 
 // Numbers of a packet and of its parent; a primary ray has no parent.
 struct Lineage {
@@ -30,10 +30,10 @@ struct Lineage {
 // A return packet is recorded once and has no children, so its number need not be looked up again.
 Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
     const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
-    const RayId name = {record.head.pixel, RayId::place_of(record.head.path, raya_state_level(state)),
+    const RayId name = {record.head.pixel, RayId::tree_index_of(record.head.path, raya_state_level(state)),
                         raya_state_light(state)};
     Lineage lineage;
-    lineage.ray = kind == RAYA_KIND_RETURN ? numbers.next() : numbers.number_of(name);
+    lineage.ray = kind == RAYA_KIND_RETURN ? numbers.next_number() : numbers.number_of(name);
     if (kind == RAYA_KIND_RETURN)
         lineage.parent = numbers.number_of(name);
     else if (kind != RAYA_KIND_PRIMARY)
@@ -86,7 +86,7 @@ void PacketTrace::add(const PacketRecord& record) {
     if (lineage.parent) fmt::format_to(to, "{}", *lineage.parent);
     text_ += '\n';
     ++rows_;
-    if (text_.size() < kBlock) return;
+    if (text_.size() < kCompressedBlock) return;
     file_.append(text_);
     text_.clear();
 }
@@ -121,15 +121,15 @@ void TorusTrace::add_packet(const PacketRecord& p) {
 // Computes the times of the supersteps, which follow one another.
 class TorusTrace::Timeline {
   public:
-    Timeline(const TorusTrace& seen, TraceFile& trace, const TorusResult& result, std::size_t nodes)
-        : seen_(seen), trace_(trace), result_(result), nodes_(traced_pes(result.load.per_pe, nodes)) {
+    Timeline(const TorusTrace& machine_trace, TraceFile& trace, const TorusResult& result, std::size_t nodes)
+        : machine_trace_(machine_trace), trace_(trace), result_(result), nodes_(traced_pes(result.load.per_pe, nodes)) {
         trace.name_process(kTraceMachine, "torus of T805s (modelled time, step by step)");
         trace.name_track(kSupersteps, "supersteps");
         for (const TracedPe& n : nodes_) trace.name_track(track_of(n.pe), traced_pe_name("node", n));
     }
 
     void add_supersteps() {
-        for (std::size_t step = 0; step < seen_.steps_.size(); ++step) {
+        for (std::size_t step = 0; step < machine_trace_.steps_.size(); ++step) {
             const Superstep& all = result_.supersteps[step];
             begins_.push_back(now_ms_);
             const double computed = now_ms_ + t805_ms(all.max_node_cycles);
@@ -146,8 +146,8 @@ class TorusTrace::Timeline {
         std::set<std::uint32_t> shown;
         for (const TracedPe& n : nodes_) shown.insert(n.pe);
         std::size_t flows = 0;
-        for (const Sample& p : seen_.packets_) {
-            const std::size_t arrival = p.superstep + route_length(seen_.torus_, p.source, p.destination);
+        for (const Sample& p : machine_trace_.packets_) {
+            const std::size_t arrival = p.superstep + route_length(machine_trace_.torus_, p.source, p.destination);
             if (!shown.contains(p.source) || !shown.contains(p.destination) || arrival >= begins_.size()) continue;
             trace_.flow(packet_kind_name(raya_state_kind(p.state)), track_of(p.source),
                         nanoseconds(computed_[p.superstep]), track_of(p.destination), nanoseconds(begins_[arrival]));
@@ -158,7 +158,7 @@ class TorusTrace::Timeline {
 
   private:
     void add_machine(std::size_t step, double end) {
-        const std::vector<NodeStep>& nodes = seen_.steps_[step];
+        const std::vector<NodeStep>& nodes = machine_trace_.steps_[step];
         const Superstep& all = result_.supersteps[step];
         std::vector<std::uint64_t> cycles;
         std::uint64_t words = 0;
@@ -176,14 +176,14 @@ class TorusTrace::Timeline {
                       {"words", words}});
         trace_.counter(kTraceMachine, "live rays", at, {{"packets", static_cast<double>(all.live)}});
         trace_.counter(kTraceMachine, "u", at, {{"u", load.imbalance}});
-        const double links = static_cast<double>(nodes.size()) * links_of_node(seen_.torus_);
+        const double links = static_cast<double>(nodes.size()) * links_of_node(machine_trace_.torus_);
         trace_.counter(kTraceMachine, "link words", at,
                        {{"busiest", static_cast<double>(all.max_link_words)},
                         {"mean", links > 0 ? static_cast<double>(words) / links : 0}});
     }
 
     void add_node(std::size_t step, std::uint32_t node, double computed, double end) {
-        const NodeStep& n = seen_.steps_[step][node];
+        const NodeStep& n = machine_trace_.steps_[step][node];
         const TraceTrack track = track_of(node);
         const auto slice = [&](const char* name, double from, double to, const Json& arguments = {}) {
             if (nanoseconds(to) > nanoseconds(from))
@@ -197,7 +197,7 @@ class TorusTrace::Timeline {
         slice("wait for the busiest link", sent, end);
     }
 
-    const TorusTrace& seen_;
+    const TorusTrace& machine_trace_;
     TraceFile& trace_;
     const TorusResult& result_;
     std::vector<TracedPe> nodes_;

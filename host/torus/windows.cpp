@@ -58,25 +58,25 @@ struct ScreenBounds {
     bool any() const { return whole || low[0] <= high[0]; }
 };
 
-// Extent of the bounding box along an axis. slack: bound of the rounding error of a ray's entry point (grid/walk.clh),
-// a few fp32 units in the last place of the path length and the origin.
-struct Side {
+// Extent of the bounding box along an axis. slack: bound of the rounding error of a ray's entry point
+// (grid/traversal.clh), a few fp32 units in the last place of the path length and the origin.
+struct BoxSide {
     double low, high, slack;
 };
 
-Side side_of(const raya_grid& grid, std::uint32_t axis, double eye) {
+BoxSide side_of(const raya_grid& grid, std::uint32_t axis, double eye) {
     const double low = raya_voxel_plane(grid, axis, 0), high = raya_voxel_plane(grid, axis, grid.divisions[axis]);
     return {low, high, std::ldexp(std::abs(eye) + std::max(std::abs(low), std::abs(high)), -20)};
 }
 
-// Clips a face to the points with depth >= `least` (Sutherland & Hodgman 1974).
-std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4>& face, double least) {
+// Clips a face to the points with depth >= `min_depth` (Sutherland & Hodgman 1974).
+std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4>& face, double min_depth) {
     std::vector<Vec3> part;
     for (std::size_t i = 0; i < face.size(); ++i) {
         const Vec3 &a = face[i], &b = face[(i + 1) % face.size()];
         const double from = projection.depth(a), to = projection.depth(b);
-        if (from >= least) part.push_back(a);
-        if ((from >= least) != (to >= least)) part.push_back(a + (least - from) / (to - from) * (b - a));
+        if (from >= min_depth) part.push_back(a);
+        if ((from >= min_depth) != (to >= min_depth)) part.push_back(a + (min_depth - from) / (to - from) * (b - a));
     }
     return part;
 }
@@ -103,13 +103,13 @@ void add_face(ScreenBounds& bounds, const Projection& projection, const raya_gri
 
 void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
     const raya_place at = raya_place_of(voxel, grid.divisions[0], grid.divisions[1]);
-    bool holds_eye = true;
+    bool contains_eye = true;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const double eye = projection.eye()[axis];
-        const Side box = side_of(grid, axis, eye);
+        const BoxSide box = side_of(grid, axis, eye);
         const double low = raya_voxel_plane(grid, axis, at.at[axis]),
                      high = raya_voxel_plane(grid, axis, at.at[axis] + 1);
-        holds_eye = holds_eye && eye >= low - box.slack && eye <= high + box.slack;
+        contains_eye = contains_eye && eye >= low - box.slack && eye <= high + box.slack;
         const double before = box.low - eye, behind = eye - box.high, distance = std::max(before, behind);
         const bool is_outer = before > 0 ? low <= box.low + box.slack : behind > 0 && high >= box.high - box.slack;
         if (!is_outer) continue;
@@ -117,25 +117,25 @@ void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_gr
         bounds.whole = bounds.whole || box.slack * projection.longest() > distance * projection.step();
         add_face(bounds, projection, grid, at, axis, at.at[axis] + (behind > 0 ? 1 : 0), distance);
     }
-    bounds.whole = bounds.whole || holds_eye;
+    bounds.whole = bounds.whole || contains_eye;
 }
 
-std::uint32_t clamped(double value, std::uint32_t most) {
-    return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(most)));
+std::uint32_t clamped(double value, std::uint32_t max) {
+    return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(max)));
 }
 
 }  // namespace
 
 std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& grid, const raya_torus& torus,
                                        const NumberFormat& format) {
-    constexpr int kFewestBits = 10;
+    constexpr int kMinWindowBits = 10;
     const Projection projection(job, format);
     const std::uint32_t width = job.mapping.width, height = job.mapping.height;
     std::vector<PixelWindow> windows;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
         ScreenBounds bounds;
         const std::uint32_t voxels = raya_node_voxels(torus, grid, node);
-        bounds.whole = voxels > 0 && format.fraction_bits < kFewestBits;
+        bounds.whole = voxels > 0 && format.fraction_bits < kMinWindowBits;
         for (std::uint32_t i = 0; i < voxels && !bounds.whole; ++i)
             add_voxel(bounds, projection, grid, raya_voxel_of_node(torus, grid, node, i));
         PixelWindow window{{0, height}, {0, width}};

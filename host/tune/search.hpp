@@ -1,5 +1,5 @@
-// Search space of the tuner (parameters, called knobs, and their values), and the search for the fastest candidate. The
-// search is independent of what the callback measures.
+// Search space of the tuner (parameters and their values), and the search for the fastest candidate. The search does
+// not depend on the quantity that the callback measures.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace raya {
 
 /// A tuning parameter and its possible values, ordered so that adjacent values behave similarly: `lanes` 1, 4, 8, 16.
-struct Knob {
+struct TuningParameter {
     std::uint32_t TunedValues::*value = nullptr;
     std::vector<std::uint32_t> values;
 
@@ -24,11 +24,11 @@ struct Knob {
 /// be noise.
 inline constexpr double kMaxWinRatio = 0.98;
 
-/// One choice of values: [knob], index into Knob::values.
+/// One choice of values: [parameter], index into TuningParameter::values.
 using Candidate = std::vector<std::size_t>;
 
 struct Space {
-    std::vector<Knob> knobs;
+    std::vector<TuningParameter> parameters;
     TunedValues defaults;
     Candidate start;  // the candidate with the default values
 
@@ -39,9 +39,9 @@ struct Space {
 /// Calls `visit` for every candidate of the space.
 void for_each_candidate(const Space& space, const std::function<void(const Candidate&)>& visit);
 
-/// Returns the knobs of these kernels on this device:
+/// Returns the tuning parameters of these kernels on this device:
 ///   - lanes;
-///   - group size: on a CPU few work-items, because lanes do the work; on a CPU's torus nodes one, which preserves the
+///   - group size: on a CPU few work-items, because lanes vectorise; for torus nodes on a CPU one, which preserves the
 ///     order of packets;
 ///   - job words in local or global memory, without an accelerator;
 ///   - the batch of spheres, without an accelerator in fp32 on the ring;
@@ -49,10 +49,10 @@ void for_each_candidate(const Space& space, const std::function<void(const Candi
 ///   - the exchange over links, on the torus;
 ///   - the register limit, if the compiler has such an option.
 /// Settings that change counts of the modelled machine, such as the width of the BVH and the queues of torus nodes, are
-/// not knobs, so that modelled figures do not depend on tuning.
-Space space_of(const DeviceInfo& device, const TunedFor& what);
+/// not tuning parameters, so that modelled figures do not depend on tuning.
+Space space_of(const DeviceInfo& device, const TuningKey& key);
 
-/// Returns the values of all knobs, and the changes between two candidates: "lanes 16, group 1 -> 2, batch own".
+/// Returns the values of all parameters, and the changes between two candidates: "lanes 16, group 1 -> 2, batch own".
 std::string change_text(const Space& space, const TunedValues& from, const TunedValues& to);
 
 /// Measures a candidate and the best so far alternately. Returns the candidate's time divided by the best's, or nullopt
@@ -71,12 +71,13 @@ struct SearchResult {
 
 /// Searches in three phases, and measures each candidate at most once. After a new best in phase 2 or 3 the search
 /// returns to phase 1.
-///   - Coordinate descent from the start: varies one knob at a time from the best so far, to larger values or, if none
-///     of them helps, to smaller ones, until the time is much worse; repeats until no change of one knob helps.
+///   - Coordinate descent from the start: varies one parameter at a time from the best so far, to larger values or, if
+///     none of them helps, to smaller ones, until the time is much worse; repeats until no change of one parameter
+///     helps.
 ///   - Tries the remaining candidates in the order of predicted time, while the prediction is near the best time. The
 ///     predicted time is the best time multiplied by the loss of each value, which is the minimum time measured with
 ///     that value over the best time.
-///   - Tries neighbours of the best that differ in two knobs.
+///   - Tries neighbours of the best that differ in two parameters.
 SearchResult search(const Space& space, const MeasureRatio& measure, const ShouldStop& stop);
 
 /// Exhaustive search, the reference for search(): compares every candidate with the best so far, starting from `from`.

@@ -24,9 +24,9 @@ constexpr std::uint64_t kVersion = 2;                                        // 
 constexpr std::array<const char*, 3> kAccelNames = {"none", "grid", "bvh"};  // index: RAYA_ACCEL_*
 
 Json to_json(const TunedEntry& entry) {
-    return {{"machine", entry.what.torus ? "torus" : "ring"},
-            {"accel", kAccelNames.at(entry.what.accel)},
-            {"format", entry.what.fp32 ? "fp32" : "reduced"},
+    return {{"machine", entry.key.torus ? "torus" : "ring"},
+            {"accel", kAccelNames.at(entry.key.accel)},
+            {"format", entry.key.fp32 ? "fp32" : "reduced"},
             {"values", to_json(entry.values)},
             {"speedup", entry.speedup},
             {"scene", entry.scene}};
@@ -40,9 +40,9 @@ std::uint32_t choice_of(const Json& json, const char* key, const std::vector<std
 }
 
 TunedEntry entry_of(const Json& json, const DeviceInfo& device) {
-    TunedEntry entry{.what = {.torus = choice_of(json, "machine", {"ring", "torus"}) == 1,
-                              .accel = choice_of(json, "accel", {kAccelNames.begin(), kAccelNames.end()}),
-                              .fp32 = choice_of(json, "format", {"fp32", "reduced"}) == 0},
+    TunedEntry entry{.key = {.torus = choice_of(json, "machine", {"ring", "torus"}) == 1,
+                             .accel = choice_of(json, "accel", {kAccelNames.begin(), kAccelNames.end()}),
+                             .fp32 = choice_of(json, "format", {"fp32", "reduced"}) == 0},
                      .values = values_of(json.at("values")),
                      .speedup = json.at("speedup").number(),
                      .scene = json.at("scene").text()};
@@ -56,12 +56,12 @@ Json device_json(const DeviceInfo& device) {
         {"name", device.name}, {"platform", device.platform}, {"version", device.version}, {"driver", device.driver}};
 }
 
-void check_is_of(const Json& json, const DeviceInfo& device) {
+void check_origin(const Json& json, const DeviceInfo& device) {
     if (!json.find("kind") || json.at("kind").text() != kKind) throw UserError(fmt::format("not a file of {}", kKind));
     const auto check = [](const std::string& is, const std::string& must, const char* what) {
-        if (is != must) throw UserError(fmt::format("of another {}: {}, not {}", what, is, must));
+        if (is != must) throw UserError(fmt::format("written for another {}: {}, not {}", what, is, must));
     };
-    check(std::to_string(json.at("version").whole()), std::to_string(kVersion), "form");
+    check(std::to_string(json.at("version").integer()), std::to_string(kVersion), "version of the file format");
     check(json.at("raya").text(), raya_version(), "version of raya");
     const Json now = device_json(device), &then = json.at("device");
     for (const std::string& key : now.keys())
@@ -69,7 +69,7 @@ void check_is_of(const Json& json, const DeviceInfo& device) {
 }
 
 TunedFile file_of(const Json& json, const DeviceInfo& device) {
-    check_is_of(json, device);
+    check_origin(json, device);
     TunedFile file{.date = json.at("date").text(), .entries = {}};
     for (const Json& entry : json.at("tuned").elements()) file.entries.push_back(entry_of(entry, device));
     return file;
@@ -116,7 +116,7 @@ Json to_json(const TunedValues& values) {
 TunedValues values_of(const Json& json) {
     TunedValues values;
     for (const auto& [name, value] : kTunedNames)
-        values.*value = static_cast<std::uint32_t>(json.at(name).whole(UINT32_MAX));
+        values.*value = static_cast<std::uint32_t>(json.at(name).integer(UINT32_MAX));
     return values;
 }
 
@@ -132,7 +132,7 @@ std::string tuned_file_name(const DeviceInfo& device) {
 }
 
 std::string tuned_text(const DeviceInfo& device, const TunedFile& file) {
-    Json entries = Json::list();
+    Json entries = Json::array();
     for (const TunedEntry& entry : file.entries) entries.push_back(to_json(entry));
     return Json{{"kind", kKind},     {"version", kVersion},           {"raya", raya_version()},
                 {"date", file.date}, {"device", device_json(device)}, {"tuned", entries}}
@@ -164,7 +164,7 @@ void save_tuned(const DeviceInfo& device, const TunedFile& now) {
         if (const auto stored = read_stored(path, device))
             for (const TunedEntry& entry : stored->entries)
                 if (std::none_of(now.entries.begin(), now.entries.end(),
-                                 [&](const TunedEntry& one) { return one.what == entry.what; }))
+                                 [&](const TunedEntry& one) { return one.key == entry.key; }))
                     all.entries.push_back(entry);
     } catch (const UserError&) {  // an unusable file is overwritten
     }
@@ -172,14 +172,14 @@ void save_tuned(const DeviceInfo& device, const TunedFile& now) {
 }
 
 TunedSource stored_choices(std::function<void(const std::string&)> warn) {
-    const char* const set = std::getenv("RAYA_TUNED");
-    const std::string wanted = set != nullptr ? set : "";
-    if (!wanted.empty() && wanted != "off")
-        throw UserError(fmt::format("RAYA_TUNED={}: must be off, or not set", wanted));
+    const char* const variable = std::getenv("RAYA_TUNED");
+    const std::string setting = variable != nullptr ? variable : "";
+    if (!setting.empty() && setting != "off")
+        throw UserError(fmt::format("RAYA_TUNED={}: must be off, or not set", setting));
     const auto folder = tuned_folder();
-    if (!folder || wanted == "off") return {};
+    if (!folder || setting == "off") return {};
     return [folder = *folder, warn = std::move(warn), read = std::map<std::string, std::optional<TunedFile>>()](
-               const DeviceInfo& device, const TunedFor& what) mutable -> std::optional<TunedChoice> {
+               const DeviceInfo& device, const TuningKey& key) mutable -> std::optional<TunedChoice> {
         const fs::path path = folder / tuned_file_name(device);
         const auto [at, first] = read.try_emplace(path.string());
         try {
@@ -189,7 +189,7 @@ TunedSource stored_choices(std::function<void(const std::string&)> warn) {
         }
         if (!at->second) return {};
         for (const TunedEntry& entry : at->second->entries)
-            if (entry.what == what)
+            if (entry.key == key)
                 return TunedChoice{entry.values, fmt::format("{}, {}", path.string(), at->second->date)};
         return {};
     };

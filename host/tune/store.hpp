@@ -19,7 +19,7 @@ TunedValues values_of(const Json& json);
 
 /// Tuned values of one configuration of kernels.
 struct TunedEntry {
-    TunedFor what;
+    TuningKey key;
     TunedValues values;
     double speedup = 1;  // measured time of the defaults over that of `values`
     std::string scene;   // scene of the measurement

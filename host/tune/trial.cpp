@@ -22,8 +22,8 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kMinSamples = 2;  // minimum before stop_early can drop a candidate
-constexpr double kFarSlower = 1.25;
+constexpr std::size_t kMinSamples = 2;  // before stop_early may drop a candidate
+constexpr double kDropRatio = 1.25;
 
 struct Variant {
     const char* name;
@@ -43,7 +43,7 @@ const Variant& variant_named(const std::string& name) {
 
 constexpr std::uint32_t kBounces = 8;
 
-struct TrialPicture {
+struct TrialInput {
     Scene scene;
     ImageSize size;
 };
@@ -57,7 +57,7 @@ Scene scene_of(const TrialSetup& render, const Variant& variant) {
     return parse_nff(embedded_files().at(kSpheres), kSpheres);
 }
 
-TrialPicture picture_of(const TrialRequest& request) {
+TrialInput input_of(const TrialRequest& request) {
     const Variant& variant = variant_named(request.workload.variant);
     const ImageSize& size = request.render.size;
     return {scene_of(request.render, variant), size.width ? size : ImageSize{variant.side, variant.side}};
@@ -98,38 +98,38 @@ NextImage prepare(int lines, std::size_t number, std::shared_ptr<Renderer> rende
     return [renderer] { return renderer->render().render_s; };
 }
 
-double least(const std::vector<double>& seconds) { return *std::min_element(seconds.begin(), seconds.end()); }
+double min_seconds(const std::vector<double>& seconds) { return *std::min_element(seconds.begin(), seconds.end()); }
 
 std::vector<std::vector<double>> samples_of(const std::vector<NextImage>& renders, const TrialRequest& request) {
     std::vector<std::vector<double>> all(renders.size());
     for (std::uint32_t i = 0; i < request.samples; ++i) {
         for (std::size_t n = 0; n < renders.size(); ++n) all[n].push_back(mean_seconds(renders[n]));
         const bool enough = request.stop_early && all.front().size() >= kMinSamples;
-        if (enough && least(all.back()) > kFarSlower * least(all.front())) break;
+        if (enough && min_seconds(all.back()) > kDropRatio * min_seconds(all.front())) break;
     }
     return all;
 }
 
 TrialRequest request_of(const Json& json) {
-    const auto number = [](const Json& whole) { return static_cast<std::uint32_t>(whole.whole(UINT32_MAX)); };
+    const auto number = [](const Json& whole) { return static_cast<std::uint32_t>(whole.integer(UINT32_MAX)); };
     const std::vector<Json>& size = json.at("size").elements();
     TrialRequest request{.render = {.device = json.at("device").text(),
                                     .scene = json.at("scene").text(),
                                     .kernel_dir = json.at("kernel_dir").text(),
-                                    .strict = json.at("strict").whole(1) == 1,
+                                    .strict = json.at("strict").integer(1) == 1,
                                     .size = {number(size.at(0)), number(size.at(1))},
                                     .pes = number(json.at("pes"))},
                          .workload = {json.at("variant").text(), parse_format(json.at("format").text())},
                          .candidates = {},
                          .samples = number(json.at("samples")),
-                         .stop_early = json.at("stop_early").whole(1) == 1};
+                         .stop_early = json.at("stop_early").integer(1) == 1};
     for (const Json& values : json.at("candidates").elements()) request.candidates.push_back(values_of(values));
     return request;
 }
 
 }  // namespace
 
-TunedFor Workload::what() const {
+TuningKey Workload::key() const {
     const Variant& named = variant_named(variant);
     return {.torus = variant == "torus", .accel = static_cast<std::uint32_t>(named.accel), .fp32 = format.is_fp32()};
 }
@@ -147,7 +147,7 @@ std::vector<Workload> default_workloads() {
 }
 
 Json to_json(const TrialRequest& request) {
-    Json candidates = Json::list();
+    Json candidates = Json::array();
     for (const TunedValues& values : request.candidates) candidates.push_back(to_json(values));
     const TrialSetup& render = request.render;
     return {{"device", render.device},
@@ -163,9 +163,10 @@ Json to_json(const TrialRequest& request) {
             {"stop_early", request.stop_early ? 1 : 0}};
 }
 
-double median_ratio(const std::vector<double>& of, const std::vector<double>& over) {
+double median_ratio(const std::vector<double>& seconds, const std::vector<double>& reference) {
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < std::min(of.size(), over.size()); ++i) ratios.push_back(of[i] / over[i]);
+    for (std::size_t i = 0; i < std::min(seconds.size(), reference.size()); ++i)
+        ratios.push_back(seconds[i] / reference[i]);
     if (ratios.empty()) return 1;
     const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
     std::nth_element(ratios.begin(), middle, ratios.end());
@@ -174,16 +175,16 @@ double median_ratio(const std::vector<double>& of, const std::vector<double>& ov
 
 double ratio_of(const Trial& trial) {
     if (trial.samples.empty() || trial.samples.front().empty() || trial.samples.back().empty()) return 1;
-    const std::vector<double>&of = trial.samples.back(), &over = trial.samples.front();
-    return std::max(least(of) / least(over), median_ratio(of, over));
+    const std::vector<double>&last = trial.samples.back(), &first = trial.samples.front();
+    return std::max(min_seconds(last) / min_seconds(first), median_ratio(last, first));
 }
 
 bool wins_significantly(const Trial& trial) {
     if (trial.status != TrialStatus::kCorrect || ratio_of(trial) > kMaxWinRatio) return false;
-    const std::vector<double>&of = trial.samples.back(), &over = trial.samples.front();
+    const std::vector<double>&last = trial.samples.back(), &first = trial.samples.front();
     std::size_t lost = 0;
-    for (std::size_t i = 0; i < of.size(); ++i) lost += of[i] >= over[i];
-    return lost <= of.size() / 9;
+    for (std::size_t i = 0; i < last.size(); ++i) lost += last[i] >= first[i];
+    return lost <= last.size() / 9;
 }
 
 double mean_seconds(const std::function<double()>& seconds) {
@@ -196,20 +197,20 @@ double mean_seconds(const std::function<double()>& seconds) {
 
 void run_trial(int lines, const Json& json) {
     const TrialRequest request = request_of(json);
-    const TrialPicture picture = picture_of(request);
+    const TrialInput input = input_of(request);
     Session session(choose_device(request.render.device));
     std::vector<NextImage> renders;
     for (const TunedValues& values : request.candidates) {
         const KernelChoice kernels = with_values({.sources = {.folder = request.render.kernel_dir}}, values);
         const std::size_t number = renders.size();
-        if (request.workload.what().torus)
-            renders.push_back(prepare(lines, number,
-                                      std::make_shared<TorusRenderer>(session, picture.scene,
-                                                                      torus_settings(request, picture.size, kernels))));
+        if (request.workload.key().torus)
+            renders.push_back(prepare(
+                lines, number,
+                std::make_shared<TorusRenderer>(session, input.scene, torus_settings(request, input.size, kernels))));
         else
             renders.push_back(prepare(
                 lines, number,
-                std::make_shared<RingRenderer>(session, picture.scene, ring_settings(request, picture.size, kernels))));
+                std::make_shared<RingRenderer>(session, input.scene, ring_settings(request, input.size, kernels))));
     }
     send_line(lines, {{"samples", samples_of(renders, request)}});
 }

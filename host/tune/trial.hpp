@@ -17,7 +17,7 @@ struct Workload {
     std::string variant;
     NumberFormat format{};
 
-    TunedFor what() const;     // throws UserError for an unknown variant
+    TuningKey key() const;     // throws UserError for an unknown variant
     std::string name() const;  // "ring none fp32", "torus fp32"
 };
 
@@ -71,12 +71,12 @@ struct Trial {
 double ratio_of(const Trial& trial);
 
 /// Returns true if the last candidate is significantly faster than the first: ratio_of() is at most kMaxWinRatio, and
-/// the last candidate is faster in at least 8 of 9 pairs of samples. For equally fast candidates the latter has a
-/// probability of 2 %.
+/// the last candidate is faster in at least 8 of 9 pairs of samples. For equally fast candidates, a result of 8 of 9
+/// pairs has a probability of 2 %.
 bool wins_significantly(const Trial& trial);
 
-/// Returns the median of of[i] / over[i], the ratios of two candidates' samples; for reports.
-double median_ratio(const std::vector<double>& of, const std::vector<double>& over);
+/// Returns the median of seconds[i] / reference[i], the ratios of two candidates' samples; for reports.
+double median_ratio(const std::vector<double>& seconds, const std::vector<double>& reference);
 
 /// Returns the mean of the seconds that `seconds` returns, over as many calls as take 20 ms, so that the clock's
 /// resolution and the overhead of launches do not matter.

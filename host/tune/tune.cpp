@@ -26,7 +26,7 @@ class TrialReader {
             if (line.at("kind").text() == "user") throw UserError(error->text());
             end(failure(), error->text());
         }
-        if (const Json* built = line.find("built")) built_ = built->whole() + 1;
+        if (const Json* built = line.find("built")) built_ = built->integer() + 1;
         if (line.find("check")) take_check(line);
         if (const Json* samples = line.find("samples")) take_samples(*samples);
     }
@@ -98,7 +98,7 @@ class Tuner {
           const TrialProgress& running)
         : settings_(settings), running_(running) {
         result_.workload = workload;
-        result_.space = space_of(device, workload.what());
+        result_.space = space_of(device, workload.key());
     }
 
     Tuning run() {
@@ -198,10 +198,11 @@ Json measurement(const char* name, double value, const char* unit) {
 
 Json result_json(const Tuning& tuning, const Trial& trial) {
     Json configuration = Json::object();
-    for (const Knob& knob : tuning.space.knobs) configuration[knob.name()] = trial.values.*knob.value;
+    for (const TuningParameter& parameter : tuning.space.parameters)
+        configuration[parameter.name()] = trial.values.*parameter.value;
     configuration["workload"] = tuning.workload.name();
     const bool correct = trial.status == TrialStatus::kCorrect;
-    Json runtimes = Json::list(), measurements = Json::list();
+    Json runtimes = Json::array(), measurements = Json::array();
     if (correct) {
         const std::vector<double>& seconds = trial.samples.back();
         for (const double s : seconds) runtimes.push_back(1e3 * s);
@@ -239,7 +240,7 @@ Tuning tune(const DeviceInfo& device, const Workload& workload, const TuneSettin
 }
 
 std::string t4_text(const DeviceInfo& device, const std::vector<Tuning>& tunings) {
-    Json results = Json::list();
+    Json results = Json::array();
     for (const Tuning& tuning : tunings)
         for (const Trial& trial : tuning.trials)
             if (trial.status != TrialStatus::kUnfinished) results.push_back(result_json(tuning, trial));

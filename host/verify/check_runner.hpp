@@ -65,7 +65,7 @@ class CheckRunner {
     /// Throws std::invalid_argument unless `rows` is a multiple of kMaxLanes.
     template <class... Args>
     void run_rows(const std::string& kernel, std::size_t rows, std::type_identity_t<Args>... args) {
-        if (rows % kMaxLanes != 0) throw std::invalid_argument("rows must be a multiple of the widest lanes");
+        if (rows % kMaxLanes != 0) throw std::invalid_argument("rows must be a multiple of kMaxLanes");
         run<Args...>(kernel, rows / lanes_, 1, args...);
     }
 

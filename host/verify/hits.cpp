@@ -75,7 +75,7 @@ void verify_hits(Verification& v, const HitBuild& build) {
     const std::size_t rays = v.depth() == Depth::kBrief ? 128 : 4096;  // number of rays in each scene
     if (build.grid)
         check("grid", [&](HitRunner& runner) {
-            return check_grid_walk(runner, {"polygons", "cones", "spheres"}, rays);
+            return check_grid_traversal(runner, {"polygons", "cones", "spheres"}, rays);
         });
 }
 
@@ -120,14 +120,14 @@ HitRunner::HitRunner(Session& session, const HitBuild& build)
     : CheckRunner(session, built(session, build), build.lanes), format_(build.format), grid_(build.grid) {}
 
 Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
-                     const std::function<std::string(std::size_t)>& what, const std::string& done) {
+                     const std::function<std::string(std::size_t)>& what, const std::string& pass_text) {
     std::size_t wrong = 0, first = 0;
     for (std::size_t i = count; i-- > 0;) {
         if (got.objects[i] == expected.objects[i] && got.distances[i] == expected.distances[i]) continue;
         ++wrong;
         first = i;
     }
-    if (wrong == 0) return passed(done);
+    if (wrong == 0) return passed(pass_text);
     return failed(fmt::format("{} of {} rays wrong", wrong, count),
                   {.where = fmt::format("{}\n{}", what(first), rays.text(first)),
                    .expected = expected.text(first),
@@ -160,7 +160,7 @@ Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
     return verdict;
 }
 
-Verdict check_grid_walk(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_each) {
+Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_each) {
     std::size_t hits = 0;
     for (const std::string& name : scenes) {
         const std::string file = fmt::format("scenes/{}.nff", name);
@@ -168,9 +168,9 @@ Verdict check_grid_walk(HitRunner& runner, const std::vector<std::string>& scene
         const PackedJob job = job_with_grid(scene, runner.format());
         const Rays rays = random_rays(runner.format(), scene_extent(scene), rays_each);
         const Hits all = find_hits(runner, "hits_of_all", job.words(), rays);
-        const Hits walked = find_hits(runner, "hits_by_search", job.words(), rays);
+        const Hits traversed = find_hits(runner, "hits_by_search", job.words(), rays);
         const auto what = [&](std::size_t i) { return fmt::format("ray {} through {}, by the grid", i, file); };
-        const Verdict verdict = compare_hits(all, walked, rays, rays_each, what, "");
+        const Verdict verdict = compare_hits(all, traversed, rays, rays_each, what, "");
         if (verdict.outcome != Outcome::kPass) return verdict;
         for (const std::uint32_t object : all.objects) hits += object != kNoObject;
     }

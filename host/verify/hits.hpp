@@ -1,5 +1,5 @@
-// Checks of ray-object intersections with kernels/checks/hits.cl: hits calculated by hand, and hits found by the grid
-// traversal, compared with hits found by testing all objects.
+// Checks of ray-object intersections with kernels/checks/hits.cl. Known hits are calculated by hand; hits of the grid
+// traversal are compared with those of testing all objects.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -85,17 +85,17 @@ class HitRunner : public CheckRunner {
     bool grid_;
 };
 
-/// Compares the hits of the first `count` rays. A pass has the result text `done`. A failure states the number of wrong
-/// rays and details of the first one. `what(ray)` returns the description of a ray.
+/// Compares the hits of the first `count` rays. A pass has the result text `pass_text`. A failure states the number of
+/// wrong rays and details of the first one. `what(ray)` returns the description of a ray.
 Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
-                     const std::function<std::string(std::size_t)>& what, const std::string& done);
+                     const std::function<std::string(std::size_t)>& what, const std::string& pass_text);
 
 /// Checks that every kernel of the build finds the known hits.
 Verdict check_known_hits(HitRunner& runner, const KnownScene& known);
 
 /// Checks that the grid traversal finds the same hits as testing all objects on the same device, for `rays` random rays
-/// in each of the scenes, which are named files of scenes/. `rays` must be a multiple of kMaxLanes. The build must
+/// in each of the scenes, which are names of files in scenes/. `rays` must be a multiple of kMaxLanes. The build must
 /// include the grid traversal.
-Verdict check_grid_walk(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays);
+Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays);
 
 }  // namespace raya

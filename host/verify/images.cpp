@@ -1,4 +1,4 @@
-// Checks of layer "image": renders the reference pictures with settings that must not change any bit of the image.
+// Checks of layer "image": renders the reference images with settings that must not change any bit of the image.
 #include <fmt/core.h>
 
 #include <bit>
@@ -8,25 +8,25 @@
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/torus/torus_renderer.hpp"
-#include "host/verify/pictures.hpp"
+#include "host/verify/reference_images.hpp"
 #include "host/verify/verify.hpp"
 
 namespace raya {
 namespace {
 
-// Returns a short name of the antialiasing, for names of checks.
+// Returns a short name of the mapping, for names of checks.
 std::string mapping_name(const MappingRule& mapping) {
     if (mapping == column_mapping()) return "column";
     return mapping.kind == RAYA_RANDOM ? "random" : mapping_text(mapping);
 }
 
-// Settings of a rendering that must not change any bit of the image.
+// A reference image and the settings that must not change any bit of it.
 struct Rendering {
-    std::string picture;
+    std::string image;
     Depth from = Depth::kFull;                // the rendering is part of this depth and of deeper ones
     std::uint32_t lanes = 0, group_size = 0;  // 0: the device's default
     MappingRule mapping = cyclic_mapping(8);  // mapping of pixels to PEs of the ring
-    std::uint32_t pes = kPictureSide;
+    std::uint32_t pes = kReferenceSide;
     std::uint32_t work_per_launch = 0;  // see RingSettings and TorusSettings; 0: default
     AccelKind accel = AccelKind::kNone;
     bool torus = false;
@@ -37,7 +37,7 @@ struct Rendering {
     bool global_words = false;  // put job words in global memory, as if local memory were too small
     bool refined = false;       // refine, as if the device did not round division, square root and fma correctly
 
-    // Returns the key in KnownPicture::counts. All renderings of a picture with the same key have equal counts.
+    // Returns the key in StoredImage::counts. All renderings of an image with the same key have equal counts.
     std::string variant() const {
         if (torus)
             return fmt::format("{} {}{}", links_name(links), sides_text(nodes),
@@ -55,7 +55,7 @@ struct Rendering {
         if (global_words) text += ", global words";
         if (refined) text += ", division refined";
         if (lanes) text += fmt::format(", {}x{}", lanes, group_size);
-        return fmt::format("{}: {}", picture, text);
+        return fmt::format("{}: {}", image, text);
     }
 };
 
@@ -75,36 +75,36 @@ std::uint64_t sum(std::span<const std::uint64_t> numbers) {
 }
 
 Rendered render_on_ring(const KernelChoice& kernels, Session& session, const Rendering& r) {
-    const Picture& picture = picture_named(r.picture);
-    RingSettings settings = reference_settings(picture);
-    settings.mapping = make_mapping(r.mapping, {kPictureSide, kPictureSide}, r.pes);
+    const ReferenceImage& image = reference_image_named(r.image);
+    RingSettings settings = reference_settings(image);
+    settings.mapping = make_mapping(r.mapping, {kReferenceSide, kReferenceSide}, r.pes);
     settings.accel.kind = r.accel;
     settings.work_per_launch = r.work_per_launch;
     settings.kernels = kernels_for(kernels, r);
-    settings.keep_costs = true;
-    RingResult result = RingRenderer(session, scene_of(picture), settings).render();
+    settings.record_costs = true;
+    RingResult result = RingRenderer(session, scene_of(image), settings).render();
     const std::string counts = counts_text(
         result.all.events, {{"cycles", sum(result.all.load.per_pe)}, {"pixel_cycles", sum(result.cost().cycles)}});
     return {std::move(result.image), result.build_options, counts};
 }
 
 Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Rendering& r) {
-    const Picture& picture = picture_named(r.picture);
+    const ReferenceImage& image = reference_image_named(r.image);
     TorusSettings s;
     s.machine = machine_named("torus");
-    s.width = s.height = kPictureSide;
+    s.width = s.height = kReferenceSide;
     s.torus = make_torus(r.nodes, r.links);
     s.links = r.links;
     s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // more voxels than nodes, so some nodes have several
     s.inject = r.inject;
     s.packets.return_a_ray = r.inject == Injection::kRoot;  // covers both values
-    s.bounces = kPictureBounces;
-    s.format = parse_format(picture.format);
-    s.sampling = picture.sampling;
+    s.bounces = kReferenceBounces;
+    s.format = parse_format(image.format);
+    s.sampling = image.sampling;
     s.work_per_launch = r.work_per_launch;
     s.kernels = kernels_for(kernels, r);
     s.kernels.link_move = r.link_move;
-    TorusResult result = TorusRenderer(session, scene_of(picture), s).render();
+    TorusResult result = TorusRenderer(session, scene_of(image), s).render();
     const std::string counts = counts_text(
         result.events, {{"cycles", sum(result.load.per_pe)}, {"packets", sum(result.made)}, {"hops", result.hops}});
     return {std::move(result.image), result.build_options, counts};
@@ -126,22 +126,22 @@ std::array<std::uint32_t, 3> pixel_bits(const Image& image, std::size_t pixel) {
     return bits;
 }
 
-// Renders the picture with reference_settings() and without compiler optimisation. Returns nullopt if that fails.
-std::optional<Image> unoptimised_image(const Verification& v, Session& session, const Picture& picture) {
-    RingSettings settings = reference_settings(picture);
+// Renders the image with reference_settings() and without compiler optimisation. Returns nullopt if that fails.
+std::optional<Image> unoptimised_image(const Verification& v, Session& session, const ReferenceImage& image) {
+    RingSettings settings = reference_settings(image);
     settings.kernels.sources = v.kernels(1, 1).sources;
     settings.kernels.sources.more_options = {"-cl-opt-disable"};
     try {
-        return RingRenderer(session, scene_of(picture), settings).render().image;
+        return RingRenderer(session, scene_of(image), settings).render().image;
     } catch (const std::exception&) {
         return {};
     }
 }
 
 // Chooses remedies according to whether unoptimised_image() is correct on this device.
-std::vector<std::string> remedies(const Verification& v, Session& session, const Picture& picture) {
-    const std::optional<Image> image = unoptimised_image(v, session, picture);
-    if (image && pixel_hash(*image) == known_picture(picture).hash)
+std::vector<std::string> remedies(const Verification& v, Session& session, const ReferenceImage& image) {
+    const std::optional<Image> unoptimised = unoptimised_image(v, session, image);
+    if (unoptimised && pixel_hash(*unoptimised) == stored_image(image).hash)
         return {
             "with one lane, groups of one and -cl-opt-disable the image is right: render with\n"
             "RAYA_BUILD_OPTIONS=-cl-opt-disable --lanes 1 --group 1, and report the error to the driver's vendor",
@@ -155,25 +155,25 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
     if (r.group_size > v.device().max_group_size)
         return skipped(fmt::format("needs groups of {} work-items, the device allows {}", r.group_size,
                                    v.device().max_group_size));
-    const Picture& picture = picture_named(r.picture);
-    const KnownPicture& known = known_picture(picture);
+    const ReferenceImage& image = reference_image_named(r.image);
+    const StoredImage& stored = stored_image(image);
     const Rendered got = render(v.kernels(r.lanes, r.group_size), session, r);
-    if (pixel_hash(got.image) == known.hash)
-        return check_counts(known.counts.at(r.variant()), got.counts, known.hash.substr(0, 8), got.options);
+    if (pixel_hash(got.image) == stored.hash)
+        return check_counts(stored.counts.at(r.variant()), got.counts, stored.hash.substr(0, 8), got.options);
     std::size_t wrong = 0, first = 0;
-    const std::size_t pixels = known.image.rgb.size() / 3;
+    const std::size_t pixels = stored.image.rgb.size() / 3;
     for (std::size_t i = pixels; i-- > 0;) {
-        if (pixel_bits(got.image, i) == pixel_bits(known.image, i)) continue;
+        if (pixel_bits(got.image, i) == pixel_bits(stored.image, i)) continue;
         ++wrong;
         first = i;
     }
     return failed(
         fmt::format("{} of {} pixels wrong", wrong, pixels),
-        {.where = fmt::format("row {}, column {} (red, green, blue)", first / kPictureSide, first % kPictureSide),
-         .expected = colour_text(pixel_bits(known.image, first)),
+        {.where = fmt::format("row {}, column {} (red, green, blue)", first / kReferenceSide, first % kReferenceSide),
+         .expected = colour_text(pixel_bits(stored.image, first)),
          .got = colour_text(pixel_bits(got.image, first)),
          .options = got.options,
-         .remedies = remedies(v, session, picture)});
+         .remedies = remedies(v, session, image)});
 }
 
 // Renderings that use every kernel and option at least once. A build takes most of a rendering's time. So renderings
@@ -184,65 +184,65 @@ std::vector<Rendering> standard_renderings() {
     constexpr auto k2d = Links::kTorus2d;
     constexpr auto kRoot = Injection::kRoot;
     return {
-        {.picture = "glass fp32", .from = Depth::kBrief},
-        {.picture = "glass fp32 filter", .from = Depth::kBrief, .mapping = cyclic_mapping(5), .pes = 10},
-        {.picture = "glass fp32 axes", .from = Depth::kBrief, .mapping = rows_mapping(), .pes = 16},
-        {.picture = "glass fp32 diagonals", .from = Depth::kQuick, .mapping = grid_mapping(4, 4), .pes = 16},
-        {.picture = "glass fp32",
+        {.image = "glass fp32", .from = Depth::kBrief},
+        {.image = "glass fp32 filter", .from = Depth::kBrief, .mapping = cyclic_mapping(5), .pes = 10},
+        {.image = "glass fp32 axes", .from = Depth::kBrief, .mapping = rows_mapping(), .pes = 16},
+        {.image = "glass fp32 diagonals", .from = Depth::kQuick, .mapping = grid_mapping(4, 4), .pes = 16},
+        {.image = "glass fp32",
          .from = Depth::kQuick,
          .mapping = cyclic_mapping(8, Fold::kBlock),
          .pes = 7,
          .work_per_launch = 40},
-        {.picture = "glass fp32", .from = Depth::kQuick, .mapping = tiles_mapping(5, 4), .pes = 7},
-        {.picture = "glass fp32", .global_words = true},
-        {.picture = "glass fp32", .refined = true},
-        {.picture = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
-        {.picture = "glass fp32", .lanes = 4, .group_size = 32, .mapping = random_mapping(1), .pes = 5},
-        {.picture = "ties fp32",
+        {.image = "glass fp32", .from = Depth::kQuick, .mapping = tiles_mapping(5, 4), .pes = 7},
+        {.image = "glass fp32", .global_words = true},
+        {.image = "glass fp32", .refined = true},
+        {.image = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
+        {.image = "glass fp32", .lanes = 4, .group_size = 32, .mapping = random_mapping(1), .pes = 5},
+        {.image = "ties fp32",
          .from = Depth::kQuick,
          .mapping = blocks_mapping(),
          .pes = 5,
          .global_words = true,
          .refined = true},
-        {.picture = "ties fp32"},
-        {.picture = "ties fp32", .accel = AccelKind::kGrid},
-        {.picture = "ties fp32", .accel = AccelKind::kBvh},
-        {.picture = "ties fp32", .torus = true},
-        {.picture = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
-        {.picture = "polygons fp32", .from = Depth::kQuick, .accel = AccelKind::kGrid},
-        {.picture = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true},
-        {.picture = "polygons fp32", .from = Depth::kQuick, .accel = AccelKind::kBvh},
-        {.picture = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true},
-        {.picture = "cones fp32", .accel = AccelKind::kBvh},
-        {.picture = "polygons fp32", .from = Depth::kQuick, .torus = true},
-        {.picture = "polygons fp32",
+        {.image = "ties fp32"},
+        {.image = "ties fp32", .accel = AccelKind::kGrid},
+        {.image = "ties fp32", .accel = AccelKind::kBvh},
+        {.image = "ties fp32", .torus = true},
+        {.image = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
+        {.image = "polygons fp32", .from = Depth::kQuick, .accel = AccelKind::kGrid},
+        {.image = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true},
+        {.image = "polygons fp32", .from = Depth::kQuick, .accel = AccelKind::kBvh},
+        {.image = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true},
+        {.image = "cones fp32", .accel = AccelKind::kBvh},
+        {.image = "polygons fp32", .from = Depth::kQuick, .torus = true},
+        {.image = "polygons fp32",
          .from = Depth::kQuick,
          .work_per_launch = 3,
          .torus = true,
          .link_move = LinkMove::kKernel},
-        {.picture = "polygons fp32", .torus = true, .global_words = true},
-        {.picture = "polygons fp32",
+        {.image = "polygons fp32", .torus = true, .global_words = true},
+        {.image = "polygons fp32",
          .from = Depth::kBrief,
          .torus = true,
          .nodes = {3, 2, 2},
          .links = k2d,
          .inject = kRoot},
-        {.picture = "cones fp32", .mapping = blocks_mapping(), .pes = 5, .global_words = true},
-        {.picture = "mirrors spa22", .from = Depth::kBrief, .mapping = column_mapping(), .pes = kPictureSide},
-        {.picture = "mirrors spa22 filter", .from = Depth::kQuick, .mapping = cyclic_mapping(16), .pes = kPictureSide},
-        {.picture = "cones e5m10", .from = Depth::kQuick, .refined = true},
-        {.picture = "mirrors spa22", .refined = true},
-        {.picture = "polygons spa22", .torus = true, .refined = true},
-        {.picture = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
-        {.picture = "planes fp32 corners", .accel = AccelKind::kGrid},
-        {.picture = "spheres e8m12t"},
-        {.picture = "glass e8m21"},
-        {.picture = "mirrors spa22", .torus = true, .links = k2d},
-        {.picture = "polygons spa22", .accel = AccelKind::kGrid},
-        {.picture = "polygons spa22", .accel = AccelKind::kBvh},
-        {.picture = "spheres e8m12t", .accel = AccelKind::kBvh},
-        {.picture = "polygons spa22", .torus = true, .nodes = {1, 3, 2}, .inject = kRoot},
-        {.picture = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};
+        {.image = "cones fp32", .mapping = blocks_mapping(), .pes = 5, .global_words = true},
+        {.image = "mirrors spa22", .from = Depth::kBrief, .mapping = column_mapping(), .pes = kReferenceSide},
+        {.image = "mirrors spa22 filter", .from = Depth::kQuick, .mapping = cyclic_mapping(16), .pes = kReferenceSide},
+        {.image = "cones e5m10", .from = Depth::kQuick, .refined = true},
+        {.image = "mirrors spa22", .refined = true},
+        {.image = "polygons spa22", .torus = true, .refined = true},
+        {.image = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
+        {.image = "planes fp32 corners", .accel = AccelKind::kGrid},
+        {.image = "spheres e8m12t"},
+        {.image = "glass e8m21"},
+        {.image = "mirrors spa22", .torus = true, .links = k2d},
+        {.image = "polygons spa22", .accel = AccelKind::kGrid},
+        {.image = "polygons spa22", .accel = AccelKind::kBvh},
+        {.image = "spheres e8m12t", .accel = AccelKind::kBvh},
+        {.image = "polygons spa22", .torus = true, .nodes = {1, 3, 2}, .inject = kRoot},
+        {.image = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};
 }
 
 // Renderings with every number of lanes and groups of 1 and 32 work-items, on both machines, in fp32 and reduced
@@ -251,28 +251,27 @@ std::vector<Rendering> all_builds() {
     std::vector<Rendering> all;
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
         for (const std::uint32_t group : {1u, 32u}) {
-            for (const char* picture :
-                 {"glass fp32", "polygons fp32", "mirrors spa22", "cones e5m10", "spheres e8m12t"})
-                all.push_back({.picture = picture, .lanes = lanes, .group_size = group});
-            for (const char* picture : {"polygons fp32", "polygons spa22"}) {
-                all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .accel = AccelKind::kGrid});
-                all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .accel = AccelKind::kBvh});
-                all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .torus = true});
+            for (const char* image : {"glass fp32", "polygons fp32", "mirrors spa22", "cones e5m10", "spheres e8m12t"})
+                all.push_back({.image = image, .lanes = lanes, .group_size = group});
+            for (const char* image : {"polygons fp32", "polygons spa22"}) {
+                all.push_back({.image = image, .lanes = lanes, .group_size = group, .accel = AccelKind::kGrid});
+                all.push_back({.image = image, .lanes = lanes, .group_size = group, .accel = AccelKind::kBvh});
+                all.push_back({.image = image, .lanes = lanes, .group_size = group, .torus = true});
             }
-            all.push_back({.picture = "glass fp32 filter", .lanes = lanes, .group_size = group});
-            all.push_back({.picture = "mirrors spa22 axes", .lanes = lanes, .group_size = group});
+            all.push_back({.image = "glass fp32 filter", .lanes = lanes, .group_size = group});
+            all.push_back({.image = "mirrors spa22 axes", .lanes = lanes, .group_size = group});
         }
     return all;
 }
 
 }  // namespace
 
-std::map<std::string, std::string> counts_by_variant(Session& session, const Picture& picture) {
+std::map<std::string, std::string> counts_by_variant(Session& session, const ReferenceImage& image) {
     std::map<std::string, std::string> counts;
     std::vector<Rendering> all = standard_renderings();
-    all.push_back({.picture = picture.name});  // every picture on the ring
+    all.push_back({.image = image.name});  // every image on the ring
     for (const Rendering& r : all)
-        if (r.picture == picture.name && !counts.contains(r.variant()))
+        if (r.image == image.name && !counts.contains(r.variant()))
             counts[r.variant()] = render({.lanes = 1, .group_size = 1}, session, r).counts;
     return counts;
 }

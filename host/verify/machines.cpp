@@ -26,31 +26,33 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-// Returns a random number in 0..end - 1. Seeds are fixed.
-std::uint32_t below(SplitMix& random, std::uint32_t end) { return static_cast<std::uint32_t>(random.next() % end); }
+// Returns a pseudo-random number in 0..end - 1.
+std::uint32_t random_below(SplitMix& random, std::uint32_t end) {
+    return static_cast<std::uint32_t>(random.next() % end);
+}
 
 std::uint32_t divisor_of(SplitMix& random, std::uint32_t side) {
-    std::uint32_t divisor = 1 + below(random, side);
+    std::uint32_t divisor = 1 + random_below(random, side);
     while (side % divisor) --divisor;
     return divisor;
 }
 
 // Returns a random side of an image in pixels: a small one, any one, or the maximum.
 std::uint32_t side(SplitMix& random) {
-    const std::uint32_t kinds[] = {1 + below(random, 40), 1 + below(random, kLargestSide), kLargestSide};
-    return kinds[below(random, 3)];
+    const std::uint32_t kinds[] = {1 + random_below(random, 40), 1 + random_below(random, kMaxSide), kMaxSide};
+    return kinds[random_below(random, 3)];
 }
 
 raya_mapping random_case(SplitMix& random, std::uint32_t kind) {
     raya_mapping m{side(random), side(random), 1, 0, kind};
     const std::uint32_t pixels = m.width * m.height;
-    const std::uint32_t pes[] = {1 + below(random, m.width), 1 + below(random, pixels), m.width, pixels};
-    m.pes = pes[below(random, 4)];
-    if (raya_has_slots(m)) m.parameter = below(random, m.width);
+    const std::uint32_t pes[] = {1 + random_below(random, m.width), 1 + random_below(random, pixels), m.width, pixels};
+    m.pes = pes[random_below(random, 4)];
+    if (raya_has_slots(m)) m.parameter = random_below(random, m.width);
     if (kind == RAYA_TILES) m.parameter = raya_pair(divisor_of(random, m.width), divisor_of(random, m.height));
     if (kind == RAYA_RANDOM) m.parameter = static_cast<std::uint32_t>(random.next());
     if (kind == RAYA_GRID) {
-        const std::uint32_t down = 1 + below(random, m.height), across = 1 + below(random, m.width);
+        const std::uint32_t down = 1 + random_below(random, m.height), across = 1 + random_below(random, m.width);
         m.parameter = raya_pair(down, across);
         m.pes = down * across;
     }
@@ -67,8 +69,8 @@ std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std:
     for (std::size_t i = 0; i < count; ++i) {
         const raya_mapping m = random_case(random, kind);
         mappings.push_back(m);
-        pixels.push_back(
-            {i % 8 ? below(random, m.height) : m.height - 1, i % 4 ? below(random, m.width) : m.width - 1});
+        pixels.push_back({i % 8 ? random_below(random, m.height) : m.height - 1,
+                          i % 4 ? random_below(random, m.width) : m.width - 1});
     }
     return {mappings, pixels};
 }
@@ -80,10 +82,10 @@ std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::
     std::vector<raya_torus> toruses;
     std::vector<std::uint32_t> nodes;
     for (std::size_t i = 0; i < count; ++i) {
-        const auto any = [&] { return 1 + below(random, i % 5 ? 7 : 40); };
+        const auto any = [&] { return 1 + random_below(random, i % 5 ? 7 : 40); };
         const raya_torus torus = make_torus({any(), any(), any()}, i % 2 ? Links::kTorus2d : Links::kTorus3d);
         toruses.push_back(torus);
-        for (int k = 0; k < 2; ++k) nodes.push_back(below(random, raya_nodes(torus)));
+        for (int k = 0; k < 2; ++k) nodes.push_back(random_below(random, raya_nodes(torus)));
     }
     return {toruses, nodes};
 }
@@ -92,10 +94,10 @@ std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::
 // case i.
 template <class What>
 Verdict compare_cases(const Words& expected, const Words& got, const std::vector<std::string>& names, const What& what,
-                      const std::string& done) {
+                      const std::string& pass_text) {
     const std::size_t stride = names.size();
     const auto differ = std::mismatch(expected.begin(), expected.end(), got.begin());
-    if (differ.first == expected.end()) return passed(done);
+    if (differ.first == expected.end()) return passed(pass_text);
     const auto at = static_cast<std::size_t>(differ.first - expected.begin());
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < expected.size(); i += stride)
@@ -106,7 +108,7 @@ Verdict compare_cases(const Words& expected, const Words& got, const std::vector
                    .got = fmt::format("{0} = 0x{0:08x}", got[at])});
 }
 
-// Returns the expected results of kernel find_owners in kernels/checks/machine.cl.
+// Appends the expected results of kernel find_owners (kernels/checks/machine.cl).
 void add_owner(Words& to, const raya_mapping& m, const raya_pixel& pixel) {
     const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
     const raya_share share = raya_share_of(m, owner);
@@ -118,7 +120,7 @@ void add_owner(Words& to, const raya_mapping& m, const raya_pixel& pixel) {
     to.insert(to.end(), {owner, raya_share_size(share), number, back.row, back.column, sides});
 }
 
-// `group_size`: work-group size of kernel turn_round, 1..1024.
+// `group_size`: work-group size of kernel reverse_words, 1..1024.
 CheckRunner machine_runner(Session& session, const KernelSources& sources, std::uint32_t group_size = 1) {
     return {session, Kernels(session, {.group_size = group_size}, sources).program("checks/machine.cl")};
 }
@@ -158,7 +160,7 @@ Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
     const auto at = runner.filled("nodes", nodes);
     auto routes = runner.poisoned("routes", expected.size());
     runner.run<const Buffer<raya_torus>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<std::uint32_t>&>(
-        "find_ways", cases, 1, from, at, static_cast<cl_uint>(cases), routes);
+        "find_routes", cases, 1, from, at, static_cast<cl_uint>(cases), routes);
     const auto what = [&, &t = toruses, &n = nodes](std::size_t i) {
         return fmt::format("node {} to {} on {}", n[2 * i], n[2 * i + 1],
                            sides_text({t[i].sides[0], t[i].sides[1], t[i].sides[2]}));
@@ -168,28 +170,28 @@ Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
                          what, fmt::format("{} pairs of nodes", cases));
 }
 
-// Checks barriers and atomics. Each work-group reverses words in local memory kTimes times. Its work-items take numbers
-// from an atomic counter; each number must be taken once.
+// Checks barriers and atomics. Each work-group reverses words in local memory kReversals times. Its work-items take
+// numbers from an atomic counter; each number must be taken once.
 Verdict check_local_memory(CheckRunner& runner, std::uint32_t group_size) {
-    constexpr std::uint32_t kGroups = 64, kTimes = 9;
+    constexpr std::uint32_t kGroups = 64, kReversals = 9;
     const std::uint32_t words = 2000;  // 2 x 2000 words of 4 bytes: half of the 32 KB that OpenCL guarantees
     Words from(std::size_t{kGroups} * words), expected(from.size());
     std::iota(from.begin(), from.end(), 0u);
-    for (std::size_t i = 0; i < from.size(); ++i)  // kTimes is odd, so the result is reversed
-        expected[i] = from[i / words * words + (words - 1 - i % words)] + kTimes;
+    for (std::size_t i = 0; i < from.size(); ++i)  // kReversals is odd, so the result is reversed
+        expected[i] = from[i / words * words + (words - 1 - i % words)] + kReversals;
     const auto given = runner.filled("from", from);
-    auto turned = runner.poisoned("to", from.size());
+    auto reversed = runner.poisoned("to", from.size());
     auto drawn = runner.constant<std::uint32_t>("drawn", from.size(), 0);
     using Local = LocalMemory<std::uint32_t>;
     runner.run<const Buffer<std::uint32_t>&, cl_uint, cl_uint, Local, Local, Buffer<std::uint32_t>&,
-               Buffer<std::uint32_t>&>("turn_round", kGroups, group_size, given, words, kTimes, Local{2 * words},
-                                       Local{1}, turned, drawn);
+               Buffer<std::uint32_t>&>("reverse_words", kGroups, group_size, given, words, kReversals, Local{2 * words},
+                                       Local{1}, reversed, drawn);
     const auto what = [&](std::size_t i) { return fmt::format("group {}, word {}", i / words, i % words); };
-    const std::string done = fmt::format("{} groups of {} words", kGroups, words);
-    const Verdict verdict = compare_cases(expected, runner.read(turned), {"local memory"}, what, done);
+    const std::string pass_text = fmt::format("{} groups of {} words", kGroups, words);
+    const Verdict verdict = compare_cases(expected, runner.read(reversed), {"local memory"}, what, pass_text);
     if (verdict.outcome != Outcome::kPass) return verdict;
     return compare_cases(Words(from.size(), 1), runner.read(drawn), {"times that a number was taken from the counter"},
-                         what, done);
+                         what, pass_text);
 }
 
 std::vector<std::string> integer_remedies() {
@@ -254,7 +256,7 @@ void verify_transfers(Verification& v) {
             check(name, [&](Session& s) { return check_links(s, torus, every); });
             v.check("machine", name + " by a kernel", [&](Session& s) {
                 // Mailboxes have up to 12 units of 8 words: some work-items copy one unit, others none.
-                Kernels kernels(s, {.group_size = std::min(8u, largest_group_size(v.device()))}, v.sources());
+                Kernels kernels(s, {.group_size = std::min(8u, max_group_size_of(v.device()))}, v.sources());
                 return with_remedies(check_links(s, torus, every, &kernels), "", integer_remedies());
             });
         }

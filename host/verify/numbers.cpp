@@ -66,9 +66,9 @@ constexpr std::uint32_t kOne = 0x3f800000;  // 1.0f
 
 constexpr const char* kHeading =
     "# Known answers of the number layer, made by tests/verify/make_known_answers.cpp with MPFR: do not edit.\n"
-    "# Sections \"FORMAT OPERATION\"; then a line each: the operands' bits and the result's, as hexadecimal digits of "
-    "fp32\n"
-    "# numbers; zeros at the end are left out.\n";
+    "# A line \"FORMAT OPERATION\" starts a section. Each further line has the bits of the operands and of the "
+    "result:\n"
+    "# fp32 numbers in hexadecimal without trailing zeros.\n";
 
 std::size_t operation_number(const std::string& name) {
     for (std::size_t k = 0; k < kAnsweredOperations; ++k)
@@ -129,32 +129,32 @@ void NumberRunner::append(NumberResults& results, const NumberRows& rows, const 
 
 Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected) {
     const bool all = std::any_of(expected.begin(), expected.end(),
-                                 [](const ExpectedNumbers& of) { return of.operation >= kAnsweredOperations; });
+                                 [](const ExpectedNumbers& one) { return one.operation >= kAnsweredOperations; });
     const NumberResults results = run(rows, all);
-    std::size_t wrong = 0, compared = 0, left_out = 0;
+    std::size_t wrong = 0, compared = 0, skipped = 0;
     std::string operations;
     Fault fault;
-    for (const ExpectedNumbers& of : expected) {
-        std::size_t here = 0;
-        for (std::size_t i = 0; i < of.results.size(); ++i) {
-            const std::size_t row = of.first_row + i;
-            const std::uint32_t got = results[of.operation].at(row);
-            const bool free = !has_denormals_ && has_denormal(of.operation, operands_of(rows, row), of.results[i]);
-            (free ? left_out : compared) += 1;
-            if (free || agrees(got, of.results[i])) continue;
-            if (wrong++ == 0) fault = fault_of(format_, of.operation, operands_of(rows, row), of.results[i], got);
-            ++here;
+    for (const ExpectedNumbers& answers : expected) {
+        std::size_t wrong_here = 0;
+        for (std::size_t i = 0; i < answers.results.size(); ++i) {
+            const std::size_t row = answers.first_row + i;
+            const std::uint32_t got = results[answers.operation].at(row), right = answers.results[i];
+            const bool skip = !has_denormals_ && has_denormal(answers.operation, operands_of(rows, row), right);
+            (skip ? skipped : compared) += 1;
+            if (skip || agrees(got, right)) continue;
+            if (wrong++ == 0) fault = fault_of(format_, answers.operation, operands_of(rows, row), right, got);
+            ++wrong_here;
         }
-        if (here)
-            operations += fmt::format("{}{} of {} of {}", operations.empty() ? "" : ", ", here, of.results.size(),
-                                      kNumberOperations[of.operation].name);
+        if (wrong_here)
+            operations += fmt::format("{}{} of {} of {}", operations.empty() ? "" : ", ", wrong_here,
+                                      answers.results.size(), kNumberOperations[answers.operation].name);
     }
     if (wrong) return failed("wrong: " + operations, fault);
-    const std::string denormals = left_out ? fmt::format(", {} with denormal numbers skipped", left_out) : "";
+    const std::string denormals = skipped ? fmt::format(", {} with denormal numbers skipped", skipped) : "";
     return passed(fmt::format("{} answers{}", compared, denormals));
 }
 
-// --- Checks of layer "number": compares all operations and formats with the known answers
+// --- Checks of layer "number": compare all operations and formats with the known answers
 namespace {
 
 std::vector<std::string> remedies_for(const NumberBuild& build, const DeviceInfo& device,

@@ -18,8 +18,8 @@ namespace {
 
 // --- In the child process
 
-Json settings_json(const VerifySettings& s, const std::string& wanted, std::size_t index) {
-    return {{"device", wanted},
+Json settings_json(const VerifySettings& s, const std::string& selector, std::size_t index) {
+    return {{"device", selector},
             {"index", index},
             {"depth", depth_name(s.depth)},
             {"kernel_dir", s.sources.folder.string()},
@@ -36,29 +36,29 @@ VerifySettings settings_of(const Json& json) {
                                          : Depth::kQuick,
             .sources = {.folder = json.at("kernel_dir").text()},
             .only = json.at("only").text(),
-            .lanes = static_cast<std::uint32_t>(json.at("lanes").whole(UINT32_MAX)),
-            .done = json.at("done").whole()};
+            .lanes = static_cast<std::uint32_t>(json.at("lanes").integer(UINT32_MAX)),
+            .done = json.at("done").integer()};
 }
 
-struct NamedDevices {
+struct SelectedDevices {
     std::vector<cl::Device> devices;
     std::vector<std::string> left_out;  // one line for each unusable device
 };
 
 // Selects devices as described at supervise(). Throws DeviceError if no device matches.
-NamedDevices named_devices(const std::string& wanted) {
-    if (wanted != "all") return {{choose_device(wanted)}, {}};
-    NamedDevices named;
+SelectedDevices selected_devices(const std::string& selector) {
+    if (selector != "all") return {{choose_device(selector)}, {}};
+    SelectedDevices selected;
     for (const cl::Device& device : all_devices()) {
         const DeviceInfo info = device_info(device);
         if (info.available && info.compiler_available)
-            named.devices.push_back(device);
+            selected.devices.push_back(device);
         else
-            named.left_out.push_back(
+            selected.left_out.push_back(
                 fmt::format("{} ({}): skipped: not available, or without a compiler", info.name, info.platform));
     }
-    if (named.devices.empty()) choose_device("");  // throws DeviceError with a remedy
-    return named;
+    if (selected.devices.empty()) choose_device("");  // throws DeviceError with a remedy
+    return selected;
 }
 
 // Returns the first check of each layer, as examples for --only.
@@ -72,14 +72,15 @@ std::string example_names(const std::vector<std::string>& names) {
     return text;
 }
 
-void refuse_no_checks(const cl::Device& device, const VerifySettings& settings) {
+// Throws UserError if --only selects no check.
+void refuse_empty_selection(const cl::Device& device, const VerifySettings& settings) {
     if (!check_names(device, settings).empty()) return;
-    VerifySettings any = settings;
-    any.only.clear();
+    VerifySettings unfiltered = settings;
+    unfiltered.only.clear();
     throw UserError(fmt::format(
         "--only \"{}\": no check of {} has this text in \"LAYER NAME\"; the layers are number, geometry, machine and "
         "image; checks are, for example:{}{}",
-        settings.only, device_info(device).name, example_names(check_names(device, any)),
+        settings.only, device_info(device).name, example_names(check_names(device, unfiltered)),
         settings.depth == Depth::kFull ? "" : "\n  ... and --full has more"));
 }
 
@@ -92,8 +93,7 @@ std::vector<std::string> remedies(const std::string& full_name, int status, cons
     if (signal == SIGILL)
         all.emplace_back("the kernels were compiled for another processor: look for an option of the driver");
     if (!full_name.empty() && settings.only != full_name)
-        all.push_back(
-            fmt::format("raya verify --only \"{}\": checks whether it also crashes when it runs alone", full_name));
+        all.push_back(fmt::format("raya verify --only \"{}\": shows whether the check also crashes alone", full_name));
     if (settings.lanes != 1) all.emplace_back("raya verify --lanes 1: compilers crash less often with one lane");
     for (const std::string& remedy : compiler_remedies()) all.push_back(remedy);
     return all;
@@ -105,10 +105,10 @@ class Supervision {
     Supervision(const VerifySettings& settings, const SupervisorSink& sink) : settings_(settings), sink_(sink) {}
 
     /// Runs the remaining checks in a new process. Returns true if another process should continue.
-    bool run_remaining(const std::string& wanted, std::size_t index) {
+    bool run_remaining(const std::string& selector, std::size_t index) {
         const std::size_t before = settings_.done;
         ended_ = false;
-        ChildProcess process(kVerifyTask, settings_json(settings_, wanted, index));
+        ChildProcess process(kVerifyTask, settings_json(settings_, selector, index));
         for (std::string line;;) {
             const ChildProcess::Read read = process.read(line, std::chrono::seconds(1));
             if (read == ChildProcess::Read::kEnd) break;
@@ -152,12 +152,12 @@ class Supervision {
 
     void take_device(const Json& line) {
         if (devices_ > 0) return;  // already reported by the first process
-        devices_ = line.at("devices").whole();
+        devices_ = line.at("devices").integer();
         all_.name = line.at("name").text();
         all_.platform = line.at("platform").text();
         all_.version = line.at("version").text();
         all_.driver = line.at("driver").text();
-        if (sink_.device) sink_.device(all_, line.at("left_out").texts());
+        if (sink_.device) sink_.device(all_, line.at("left_out").strings());
     }
 
     void finish(Check check) {
@@ -175,12 +175,14 @@ class Supervision {
     Check crashed_check(int status) const {
         const std::string result = "ended by " + ending_text(status);
         if (devices_ == 0 && WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)
-            throw std::runtime_error("cannot start this program again for the checks: /proc may be missing");
+            throw std::runtime_error(
+                "cannot start a process for the checks: /proc/self/exe is not available; mount /proc");
         if (devices_ == 0)
-            throw DeviceError(fmt::format(
-                "looking for devices: a driver ended the program by {}; remedy: exclude it (OCL_ICD_VENDORS), or "
-                "install a newer one",
-                ending_text(status)));
+            throw DeviceError(
+                fmt::format("looking for devices: a driver ended the program by {}; remedy: exclude the driver "
+                            "(OCL_ICD_VENDORS), or "
+                            "install a newer one",
+                            ending_text(status)));
         Check check{"device", ended_ ? "the end of the program" : "between checks", 0, {}};
         std::string where = "in the driver, with no check running", full_name;
         if (running_) {
@@ -203,24 +205,24 @@ class Supervision {
 
 }  // namespace
 
-DeviceChecks supervise(const std::string& wanted, std::size_t index, const VerifySettings& settings,
+DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink, std::size_t& devices) {
     Supervision supervision(settings, sink);
-    while (supervision.run_remaining(wanted, index)) continue;
+    while (supervision.run_remaining(selector, index)) continue;
     devices = supervision.devices();
     return supervision.take_checks();
 }
 
 void run_checks(int lines, const Json& order) {
     const VerifySettings settings = settings_of(order);
-    const std::size_t index = order.at("index").whole();
-    const NamedDevices named = named_devices(order.at("device").text());
+    const std::size_t index = order.at("index").integer();
+    const SelectedDevices selected = selected_devices(order.at("device").text());
     if (index == 0 && settings.done == 0)
-        for (const cl::Device& device : named.devices) refuse_no_checks(device, settings);
-    const cl::Device& device = named.devices.at(index);
+        for (const cl::Device& device : selected.devices) refuse_empty_selection(device, settings);
+    const cl::Device& device = selected.devices.at(index);
     const DeviceInfo info = device_info(device);
-    send_line(lines, {{"devices", named.devices.size()},
-                      {"left_out", named.left_out},
+    send_line(lines, {{"devices", selected.devices.size()},
+                      {"left_out", selected.left_out},
                       {"name", info.name},
                       {"platform", info.platform},
                       {"version", info.version},

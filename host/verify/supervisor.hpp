@@ -33,12 +33,12 @@ struct SupervisorSink {
     std::function<void(const Check&)> finished{};
 };
 
-/// Checks device number `index`, from 0, of the devices that `wanted` selects: "all" selects every usable device, any
+/// Checks device number `index`, from 0, of the devices that `selector` selects: "all" selects every usable device, any
 /// other text one device by the rules of choose_device(). If the child process ends early, the running check has
 /// failed, and the next checks run in a new process, as long as each process completes at least one check. Sets
 /// `devices` to the number of selected devices. Throws the UserError or DeviceError that the child process reports, and
 /// DeviceError if the driver ends the process before the first check.
-DeviceChecks supervise(const std::string& wanted, std::size_t index, const VerifySettings& settings,
+DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink, std::size_t& devices);
 
 /// Task of the child process (host/base/child_process.hpp). run_checks() writes the lines of the protocol to the file

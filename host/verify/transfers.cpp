@@ -34,18 +34,20 @@ Words as_words(const std::vector<float>& floats) {
     return words;
 }
 
+// Compares words. Returns nullopt if they are equal, else a failure with the first difference. `unit`: name of a group
+// of `words_per_unit` words, such as "PE".
 std::optional<Verdict> difference(const Words& expected, const Words& got, const std::string& what,
-                                  std::size_t words_of_one, const char* one) {
+                                  std::size_t words_per_unit, const char* unit) {
     const auto differ = std::mismatch(expected.begin(), expected.end(), got.begin());
     if (differ.first == expected.end()) return {};
     const auto at = static_cast<std::size_t>(differ.first - expected.begin());
     return failed(what + ": words at wrong places",
-                  {.where = fmt::format("{}, {} {}, word {}", what, one, at / words_of_one, at % words_of_one),
+                  {.where = fmt::format("{}, {} {}, word {}", what, unit, at / words_per_unit, at % words_per_unit),
                    .expected = fmt::format("0x{:08x}", expected[at]),
                    .got = fmt::format("0x{:08x}", got[at])});
 }
 
-// Packets of a test of the links: a different number in each outbox, words that name their link and place.
+// Packets for check_links(). Each outbox has a different number of packets; each word contains its outbox and position.
 struct LinkTraffic {
     LinkTraffic(const raya_torus& torus, std::uint32_t every, std::size_t words)
         : status(raya_nodes(torus)), out(words), in(words), expected(words) {
@@ -54,10 +56,11 @@ struct LinkTraffic {
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             for (std::uint32_t node = 0; node < nodes && torus.sides[link / 2] > 1; ++node)
                 fill(link, node, nodes, every);
-        for (std::size_t at = 0; at < words; ++at) in[at] = at % kBox ? kPoison : 0;  // empty, independent of clear()
+        for (std::size_t at = 0; at < words; ++at)
+            in[at] = at % kMailboxWords ? kPoison : 0;  // empty, independent of clear()
     }
 
-    static constexpr std::uint32_t kCapacity = 5, kWords = RAYA_PACKET_WORDS, kBox = (1 + kCapacity) * kWords;
+    static constexpr std::uint32_t kCapacity = 5, kWords = RAYA_PACKET_WORDS, kMailboxWords = (1 + kCapacity) * kWords;
     NodeStatus status;
     Words out, in, expected, expected_sent;
     std::uint32_t packets_sent = 0;
@@ -66,7 +69,7 @@ struct LinkTraffic {
     void fill(std::uint32_t link, std::uint32_t node, std::uint32_t nodes, std::uint32_t every) {
         const std::uint32_t number = link * nodes + node, packets = number % every ? 0 : 1 + number % kCapacity;
         status.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX + link] = packets;
-        const std::size_t at = std::size_t{number} * kBox;
+        const std::size_t at = std::size_t{number} * kMailboxWords;
         out[at] = expected[at] = packets;
         expected_sent[number] = packets > 0;
         for (std::uint32_t w = 0; w < packets * kWords; ++w)
@@ -95,10 +98,10 @@ Verdict check_bus(Session& session) {
     return passed(fmt::format("{} words in each direction", words.size()));
 }
 
-// Maps word `w` of the blocks [PE][kRows][words] to its index in the PEs' own memory [PE][kRows][pitch], `distance` PEs
-// further up; blocks start at word `offset` of each row.
+// Layout of the blocks in the memory of the PEs, [PE][kRows][pitch]: a block starts at word `offset` of each row. at(w,
+// d) returns the index of word `w` of the blocks [PE][kRows][words], in the memory of the PE `d` higher.
 constexpr std::size_t kRows = 3;
-struct OwnWords {
+struct SourceLayout {
     std::size_t pes, words, pitch, offset;
 
     std::size_t at(std::size_t w, std::size_t distance) const {
@@ -108,24 +111,24 @@ struct OwnWords {
     std::size_t size() const { return pes * kRows * pitch; }
 };
 
-// In each round every PE's block has distinct words, taken from the middle of its rows.
+// In each round every PE's block has distinct words from the middle of its rows.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Bus bus(session, counted, static_cast<std::uint32_t>(pes));
-    const OwnWords place{pes, words, words + 3, 2};
-    auto memory = session.buffer<float>("own words", place.size()),
+    const SourceLayout layout{pes, words, words + 3, 2};
+    auto memory = session.buffer<float>("own words", layout.size()),
          blocks = session.buffer<float>("blocks", pes * kRows * words);
     for (std::uint32_t round = 0; round < 6; ++round) {
         const bool to_all = round == 5;  // broadcasts; the model is distance 0
         const std::size_t distance = to_all ? 0 : 1 + round * (pes - 1) / 5;
-        const Words own = numbered(place.size(), round * static_cast<std::uint32_t>(place.size()));
+        const Words own = numbered(layout.size(), round * static_cast<std::uint32_t>(layout.size()));
         session.write("own words", memory, as_floats(own));
         for (std::size_t pe = 0; pe < pes; ++pe) {
-            const PeWords from{(pe + distance) % pes, place.pitch, place.offset, kRows}, to{pe, words, 0, kRows};
+            const PeWords from{(pe + distance) % pes, layout.pitch, layout.offset, kRows}, to{pe, words, 0, kRows};
             to_all ? bus.broadcast_from(memory, from, blocks, to, words) : bus.send(memory, from, blocks, to, words);
         }
         Words expected(blocks.size());
-        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = own[place.at(w, distance)];
+        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = own[layout.at(w, distance)];
         std::vector<float> got(expected.size());
         session.read("blocks", blocks, got);
         const std::string what = to_all ? "broadcast" : fmt::format("distance {}", distance);
@@ -140,17 +143,17 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Ring ring(session, counted, static_cast<std::uint32_t>(pes), kRows, words);
-    const OwnWords place{pes, words, words + 3, 2};
-    auto memory = session.buffer<float>("own words", place.size());
+    const SourceLayout layout{pes, words, words + 3, 2};
+    auto memory = session.buffer<float>("own words", layout.size());
     for (std::uint32_t i = 0; i < 12; ++i) {
-        const Words own = numbered(place.size(), i * static_cast<std::uint32_t>(place.size()));
+        const Words own = numbered(layout.size(), i * static_cast<std::uint32_t>(layout.size()));
         session.write("own words", memory, as_floats(own));
-        ring.load(memory, place.pitch, place.offset);
-        const Turn turn = i % 4 == 3 ? Turn::kUp : Turn::kDown;
-        const std::size_t turned = turn == Turn::kDown ? 1 : pes - 1;
-        ring.rotate(turn);
+        ring.load(memory, layout.pitch, layout.offset);
+        const RingDirection direction = i % 4 == 3 ? RingDirection::kUp : RingDirection::kDown;
+        const std::size_t turned = direction == RingDirection::kDown ? 1 : pes - 1;
+        ring.rotate(direction);
         Words expected(pes * kRows * words);
-        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = own[place.at(w, turned)];
+        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = own[layout.at(w, turned)];
         std::vector<float> got(expected.size());
         session.read("ring blocks", ring.blocks(), got);
         const std::string what = fmt::format("rotation {} of {} PEs", i + 1, pes);
@@ -160,7 +163,7 @@ Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
 }
 
 Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every, Kernels* kernels) {
-    constexpr std::uint32_t kWords = LinkTraffic::kWords, kBox = LinkTraffic::kBox;
+    constexpr std::uint32_t kWords = LinkTraffic::kWords, kMailboxWords = LinkTraffic::kMailboxWords;
     const std::uint32_t nodes = raya_nodes(torus);
     const NodeShare share(torus);
     LinkExchange links(session, share, LinkTraffic::kCapacity,
@@ -174,17 +177,17 @@ Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t eve
     if (kernels) links.use_kernel(kernels->get<ExchangeKernel>(), kernels->options().group_size, status_buffer);
     std::vector<std::uint64_t> words(std::size_t{nodes} * RAYA_LINKS);
     links.exchange(traffic.status, words);
-    Words in(traffic.in.size()), sent(links.sent().size()), &expected = traffic.expected;
+    Words in(traffic.in.size()), sent(links.sent_flags().size()), &expected = traffic.expected;
     session.read("inboxes", links.inboxes(), in);
-    session.read("sent boxes", links.sent(), sent);
-    // Words after a box's packets are undefined.
-    for (std::size_t at = 0; at < in.size(); at += kBox)
-        for (std::size_t w = 1; w < kBox; ++w)
+    session.read("sent flags", links.sent_flags(), sent);
+    // Words after the packets of a mailbox are undefined.
+    for (std::size_t at = 0; at < in.size(); at += kMailboxWords)
+        for (std::size_t w = 1; w < kMailboxWords; ++w)
             if (w < kWords || w >= (1 + expected[at]) * kWords) in[at + w] = expected[at + w] = 0;
     const std::string what =
         fmt::format("exchange on {}", sides_text({torus.sides[0], torus.sides[1], torus.sides[2]}));
-    if (auto verdict = difference(expected, in, what, kBox, "inbox")) return *verdict;
-    if (auto verdict = difference(traffic.expected_sent, sent, what + ", flags of sent boxes", nodes, "link"))
+    if (auto verdict = difference(expected, in, what, kMailboxWords, "inbox")) return *verdict;
+    if (auto verdict = difference(traffic.expected_sent, sent, what + ", flags of sent mailboxes", nodes, "link"))
         return *verdict;
     return passed(fmt::format("{} packets over {} links", traffic.packets_sent, RAYA_LINKS * nodes));
 }

@@ -1,5 +1,5 @@
 // Verdict of a check, details of a failure, and the text form of 32-bit words in the files of known answers and
-// pictures.
+// reference images.
 #pragma once
 #include <fmt/core.h>
 

@@ -39,7 +39,7 @@ std::vector<std::string> remedies_for(const std::string& message, bool by_device
     }
     if (by_device) return {"run raya devices, and check that this is the intended device", newer};
     return {"if checks of \"number\", \"geometry\" or \"machine\" fail too, start with those",
-            "otherwise this is an error in raya: report it"};
+            "otherwise this is an internal error of raya: report it"};
 }
 
 Verdict verdict_of(const std::function<Verdict()>& body) {
@@ -140,7 +140,7 @@ Check check_of(const Json& json) {
                            .expected = text("expected"),
                            .got = text("got"),
                            .options = text("build_options"),
-                           .remedies = json.at("remedies").texts()};
+                           .remedies = json.at("remedies").strings()};
     return check;
 }
 

@@ -5,7 +5,7 @@
 #include "kernels/shared/torus.h"
 
 #ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in a work-group of `turn_round`, 1..1024
+#define RAYA_GROUP 1  // L: work-items in a work-group of `reverse_words`, 1..1024
 #endif
 
 // Finds the owner of each pixel and the pixel's index in the owner's share, and converts the index back to a pixel. One
@@ -39,11 +39,11 @@ __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [c
 
 // Finds the first link of the route of a ray and of a return, and the node at the other end of each link. One work-item
 // per pair of nodes.
-__kernel void find_ways(__global const raya_torus* restrict toruses,  // [case]
-                        __global const uint* restrict nodes,          // [case][2]: where the packet is, where it goes
-                        const uint cases,
-                        __global uint* restrict results)              // [case][2 + RAYA_LINKS]: raya_next_link(),
-                                                                      // raya_return_link(), raya_link_end() per link
+__kernel void find_routes(__global const raya_torus* restrict toruses,  // [case]
+                          __global const uint* restrict nodes,          // [case][2]: node of the packet, destination
+                          const uint cases,
+                          __global uint* restrict results)              // [case][2 + RAYA_LINKS]: raya_next_link(),
+                                                                        // raya_return_link(), raya_link_end() per link
 {
     const uint i = get_global_id(0);
     if (i >= cases) return;
@@ -59,13 +59,13 @@ __kernel void find_ways(__global const raya_torus* restrict toruses,  // [case]
 // local memory, reverses their order and adds 1 to each, `times` times, and writes them to `to`. Then its work-items
 // draw the numbers 0 .. words - 1 from a shared counter.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
-void turn_round(__global const uint* restrict from,  // [group][words]
-                const uint words,
-                const uint times,
-                __local uint* restrict own,          // [2][words]
-                __local uint* restrict next,         // [1]
-                __global uint* restrict to,          // [group][words]
-                __global uint* restrict drawn)       // [group][words]: how often each number was drawn, added to
+void reverse_words(__global const uint* restrict from,  // [group][words]
+                   const uint words,
+                   const uint times,
+                   __local uint* restrict own,          // [2][words]
+                   __local uint* restrict next,         // [1]
+                   __global uint* restrict to,          // [group][words]
+                   __global uint* restrict drawn)       // [group][words]: how often each number was drawn, added to
 {
     const uint group = get_group_id(0);
     if (get_local_id(0) == 0) *next = 0;

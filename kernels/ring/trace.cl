@@ -28,32 +28,32 @@
 #define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
 #endif
 
-// In the lanes `fresh`, starts the ray tree of the point that lies `row` pixels below and `column` pixels to the right
-// of the sample point of row 0, column 0.
-static inline void start_tree(words scene, tree* t, mask fresh, real row, real column) {
+// In the lanes `started`, starts the ray tree of the point that lies `row` pixels below and `column` pixels to the
+// right of the sample point of row 0, column 0.
+static inline void start_tree(words scene, tree* t, mask started, real row, real column) {
     const job_words job = (job_words)scene;
     const vec zero = vec_of(num_const(0.0f), num_const(0.0f), num_const(0.0f));
-    set_lanes(&t->ray.origin, fresh, vec_all(job->eye));
-    set_lanes(&t->ray.direction, fresh, primary_direction(job, row, column));
-    t->ray.weight.all = choose(fresh, num_const(1.0f), t->ray.weight.all);
-    t->level = choose_index(fresh, (index)(0), t->level);
-    t->sum = vec_choose(fresh, zero, t->sum);
-    t->walking |= fresh;
-    count_event(t, RAYA_PRIMARY, fresh);
+    set_lanes(&t->ray.origin, started, vec_all(job->eye));
+    set_lanes(&t->ray.direction, started, primary_direction(job, row, column));
+    t->ray.weight.all = choose(started, num_const(1.0f), t->ray.weight.all);
+    t->level = choose_index(started, (index)(0), t->level);
+    t->sum = vec_choose(started, zero, t->sum);
+    t->active |= started;
+    count_event(t, RAYA_PRIMARY, started);
 }
 
 // In lanes whose tree is done, starts the tree of the pixel's next point or, after the last point, stores the pixel and
 // takes the PE's next one.
 static inline void next_points(words scene, tree* t, pixel_store* store, tree_pixels* p, volatile __local uint* next) {
-    const mask idle = mask_not(t->walking), traced = idle & (p->pixel.all != RAYA_NO_PIXEL);
+    const mask idle = mask_not(t->active), traced = idle & (p->pixel.all != RAYA_NO_PIXEL);
     add_points(t, store, p, traced);
     p->point.all = choose_index(traced, p->point.all + 1u, p->point.all);
     const mask done = traced & (p->point.all == raya_points(store->points));
     if (mask_any(done)) store_pixels((job_words)scene, t, store, p, done);
     take_pixels(store, p, next, done | (idle & mask_not(traced)));
-    const mask fresh = idle & (p->pixel.all != RAYA_NO_PIXEL);
-    if (!mask_any(fresh)) return;
-    start_tree(scene, t, fresh, point_rows(store, p), point_columns(store, p));
+    const mask started = idle & (p->pixel.all != RAYA_NO_PIXEL);
+    if (!mask_any(started)) return;
+    start_tree(scene, t, started, point_rows(store, p), point_columns(store, p));
 }
 
 // Traces the trees until no pixels are left or a lane has done `work` tests and steps. Returns true if this work-item
@@ -63,12 +63,12 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
     ray_pool pool;
     open_pool(&pool);
     for (;;) {
-        int walking = 0;
+        int active = 0;
         for (uint i = 0; i < RAYA_TREES; ++i) {
-            if (mask_any(mask_not(trees[i].walking))) next_points(scene, &trees[i], store, &pixels[i], next);
-            walking |= mask_any(trees[i].walking);
+            if (mask_any(mask_not(trees[i].active))) next_points(scene, &trees[i], store, &pixels[i], next);
+            active |= mask_any(trees[i].active);
         }
-        if (!walking) return !store->drained;
+        if (!active) return !store->drained;
         if (mask_any(pool.spent >= (index)(work))) return 1;
         follow_trees(scene, trees, &pool);
     }
@@ -138,7 +138,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     store.block = block;
     store.end = min(end, raya_share_size(store.share));
     store.points = points;
-    store.looks = work;
+    store.marks_left = work;
     store.plane = capacity;
     store.pixels = pixels + (size_t)group * capacity * 3;
     store.marks = marks + (size_t)group * capacity;

@@ -23,10 +23,10 @@ typedef struct {
     // If no coordinate of a ray's origin exceeds `reach` in absolute value, each of its hits lies in all boxes that
     // contain the object hit. Other rays must be tested against all objects; if `reach` is negative, all rays.
     float reach;
-    raya_u32 root;      // link to the root; RAYA_NO_TREE without objects
-    raya_u32 apart;     // number of separate objects: finite objects in no leaf, tested for every ray
-    raya_u32 apart_at;  // offset of their numbers (ascending), in words from the job's first word
-    raya_u32 rows_at;   // offset of row 0, in words from the job's first word: a multiple of 16
+    raya_u32 root;         // link to the root; RAYA_NO_TREE without objects
+    raya_u32 separate;     // number of separate objects: finite objects in no leaf, tested for every ray
+    raya_u32 separate_at;  // offset of their numbers (ascending), in words from the job's first word
+    raya_u32 rows_at;      // offset of row 0, in words from the job's first word: a multiple of 16
 } raya_bvh;
 RAYA_SHARED_SIZE(raya_bvh, 4 * 5);
 
@@ -53,7 +53,7 @@ enum {  // first row of each field of a leaf of faces: x, y, z of corners 1 to 3
     RAYA_BVH_FOURTH = 14,
     RAYA_BVH_FACES = 17
 };
-#define RAYA_BVH_MOST_CORNERS 4
+#define RAYA_BVH_MAX_CORNERS 4
 enum {  // words in the first row of a polygon's leaf
     RAYA_BVH_OUTLINE_NUMBER = 0,
     RAYA_BVH_OUTLINE_CORNERS = 1,  // number of corners

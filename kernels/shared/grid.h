@@ -24,9 +24,9 @@ RAYA_SHARED_SIZE(raya_grid, 4 * 10);
 // of each row. Members named *_at are offsets in words from the job's first word.
 typedef struct {
     raya_grid grid;
-    raya_u32 apart;      // number of separate objects: finite objects in no list, tested for every ray
-    raya_u32 apart_at;   // their object numbers, ascending
-    raya_u32 voxels_at;  // the voxel words
+    raya_u32 separate;     // number of separate objects: finite objects in no list, tested for every ray
+    raya_u32 separate_at;  // their object numbers, ascending
+    raya_u32 voxels_at;    // the voxel words
     raya_u32 rows_at;
     raya_u32 numbers_at;
 } raya_grid_words;
@@ -37,12 +37,12 @@ RAYA_SHARED_SIZE(raya_grid_words, 4 * (10 + 5));
 #define RAYA_ROW_NUMBER 0x03ffffffu
 #define RAYA_ONE_ROW 0x04000000u
 #define RAYA_ROWS_LEFT 0x7c000000u
-#define RAYA_MOST_ROWS 31u  // maximum number of spheres in one voxel word
+#define RAYA_MAX_ROWS 31u  // maximum number of spheres in one voxel word
 #define RAYA_LINKED 0x80000000u
 
 // Row 0 belongs to no list. A sphere's row holds the sphere's four words (job.h), which suffice to find a hit. A link
 // row holds the voxel word of the rest of the list, 0 if nothing follows. The object number of a link row is that of an
-// object that is not a sphere. It is RAYA_NO_OBJECT_HERE if the link only continues a list of more than RAYA_MOST_ROWS
+// object that is not a sphere. It is RAYA_NO_OBJECT_HERE if the link only continues a list of more than RAYA_MAX_ROWS
 // spheres.
 enum { RAYA_ROW_NEXT = 0, RAYA_ROW_WORDS = 4 };
 #define RAYA_NO_OBJECT_HERE 0xffffffffu

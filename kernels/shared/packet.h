@@ -48,7 +48,7 @@ RAYA_SHARED_SIZE(raya_packet, 4 * 16);
 enum { RAYA_RETURN_WORDS = sizeof(raya_head) / 4, RAYA_PACKET_WORDS = sizeof(raya_packet) / 4 };
 
 // Packs a voxel's place into one word: x in bits 0..9, y in 10..19, z in 20..29.
-#define RAYA_MOST_PLACES 1024u
+#define RAYA_MAX_PLACES 1024u
 RAYA_SHARED_FUNCTION raya_u32 raya_pack_place(raya_u32 x, raya_u32 y, raya_u32 z) { return x | y << 10 | z << 20; }
 RAYA_SHARED_FUNCTION raya_place raya_unpack_place(raya_u32 word) {
     raya_place p;
@@ -70,8 +70,8 @@ enum {  // kinds of packets; 0: the slot holds no packet
 
 // State: kind in bits 0..2, flags in 3..6, level in 8..12, light in 16..31.
 #define RAYA_STATE_KIND 0x7u
-// A wide ray (is_wide() in kernels/grid/walk.clh), which must be tested against all objects. It visits all voxels in
-// turn, starting in the node that made it, and is shaded in the voxel of its nearest hit.
+// A wide ray (is_wide() in kernels/grid/traversal.clh), which must be tested against all objects. It visits all voxels
+// in turn, starting in the node that made it, and is shaded in the voxel of its nearest hit.
 #define RAYA_STATE_WIDE 0x8u
 // A wide ray that has visited all voxels and returns to the voxel of its nearest hit to be shaded.
 #define RAYA_STATE_FOUND 0x10u
@@ -83,7 +83,7 @@ enum {  // kinds of packets; 0: the slot holds no packet
 #define RAYA_STATE_CHARGED 0x40u
 #define RAYA_STATE_LEVEL_SHIFT 8u
 #define RAYA_STATE_LIGHT_SHIFT 16u
-#define RAYA_MOST_LIGHTS 65535u
+#define RAYA_MAX_LIGHTS 65535u
 
 // Packs a state without flags. `light`: 1 + the light's number for shadow rays and their returns, else 0.
 RAYA_SHARED_FUNCTION raya_u32 raya_state(raya_u32 kind, raya_u32 level, raya_u32 light) {

@@ -25,7 +25,7 @@ RAYA_SHARED_FUNCTION raya_pixel raya_pixel_of(raya_mapping m, raya_share s, raya
     return pixel;
 }
 
-// A pixel of a share, and how to find the pixels that follow it in the share at equal distances in the same row.
+// A run: a pixel of a share, and the pixels that follow it in the share at equal distances in the same row.
 typedef struct {
     raya_pixel pixel;
     raya_u32 number;  // k: index of the pixel in the share
@@ -59,8 +59,8 @@ RAYA_SHARED_FUNCTION raya_pixel_run raya_pixel_run_at(raya_pixel_run run, raya_m
 RAYA_SHARED_FUNCTION raya_u32 raya_index_of(raya_mapping m, raya_share s, raya_pixel pixel) {
     if (m.kind == RAYA_TILES) {
         const raya_u32 w = raya_first_of(m.parameter), h = raya_second_of(m.parameter);
-        const raya_u32 turn = raya_tile_of(m, pixel.row, pixel.column) / m.pes;  // index among the owner's tiles
-        return (turn * h + pixel.row % h) * w + pixel.column % w;
+        const raya_u32 own_tile = raya_tile_of(m, pixel.row, pixel.column) / m.pes;  // index among the owner's tiles
+        return (own_tile * h + pixel.row % h) * w + pixel.column % w;
     }
     if (m.kind == RAYA_RANDOM)
         return raya_scramble(pixel.row * m.width + pixel.column, m.width * m.height, m.parameter) / m.pes;

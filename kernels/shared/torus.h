@@ -33,8 +33,8 @@ typedef struct {
 
 RAYA_SHARED_FUNCTION raya_u32 raya_nodes(raya_torus t) { return t.nodes[0] * t.nodes[1] * t.nodes[2]; }
 
-// Returns the place with the given number in an array of which the first two sides are given. Numbers count along the
-// first side, then the second, then the third.
+// Returns the place with the given number in a 3-D array whose first two sides are `side0` and `side1`. Numbers count
+// along the first side, then the second, then the third.
 RAYA_SHARED_FUNCTION raya_place raya_place_of(raya_u32 number, raya_u32 side0, raya_u32 side1) {
     raya_place p;
     p.at[0] = number % side0;

@@ -1,39 +1,40 @@
-// accept: takes packets that have arrived over the links out of the inboxes. Rays go into the node's queue if it has
-// the free slots that they need (raya_slots_for_packet()). Returns go directly to the outbox of the link towards the
-// root or, in the root, to the buffer that the host reads. A packet for which there is no free slot stays in its inbox.
-// The link transfers nothing until the inbox is empty.
+// accept: removes packets that have arrived over the links from the inboxes. A ray goes into the node's queue if the
+// queue has the free slots that the ray needs (raya_slots_for_packet()). Returns go directly to the outbox of the link
+// towards the root or, in the root, to the buffer that the host reads. A packet for which there is no free slot stays
+// in its inbox. A link transfers packets only to an empty inbox.
 //
-// One work-group is one node. It processes one inbox after another, L packets at a time, and starts with a different
-// one in each superstep:
+// One work-group is one node. It processes one inbox after another, L packets at a time. In each superstep it starts
+// with a different inbox:
 //
 //     for each link, from `turn` mod 6 on, while `work` is left:
-//         move the rays that fit to the end of the queue, close the gaps in the inbox           (empty_inbox)
-//         move the returns that fit to the outbox towards the root, close the gaps in the inbox (pass_returns)
+//         move the rays that fit to the end of the queue, close the gaps in the inbox           (accept_rays)
+//         move the returns that fit to the outbox towards the root, close the gaps in the inbox (forward_returns)
 //         write the numbers of packets that stay to the node's status
 //
-// A launch that has done its `work` starts no further inbox. The next launch (`again` = 1) continues with the remaining
-// ones.
+// A launch that has done its `work` starts no further inbox. The next launch (`resume` = 1) continues with the
+// remaining ones.
 #include "kernels/torus/moves.clh"
 
-// The queue of the node, to which rays are appended.
+// The queue of the node. Rays are appended to it.
 typedef struct {
     __global raya_packet* packets;
     uint used, capacity;  // packets
     uint new_packets;     // raya_max_new_packets() of the scene
     uint tight;           // 1: one free slot suffices for any ray
-} open_queue;
+} ray_queue;
 
-// Moves the rays that fit from an inbox to the queue. The others move to the front of the inbox. Returns their number.
-// All work-items must call it, because it has barriers.
-static inline uint empty_inbox(__global uint* inbox, open_queue* queue, vote_words votes) {
+// Moves the rays that fit from an inbox to the queue, and the others to the front of the inbox. Returns the number of
+// rays that stay in the inbox. All work-items must call it, because it has barriers.
+static inline uint accept_rays(__global uint* inbox, ray_queue* queue, vote_words votes) {
     __global raya_packet* const rays = rays_in(inbox);
     const uint item = get_local_id(0), waiting = inbox[0];
     uint taken = 0, left = 0;
     for (uint first = 0; first < waiting; first += RAYA_GROUP) {
         const uint slot = first + item;
         raya_packet packet = rays[min(slot, waiting - 1)];
-        const uint room = queue->tight ? 0 : raya_slots_for_packet(queue->new_packets, RAYA_BOUNCES, packet.head.state);
-        const int fits = queue->used + taken + item + 1 + room <= queue->capacity;
+        const uint free_slots =
+            queue->tight ? 0 : raya_slots_for_packet(queue->new_packets, RAYA_BOUNCES, packet.head.state);
+        const int fits = queue->used + taken + item + 1 + free_slots <= queue->capacity;
         const uint goal = slot >= waiting ? RAYA_NOTHING : fits ? RAYA_TAKEN : RAYA_LEFT_THERE;
         vote(votes, goal);
         node_barrier();
@@ -53,9 +54,9 @@ static inline uint empty_inbox(__global uint* inbox, open_queue* queue, vote_wor
 }
 
 // Moves as many returns as fit from an inbox to `to`, which has space for `capacity` returns and holds `used`. Returns
-// the number of moved returns. The other `left` returns move to the front of the inbox. Adds the number of moved
-// returns that the model charges as messages to `charged`. All work-items must call it, because it has barriers.
-static inline uint pass_returns(__global uint* inbox, __global raya_head* to, uint used, uint capacity, uint* left,
+// the number of moved returns. The other `left` returns move to the front of the inbox. Adds to `charged` the number of
+// moved returns that the model charges as messages. All work-items must call it, because it has barriers.
+static inline uint forward_returns(__global uint* inbox, __global raya_head* to, uint used, uint capacity, uint* left,
                                 volatile __local uint* charged) {
     __global raya_head* const returns = returns_in(inbox);
     const uint item = get_local_id(0), waiting = inbox[0], moves = min(waiting, capacity - used);
@@ -81,13 +82,13 @@ void accept(__global const uint* restrict memories,     // the words of all node
             __global const uint* restrict starts,       // [nodes + 1]: offset of each node's words
             __global const raya_run* restrict run,
             const uint tight,                           // 1: one free slot suffices for any ray
-            const uint turn,                            // number of the superstep, which decides the first link
+            const uint turn,                            // number of the superstep; selects the first link
             const uint first_node,                      // slot of the node that is work-group 0
-            __global const uint* restrict inbox_slots,  // [link][node]: slot of the inbox of the link that leads there
+            __global const uint* restrict inbox_slots,  // [link][node]: slot of the inbox of the link that ends there
             __global const uint* restrict sent,         // [link][node]: 1 if the outbox of rays has been copied
             __global const uint* restrict return_sent,  // [link][node]: 1 if the outbox of returns has been copied
             const uint work,                            // maximum work of a node in a launch: batches of L packets, > 0
-            const uint again,                           // 1: continues where the last launch ended
+            const uint resume,                          // 1: continues where the last launch ended
             __local uint* local_words,                  // RAYA_ACCEPT_WORDS
             __global raya_packet* restrict queues,      // [node][queue]
             __global uint* restrict inboxes,            // of rays (kernels/shared/traffic.h)
@@ -100,34 +101,35 @@ void accept(__global const uint* restrict memories,     // the words of all node
     const uint slot = node_slot(first_node), item = get_local_id(0), nodes = run->nodes, box = run->box;
     __global const raya_node* const header = (__global const raya_node*)(memories + starts[slot]);
     const int root = header->number == RAYA_ROOT;
-    const uint home = raya_return_link(header->torus, header->number);
-    __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, slot, box, RAYA_RETURN_WORDS);
-    __global raya_head* const homeward = root ? returns : returns_in(home_box);
+    const uint root_link = raya_return_link(header->torus, header->number);
+    __global uint* const root_outbox = return_outboxes + raya_box_at(root_link, nodes, slot, box, RAYA_RETURN_WORDS);
+    __global raya_head* const return_target = root ? returns : returns_in(root_outbox);
     status += (size_t)slot * RAYA_STATUS_WORDS;
-    if (again && !status[RAYA_STATUS_LEFT]) return;
-    const uint before = status[RAYA_STATUS_QUEUE], done = again ? RAYA_LINKS - status[RAYA_STATUS_LEFT] : 0;
-    open_queue queue = {queues + (size_t)slot * run->queue, before, run->queue,
+    if (resume && !status[RAYA_STATUS_LEFT]) return;
+    const uint before = status[RAYA_STATUS_QUEUE], done = resume ? RAYA_LINKS - status[RAYA_STATUS_LEFT] : 0;
+    ray_queue queue = {queues + (size_t)slot * run->queue, before, run->queue,
                         raya_max_new_packets(header->job.lights), tight};
-    // 1: the returns that this launch finds there have been copied, in the root read by the host.
-    const int gone = !again && (root || return_sent[(size_t)home * nodes + slot]);
-    const uint home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
-    const uint home_before = gone ? 0 : status[home_status];
-    uint home_used = home_before, spent = 0, i = done;
+    // 1: the returns now in the outbox have been copied over the link or, in the root, read by the host.
+    const int already_sent = !resume && (root || return_sent[(size_t)root_link * nodes + slot]);
+    const uint returns_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + root_link;
+    const uint returns_before = already_sent ? 0 : status[returns_status];
+    uint returns_used = returns_before, spent = 0, i = done;
     volatile __local uint* const charged = local_words;
     const vote_words votes = charged + 1;
     clear_votes(votes, RAYA_ACCEPT_GOALS);
-    if (item == 0) *charged = gone ? 0 : status[RAYA_STATUS_RETURN_CHARGED];
+    if (item == 0) *charged = already_sent ? 0 : status[RAYA_STATUS_RETURN_CHARGED];
     node_barrier();
     for (; i < RAYA_LINKS && spent < work; ++i) {
         const uint link = (i + turn) % RAYA_LINKS;
-        const uint way = inbox_slots[(size_t)link * nodes + slot];
-        __global uint* inbox = inboxes + raya_box_at(link, run->inboxes, way, box, RAYA_PACKET_WORDS);
-        __global uint* return_inbox = return_inboxes + raya_box_at(link, run->inboxes, way, box, RAYA_RETURN_WORDS);
+        const uint inbox_slot = inbox_slots[(size_t)link * nodes + slot];
+        __global uint* inbox = inboxes + raya_box_at(link, run->inboxes, inbox_slot, box, RAYA_PACKET_WORDS);
+        __global uint* return_inbox =
+            return_inboxes + raya_box_at(link, run->inboxes, inbox_slot, box, RAYA_RETURN_WORDS);
         spent += 1 + (inbox[0] + return_inbox[0]) / RAYA_GROUP;
-        const uint left = empty_inbox(inbox, &queue, votes);
+        const uint left = accept_rays(inbox, &queue, votes);
         uint returns_left;
-        home_used += pass_returns(return_inbox, homeward, home_used, root ? run->host : box, &returns_left,
-                                  charged);
+        returns_used += forward_returns(return_inbox, return_target, returns_used, root ? run->host : box,
+                                        &returns_left, charged);
         node_barrier();
         if (item) continue;
         inbox[0] = left;
@@ -138,14 +140,14 @@ void accept(__global const uint* restrict memories,     // the words of all node
     }
     if (loops_were_cut(min(run->queue, 2u))) status[RAYA_STATUS_CUT] = 1;
     if (item) return;
-    if (root) ended[(size_t)slot * RAYA_KINDS + RAYA_KIND_RETURN] += home_used - home_before;
+    if (root) ended[(size_t)slot * RAYA_KINDS + RAYA_KIND_RETURN] += returns_used - returns_before;
     else status[RAYA_STATUS_RETURN_CHARGED] = *charged;
-    status[home_status] = home_used;
+    status[returns_status] = returns_used;
     status[RAYA_STATUS_QUEUE] = queue.used;
     status[RAYA_STATUS_QUEUE_MAX] = max(status[RAYA_STATUS_QUEUE_MAX], queue.used);
     status[RAYA_STATUS_LEFT] = RAYA_LINKS - i;
     // The host has read the status before this superstep's first launch of accept, so its counts start anew.
-    const uint progress = again ? status[RAYA_STATUS_PROGRESS] : 0;
-    status[RAYA_STATUS_PROGRESS] = progress + queue.used - before + home_used - home_before;
+    const uint progress = resume ? status[RAYA_STATUS_PROGRESS] : 0;
+    status[RAYA_STATUS_PROGRESS] = progress + queue.used - before + returns_used - returns_before;
     status[RAYA_STATUS_CYCLES] = status[RAYA_STATUS_CYCLES + 1] = 0;
 }

@@ -1,6 +1,6 @@
-// exchange: copies outboxes to the inboxes at the other ends of their links. One launch copies all mailboxes of rays,
-// or all of returns. It replaces buffer copies (host/torus/link_exchange.cpp) on devices that take longer to start a
-// copy than to move a mailbox.
+// exchange: copies outboxes to the inboxes at the other ends of their links. One launch copies the mailboxes of all
+// rays, or of all returns. It replaces buffer copies (host/torus/link_exchange.cpp) on devices on which starting a copy
+// takes longer than moving a mailbox.
 //
 // Work-group g copies the outbox of link g / nodes of the node in slot g mod nodes. If the outbox holds packets and the
 // inbox at the link's other end is empty, it sets `sent` to 1 and copies; else it sets `sent` to 0:

@@ -1,4 +1,4 @@
-// inject: nodes make the packets of primary rays, as many as the limit below allows.
+// inject: nodes make the packets of primary rays, up to the limit described below.
 //
 // One work-group is one node. If the root makes all primary rays, it processes all pixels and the other nodes do
 // nothing. Else a ray that enters the box belongs to the node that holds its first voxel, and a ray that misses the box
@@ -7,13 +7,13 @@
 // (RAYA_DISCARDED).
 //
 //     from the node's next pixel on, L x V pixels of a row at a time:
-//         make their rays and find their first voxels                      (shading/camera.clh, grid/walk.clh)
+//         make their rays and find their first voxels                      (shading/camera.clh, grid/traversal.clh)
 //         append the node's own rays to the queue, as many as fit
 //         the next pixel is the first whose ray did not fit
 //
-// A node makes rays until an eighth of its queue is in use, and always leaves the slots free that the tree of one ray
-// needs. So there are free slots for packets that arrive and for packets that hits turn into. A launch also ends when
-// it has done its `work`. The next launch (`again` = 1) continues at the next pixel.
+// A node makes rays until an eighth of its queue is in use. It always leaves as many slots free as the tree of one ray
+// needs. So there are free slots for arriving packets and for the packets of secondary rays. A launch also ends when it
+// has done its `work`. The next launch (`resume` = 1) continues at the next pixel.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/torus/primaries.clh"
 
@@ -22,7 +22,7 @@
 // The queue to which a node appends primary rays, and the state that its work-items share.
 typedef struct {
     __global raya_packet* packets;  // the queue
-    uint most;                      // number of packets up to which rays are appended
+    uint max_packets;               // number of packets up to which rays are appended
     shared_words shared;            // RAYA_COUNT_WORDS
     shared_words next;              // [1]: next pixel of the row
     shared_words own;               // RAYA_VOTE_WORDS(L V): a bit for each lane's ray, 1 if it is the node's own
@@ -38,7 +38,7 @@ static inline void vote_own(const injection* to, const primaries* p) {
 #endif
 }
 
-// Returns how many of the node's own rays are in lanes of work-items before this one.
+// Returns the number of the node's own rays in the lanes of lower-numbered work-items.
 static inline uint own_before(const injection* to) {
     uint number = 0;
 #if RAYA_GROUP > 1
@@ -60,11 +60,11 @@ static inline uint put_primaries(const primaries* p, const injection* to, uint a
     lanes_index own, meets;
     own.truth = p->own;
     meets.truth = p->meets;
-    uint met = 0, made = 0, waits = end;
+    uint met = 0, made = 0, first_waiting = end;
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!own.lane[lane]) continue;
-        if (at + made >= to->most) {
-            waits = first + lane;
+        if (at + made >= to->max_packets) {
+            first_waiting = first + lane;
             break;
         }
         put_primary(to->packets + at + made, p, lane);
@@ -76,11 +76,11 @@ static inline uint put_primaries(const primaries* p, const injection* to, uint a
     count_shared(to->shared, RAYA_COUNT_PROGRESS, made);
     count_shared(to->shared, RAYA_COUNT_EVENTS + 2 * RAYA_PRIMARY, made);
     count_shared(to->shared, RAYA_COUNT_EVENTS + 2 * RAYA_WALKS, met);
-    return waits;
+    return first_waiting;
 }
 
-// Returns how many rays of the lanes belong to other nodes. Only pixels before `next` count, because the rays of the
-// others will be made again.
+// Returns how many rays of the lanes belong to other nodes. Counts only pixels before `next`: the rays of later pixels
+// will be made again.
 static inline uint discarded(const primaries* p, uint first, uint next) {
     lanes_index own;
     own.truth = p->own;
@@ -89,19 +89,19 @@ static inline uint discarded(const primaries* p, uint first, uint next) {
     return number;
 }
 
-// Makes the rays of the row from its pixel `at` on until the queue has `most` packets or the launch has done its work.
-// Returns the index of the next pixel. All work-items must call it, because it has barriers.
+// Makes the rays of the row from its pixel `at` on until the queue has `max_packets` packets or the launch has done its
+// work. Returns the index of the next pixel. All work-items must call it, because it has barriers.
 static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, injection* to) {
     const uint item = get_local_id(0);
     shared_words used = to->shared + RAYA_COUNT_USED, next = to->next;
-    for (; at < row.count && *used < to->most && to->spent < to->work; ++to->spent) {
+    for (; at < row.count && *used < to->max_packets && to->spent < to->work; ++to->spent) {
         const uint first = at + item * RAYA_LANES, end = min(row.count, at + RAYA_STEP), before = *used;
         const primaries p = make_primaries(n, row, first, stride);
         vote_own(to, &p);
         if (item == 0) *next = end;
         node_barrier();
-        const uint waits = put_primaries(&p, to, before + own_before(to), first, end);
-        if (waits < end) atomic_min(next, waits);
+        const uint first_waiting = put_primaries(&p, to, before + own_before(to), first, end);
+        if (first_waiting < end) atomic_min(next, first_waiting);
         node_barrier();
         at = *next;
         count_shared(to->shared, RAYA_COUNT_EVENTS + 2 * RAYA_DISCARDED, discarded(&p, first, at));
@@ -117,7 +117,7 @@ void inject(__global const uint* restrict memories,  // parameters without a com
             __global const raya_run* restrict run,
             const uint first_node,
             const uint work,                         // maximum work of a node in a launch: batches and rows, > 0
-            const uint again,
+            const uint resume,
             __local uint* local_words,               // RAYA_INJECT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
                                                      // of a node
             __global raya_packet* restrict queues,
@@ -135,12 +135,12 @@ void inject(__global const uint* restrict memories,  // parameters without a com
     to.work = work;
     to.spent = 0;
     status += (size_t)slot * RAYA_STATUS_WORDS;
-    if (again && !status[RAYA_STATUS_LEFT]) return;
-    open_shared(to.shared, status[RAYA_STATUS_QUEUE]);
+    if (resume && !status[RAYA_STATUS_LEFT]) return;
+    init_shared(to.shared, status[RAYA_STATUS_QUEUE]);
     clear_votes(&to);
-    const node n = open_node(memories, starts, slot, local_words + RAYA_INJECT_WORDS(RAYA_GROUP, RAYA_LANES));
-    const uint room = raya_slots_for_ray(raya_max_new_packets(((job_words)n.memory)->lights), RAYA_BOUNCES, 0);
-    to.most = min(max(capacity / 8, 1u), capacity - room);
+    const node n = load_node(memories, starts, slot, local_words + RAYA_INJECT_WORDS(RAYA_GROUP, RAYA_LANES));
+    const uint tree_slots = raya_slots_for_ray(raya_max_new_packets(((job_words)n.memory)->lights), RAYA_BOUNCES, 0);
+    to.max_packets = min(max(capacity / 8, 1u), capacity - tree_slots);
     const uint root = run->root_injects, stride = run->stride, rows = rows_of(&n, root);
     uint i = status[RAYA_STATUS_NEXT_ROW], at = status[RAYA_STATUS_NEXT_COLUMN];
     for (; i < rows && to.spent < work; ++to.spent) {

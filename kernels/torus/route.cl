@@ -8,7 +8,7 @@
 //     a packet whose outbox is full stays in the queue
 //     close the gaps in the queue
 //
-// A launch ends after `work` batches of L packets. The next launch (`again` = 1) continues with the remaining packets.
+// A launch ends after `work` batches of L packets. The next launch (`resume` = 1) continues with the remaining packets.
 // Packets that stay move to the front of the queue; the last launch sets the queue's new length.
 //
 // Routes are those of raya_next_link() and raya_return_link() (kernels/shared/torus.h).
@@ -26,8 +26,8 @@ static inline uint goal_of(const node* n, const raya_head* packet) {
     return raya_next_link(n->torus, n->number, raya_node_of(n->torus, to.at[0], to.at[1], to.at[2]));
 }
 
-// Adds the votes of L packets to the slots `used` of each goal. A packet whose outbox was full has voted for it too, so
-// a count may exceed the outbox's capacity, and the caller limits it.
+// Adds the votes of L packets to the number of slots `used` by each goal. A packet votes for its outbox even if that is
+// full. So a count may exceed the outbox's capacity, and the caller must limit it.
 static inline void count_votes(volatile __local uint* used, vote_words votes, uint goal) {
 #if RAYA_GROUP == 1
     ++used[goal];
@@ -42,7 +42,7 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
            __global const raya_run* restrict run,
            const uint first_node,
            const uint work,                          // maximum work of a node in a launch: batches of L packets, > 0
-           const uint again,                         // 1: continues where the last launch ended
+           const uint resume,                        // 1: continues where the last launch ended
            __local uint* local_words,                // RAYA_ROUTE_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
                                                      // of a node
            __global raya_packet* restrict queues,    // [node][queue]
@@ -57,21 +57,21 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
     const vote_words votes = charged + 1;
     clear_votes(votes, RAYA_GOALS);
     status += (size_t)slot * RAYA_STATUS_WORDS;
-    if (again && !status[RAYA_STATUS_LEFT]) return;
+    if (resume && !status[RAYA_STATUS_LEFT]) return;
     __global raya_packet* const queue = queues + (size_t)slot * run->queue;
-    const uint count = status[RAYA_STATUS_QUEUE], start = again ? count - status[RAYA_STATUS_LEFT] : 0;
+    const uint count = status[RAYA_STATUS_QUEUE], start = resume ? count - status[RAYA_STATUS_LEFT] : 0;
     const uint end = work < (count - start) / RAYA_GROUP ? start + work * RAYA_GROUP : count;
-    const node n = open_node(memories, starts, slot, local_words + RAYA_ROUTE_WORDS(RAYA_GROUP));
+    const node n = load_node(memories, starts, slot, local_words + RAYA_ROUTE_WORDS(RAYA_GROUP));
     const int root = n.number == RAYA_ROOT;
-    const uint home = raya_return_link(n.torus, n.number);
-    const uint home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
-    const uint home_before = status[home_status], home_limit = root ? run->host : box;
-    __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, slot, box, RAYA_RETURN_WORDS);
-    __global raya_head* const homeward = root ? returns : returns_in(home_box);
+    const uint root_link = raya_return_link(n.torus, n.number);
+    const uint returns_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + root_link;
+    const uint returns_before = status[returns_status], returns_limit = root ? run->host : box;
+    __global uint* const root_outbox = return_outboxes + raya_box_at(root_link, nodes, slot, box, RAYA_RETURN_WORDS);
+    __global raya_head* const return_target = root ? returns : returns_in(root_outbox);
     if (item == 0) {
         for (uint link = 0; link < RAYA_LINKS; ++link) used[link] = status[RAYA_STATUS_OUTBOX + link];
-        used[RAYA_TO_ROOT] = home_before;
-        used[RAYA_STAYS] = again ? status[RAYA_STATUS_KEPT] : 0;
+        used[RAYA_TO_ROOT] = returns_before;
+        used[RAYA_STAYS] = resume ? status[RAYA_STATUS_KEPT] : 0;
         used[RAYA_GONE] = 0;
         *charged = status[RAYA_STATUS_RETURN_CHARGED];
     }
@@ -82,7 +82,7 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
         uint goal = at < end ? goal_of(&n, &packet.head) : RAYA_GONE;
         vote(votes, goal);
         node_barrier();
-        const uint limit = goal < RAYA_TO_ROOT ? box : goal == RAYA_TO_ROOT ? home_limit : UINT_MAX;
+        const uint limit = goal < RAYA_TO_ROOT ? box : goal == RAYA_TO_ROOT ? returns_limit : UINT_MAX;
         if (used[goal] + votes_before(votes, goal) >= limit) goal = RAYA_STAYS;
         node_barrier();
         vote(votes, goal);
@@ -90,7 +90,7 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
         const uint place = used[goal] + votes_before(votes, goal);
         // The slot `place` has already been read by an earlier iteration or this one.
         if (goal == RAYA_STAYS) queue[place] = packet;
-        if (goal == RAYA_TO_ROOT) homeward[place] = packet.head;
+        if (goal == RAYA_TO_ROOT) return_target[place] = packet.head;
         if (goal == RAYA_TO_ROOT && packet.head.state & RAYA_STATE_CHARGED) shared_add(charged, 1);
         if (goal < RAYA_LINKS)
             rays_in(outboxes + raya_box_at(goal, nodes, slot, box, RAYA_PACKET_WORDS))[place] = packet;
@@ -102,17 +102,17 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
     }
     if (loops_were_cut(min(run->queue, 2u))) status[RAYA_STATUS_CUT] = 1;
     if (item) return;
-    const uint home_used = min(used[RAYA_TO_ROOT], home_limit);
-    uint moved = home_used - home_before;
+    const uint returns_used = min(used[RAYA_TO_ROOT], returns_limit);
+    uint moved = returns_used - returns_before;
     for (uint link = 0; link < RAYA_LINKS; ++link) {
         const uint link_used = min(used[link], box);
         moved += link_used - status[RAYA_STATUS_OUTBOX + link];
         status[RAYA_STATUS_OUTBOX + link] = link_used;
         outboxes[raya_box_at(link, nodes, slot, box, RAYA_PACKET_WORDS)] = link_used;
     }
-    if (root) ended[(size_t)slot * RAYA_KINDS + RAYA_KIND_RETURN] += home_used - home_before;
-    if (!root) home_box[0] = home_used;
-    status[home_status] = home_used;
+    if (root) ended[(size_t)slot * RAYA_KINDS + RAYA_KIND_RETURN] += returns_used - returns_before;
+    if (!root) root_outbox[0] = returns_used;
+    status[returns_status] = returns_used;
     status[RAYA_STATUS_RETURN_CHARGED] = root ? 0 : *charged;
     status[RAYA_STATUS_LEFT] = count - end;
     status[RAYA_STATUS_KEPT] = used[RAYA_STAYS];

@@ -12,14 +12,15 @@
 //             with the background
 //         a shadow ray ends at any hit; at its light it turns into a return packet. If raya_run.return_a_ray is 1, the
 //             last shadow ray of a ray always turns into a return packet
-//         all other rays move to the next voxel                                               (grid/walk.clh)
+//         all other rays move to the next voxel                                               (grid/traversal.clh)
 //
-// Wide rays (is_wide() in kernels/grid/walk.clh) must be tested against all objects. They visit all voxels in the order
-// of voxel numbers. Their packets record the voxel of the nearest hit, where they are shaded at the end.
+// Wide rays (is_wide() in kernels/grid/traversal.clh) must be tested against all objects. They visit all voxels in the
+// order of voxel numbers. Their packets record the voxel of the nearest hit. At the end they return to it and are
+// shaded there.
 //
 // A node that has done its `work` takes no more packets. The remaining packets are in the queue's first slots, because
-// the node takes packets from the end of the queue. The next launch (`again` = 1) processes them. The result is that of
-// a single launch.
+// the node takes packets from the end of the queue. The next launch (`resume` = 1) processes them. Dividing the work
+// among launches does not change the result.
 //
 // Limits: packets of a node < 2^31; events of one kind, per node and superstep, < 2^64; if costs are recorded
 // (RAYA_COSTS), cycles per packet and launch < 2^32.
@@ -29,7 +30,7 @@
 
 // Reserves slots for the packets that the packets of the lanes m may turn into. Returns the lanes for which there were
 // enough free slots. Sets `reserved` to the number of slots reserved. Shadow rays need none.
-static inline mask reserve(const node* n, const flight* f, mask m, uint* reserved) {
+static inline mask reserve(const node* n, const packet_batch* f, mask m, uint* reserved) {
     lanes_index chosen, level;
     chosen.truth = m & mask_not(is_shadow(f));
     level.all = levels_of(f);
@@ -51,12 +52,12 @@ static inline mask reserve(const node* n, const flight* f, mask m, uint* reserve
     return m & (is_shadow(f) | chosen.truth);
 }
 
-static inline void count_tests_of(flight* f, uint event, mask m, uint objects) {
+static inline void count_tests_of(packet_batch* f, uint event, mask m, uint objects) {
     count_events(f, event, mask_count(m) * objects);
     add_cost(f, event, m, objects);
 }
 
-static inline void count_tests(flight* f, mask m, objects_words all) {
+static inline void count_tests(packet_batch* f, mask m, objects_words all) {
     count_tests_of(f, RAYA_SPHERE_TESTS, m, all->spheres);
     count_tests_of(f, RAYA_PLANE_TESTS, m, all->planes);
     count_tests_of(f, RAYA_POLYGON_TESTS, m, all->polygons);
@@ -64,7 +65,7 @@ static inline void count_tests(flight* f, mask m, objects_words all) {
 }
 
 // Moves the packets of the lanes m to the voxels `place`.
-static inline void move_packets(flight* f, mask m, index place) {
+static inline void move_packets(packet_batch* f, mask m, index place) {
     lanes_index chosen, to;
     chosen.truth = m;
     to.all = place;
@@ -77,7 +78,7 @@ static inline void move_packets(flight* f, mask m, index place) {
 
 // Processes the packets of the lanes m. All are in the voxel `place` of this node, or outside the box if `place` is
 // RAYA_NO_VOXEL.
-static inline void process(const node* n, flight* f, mask m, uint place) {
+static inline void process(const node* n, packet_batch* f, mask m, uint place) {
     const uint before = f->appended;
     uint reserved;
     m = reserve(n, f, m, &reserved);
@@ -97,8 +98,8 @@ static inline void process(const node* n, flight* f, mask m, uint place) {
     count_shared(f->shared, RAYA_COUNT_PROGRESS, mask_count(m));
     if (!outside) count_event(f, RAYA_STEPS, m & mask_not(has_flag(f, RAYA_STATE_FOUND)));
     const mask wide = m & has_flag(f, RAYA_STATE_WIDE);
-    outcome o = walk_on(n, f, r, m & mask_not(wide), place, h);
-    if (mask_any(wide)) o = merge_outcomes(o, tour_on(n, f, voxel, wide, place, h), wide);
+    outcome o = walk_outcome(n, f, r, m & mask_not(wide), place, h);
+    if (mask_any(wide)) o = merge_outcomes(o, tour_outcome(n, f, voxel, wide, place, h), wide);
     move_packets(f, o.moves, o.place);
     const vec background = vec_all(((job_words)n->memory)->background);
     if (mask_any(o.missed))
@@ -110,8 +111,8 @@ static inline void process(const node* n, flight* f, mask m, uint place) {
 }
 
 #if RAYA_COSTS
-// Records the costs of the flight's packets, which are in the slots f->first .. end - 1.
-static inline void record_costs(const flight* f, uint end, __global raya_processed* processed) {
+// Records the costs of the batch's packets, which are in the slots f->first .. end - 1.
+static inline void record_costs(const packet_batch* f, uint end, __global raya_processed* processed) {
     for (uint lane = 0; lane < RAYA_LANES && f->first + lane < end; ++lane) {
         __global raya_processed* t = processed + f->first + lane;
         t->pixel = f->pixel.lane[lane];
@@ -124,8 +125,8 @@ static inline void record_costs(const flight* f, uint end, __global raya_process
 
 // Processes the packets in the queue's slots first .. end - 1, at most V. Skips packets that are in other nodes'
 // voxels.
-RAYA_KERNEL_BODY void process_slots(const node* n, flight* f, uint first, uint end) {
-    load_flight(f, first, end);
+RAYA_KERNEL_BODY void process_slots(const node* n, packet_batch* f, uint first, uint end) {
+    load_batch(f, first, end);
     lanes_index waiting;
     const index kind = kinds_of(f);
     waiting.truth = (kind != (index)(RAYA_KIND_NONE)) & (kind != (index)(RAYA_KIND_RETURN));
@@ -146,7 +147,7 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
                  const uint tight,                        // 1: a ray needs free slots only for the packets of one
                                                           // hit, not for its whole tree
                  const uint work,                         // maximum RAYA_COUNT_WORK of a node in a launch, > 0
-                 const uint again,                        // 1: continues where the last launch ended
+                 const uint resume,                       // 1: continues where the last launch ended
                  __local uint* local_words,               // RAYA_COUNT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the
                                                           // words of a node
                  __global raya_packet* restrict queues,   // [node][queue]
@@ -158,16 +159,16 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
 {
     const uint slot = node_slot(first_node), item = get_local_id(0);
     status += (size_t)slot * RAYA_STATUS_WORDS;
-    const uint count = status[again ? RAYA_STATUS_LEFT : RAYA_STATUS_QUEUE];
-    if (again && count == 0) return;
-    flight f;
+    const uint count = status[resume ? RAYA_STATUS_LEFT : RAYA_STATUS_QUEUE];
+    if (resume && count == 0) return;
+    packet_batch f;
     f.queue = queues + (size_t)slot * run->queue;
     f.capacity = run->queue;
     f.tight = tight;
     f.charged = run->return_a_ray ? 0 : RAYA_STATE_CHARGED;
     f.shared = local_words;
-    open_shared(f.shared, status[RAYA_STATUS_QUEUE]);
-    const node n = open_node(memories, starts, slot, local_words + RAYA_COUNT_WORDS);
+    init_shared(f.shared, status[RAYA_STATUS_QUEUE]);
+    const node n = load_node(memories, starts, slot, local_words + RAYA_COUNT_WORDS);
 #if RAYA_COSTS
     f.job = (job_words)n.memory;
     processed += (size_t)slot * run->queue;

@@ -10,7 +10,7 @@
 #include "host/scene/polygon.hpp"
 #include "host/scene/scene.hpp"
 #include "host/scene/split_mix.hpp"
-#include "tests/accel/random_walks.hpp"
+#include "tests/accel/random_grids.hpp"
 #include "tests/kernels/random_scene.hpp"
 #include "tests/reference/reference.hpp"
 
@@ -99,29 +99,30 @@ inline Aim aim_at(SplitMix& random, const Scene& scene, std::size_t number) {
 
 /// Returns the distance from a point along a direction to the border of the cube of allowed origins (coordinates up to
 /// `reach`).
-inline double way_out(const RayBounds& bounds, const Vec3& from, const Vec3& direction) {
-    double way = std::numeric_limits<double>::infinity();
+inline double distance_within_reach(const RayBounds& bounds, const Vec3& from, const Vec3& direction) {
+    double distance = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
         if (direction[axis] != 0)
-            way = std::min(way, (std::copysign(bounds.reach, direction[axis]) - from[axis]) / direction[axis]);
-    return std::max(way, 0.0);
+            distance =
+                std::min(distance, (std::copysign(bounds.reach, direction[axis]) - from[axis]) / direction[axis]);
+    return std::max(distance, 0.0);
 }
 
 inline Vec3 random_start(SplitMix& random, const RayBounds& bounds, const Aim& aim) {
     const bool grazes = below(random, 2) == 0;
     const Vec3 away = grazes ? (below(random, 2) == 0 ? 1.0 : -1.0) * aim.tangent : random_direction(random);
-    const double way = way_out(bounds, aim.point, away);
+    const double distance = distance_within_reach(bounds, aim.point, away);
     switch (below(random, 4)) {
         case 0:
-            return aim.point + way * away;
+            return aim.point + distance * away;
         case 1:
-            return aim.point + random.uniform(0, way) * away;
+            return aim.point + random.uniform(0, distance) * away;
         case 2:
-            return aim.point + way * std::exp2(random.uniform(-12, 0)) * away;
+            return aim.point + distance * std::exp2(random.uniform(-12, 0)) * away;
         default: {  // a corner of the cube of allowed origins
             Vec3 corner;
             for (int axis = 0; axis < 3; ++axis) corner[axis] = (below(random, 2) == 0 ? 1 : -1) * bounds.reach;
-            return grazes ? aim.point + way * away : corner;
+            return grazes ? aim.point + distance * away : corner;
         }
     }
 }
@@ -134,8 +135,8 @@ inline reference::Ray random_aimed_ray(SplitMix& random, const RayBounds& bounds
     for (;;) {
         const Vec3 start = bounds.rounded(random_start(random, bounds, aim));
         const Vec3 arm = aim.point - start;
-        const double apart = arm.length(), blur = below(random, 4) * bounds.unit() * random.uniform(0, 7) * apart;
-        if (apart == 0) continue;
+        const double distance = arm.length(), blur = below(random, 4) * bounds.unit() * random.uniform(0, 7) * distance;
+        if (distance == 0) continue;
         const double length = below(random, 2) == 0 ? 1 : 1 + random.uniform(-0.5, 0.5) * stretch;
         const Vec3 d = bounds.rounded(length * (arm + blur * random_direction(random)).normalized());
         double farthest = 0;

@@ -8,7 +8,7 @@
 
 #include "host/accel/partition.hpp"
 #include "tests/accel/hits_of_one.hpp"
-#include "tests/accel/random_walks.hpp"
+#include "tests/accel/random_grids.hpp"
 
 namespace raya {
 
@@ -38,7 +38,7 @@ inline Partition partition_of(const Scene& scene, const std::string& format, con
 
 /// Returns half of the error that the partition allows for a ray whose origin is at `reach`. (The tests of the
 /// traversal allow a quarter.)
-inline double walk_error(const raya_grid& grid) {
+inline double traversal_error(const raya_grid& grid) {
     double largest = grid.reach;
     for (std::uint32_t axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(double{grid.low[axis]})});
     return 8 * 0x1p-24 * largest;
@@ -52,8 +52,8 @@ inline Divisions random_divisions(SplitMix& random) {
 
 /// Returns a random scale of a scene, up to the largest and down to the smallest sizes that the format can represent.
 inline double random_scale(SplitMix& random, const NumberFormat& format) {
-    const double room = format.exponent_bits == 5 ? 2 : format.exponent_bits == 6 ? 8 : 16;
-    return std::exp2(random.uniform(-room, room));
+    const double max_exponent = format.exponent_bits == 5 ? 2 : format.exponent_bits == 6 ? 8 : 16;
+    return std::exp2(random.uniform(-max_exponent, max_exponent));
 }
 
 }  // namespace raya

@@ -29,7 +29,7 @@ void add_star(Scene& scene, SplitMix& random) {
 }
 
 // Returns objects of all kinds close together, so that boxes overlap.
-Scene crowd(SplitMix& random, int of_each) {
+Scene crowded_objects(SplitMix& random, int of_each) {
     Scene scene = empty_scene();
     for (int i = 0; i < of_each; ++i) {
         for (const ObjectKind& kind : object_kinds())
@@ -69,7 +69,7 @@ Tally compare(const Variant& variant, unsigned cases) {
     for (unsigned seed = 1; seed <= cases; ++seed) {
         SplitMix random(seed);
         const double scale = random_scale(random, variant.format);
-        const Scene scene = of_all_sizes(crowd(random, 12), random, scale);
+        const Scene scene = of_all_sizes(crowded_objects(random, 12), random, scale);
         PackedJob job = job_in(scene, variant.format);
         append_bvh(job, variant.format);
         const RayBounds bounds{variant.format, 2.0 * job.header().extent};
@@ -117,7 +117,8 @@ TEST_CASE("boxes without a margin, a missing edge and filters without a bound ar
         {"fp32",
          {"bvh/leaves.clh", "edge < edges; edge += RAYA_LANES)\n        crossed",
           "edge + 1 < edges; ++edge)\n        crossed"}},
-        {"spa22", {"geometry/outline_filter.clh", "(fabs(rising - falling) > off)", "(fabs(rising - falling) > 0.0f)"}},
+        {"spa22",
+         {"geometry/outline_filter.clh", "(fabs(rising - falling) > error)", "(fabs(rising - falling) > 0.0f)"}},
         {"fp32", {"bvh/boxes.clh", "near <= far;", "near < far * (1.0f - 0x1p-12f);"}}};
     for (const auto& [name, patch] : quick_of(2, faults)) {
         const NumberFormat format = parse_format(name);

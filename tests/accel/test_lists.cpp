@@ -52,7 +52,7 @@ void check_lists(const PackedJob& job, const Partition& p) {
 }
 
 /// Returns a scene with spheres and other objects in one place, so that every list contains all of them.
-Scene heap(std::size_t spheres, std::size_t others) {
+Scene overlapping_objects(std::size_t spheres, std::size_t others) {
     Scene scene = empty_scene();
     SplitMix random(spheres * 1000 + others);
     for (std::size_t i = 0; i < spheres; ++i) add_sphere(scene, random, 1);
@@ -70,19 +70,19 @@ TEST_CASE("a grid's words hold the lists of the partition, and the job's words d
         const std::vector<std::uint32_t> before = job.words();
         const Divisions divisions = random_divisions(random);
         const std::vector<std::uint32_t> finite = finite_numbers(job);
-        std::vector<std::uint32_t> apart;
+        std::vector<std::uint32_t> separate;
         for (const std::uint32_t number : finite)
-            if (below(random, 5) == 0) apart.push_back(number);
-        const Partition p = partition(job, format, divisions, apart);
+            if (below(random, 5) == 0) separate.push_back(number);
+        const Partition p = partition(job, format, divisions, separate);
         const AccelSummary summary = append_grid(job, p);
-        CAPTURE(seed, divisions, apart);
+        CAPTURE(seed, divisions, separate);
         check_lists(job, p);
         const raya_grid_words grid = grid_of(job);
-        CHECK(std::vector<std::uint32_t>(job.words().begin() + grid.apart_at,
-                                         job.words().begin() + grid.apart_at + grid.apart) == apart);
+        CHECK(std::vector<std::uint32_t>(job.words().begin() + grid.separate_at,
+                                         job.words().begin() + grid.separate_at + grid.separate) == separate);
         CHECK(std::memcmp(&grid.grid, &p.grid, sizeof p.grid) == 0);
         CHECK(summary.copies == p.copies());
-        CHECK(summary.apart == apart.size());
+        CHECK(summary.separate == separate.size());
         CHECK(summary.divisions == divisions);
         CHECK(job.words().size() - before.size() == summary.words);
         raya_job unlinked = job.header();
@@ -95,7 +95,7 @@ TEST_CASE("a grid's words hold the lists of the partition, and the job's words d
 TEST_CASE("lists of every length are complete, across several voxel words and links to other objects") {
     for (const std::size_t spheres : {0u, 1u, 30u, 31u, 32u, 61u, 62u, 63u, 93u, 94u, 200u})
         for (const std::size_t others : {0u, 1u, 2u, 40u}) {
-            PackedJob job = job_in(heap(spheres, others), {});
+            PackedJob job = job_in(overlapping_objects(spheres, others), {});
             CAPTURE(spheres, others);
             const Partition p = partition(job, {}, {1, 1, 1});
             REQUIRE(p.objects.size() == spheres + others);

@@ -128,7 +128,7 @@ TEST_CASE("an object that ends just before a plane is registered on both sides")
         scene.spheres.push_back({random_point(random, 0.3), 0.125, 0});
         const PackedJob before = job_in(scene, {});
         const raya_grid grid = partition(before, {}, {2, 2, 2}).grid;
-        const double slack = walk_error(grid), plane = raya_voxel_plane(grid, 0, 1);
+        const double slack = traversal_error(grid), plane = raya_voxel_plane(grid, 0, 1);
         const Box box = HitRegions(before, {}).region(2).box;
         scene.spheres[2].centre.x += plane - slack - box.max.x;
         const Partition p = partition_of(scene, "fp32", {2, 2, 2});
@@ -171,8 +171,8 @@ TEST_CASE("the box contains all finite objects, and its sides are never 0") {
             REQUIRE(low < high);
             for (std::size_t i = 0; i < regions.size() && regions.known(); ++i) {
                 const Box box = regions.region(i).box;
-                REQUIRE(low + walk_error(grid) < box.min[static_cast<int>(axis)]);
-                REQUIRE(high - walk_error(grid) > box.max[static_cast<int>(axis)]);
+                REQUIRE(low + traversal_error(grid) < box.min[static_cast<int>(axis)]);
+                REQUIRE(high - traversal_error(grid) > box.max[static_cast<int>(axis)]);
             }
         }
     }

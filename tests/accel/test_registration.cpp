@@ -16,13 +16,13 @@ namespace {
 
 const std::vector<std::string> kScenes = {"spheres", "planes", "polygons", "cones", "mirrors", "glass"};
 
-std::uint64_t cases_wanted() {
+std::uint64_t case_count() {
     const char* given = std::getenv("RAYA_REGISTRATION_CASES");
     return given ? std::strtoull(given, nullptr, 10) : 20;
 }
 
 // Returns true if at least one voxel lies within `error` of the point and all such voxels list the object.
-bool listed_about(const Partition& p, const Vec3& point, double error, std::uint32_t object) {
+bool is_listed_near(const Partition& p, const Vec3& point, double error, std::uint32_t object) {
     std::array<std::vector<std::uint32_t>, 3> at;
     for (std::uint32_t axis = 0; axis < 3; ++axis)
         for (std::uint32_t k = 0; k < p.grid.divisions[axis]; ++k) {
@@ -42,7 +42,7 @@ std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scen
                        int turns) {
     const PackedJob job = job_in(scene, format);
     const Partition p = partition(job, format, random_divisions(random));
-    const double error = walk_error(p.grid), extent = job.header().extent;
+    const double error = traversal_error(p.grid), extent = job.header().extent;
     const RayBounds bounds{format, std::min(2 * extent, double{p.grid.reach})};
     const std::vector<FoundHit> hits = hits_of_one(runner, job, aim_at_all(random, scene, bounds, turns));
     const HitRegions regions(job, format);
@@ -52,7 +52,7 @@ std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scen
         const auto i = std::lower_bound(numbers.begin(), numbers.end(), hit.object) - numbers.begin();
         const bool in_region =
             !regions.known() || regions.region(static_cast<std::size_t>(i)).touches(Box(point, point));
-        if (in_region && listed_about(p, point, error, hit.object)) continue;
+        if (in_region && is_listed_near(p, point, error, hit.object)) continue;
         CAPTURE(scene.name, format_name(format), p.grid.divisions, hit.object, hit.ray.origin, hit.ray.direction, hit.t,
                 point);
         FAIL((in_region ? "a hit in a voxel that does not list its object" : "a hit outside its object's region"));
@@ -70,7 +70,7 @@ TEST_CASE("every hit lies in voxels that list its object") {
         const NumberFormat format = parse_format(name);
         KernelRunner runner("tests/accel/hits_probe.cl", {4, true, format});
         for (const ObjectKind& kind : object_kinds())
-            for (std::uint64_t seed = 0; seed < cases_wanted() && kind.name != "plane"; ++seed, ++cases) {
+            for (std::uint64_t seed = 0; seed < case_count() && kind.name != "plane"; ++seed, ++cases) {
                 SplitMix random(seed);
                 CAPTURE(kind.name, seed);
                 const double scale = random_scale(random, format);
@@ -81,7 +81,7 @@ TEST_CASE("every hit lies in voxels that list its object") {
             hits += check_hits(runner, random, scene_of(scene), format, 1);
         }
     }
-    CHECK(cases == 7 * 7 * cases_wanted());
+    CHECK(cases == 7 * 7 * case_count());
     CHECK(hits > 80 * cases);
 }
 

@@ -1,9 +1,9 @@
-// Compares the traversal by stepper.clh with that by walk.clh: both visit the same voxels and leave them at the same t,
-// bit for bit, until the ray leaves the box.
+// Compares the traversal by stepper.clh with that by traversal.clh: both visit the same voxels and leave them at the
+// same t, bit for bit, until the ray leaves the box.
 #include <catch2/catch.hpp>
 
 #include "host/scene/packer.hpp"
-#include "tests/accel/random_walks.hpp"
+#include "tests/accel/random_grids.hpp"
 #include "tests/kernels/kernel_runner.hpp"
 #include "tests/kernels/probe.hpp"
 
@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kGrids = 40, kRays = 1024;  // rays per grid
 
-struct Walks {
-    std::vector<std::uint32_t> voxels;  // [ray][most]: voxel numbers, RAYA_NO_VOXEL after the last
-    std::vector<float> leaves;          // [ray][most]: t at which the ray leaves each voxel
+struct SteppedVoxels {
+    std::vector<std::uint32_t> voxels;  // [ray][max_count]: voxel numbers, RAYA_NO_VOXEL after the last
+    std::vector<float> leaves;          // [ray][max_count]: t at which the ray leaves each voxel
 };
 
 std::vector<std::uint32_t> words_of(const raya_grid& grid) {
@@ -23,66 +23,67 @@ std::vector<std::uint32_t> words_of(const raya_grid& grid) {
     return words;
 }
 
-Walks plain_walks(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
+SteppedVoxels plain_traversal(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
     const std::size_t count = rays.size() / 7;
-    const std::uint32_t most = most_voxels(grid);
+    const std::uint32_t max_count = max_voxels(grid);
     const auto grid_buffer = runner.filled("grid", words_of(grid));
     const auto ray_buffer = runner.filled("rays", rays);
     auto wide = runner.constant<std::uint32_t>("wide", count, 0);
-    auto voxels = runner.constant<std::uint32_t>("voxels", count * most, RAYA_NO_VOXEL);
-    auto leaves = runner.constant<float>("leaves", count * most, 0);
+    auto voxels = runner.constant<std::uint32_t>("voxels", count * max_count, RAYA_NO_VOXEL);
+    auto leaves = runner.constant<float>("leaves", count * max_count, 0);
     runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&,
-                    Buffer<std::uint32_t>&, Buffer<float>&>("walks", count, grid_buffer, ray_buffer, most, wide, voxels,
-                                                            leaves);
+                    Buffer<std::uint32_t>&, Buffer<float>&>("traverse", count, grid_buffer, ray_buffer, max_count, wide,
+                                                            voxels, leaves);
     return {runner.read(voxels), runner.read(leaves)};
 }
 
-Walks stepped_walks(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
+SteppedVoxels stepped_traversal(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
     const std::size_t count = rays.size() / 7;
-    const std::uint32_t most = most_voxels(grid);
+    const std::uint32_t max_count = max_voxels(grid);
     const auto grid_buffer = runner.filled("grid", words_of(grid));
     const auto ray_buffer = runner.filled("rays", rays);
-    auto voxels = runner.constant<std::uint32_t>("voxels", count * most, RAYA_NO_VOXEL);
-    auto leaves = runner.constant<float>("leaves", count * most, 0);
+    auto voxels = runner.constant<std::uint32_t>("voxels", count * max_count, RAYA_NO_VOXEL);
+    auto leaves = runner.constant<float>("leaves", count * max_count, 0);
     runner
         .run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&, Buffer<float>&>(
-            "stepped_walks", count, grid_buffer, ray_buffer, most, voxels, leaves);
+            "stepped_traversal", count, grid_buffer, ray_buffer, max_count, voxels, leaves);
     return {runner.read(voxels), runner.read(leaves)};
 }
 
-/// Returns the number of voxels that stepper.clh must visit, given the voxels that walk.clh visits. stepper.clh skips
-/// the last voxels if the ray crosses them with length 0, as where it leaves the box through an edge.
-std::size_t end_of_walk(const Walks& w, std::size_t ray, std::uint32_t most) {
+/// Returns the number of voxels that stepper.clh must visit, given the voxels that traversal.clh visits. stepper.clh
+/// skips the last voxels if the ray crosses them with length 0, as where it leaves the box through an edge.
+std::size_t voxels_until_end(const SteppedVoxels& w, std::size_t ray, std::uint32_t max_count) {
     std::size_t count = 0;
-    while (count < most && w.voxels[ray * most + count] != RAYA_NO_VOXEL) ++count;
-    while (count > 1 && w.leaves[ray * most + count - 2] == w.leaves[ray * most + count - 1]) --count;
+    while (count < max_count && w.voxels[ray * max_count + count] != RAYA_NO_VOXEL) ++count;
+    while (count > 1 && w.leaves[ray * max_count + count - 2] == w.leaves[ray * max_count + count - 1]) --count;
     return count;
 }
 
 }  // namespace
 
-TEST_CASE("for every number of lanes, steps visit the voxels of the walk at the same t") {
+TEST_CASE("for every number of lanes, the stepper visits the voxels of the plain traversal at the same t") {
     std::size_t steps = 0;
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
-        KernelRunner plain("tests/accel/walk_probe.cl", {lanes, true}),
+        KernelRunner plain("tests/accel/traversal_probe.cl", {lanes, true}),
             stepped("tests/accel/stepper_probe.cl", {lanes, true});
         for (std::uint64_t seed = 0; seed < kGrids; ++seed) {
             SplitMix random(seed);
             const raya_grid grid = random_grid(random);
             std::vector<reference::Ray> rays;
-            for (std::size_t i = 0; i < kRays; ++i) rays.push_back(random_walk_ray(random, grid));
+            for (std::size_t i = 0; i < kRays; ++i) rays.push_back(random_grid_ray(random, grid));
             const std::vector<float> words = ray_words(rays);
-            const Walks expected = plain_walks(plain, grid, words), found = stepped_walks(stepped, grid, words);
-            const std::uint32_t most = most_voxels(grid);
+            const SteppedVoxels expected = plain_traversal(plain, grid, words),
+                                found = stepped_traversal(stepped, grid, words);
+            const std::uint32_t max_count = max_voxels(grid);
             for (std::size_t ray = 0; ray < kRays; ++ray) {
-                const std::size_t end = end_of_walk(expected, ray, most);
+                const std::size_t end = voxels_until_end(expected, ray, max_count);
                 CAPTURE(lanes, seed, ray, end);
-                std::size_t i = ray * most;
-                for (; i < ray * most + end; ++i) {
+                std::size_t i = ray * max_count;
+                for (; i < ray * max_count + end; ++i) {
                     if (found.voxels[i] != expected.voxels[i]) FAIL("another voxel");
                     if (bits({found.leaves[i]}) != bits({expected.leaves[i]})) FAIL("left at another t");
                 }
-                if (i < (ray + 1) * most) REQUIRE(found.voxels[i] == RAYA_NO_VOXEL);
+                if (i < (ray + 1) * max_count) REQUIRE(found.voxels[i] == RAYA_NO_VOXEL);
                 steps += end;
             }
         }

@@ -11,15 +11,15 @@
 namespace raya {
 namespace {
 
-BvhItem item_at(SplitMix& random, std::uint32_t number, double size, int way) {
+BvhItem item_at(SplitMix& random, std::uint32_t number, double size, int layout) {
     constexpr std::array<std::uint32_t, 4> kinds = {RAYA_LINK_SPHERES, RAYA_LINK_FACES, RAYA_LINK_POLYGON,
                                                     RAYA_LINK_OBJECT};
     BvhItem item{{}, number, kinds[number % kinds.size()]};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double at = way == 0   ? random.uniform(-1, 1)
-                          : way == 1 ? 0.25                                               // all items in one place
-                          : way == 2 ? std::pow(2.0, -double(number % 60)) * (axis == 0)  // closer and closer together
-                                     : number % 7;                                        // in few places
+        const double at = layout == 0   ? random.uniform(-1, 1)
+                          : layout == 1 ? 0.25                                               // all items in one place
+                          : layout == 2 ? std::pow(2.0, -double(number % 60)) * (axis == 0)  // ever closer together
+                                        : number % 7;                                        // in few places
         item.box.low[axis] = static_cast<float>(at - size);
         item.box.high[axis] = static_cast<float>(at + size * random.uniform(0.5, 2));
     }
@@ -67,12 +67,12 @@ std::uint32_t check_child(const Bvh& tree, const BvhChild& child, std::multiset<
 TEST_CASE("BVH: every item is in one leaf of its kind, and boxes are tight", "[tree]") {
     for (unsigned seed = 1; seed <= quick_cases(60, 600); ++seed) {
         SplitMix random(seed);
-        const int way = static_cast<int>(seed % 4);
+        const int layout = static_cast<int>(seed % 4);
         const auto count = static_cast<std::uint32_t>(1 + random.next() % (seed % 5 == 0 ? 3000 : 100));
         std::vector<BvhItem> items;
-        for (std::uint32_t i = 0; i < count; ++i) items.push_back(item_at(random, i, 0.01, way));
+        for (std::uint32_t i = 0; i < count; ++i) items.push_back(item_at(random, i, 0.01, layout));
         const Bvh tree = build_bvh(items);
-        CAPTURE(seed, count, way);
+        CAPTURE(seed, count, layout);
         std::multiset<std::uint32_t> numbers;
         CHECK(check_child(tree, tree.root, numbers) == tree.depth);
         CHECK(numbers.size() == count);
@@ -80,9 +80,9 @@ TEST_CASE("BVH: every item is in one leaf of its kind, and boxes are tight", "[t
         CHECK(tree.depth <= 40);
         // The tree does not depend on the order of the items.
         std::reverse(items.begin(), items.end());
-        const Bvh again = build_bvh(items);
-        REQUIRE(again.items.size() == tree.items.size());
-        for (std::size_t i = 0; i < count; ++i) CHECK(again.items[i].number == tree.items[i].number);
+        const Bvh rebuilt = build_bvh(items);
+        REQUIRE(rebuilt.items.size() == tree.items.size());
+        for (std::size_t i = 0; i < count; ++i) CHECK(rebuilt.items[i].number == tree.items[i].number);
     }
 }
 

@@ -23,7 +23,7 @@ TEST_CASE("a document contains the given members in the given order") {
                        {"array", std::array{1u, 2u}},
                        {"none", std::optional<int>()},
                        {"one", std::optional<int>(1)},
-                       {"empty", Json::list()},
+                       {"empty", Json::array()},
                        {"object", {{"a", 1}, {"b", Json::object()}}}};
     CHECK(json.dump() == R"({"z":null,"truth":true,"small":-3,"large":18446744073709551615,"third":0.3333333333333333,)"
                          R"("text":"a \"b\"\n","list":[1.5,2.0],"array":[1,2],"none":null,"one":1,"empty":[],)"
@@ -50,17 +50,17 @@ TEST_CASE("members are added once, and a null becomes an object or a list on fir
 
 TEST_CASE("reading a value as another kind is an error") {
     const Json json = parsed(R"({"n": 3, "x": 2.5, "m": -1, "t": "word", "l": ["a", "b"]})");
-    CHECK(json.at("n").whole() == 3);
+    CHECK(json.at("n").integer() == 3);
     CHECK(json.at("n").number() == 3.0);
     CHECK(json.at("m").number() == -1.0);
     CHECK(json.at("x").number() == 2.5);
-    CHECK(json.at("l").texts() == std::vector<std::string>{"a", "b"});
+    CHECK(json.at("l").strings() == std::vector<std::string>{"a", "b"});
     CHECK_THROWS_WITH(json.at("k"), "'k' is missing");
     CHECK_THROWS_WITH(json.at("t").number(), "\"word\" is not a number");
     CHECK_THROWS_WITH(json.at("l").number(), "an array is not a number");
-    CHECK_THROWS_WITH(json.at("x").whole(), "2.5 is not a whole number");
-    CHECK_THROWS_WITH(json.at("m").whole(), "-1 is negative");
-    CHECK_THROWS_WITH(json.at("n").whole(2), "3 is more than 2");
+    CHECK_THROWS_WITH(json.at("x").integer(), "2.5 is not a whole number");
+    CHECK_THROWS_WITH(json.at("m").integer(), "-1 is negative");
+    CHECK_THROWS_WITH(json.at("n").integer(2), "3 is more than 2");
     CHECK_THROWS_WITH(json.at("n").text(), "3 is not a string");
     CHECK_THROWS_WITH(json.at("n").elements(), "3 is not an array");
     const Json copy = json;
@@ -68,7 +68,7 @@ TEST_CASE("reading a value as another kind is an error") {
 }
 
 TEST_CASE("a syntax error names file, line and member") {
-    const auto refusal = [](const std::string& text) -> std::string {
+    const auto parse_error_message = [](const std::string& text) -> std::string {
         try {
             parsed(text);
         } catch (const UserError& error) {
@@ -76,26 +76,27 @@ TEST_CASE("a syntax error names file, line and member") {
         }
         return "accepted";
     };
-    CHECK(refusal("") == "x.json:1: not valid JSON (byte 1)");
-    CHECK(refusal("{\"a\":\n ?}") == "x.json:2: not valid JSON (byte 8)");
-    CHECK(refusal("[1, 2\n") == "x.json:2: not valid JSON (byte 7)");
-    CHECK(refusal("{}\n{}") == "x.json:2: not valid JSON (byte 4)");
-    CHECK(refusal(std::string("{}\n\0{}", 6)) == "x.json:2: not valid JSON (byte 4)");
-    CHECK(refusal("[\"\xff\"]") == "x.json:1: not valid JSON (byte 3)");
-    CHECK(refusal("1e400") == "x.json:1: 1e400 is outside the range of double precision");
-    CHECK(refusal("{\"a\": [1,\n{\"b\": -1e400}]}") ==
+    CHECK(parse_error_message("") == "x.json:1: not valid JSON (byte 1)");
+    CHECK(parse_error_message("{\"a\":\n ?}") == "x.json:2: not valid JSON (byte 8)");
+    CHECK(parse_error_message("[1, 2\n") == "x.json:2: not valid JSON (byte 7)");
+    CHECK(parse_error_message("{}\n{}") == "x.json:2: not valid JSON (byte 4)");
+    CHECK(parse_error_message(std::string("{}\n\0{}", 6)) == "x.json:2: not valid JSON (byte 4)");
+    CHECK(parse_error_message("[\"\xff\"]") == "x.json:1: not valid JSON (byte 3)");
+    CHECK(parse_error_message("1e400") == "x.json:1: 1e400 is outside the range of double precision");
+    CHECK(parse_error_message("{\"a\": [1,\n{\"b\": -1e400}]}") ==
           "x.json:2: a[1].b: -1e400 is outside the range of double precision");
-    CHECK(refusal("[1" + std::string(1000, '0') + "]").size() < 120);
-    CHECK(refusal("{\"a\": {\"b\": 1, \"c\": 2,\n\"b\": 3}}") == "x.json:2: a.b: the object has this member twice");
+    CHECK(parse_error_message("[1" + std::string(1000, '0') + "]").size() < 120);
+    CHECK(parse_error_message("{\"a\": {\"b\": 1, \"c\": 2,\n\"b\": 3}}") ==
+          "x.json:2: a.b: the object has this member twice");
     const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
     CHECK(parsed(nested(100)).dump() == nested(100));
-    CHECK(refusal(nested(101)) == "x.json:1: nested more than 100 levels deep");
-    CHECK(refusal(nested(1'000'000)) == refusal(nested(101)));
+    CHECK(parse_error_message(nested(101)) == "x.json:1: nested more than 100 levels deep");
+    CHECK(parse_error_message(nested(1'000'000)) == parse_error_message(nested(101)));
     CHECK(parsed("\xEF\xBB\xBF[1e-400]").elements()[0].number() == 0);
 }
 
 TEST_CASE("an error of a reader names file, line, member and remedy") {
-    const auto refusal = [](const std::string& text, const auto& read) -> std::string {
+    const auto parse_error_message = [](const std::string& text, const auto& read) -> std::string {
         try {
             read_json(text, {"x.json", "write it anew"}, read);
         } catch (const UserError& error) {
@@ -106,15 +107,15 @@ TEST_CASE("an error of a reader names file, line, member and remedy") {
     const std::string text =
         "{\"rows\": [\n{\"ms\": 1},\n{\"ms\": {\"best\":\n\"" + std::string(5'000'000, 'b') + "\"}}]}";
     const auto row = [](const Json& json) -> const Json& { return json.at("rows").elements()[1]; };
-    CHECK(refusal(text, [&](const Json& json) { return row(json).at("ms").at("best").number(); }) ==
+    CHECK(parse_error_message(text, [&](const Json& json) { return row(json).at("ms").at("best").number(); }) ==
           "x.json:4: rows[1].ms.best: \"" + std::string(39, 'b') + "... is not a number; remedy: write it anew");
-    CHECK(refusal(text, [&](const Json& json) { return row(json).at("hash").text(); }) ==
+    CHECK(parse_error_message(text, [&](const Json& json) { return row(json).at("hash").text(); }) ==
           "x.json:3: rows[1]: 'hash' is missing; remedy: write it anew");
-    CHECK(refusal(text, [](const Json& json) { return json.at("kind").text(); }) ==
+    CHECK(parse_error_message(text, [](const Json& json) { return json.at("kind").text(); }) ==
           "x.json:1: 'kind' is missing; remedy: write it anew");
-    CHECK(refusal(text, [](const Json&) -> int { throw UserError("no such mapping"); }) ==
+    CHECK(parse_error_message(text, [](const Json&) -> int { throw UserError("no such mapping"); }) ==
           "x.json: no such mapping; remedy: write it anew");
-    CHECK(read_json("[3]", {"x.json"}, [](const Json& json) { return json.elements()[0].whole(); }) == 3);
+    CHECK(read_json("[3]", {"x.json"}, [](const Json& json) { return json.elements()[0].integer(); }) == 3);
 }
 
 TEST_CASE("a file of more than 64 MB is refused before it is parsed") {
@@ -122,7 +123,7 @@ TEST_CASE("a file of more than 64 MB is refused before it is parsed") {
     const std::string file = folder / "x.json";
     std::ofstream(file) << "{}";
     CHECK(json_text(file, {file}) == "{}");
-    std::filesystem::resize_file(file, kLargestJson + 1);
+    std::filesystem::resize_file(file, kMaxJsonBytes + 1);
     CHECK_THROWS_WITH(json_text(file, {file}), file + ": cannot be read: larger than 64000000 bytes");
     CHECK_THROWS_WITH(json_text("/dev/zero", {"z"}), "z: cannot be read: not a regular file");
 }

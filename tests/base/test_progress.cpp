@@ -53,10 +53,10 @@ TEST_CASE("slow compiling prints its time and a remedy", "[progress]") {
 }
 
 TEST_CASE("a bar without a terminal is not active", "[progress]") {
-    ProgressBar unwanted(false, "reading");
-    CHECK_FALSE(unwanted.active());
-    unwanted.stage("rendering");
-    unwanted.update(0.5);
+    ProgressBar inactive(false, "reading");
+    CHECK_FALSE(inactive.active());
+    inactive.stage("rendering");
+    inactive.update(0.5);
 }
 
 }  // namespace

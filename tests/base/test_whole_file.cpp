@@ -50,7 +50,7 @@ class FileSizeLimit {
 /// users.
 class WithoutRoot {
   public:
-    WithoutRoot() : changed_(::geteuid() == 0 && ::seteuid(kNobody) == 0) {}
+    WithoutRoot() : changed_(::geteuid() == 0 && ::seteuid(kNobodyUid) == 0) {}
     WithoutRoot(const WithoutRoot&) = delete;
     WithoutRoot& operator=(const WithoutRoot&) = delete;
     ~WithoutRoot() {
@@ -58,7 +58,7 @@ class WithoutRoot {
     }
 
   private:
-    static constexpr uid_t kNobody = 65534;
+    static constexpr uid_t kNobodyUid = 65534;
     bool changed_;
 };
 

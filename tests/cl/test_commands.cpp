@@ -17,7 +17,7 @@ using Catch::Contains;
 
 namespace {
 
-constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kMaxSize = std::numeric_limits<std::size_t>::max();
 
 const std::string kSource = "kernel void add(global uint* a, const uint b) { a[get_global_id(0)] += b; }";
 
@@ -90,8 +90,8 @@ TEST_CASE("block copies beyond a block or a buffer are refused before any comman
     CHECK_THROWS_AS(copy({5, 4}, {0, 5}, 0, 3), std::out_of_range);
     CHECK_THROWS_AS(copy({0, 4}, {0, 5}, 4, 4), std::out_of_range);  // more blocks than the source has
     CHECK_THROWS_AS(copy({0, 2}, {0, 5}, 2, 5), std::out_of_range);  // more blocks than the target has
-    CHECK_THROWS_AS(copy({0, 4}, {kMost, 5}, 4, 3), std::out_of_range);
-    CHECK_THROWS_AS(copy({2, 4}, {0, 5}, kMost, 3), std::out_of_range);
+    CHECK_THROWS_AS(copy({0, 4}, {kMaxSize, 5}, 4, 3), std::out_of_range);
+    CHECK_THROWS_AS(copy({2, 4}, {0, 5}, kMaxSize, 3), std::out_of_range);
     CHECK_THROWS_WITH(session.copy_blocks("band", a, {1, 4}, b, {0, 5}, 4, 3), Contains("'band'") && Contains("'a'"));
     CHECK_THROWS_WITH(session.copy_blocks("band", a, {0, 4}, b, {2, 5}, 4, 3), Contains("'band'") && Contains("'b'"));
     // pitch x blocks beyond 2^64
@@ -120,10 +120,10 @@ TEST_CASE("ranges beyond a buffer are refused before any command", "[cl]") {
     std::vector<cl_uint> words(4), more(5);
     CHECK_THROWS_AS(session.read("r", buffer, more), std::out_of_range);
     CHECK_THROWS_AS(session.read("r", buffer, words, 1), std::out_of_range);
-    CHECK_THROWS_AS(session.read("r", buffer, words, kMost), std::out_of_range);  // offset + count overflows
+    CHECK_THROWS_AS(session.read("r", buffer, words, kMaxSize), std::out_of_range);  // offset + count overflows
     CHECK_THROWS_AS(session.write("w", buffer, words, 4), std::out_of_range);
     CHECK_THROWS_AS(session.copy("c", buffer, 0, buffer, 3, 2), std::out_of_range);
-    CHECK_THROWS_AS(session.copy("c", buffer, 1, buffer, 0, kMost), std::out_of_range);
+    CHECK_THROWS_AS(session.copy("c", buffer, 1, buffer, 0, kMaxSize), std::out_of_range);
     CHECK_THROWS_WITH(session.read("gather", buffer, words, 1),
                       Contains("'gather'") && Contains("'words' of 4") && Contains("4 elements from element 1"));
     session.read("nothing", buffer, {}, 4);
@@ -140,12 +140,12 @@ TEST_CASE("overlapping copies are refused with label and buffers", "[cl]") {
 TEST_CASE("buffers of no or too many elements are refused", "[cl]") {
     const Session session(choose_device(""));
     CHECK_THROWS_AS(session.buffer<float>("empty", 0), std::invalid_argument);
-    const std::uint64_t most = session.device().max_allocation_bytes;
-    const std::size_t count = std::size_t(most / sizeof(float)) + 1;
+    const std::uint64_t max_bytes = session.device().max_allocation_bytes;
+    const std::size_t count = std::size_t(max_bytes / sizeof(float)) + 1;
     CHECK_THROWS_AS(session.buffer<float>("huge", count), DeviceError);
-    CHECK_THROWS_WITH(session.buffer<float>("huge", count), Contains("'huge'") && Contains(std::to_string(most)) &&
+    CHECK_THROWS_WITH(session.buffer<float>("huge", count), Contains("'huge'") && Contains(std::to_string(max_bytes)) &&
                                                                 Contains(std::to_string(count * sizeof(float))));
-    CHECK_THROWS_AS(session.buffer<double>("endless", kMost), DeviceError);  // its size in bytes overflows
+    CHECK_THROWS_AS(session.buffer<double>("endless", kMaxSize), DeviceError);  // its size in bytes overflows
 }
 
 TEST_CASE("the profile contains every command in order, with increasing times", "[cl]") {
@@ -228,9 +228,9 @@ TEST_CASE("transfers of any size through pinned memory move the same bytes", "[c
     std::vector<cl_uint> expected(buffer.size());
     for (int i = 0; i < 200; ++i) {
         // Some sizes differ from a multiple of half the staging memory by at most 1.
-        const std::size_t most = i % 8 ? 1000 : 3 * kHalf,
+        const std::size_t max_count = i % 8 ? 1000 : 3 * kHalf,
                           edge = i % 16 ? 0 : kHalf * (random.next() % 4) + random.next() % 3;
-        const std::size_t count = edge ? edge - 1 : random.next() % (most + 1),
+        const std::size_t count = edge ? edge - 1 : random.next() % (max_count + 1),
                           offset = random.next() % (buffer.size() - count + 1);
         CAPTURE(kSeed, i, count, offset);
         std::vector<cl_uint> words = counting(count, static_cast<cl_uint>(random.next()));

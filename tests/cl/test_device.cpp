@@ -12,7 +12,8 @@ using Catch::Contains;
 
 namespace {
 
-DeviceInfo made_up(const std::string& platform, const std::string& name, const std::string& type, bool usable = true) {
+DeviceInfo device_info_of(const std::string& platform, const std::string& name, const std::string& type,
+                          bool usable = true) {
     DeviceInfo info;
     info.platform = platform;
     info.name = name;
@@ -23,19 +24,19 @@ DeviceInfo made_up(const std::string& platform, const std::string& name, const s
 }
 
 const std::vector<DeviceInfo> kDevices = {
-    made_up("Broken", "Old GPU", "gpu", false),
-    made_up("Portable Computing Language", "pthread-EPYC", "cpu"),
-    made_up("Vendor", "Arc 770", "gpu"),
-    made_up("Vendor", "Arc 380", "gpu"),
+    device_info_of("Broken", "Old GPU", "gpu", false),
+    device_info_of("Portable Computing Language", "pthread-EPYC", "cpu"),
+    device_info_of("Vendor", "Arc 770", "gpu"),
+    device_info_of("Vendor", "Arc 380", "gpu"),
 };
 
-std::string refusal(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
+std::string error_message_of(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
     try {
         device_index(wanted, devices);
     } catch (const DeviceError& error) {
         return error.what();
     }
-    return "not refused";
+    return "no error";
 }
 
 }  // namespace
@@ -75,7 +76,7 @@ TEST_CASE("a real device is found by number and by any part of its name, ignorin
 TEST_CASE("a device is chosen by name across all platforms", "[cl]") {
     CHECK(device_index("", kDevices) == 2);  // the first usable GPU, not the first device
     CHECK(device_index("", {kDevices[0], kDevices[1]}) == 1);
-    CHECK(device_index("", {made_up("Vendor", "FPGA", "other")}) == 0);
+    CHECK(device_index("", {device_info_of("Vendor", "FPGA", "other")}) == 0);
     CHECK(device_index("arc", kDevices) == 2);
     CHECK(device_index("ARC 3", kDevices) == 3);
     CHECK(device_index("language PTHREAD", kDevices) == 1);
@@ -103,12 +104,13 @@ TEST_CASE("a device is chosen by type, version and driver, and in turn from a li
 }
 
 TEST_CASE("a device that does not exist is refused with the list of devices", "[cl]") {
-    const std::string text = refusal("Radeon", kDevices);
+    const std::string text = error_message_of("Radeon", kDevices);
     CHECK_THAT(text, Contains("'Radeon'") && Contains("remedy"));
     CHECK_THAT(text, Contains("0: Broken Old GPU (gpu, not usable)") && Contains("3: Vendor Arc 380 (gpu)"));
-    CHECK_THAT(refusal("old", kDevices), Contains("without a compiler") && Contains("2: Vendor Arc 770"));
-    CHECK_THAT(refusal("", {kDevices[0]}), Contains("no available OpenCL device") && Contains("Old GPU"));
-    CHECK_THAT(refusal("", {}), Contains("pocl-opencl-icd") && Contains("OCL_ICD_VENDORS") && Contains("clinfo"));
+    CHECK_THAT(error_message_of("old", kDevices), Contains("without a compiler") && Contains("2: Vendor Arc 770"));
+    CHECK_THAT(error_message_of("", {kDevices[0]}), Contains("no available OpenCL device") && Contains("Old GPU"));
+    CHECK_THAT(error_message_of("", {}),
+               Contains("pocl-opencl-icd") && Contains("OCL_ICD_VENDORS") && Contains("clinfo"));
 
     REQUIRE_FALSE(all_devices().empty());
     const std::string real_name = device_info(all_devices()[0]).name;

@@ -17,7 +17,7 @@ constexpr const char* kSource =
 
 TEST_CASE("an observed session records builds, and the arguments of the given number of launches", "[cl]") {
     Session session(choose_device(""));
-    StepLog log;
+    SpanLog log;
     session.observe(log, 2);
     auto put =
         session.build("put.cl", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint, cl_float, LocalMemory<cl_uint>>("put");
@@ -39,8 +39,8 @@ TEST_CASE("an observed session records builds, and the arguments of the given nu
     CHECK(commands[1].group_size == 2);
     CHECK(commands[3].object == "numbers -> others");
     CHECK(commands[3].groups == 0);
-    REQUIRE(log.steps().size() == 1);
-    CHECK(log.steps()[0].name == "build put.cl");
+    REQUIRE(log.spans().size() == 1);
+    CHECK(log.spans()[0].name == "build put.cl");
 }
 
 TEST_CASE("a session without an observer records no arguments", "[cl]") {
@@ -49,28 +49,28 @@ TEST_CASE("a session without an observer records no arguments", "[cl]") {
         session.build("put.cl", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint, cl_float, LocalMemory<cl_uint>>("put");
     Buffer<cl_uint> to = session.buffer<cl_uint>("numbers", 8);
     session.launch("go", put, 4, 2, to, 7U, 0.5F, LocalMemory<cl_uint>{3});
-    const StepLog::Step step = session.step("nothing");
+    const SpanLog::Span span = session.span("nothing");
     CHECK(session.profile().commands()[0].arguments.empty());
 }
 
-TEST_CASE("a clock anchor maps a command's time between the host's two times", "[cl]") {
+TEST_CASE("a clock offset maps a command's time between the host's two times", "[cl]") {
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
         SplitMix random(seed);
         const std::uint64_t before = random.next() >> 8, after = before + random.next() % 1000,
                             queued = seed % 3 ? random.next() >> 8 : before + random.next() % (after - before + 1);
         CAPTURE(seed, before, after, queued);
-        const ClockAnchor anchor = anchor_between(before, queued, after);
-        const auto host = static_cast<std::uint64_t>(static_cast<std::int64_t>(queued) + anchor.offset_ns);
+        const ClockOffset offset = clock_offset_of(before, queued, after);
+        const auto host = static_cast<std::uint64_t>(static_cast<std::int64_t>(queued) + offset.offset_ns);
         CHECK(before <= host);
         CHECK(host <= after);
-        CHECK(anchor.same_clock == (before <= queued && queued <= after));
-        CHECK((anchor.same_clock || 2 * anchor.uncertainty_ns >= after - before));
+        CHECK(offset.same_clock == (before <= queued && queued <= after));
+        CHECK((offset.same_clock || 2 * offset.uncertainty_ns >= after - before));
     }
 }
 
 TEST_CASE("a command's times lie between the host's times around it", "[cl]") {
     Session session(choose_device(""));
-    const ClockAnchor anchor = clock_anchor(session);
+    const ClockOffset offset = measure_clock_offset(session);
     CHECK(session.profile().commands().empty());
     Buffer<cl_uint> to = session.buffer<cl_uint>("numbers", 1 << 20);
     const std::uint64_t before = host_clock_ns();
@@ -78,12 +78,12 @@ TEST_CASE("a command's times lie between the host's times around it", "[cl]") {
     session.finish();
     const std::uint64_t after = host_clock_ns();
     const CommandRecord& c = session.profile().commands().back();
-    const auto host = [&](std::uint64_t ns) { return static_cast<std::int64_t>(ns) + anchor.offset_ns; };
-    const auto spare = static_cast<std::int64_t>(anchor.uncertainty_ns);
-    CHECK(host(c.queued) >= static_cast<std::int64_t>(before) - spare);
-    CHECK(host(c.ended) <= static_cast<std::int64_t>(after) + spare);
+    const auto host = [&](std::uint64_t ns) { return static_cast<std::int64_t>(ns) + offset.offset_ns; };
+    const auto uncertainty = static_cast<std::int64_t>(offset.uncertainty_ns);
+    CHECK(host(c.queued) >= static_cast<std::int64_t>(before) - uncertainty);
+    CHECK(host(c.ended) <= static_cast<std::int64_t>(after) + uncertainty);
     Session untimed(choose_device(""), Timing::kOff);
-    CHECK_THROWS_AS(clock_anchor(untimed), std::logic_error);
+    CHECK_THROWS_AS(measure_clock_offset(untimed), std::logic_error);
 }
 
 }  // namespace raya

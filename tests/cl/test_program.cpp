@@ -127,17 +127,17 @@ TEST_CASE("a failed build is not cached, and fails again", "[cl]") {
 
 TEST_CASE("a program is built once per text and options", "[cl]") {
     Session session(choose_device(""));
-    StepLog steps;
-    session.observe(steps, 0);
+    SpanLog spans;
+    session.observe(spans, 0);
     const auto build = [&](const char* shift, const std::string& source) {
         return session.build("test", "// built once\n" + source, {shift});
     };
     build("-DRAYA_SHIFT=0.5f", kProgramSource);
     build("-DRAYA_SHIFT=0.5f", kProgramSource);
-    CHECK(steps.steps().size() == 1);
+    CHECK(spans.spans().size() == 1);
     build("-DRAYA_SHIFT=1.5f", kProgramSource);
     build("-DRAYA_SHIFT=0.5f", kProgramSource + "\n");
-    CHECK(steps.steps().size() == 3);
+    CHECK(spans.spans().size() == 3);
     CHECK(build("-DRAYA_SHIFT=1.5f", kProgramSource).options() == "-DRAYA_SHIFT=1.5f");
-    CHECK(steps.steps().size() == 3);
+    CHECK(spans.spans().size() == 3);
 }

@@ -16,9 +16,9 @@ TEST_CASE("a session that an exception ends waits for the device's running comma
         "    for (uint i = 0; i < turns; ++i) x = x * 1664525U + 1013904223U;\n"
         "    a[0] = x;\n"
         "}";
-    constexpr cl_uint kTurns = 1u << 25;
+    constexpr cl_uint kIterations = 1u << 25;
     cl_uint expected = 1, got = 0;
-    for (cl_uint i = 0; i < kTurns; ++i) expected = expected * 1664525U + 1013904223U;
+    for (cl_uint i = 0; i < kIterations; ++i) expected = expected * 1664525U + 1013904223U;
     cl::Buffer memory;
     const auto fail = [&] {
         Session session(choose_device(""));
@@ -26,9 +26,9 @@ TEST_CASE("a session that an exception ends waits for the device's running comma
         Buffer<cl_uint> a = session.buffer<cl_uint>("a", 1);
         memory = a.memory();
         session.fill("one", a, 1);
-        session.launch("slow", slow, 1, 1, a, kTurns);
+        session.launch("slow", slow, 1, 1, a, kIterations);
         session.flush();
-        session.launch("empty", slow, 0, 1, a, kTurns);
+        session.launch("empty", slow, 0, 1, a, kIterations);
     };
     CHECK_THROWS_AS(fail(), std::invalid_argument);
     // This separate queue does not wait for the session's commands.

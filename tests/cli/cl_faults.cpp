@@ -130,8 +130,8 @@ cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, 
 // Not with the address sanitizer, which replaces operator new itself.
 #ifndef __SANITIZE_ADDRESS__
 void* operator new(std::size_t bytes) {
-    constexpr std::size_t kNeverFails = 1000;  // bytes; excludes allocations by `Fault` itself
-    if (bytes > kNeverFails && wanted().call == "new" && bytes >= static_cast<std::size_t>(wanted().at))
+    constexpr std::size_t kMinFailingBytes = 1000;  // bytes; excludes allocations by `Fault` itself
+    if (bytes > kMinFailingBytes && wanted().call == "new" && bytes >= static_cast<std::size_t>(wanted().at))
         throw std::bad_alloc();
     if (void* memory = std::malloc(bytes != 0 ? bytes : 1)) return memory;
     throw std::bad_alloc();

@@ -115,7 +115,7 @@ bool next_fails(const char* call, bool can_be_short, bool can_be_interrupted) {
     return now;
 }
 
-/// Same, but neither counts a call by another library than raya's nor lets it fail.
+/// Same, for calls by raya only: calls by other libraries are not counted and do not fail.
 bool fails(const char* call, const void* caller, bool can_be_short, bool can_be_interrupted) {
     return is_of_raya(caller) && next_fails(call, can_be_short, can_be_interrupted);
 }

@@ -58,13 +58,13 @@ Module module_of(std::uintptr_t address, std::uintptr_t& base) {
     return raya::begins_with(name, "libmemory_faults") ? Module::kOwn : Module::kOther;
 }
 
-struct Walk {
+struct StackWalk {
     Site site{};
     std::size_t frames = 0;
 };
 
 _Unwind_Reason_Code add_frame(_Unwind_Context* context, void* data) {
-    Walk& walk = *static_cast<Walk*>(data);
+    StackWalk& walk = *static_cast<StackWalk*>(data);
     std::uintptr_t base = 0;
     const std::uintptr_t address = _Unwind_GetIP(context);
     const Module module = module_of(address - 1, base);
@@ -110,7 +110,7 @@ struct Fault {
     }
 };
 
-bool is_in_raya(const void* caller, Walk& walk) {
+bool is_in_raya(const void* caller, StackWalk& walk) {
     std::uintptr_t base = 0;
     const Module module = module_of(reinterpret_cast<std::uintptr_t>(caller) - 1, base);
     if (module == Module::kRaya || module == Module::kSupport) {
@@ -125,7 +125,7 @@ bool fails(const void* caller) {
     static const Fault fault;
     static const bool lists = std::getenv("RAYA_MEMORY_SITES") != nullptr;
     if (busy || (fault.kind == '\0' && !lists) || failed.load(std::memory_order_relaxed)) return false;
-    Walk walk;
+    StackWalk walk;
     const bool raya = is_in_raya(caller, walk);
     const std::uint64_t count = ++(raya ? in_raya : elsewhere), number = number_of(walk.site);
     if (raya && lists) record(number, walk.site);

@@ -45,10 +45,10 @@ struct RunOutcome {
 /// Environment, limits and redirections of a run.
 struct RunOptions {
     std::vector<std::pair<std::string, std::string>> variables{};  // [name, value], added to this environment
-    bool as_nobody = false;    // if root runs the test: run as user nobody, so that permissions apply
-    rlim_t largest_file = 0;   // RLIMIT_FSIZE in bytes, 0: no limit; a longer write fails with EFBIG
-    rlim_t memory = 0;         // RLIMIT_AS in bytes, 0: no limit
-    std::string error_file{};  // file that stderr is written to; empty: RunOutcome::err
+    bool as_nobody = false;     // if root runs the test: run as user nobody, so that permissions apply
+    rlim_t max_file_bytes = 0;  // RLIMIT_FSIZE in bytes, 0: no limit; a longer write fails with EFBIG
+    rlim_t memory = 0;          // RLIMIT_AS in bytes, 0: no limit
+    std::string error_file{};   // file that stderr is written to; empty: RunOutcome::err
     std::string program = RAYA_PROGRAM;
     int signal = 0;                       // signal number, sent to the program unless it has ended; 0: none
     int signal_after_ms = 0;              // delay from when the program handles the signal and `signal_when` is true
@@ -180,7 +180,7 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const RunOptions&
         ::dup2(::fileno(err.get()), STDERR_FILENO);
         detail::open_stream(options.out_file, STDOUT_FILENO);
         detail::open_stream(options.error_file, STDERR_FILENO);
-        detail::limit_files(options.largest_file);
+        detail::limit_files(options.max_file_bytes);
         if (options.as_nobody) detail::leave_root();
         detail::limit_memory(options.memory);
         ::fexecve(program, argv.data(), envp.data());

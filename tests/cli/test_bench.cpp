@@ -79,7 +79,7 @@ TEST_CASE("bench --report, --compare: a later run is compared with the rows of t
     CHECK(third.code == 4);
     // -99.9 %; printed as -100.0 % if other programs slowed the run down.
     CHECK_THAT(third.out, Catch::Contains("SLOWER") && (Catch::Contains("-99.") || Catch::Contains("-100.0 %")));
-    CHECK_THAT(third.err, Catch::Contains("fast.json: of 1 row 1 slower by more than 50 %, 0 with a different image"));
+    CHECK_THAT(third.err, Catch::Contains("fast.json: 1 of 1 row slower by more than 50 %, 0 with a different image"));
     CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // written although the run is slower
     const RunOutcome fourth = run_raya(small_bench({"--compare", changed(folder, "other.json", 1e-3, "0123456789")}));
     INFO(fourth.describe());
@@ -183,7 +183,7 @@ TEST_CASE("bench --build: lists compile times, and ends with 4 if a kernel takes
     check_refused(outputs, build({"--limit", "0"}), 2, {"--limit 0: must be above 0"});
     check_refused(outputs, {"bench", "--limit", "1"}, 2, {"--limit requires --build"});
     check_refused(outputs, build({"--compare", folder / "b.json"}), 2, {"--compare", "excludes", "--build"});
-    check_refused(outputs, {"bench", "--compare", folder / "b.json"}, 2, {"it has no rows of rates"});
+    check_refused(outputs, {"bench", "--compare", folder / "b.json"}, 2, {"the report has no measurements"});
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace raya {
 namespace {
 /// Runs raya and checks that it succeeds without messages.
-RunOutcome succeed(const Arguments& arguments) {
+RunOutcome run_successfully(const Arguments& arguments) {
     RunOutcome run = run_raya(arguments);
     INFO(run.describe());
     REQUIRE(run.code == 0);
@@ -31,7 +31,7 @@ std::vector<Arguments> lines_that_start_with(const std::string& text, const std:
 }
 
 TEST_CASE("raya --version: prints name, version, commit and build", "[cli]") {
-    const std::string out = succeed({"--version"}).out;
+    const std::string out = run_successfully({"--version"}).out;
     CHECK_THAT(out, Catch::StartsWith(fmt::format("{} (", name_and_version())));
     CHECK_THAT(out,
                Catch::Matches("raya [0-9.]+ \\((commit [0-9a-f]{12}( with changes)?, )?[A-Za-z]+, [A-Za-z]+ [0-9.]+"
@@ -40,7 +40,7 @@ TEST_CASE("raya --version: prints name, version, commit and build", "[cli]") {
 }
 
 TEST_CASE("raya --help: names every command and the exit codes", "[cli]") {
-    const std::string help = squeezed(succeed({"--help"}).out);
+    const std::string help = squeezed(run_successfully({"--help"}).out);
     for (const char* text :
          {"render", "devices", "generate", "bench", "Exit codes: 0 done, 2 bad option or input, 3 device"})
         CHECK_THAT(help, Catch::Contains(text));
@@ -94,13 +94,13 @@ TEST_CASE("COMMAND --help, --help-all: give unit, default and range of every opt
         Arguments arguments = row.command;
         const bool many_options = row.command == Arguments{"render"} || row.command == Arguments{"bench"};
         arguments.emplace_back(many_options ? "--help-all" : "--help");
-        const std::string help = squeezed(succeed(arguments).out);
+        const std::string help = squeezed(run_successfully(arguments).out);
         for (const std::string& text : row.texts) CHECK_THAT(help, Catch::Contains(text));
     }
 }
 
 TEST_CASE("devices: lists each device with its default lanes", "[cli]") {
-    const std::string out = succeed({"devices"}).out;
+    const std::string out = run_successfully({"devices"}).out;
     INFO(out);
     for (const char* column : {"device", "platform", "lanes", "local KB", "div/sqrt exact", "profiling"})
         CHECK_THAT(out, Catch::Contains(column));
@@ -125,8 +125,8 @@ TEST_CASE("render: prints a summary of at most 8 lines", "[cli]") {
 
 TEST_CASE("render --mapping grid: the summary names the mapping, which sets the number of PEs", "[cli]") {
     const ScratchFolder folder;
-    const std::string out = succeed({"render", scene_file("planes"), "-o", folder / "x.png", "--size", "12", "--lanes",
-                                     "4", "--mapping", "grid:3x2"})
+    const std::string out = run_successfully({"render", scene_file("planes"), "-o", folder / "x.png", "--size", "12",
+                                              "--lanes", "4", "--mapping", "grid:3x2"})
                                 .out;
     CHECK_THAT(out, Catch::Contains("12 x 12 pixels on spa (6 PEs, grid:3x2 mapping), e6m15"));
 }
@@ -156,22 +156,23 @@ TEST_CASE("generate: every kind of scene can be rendered", "[cli]") {
     Arguments arguments = {"generate"};
     arguments.insert(arguments.end(), kind.begin(), kind.end());
     arguments.insert(arguments.end(), {"-o", folder / "scene.nff"});
-    CHECK(succeed(arguments).out.empty());
-    succeed({"render", folder / "scene.nff", "-o", folder / "x.png", "--size", "8", "--pes", "4", "--lanes", "4"});
+    CHECK(run_successfully(arguments).out.empty());
+    run_successfully(
+        {"render", folder / "scene.nff", "-o", folder / "x.png", "--size", "8", "--pes", "4", "--lanes", "4"});
     CHECK(folder.entries() == 2);
 }
 
 TEST_CASE("generate --seed: the same seed makes the same bytes, another seed other bytes", "[cli]") {
     const ScratchFolder folder;
     for (const auto& [seed, name] : {std::pair{"3", "a"}, {"3", "b"}, {"4", "c"}})
-        succeed({"generate", "random", "9", "--seed", seed, "-o", folder / name});
+        run_successfully({"generate", "random", "9", "--seed", seed, "-o", folder / name});
     CHECK(file_contents(folder / "a") == file_contents(folder / "b"));
     CHECK(file_contents(folder / "a") != file_contents(folder / "c"));
 }
 
 TEST_CASE("bench: prints a row per format and number of lanes, one image hash per format, and the operations",
           "[cli][slow]") {
-    const std::string out = succeed({"bench", "--samples", "1", "--size", "64"}).out;
+    const std::string out = run_successfully({"bench", "--samples", "1", "--size", "64"}).out;
     INFO(out);
     CHECK_THAT(out, Catch::Contains("spheres.nff") && Catch::Contains("64 x 64 pixels, 256 PEs, 8 bounces"));
     const std::vector<Arguments> rows = lines_that_start_with(out, "trace");
@@ -187,7 +188,8 @@ TEST_CASE("bench: prints a row per format and number of lanes, one image hash pe
     }
     CHECK(lines_that_start_with(out, "Gop/s").size() == 1);
     CHECK(lines_that_start_with(
-              succeed({"bench", "--samples", "1", "--size", "32", "--lanes", "1", "--format", "e5m10t"}).out, "e5m10t")
+              run_successfully({"bench", "--samples", "1", "--size", "32", "--lanes", "1", "--format", "e5m10t"}).out,
+              "e5m10t")
               .size() == 1);
 }
 

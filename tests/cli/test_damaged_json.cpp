@@ -24,7 +24,7 @@ struct Damage {
 };
 
 // Returns damage that the JSON parser detects, and therefore every reader.
-std::vector<Damage> unreadable() {
+std::vector<Damage> malformed_texts() {
     const auto deep = [](std::size_t levels) { return std::string(levels, '['); };
     return {{"", "x.json:1: not valid JSON (byte 1)"},
             {"\n \n", "x.json:3: not valid JSON"},
@@ -46,7 +46,7 @@ std::vector<Damage> unreadable() {
 }
 
 // Returns valid JSON texts that are not reports.
-std::vector<std::string> wrong_kinds() {
+std::vector<std::string> other_documents() {
     return {"null",
             "3",
             "[]",
@@ -91,8 +91,8 @@ TEST_CASE("readers of JSON: refuse damaged files with file and line", "[cli][jso
             CHECK(message.size() < 600);
         }
     };
-    for (const Damage& damage : unreadable()) check(damage);
-    for (const std::string& text : wrong_kinds()) check({text, "x.json"});
+    for (const Damage& damage : malformed_texts()) check(damage);
+    for (const std::string& text : other_documents()) check({text, "x.json"});
     unsetenv("XDG_CACHE_HOME");
     setenv("RAYA_TUNED", "off", 1);
 }

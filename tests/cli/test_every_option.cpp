@@ -82,7 +82,8 @@ TEST_CASE("every flag: refuses a value", "[cli][every]") {
         for (const OptionText& option : command.text.options)
             if (option.is_flag())
                 for (const std::string& name : option.names)
-                    for (const std::string& value : all_or_next(kOddValues + Arguments{"", "true", "none", "2", "{}"}))
+                    for (const std::string& value :
+                         quick_rotating(kOddValues + Arguments{"", "true", "none", "2", "{}"}))
                         check_refused_in_process(command.path + Arguments{name + '=' + value}, option);
 }
 
@@ -97,7 +98,7 @@ TEST_CASE("every option: refuses an empty value, one of 1 MB, and a repeated one
                                                     {name},
                                                     {name, std::string(1 << 20, 'x')},
                                                     {name + '=' + std::string(1 << 20, '9')}};
-            for (const Arguments& arguments : all_or_next(refused))
+            for (const Arguments& arguments : quick_rotating(refused))
                 check_refused_in_process(command.path + arguments, option);
             if (!option.repeated) check_refused_in_process(command.path + Arguments{name, "1", name, "1"}, option);
         }
@@ -106,7 +107,7 @@ TEST_CASE("every option: refuses an empty value, one of 1 MB, and a repeated one
 TEST_CASE("every option: odd values cause no internal error", "[cli][every]") {
     for (const Command& command : all_commands())
         for (const OptionText& option : command.text.options)
-            for (const std::string& value : all_or_next(kOddValues))
+            for (const std::string& value : quick_rotating(kOddValues))
                 if (!option.is_flag())
                     CHECK_NOTHROW(refusal(command.path + Arguments{option.names.back(), value}, false));
 }

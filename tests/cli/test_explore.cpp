@@ -10,7 +10,7 @@ namespace {
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
-std::vector<std::string> small(std::vector<std::string> more) {
+std::vector<std::string> explore_arguments(std::vector<std::string> more) {
     std::vector<std::string> arguments = {"explore", scene_file("spheres"), "--size", "24x16", "--lanes", "4"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
@@ -19,7 +19,8 @@ std::vector<std::string> small(std::vector<std::string> more) {
 TEST_CASE("explore: writes a page and prints the mapping that it opens with", "[cli]") {
     const ScratchFolder folder;
     const std::string page = folder / "page.html";
-    const RunOutcome run = run_raya(small({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block"}));
+    const RunOutcome run =
+        run_raya(explore_arguments({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block"}));
     INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
@@ -32,7 +33,7 @@ TEST_CASE("explore: writes a page and prints the mapping that it opens with", "[
         CHECK_THAT(html, Contains(member));
     CHECK(folder.entries() == 1);
     const RunOutcome again =
-        run_raya(small({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block", "--quiet"}));
+        run_raya(explore_arguments({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block", "--quiet"}));
     CHECK(again.code == 0);
     CHECK(again.out.empty());
     CHECK(file_contents(page) == html);  // a second run writes the same page
@@ -56,7 +57,7 @@ TEST_CASE("explore: refuses wrong options with the reason, and writes no file", 
           Row{{"-o", page, "--pes", "0"}, "--pes 0: must be 1..384"},
           Row{{"-o", page, "--mapping", "tiles:7x5"}, "tiles must divide the image"},
           Row{{"-o", page, "--antialias", "filter"}, "no option --antialias"}, Row{{}, "--output is required"}}) {
-        const RunOutcome run = run_raya(small(row.options));
+        const RunOutcome run = run_raya(explore_arguments(row.options));
         INFO(run.describe());
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Contains(row.reason));
@@ -88,7 +89,7 @@ TEST_CASE("explore: with an unknown device it leaves an older page unchanged", "
     const ScratchFolder folder;
     const std::string page = folder / "page.html";
     std::ofstream(page) << "older";
-    const RunOutcome run = run_raya(small({"-o", page, "--device", "no such device"}));
+    const RunOutcome run = run_raya(explore_arguments({"-o", page, "--device", "no such device"}));
     INFO(run.describe());
     CHECK(run.code != 0);
     CHECK(file_contents(page) == "older");

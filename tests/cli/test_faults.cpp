@@ -155,7 +155,7 @@ Arguments large_render(const std::string& image) {
 TEST_CASE("render: a file size limit ends with the reason and leaves no file", "[cli]") {
     const ScratchFolder outputs;
     check_refused(outputs, large_render(outputs / "x.pfm"), 2, {"x.pfm", "File too large", "ulimit -f"},
-                  {.largest_file = 1 << 20});
+                  {.max_file_bytes = 1 << 20});
 }
 
 /// Returns the options of a run in which the folder `outputs` has space for `bytes` bytes (disk_faults.cpp).

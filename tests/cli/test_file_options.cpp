@@ -23,12 +23,12 @@ namespace fs = std::filesystem;
 
 using Path = std::vector<std::string>;  // command path: {"generate", "random"}
 
-void for_each_command(CLI::App& command, const Path& path, const std::function<void(CLI::App&, const Path&)>& see) {
-    see(command, path);
+void for_each_command(CLI::App& command, const Path& path, const std::function<void(CLI::App&, const Path&)>& visit) {
+    visit(command, path);
     for (CLI::App* one : command.get_subcommands({})) {
         Path below = path;
         below.push_back(one->get_name());
-        for_each_command(*one, below, see);
+        for_each_command(*one, below, visit);
     }
 }
 
@@ -86,11 +86,11 @@ std::vector<Arguments> pairs_of(CLI::App& command, FileUse one, FileUse other) {
     return pairs;
 }
 
-/// Calls `see` with two names of the same file, for several kinds of names. `exists`: the file exists.
-void for_each_two_names(bool exists, const std::function<void(const Arguments&)>& see) {
+/// Calls `visit` with two names of the same file, for several kinds of names. `exists`: the file exists.
+void for_each_two_names(bool exists, const std::function<void(const Arguments&)>& visit) {
     Arguments others = {"file", "./file", "sub/../file", "folder_link/file", "link", "link2"};
     if (exists) others.push_back("hard");
-    for (const std::string& other : all_or_next(others)) {
+    for (const std::string& other : quick_rotating(others)) {
         const ScratchFolder folder;
         fs::create_directory(folder / "sub");
         fs::create_directory_symlink(".", folder / "folder_link");
@@ -98,8 +98,8 @@ void for_each_two_names(bool exists, const std::function<void(const Arguments&)>
         fs::create_symlink(fs::path(folder / "link"), folder / "link2");
         if (exists) write_whole_file(folder / "file", "content");
         if (exists) fs::create_hard_link(folder / "file", folder / "hard");
-        see({folder / "file", folder / other});
-        see({folder / other, folder / "file"});
+        visit({folder / "file", folder / other});
+        visit({folder / other, folder / "file"});
         CHECK(fs::exists(folder / "file") == exists);
         if (exists) CHECK(file_contents(folder / "file") == "content");
     }

@@ -319,7 +319,7 @@ TEST_CASE("render --frames: refuses invalid sequences before rendering", "[cli][
           Arguments{"--machine", "torus", "--packets", outputs / "p.csv.gz"}}) {
         Arguments options = {"--frames", "1:4", "--turn", "90"};
         options.insert(options.end(), single.begin(), single.end());
-        refused(options, {"is for a single image"});
+        refused(options, {"only for a single image"});
     }
     check_refused(outputs, {"render", scene_file("centre"), "-o", "-", "--frames", "1:4", "--turn", "90"}, 2,
                   {"--output -", "several files"});

@@ -21,7 +21,7 @@ std::string help_of(Arguments arguments, const std::string& columns = "") {
 }
 
 /// Returns the output of raya on a terminal with `columns` columns.
-std::string on_terminal(Arguments arguments, unsigned short columns) {
+std::string output_on_terminal(Arguments arguments, unsigned short columns) {
     winsize size{};
     size.ws_col = columns;
     size.ws_row = 24;
@@ -80,8 +80,8 @@ TEST_CASE("help: is COLUMNS wide, clamped to 40..120, and 80 wide by default", "
 
 TEST_CASE("help: is as wide as the terminal", "[cli][help]") {
     for (const unsigned short columns : std::initializer_list<unsigned short>{50, 97})
-        CHECK(on_terminal({"help", "verify"}, columns) == help_of({"help", "verify"}, std::to_string(columns)));
-    CHECK(on_terminal({"help", "verify"}, 0) == help_of({"help", "verify"}));
+        CHECK(output_on_terminal({"help", "verify"}, columns) == help_of({"help", "verify"}, std::to_string(columns)));
+    CHECK(output_on_terminal({"help", "verify"}, 0) == help_of({"help", "verify"}));
 }
 
 TEST_CASE("help: no command has a line longer than the width", "[cli][help]") {

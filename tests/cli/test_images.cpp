@@ -24,7 +24,7 @@ TEST_CASE("render: the same render writes the same bytes", "[cli]") {
     CHECK(first.report()["image"]["hash"] == second.report()["image"]["hash"]);
 }
 
-TEST_CASE("render: loads OpenCL drivers before the picture module", "[cli]") {
+TEST_CASE("render: loads OpenCL drivers before the image encoder module", "[cli]") {
     const ScratchFolder scratch;
     const RunOptions log_libraries{.variables = {{"LD_DEBUG", "libs"}}};
     const RunOutcome run =

@@ -14,10 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A copy of the program without its modules.
-struct Copy {
+struct ProgramCopy {
     ScratchFolder folder, outputs;
 
-    Copy() { fs::copy_file(RAYA_PROGRAM, folder / "raya"); }
+    ProgramCopy() { fs::copy_file(RAYA_PROGRAM, folder / "raya"); }
 
     RunOutcome render(const Arguments& more, const std::string& binaries = "") const {
         const ScratchFolder cache;
@@ -56,7 +56,7 @@ struct Copy {
 bool used_binary(const RunOutcome& run) { return contains(run.err, "from the binary installed with raya"); }
 
 TEST_CASE("render --cache-kernels: the next render uses the binary and makes the same image", "[cli]") {
-    const Copy copy;
+    const ProgramCopy copy;
     CHECK_FALSE(used_binary(copy.render({})));
     CHECK_FALSE(fs::exists(copy.folder / "kernels"));
     const std::string right = copy.hash();
@@ -69,7 +69,7 @@ TEST_CASE("render --cache-kernels: the next render uses the binary and makes the
 }
 
 TEST_CASE("kernel binaries: damaged ones and those that others may write are not used", "[cli]") {
-    const Copy copy;
+    const ProgramCopy copy;
     copy.render({"--cache-kernels"});
     const std::string right = copy.hash();
     const fs::path binary = copy.binary();

@@ -6,7 +6,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("nearest_name: the fewest edits, or the name with that prefix", "[parse]") {
+TEST_CASE("nearest_name: returns the name with the minimum edit distance, or with that prefix", "[parse]") {
     const std::vector<std::string> names = {"render", "devices", "generate", "bench", "study", "verify"};
     CHECK(nearest_name("rendr", names) == "render");
     CHECK(nearest_name("redner", names) == "render");  // two characters are swapped

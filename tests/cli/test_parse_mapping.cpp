@@ -26,9 +26,9 @@ TEST_CASE("parse_mapping: reads every form", "[parse]") {
     CHECK(rule("random:0") == random_mapping(0));
     CHECK(rule("random:4294967295") == random_mapping(0xffffffffu));
     CHECK(parse_mapping("cyclic").rule.has_slots());
-    CHECK(parse_mapping("cyclic").leaves_offset);
+    CHECK(parse_mapping("cyclic").takes_offset_option);
     for (const char* text : {"cyclic:0", "cyclic:3", "column", "rows", "blocks", "grid:3x50", "tiles:3x50", "random"})
-        CHECK_FALSE(parse_mapping(text).leaves_offset);
+        CHECK_FALSE(parse_mapping(text).takes_offset_option);
     CHECK(parse_mapping("cyclic:3").name() == "cyclic");
     CHECK(parse_mapping("rows").name() == "rows");
     CHECK(parse_fold("cyclic") == Fold::kCyclic);
@@ -85,8 +85,8 @@ TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with
     SplitMix random(kSeed);
     for (int i = 0; i < 500; ++i) {
         const double shares[] = {0, 0.5, 1, random.uniform(0, 1)};
-        const DynamicPlan plan{1 + random_below(random, kLargestChunk >> random.next() % 28),
-                               random.next() % 2 * random_below(random, kLargestOverhead + 1), shares[i % 4]};
+        const DynamicPlan plan{1 + random_below(random, kMaxChunk >> random.next() % 28),
+                               random.next() % 2 * random_below(random, kMaxOverhead + 1), shares[i % 4]};
         CAPTURE(kSeed, i, plan.chunk, plan.overhead, plan.static_share, dynamic_text(plan));
         CHECK(parse_dynamic(dynamic_text(plan)) == plan);
     }

@@ -57,7 +57,7 @@ TEST_CASE("render --mapping: refuses wrong syntax, and conflicts with image, PEs
          {{"--mapping", "tiles:4x4", "--fold", "cyclic"},
           {"--fold cyclic with --mapping tiles:4x4", "no slots to fold", "cyclic or column"}},
          {{"--mapping", "random", "--antialias", "filter"},
-          {"--antialias filter with --mapping random:1", "neighbours are on PEs all over the ring",
+          {"--antialias filter with --mapping random:1", "the neighbours of a pixel are on random PEs",
            "use cyclic, column, rows, blocks, grid or tiles"}}});
 }
 

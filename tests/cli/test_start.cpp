@@ -33,7 +33,7 @@ Names libraries_of(const std::vector<std::string>& arguments, int code = 0) {
 }
 
 /// Returns those of `names` that contain one of `parts`.
-Names with(const Names& names, const std::vector<std::string>& parts) {
+Names matching(const Names& names, const std::vector<std::string>& parts) {
     Names found;
     std::copy_if(names.begin(), names.end(), std::inserter(found, found.end()), [&](const std::string& name) {
         return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) { return contains(name, part); });
@@ -47,22 +47,23 @@ std::vector<std::string> render_of_4(const std::string& image) {
 
 TEST_CASE("--version: loads the OpenCL loader, three small libraries, those of C and C++, and no others", "[cli]") {
     Names names = libraries_of({"--version"});
-    for (const std::string& sanitizer : with(names, {"libasan", "libubsan"})) names.erase(sanitizer);
+    for (const std::string& sanitizer : matching(names, {"libasan", "libubsan"})) names.erase(sanitizer);
     if (kSanitized)  // with less inlining, raya depends on Imath
-        for (const std::string& imath : with(names, {"libImath"})) names.erase(imath);
+        for (const std::string& imath : matching(names, {"libImath"})) names.erase(imath);
     CHECK(names.size() <= 9);
     const std::vector<std::string> known = {"libOpenCL.", "libfmt.", "libxxhash.", "libz.",       "libstdc++.", "libm.",
                                             "libgcc_s.",  "libc.",   "libdl.",     "libpthread.", "ld-linux"};
-    CHECK(with(names, known) == names);
+    CHECK(matching(names, known) == names);
 }
 
 TEST_CASE("devices, renders to PFM and PPM: load neither OpenImageIO nor TBB nor MPI; a render to PNG does", "[cli]") {
     const ScratchFolder outputs;
     const std::vector<std::string> heavy = {"raya_", "OpenImageIO", "libtbb", "libmpi",
                                             "libopen-"};  // libopen-*: libraries of Open MPI
-    CHECK(with(libraries_of({"devices"}), heavy).empty());
-    for (const char* image : {"x.pfm", "x.ppm"}) CHECK(with(libraries_of(render_of_4(outputs / image)), heavy).empty());
-    CHECK(with(libraries_of(render_of_4(outputs / "x.png")), {"raya_pictures", "OpenImageIO"}).size() >= 2);
+    CHECK(matching(libraries_of({"devices"}), heavy).empty());
+    for (const char* image : {"x.pfm", "x.ppm"})
+        CHECK(matching(libraries_of(render_of_4(outputs / image)), heavy).empty());
+    CHECK(matching(libraries_of(render_of_4(outputs / "x.png")), {"raya_pictures", "OpenImageIO"}).size() >= 2);
 }
 
 TEST_CASE("commands: refuse wrong inputs before they load a driver or OpenImageIO", "[cli]") {
@@ -86,7 +87,7 @@ TEST_CASE("commands: refuse wrong inputs before they load a driver or OpenImageI
         {"verify", "--kernel-dir", missing}};
     for (const std::vector<std::string>& arguments : refused) {
         CAPTURE(arguments);
-        CHECK(with(libraries_of(arguments, 2), {"raya_pictures", "OpenImageIO", "libtbb", "libpocl"}).empty());
+        CHECK(matching(libraries_of(arguments, 2), {"raya_pictures", "OpenImageIO", "libtbb", "libpocl"}).empty());
     }
 }
 

@@ -73,7 +73,7 @@ TEST_CASE("study simgrid: without SimGrid it says what to install, and study all
     check_refused(outputs, study("simgrid", outputs), 2, {"study simgrid", "tools/setup --studies", "libsimgrid-dev"},
                   copy);
     check_refused(outputs, study("all", outputs, {outputs / "missing.nff"}), 2,
-                  {"study simgrid is left out", "missing.nff"}, copy);
+                  {"study simgrid is skipped", "missing.nff"}, copy);
 }
 
 TEST_CASE("study NAME SCENE: uses the given scene", "[cli]") {

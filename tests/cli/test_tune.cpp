@@ -33,12 +33,12 @@ const SourcePatch kFaults = {"shading/tree.clh", "    t->sum = vec_choose(m, vec
 #endif
     t->sum = vec_choose(m, vec_mad(value, weight, t->sum), t->sum);)"};
 
-/// Returns the outcomes, in a T4 report, of the candidates whose parameter `knob` has this value.
-std::set<std::string> ends_with(const Document& report, const std::string& knob, std::uint32_t value) {
-    std::set<std::string> ends;
+/// Returns the outcomes in a T4 report of the candidates whose tuning parameter `parameter` has this value.
+std::set<std::string> outcomes_of(const Document& report, const std::string& parameter, std::uint32_t value) {
+    std::set<std::string> outcomes;
     for (const Document& one : report["results"])
-        if (one["configuration"][knob] == value) ends.insert(one["invalidity"]);
-    return ends;
+        if (one["configuration"][parameter] == value) outcomes.insert(one["invalidity"]);
+    return outcomes;
 }
 
 TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; renders use the result", "[cli][slow]") {
@@ -52,12 +52,12 @@ TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; re
     REQUIRE(run.code == 0);
     CHECK_FALSE(contains(run.err, "raya: "));  // stderr has only the compilers' messages
     const Document t4 = Document::parse(file_contents(report));
-    using Ends = std::set<std::string>;
-    CHECK(ends_with(t4, "lanes", 8) == Ends{"compile"});
-    CHECK(ends_with(t4, "group", 2) == Ends{"correctness"});
-    CHECK(ends_with(t4, "local_words", 0) == Ends{"runtime"});
-    CHECK(ends_with(t4, "batch", 8) == Ends{"timeout"});
-    CHECK(ends_with(t4, "lanes", 1) == Ends{"correct"});
+    using Outcomes = std::set<std::string>;
+    CHECK(outcomes_of(t4, "lanes", 8) == Outcomes{"compile"});
+    CHECK(outcomes_of(t4, "group", 2) == Outcomes{"correctness"});
+    CHECK(outcomes_of(t4, "local_words", 0) == Outcomes{"runtime"});
+    CHECK(outcomes_of(t4, "batch", 8) == Outcomes{"timeout"});
+    CHECK(outcomes_of(t4, "lanes", 1) == Outcomes{"correct"});
     for (const char* part : {"ring none fp32", "not built: ", "wrong: another image",
                              "failed: ended by signal 11 (SIGSEGV)", "too long: not done in 12 s", "stored in "})
         CHECK_THAT(run.out, Catch::Contains(part));

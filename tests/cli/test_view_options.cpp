@@ -32,7 +32,7 @@ ViewOptions options_of(const Scene& scene) {
 }
 
 /// Returns the scene with a random camera, background and lights.
-Scene random_look(const Scene& scene, SplitMix& random) {
+Scene with_random_view(const Scene& scene, SplitMix& random) {
     Scene other = scene;
     other.view.from = random_vector(random, 4, 9);
     other.view.at = random_vector(random, -1, 1);
@@ -52,7 +52,7 @@ TEST_CASE("change_view: replaces the given values of the scene exactly, and no o
     const Scene scene = read_nff(scene_file("centre"));
     SplitMix random(5);
     for (int i = 0; i < 200; ++i) {
-        const Scene other = random_look(scene, random);
+        const Scene other = with_random_view(scene, random);
         CAPTURE(i);
         Scene changed = scene;
         change_view(options_of(other), changed);
@@ -115,7 +115,7 @@ TEST_CASE("render: view options make the image of a scene with these values, and
     const ScratchFolder folder;
     const Scene scene = read_nff(scene_file("centre"));
     SplitMix random(6);
-    const Scene other = random_look(scene, random);
+    const Scene other = with_random_view(scene, random);
     write_whole_file(folder / "other.nff", write_nff(other));
     const auto report_of = [&](const std::string& file, Arguments arguments) {
         arguments.insert(arguments.begin(), {"render", file, "-o", folder / "x.pfm", "--size", "16", "--lanes", "4",

@@ -8,8 +8,8 @@ namespace {
 
 using Document = nlohmann::ordered_json;
 
-// Marks a string value: the text after this prefix is written to the file verbatim, without quotes. For text that the
-// JSON library cannot write.
+// Prefix of a string value whose rest is written to the file verbatim, without quotes: text that the JSON library
+// cannot write.
 constexpr const char* kRaw = "\x01raw";
 
 const char* const kRawValues[] = {"1e400",
@@ -78,9 +78,9 @@ const char* const kTexts[] = {"",
                               "iVBORw0KGgo=",
                               "474a384374e81c5144a0e5405232a750"};
 
-// Addresses a value of a document by its container and its index or key.
+// Reference to a value of a document: its container, and its index or key.
 struct Spot {
-    Document* holder;  // null: the document itself
+    Document* holder;
     std::string key;
     std::size_t index = 0;
 };

@@ -14,7 +14,7 @@ namespace raya::fuzz {
 
 /// Prints a finding and aborts.
 [[noreturn]] inline void complain(const char* what, std::string_view detail) {
-    std::fprintf(stderr, "find: %s: %.*s\n", what, static_cast<int>(detail.size()), detail.data());
+    std::fprintf(stderr, "finding: %s: %.*s\n", what, static_cast<int>(detail.size()), detail.data());
     std::abort();
 }
 

@@ -64,5 +64,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const UserError& error) {
         check_refusal_with_line(error.what(), kFile);
     }
-    return 0;  // any other exception ends the program: a finding
+    return 0;  // any other exception ends the program, which libFuzzer reports as a finding
 }

@@ -21,12 +21,17 @@ void check_page(std::string_view text) try {
 void check_bench(const ScratchFolder& folder, std::string_view text) {
     const std::string file = folder.write("bench.json", text);
     try {
-        const BenchReport report = read_bench_report(file);
+        BenchReport report = read_bench_report(file);
+        // Parts that a reader skips.
+        report.rows.front().roofline.emplace().unavailable = "not measured";
+        report.builds.emplace_back();
         const std::string written = to_json(report).dump();
         const BenchReport again = read_bench_report(folder.write("again.json", written));
-        // Seconds are stored as milliseconds, so they may be rounded.
+        // The skipped parts are lost. Seconds are stored as milliseconds, so they may be rounded.
+        report.rows.front().roofline.reset();
+        report.builds.clear();
         if (to_json(read_bench_report(folder.write("again.json", to_json(again).dump()))).dump().size() + 64 <
-            written.size())
+            to_json(report).dump().size())
             complain("changed by being written and read", written);
         const BenchComparison same = compare_bench(report, again, 1e-6);
         if (same.slower != 0 || same.other_images != 0) complain("differs from itself", same.text);

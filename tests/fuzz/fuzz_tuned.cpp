@@ -44,7 +44,7 @@ void check_choices(const std::string& file) {
 }
 
 /// Checks device names, folders and environment variables with unusual values.
-void check_surroundings(const ScratchFolder& folder) {
+void check_environment(const ScratchFolder& folder) {
     DeviceInfo odd = kDevice;
     odd.name = "--a  b/c(R)-- 1.0+x";
     if (tuned_file_name(odd).find_first_of("/ ()") != std::string::npos) complain("a file name", tuned_file_name(odd));
@@ -75,7 +75,7 @@ void check_surroundings(const ScratchFolder& folder) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const ScratchFolder folder;
-    static const bool once = (check_surroundings(folder), true);
+    static const bool once = (check_environment(folder), true);
     if (!once) return 0;
     ::setenv("XDG_CACHE_HOME", folder.path("").c_str(), 1);
     static const std::string file = tuned_path(kDevice).string();
@@ -87,7 +87,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::string written = tuned_text(kDevice, read);
         if (tuned_text(kDevice, read_tuned(written, "tuned.json", kDevice)) != written)
             complain("changed by being written and read", written);
-        save_tuned(kDevice, {.date = "2026-11-24", .entries = {TunedEntry{.what = {}, .values = {}, .scene = "s"}}});
+        save_tuned(kDevice, {.date = "2026-11-24", .entries = {TunedEntry{.key = {}, .values = {}, .scene = "s"}}});
     } catch (const UserError& error) {
         if (std::string_view(error.what()).empty()) complain("an error message without a reason", text);
     }

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace raya::fuzz {
 
@@ -28,21 +28,21 @@ class Random {
 };
 
 /// Applies libFuzzer's own mutations: bit flips, copies, dictionary entries, operands of the program's comparisons.
-inline void mutate_bytes(std::string& text, std::size_t most = 4096) {
+inline void mutate_bytes(std::string& text, std::size_t max_size = 4096) {
     const std::size_t size = text.size();
-    text.resize(std::max(most, size + 64));
+    text.resize(std::max(max_size, size + 64));
     text.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(text.data()), size, text.size()));
 }
 
-/// Copies the text to libFuzzer's buffer of `most` bytes, cut to that size; returns the number of bytes copied.
-inline std::size_t store(const std::string& text, std::uint8_t* data, std::size_t most) {
-    const std::size_t size = std::min(text.size(), most);
+/// Copies the text to libFuzzer's buffer of max_size bytes, cut to that size; returns the number of bytes copied.
+inline std::size_t store(const std::string& text, std::uint8_t* data, std::size_t max_size) {
+    const std::size_t size = std::min(text.size(), max_size);
     if (size > 0) std::memcpy(data, text.data(), size);
     return size;
 }
 
-/// Mutates tokens and lines of a text: removes, repeats, swaps and replaces them. `words`: the format's keywords.
-void damage_words(std::string& text, const std::vector<std::string>& words, Random& random);
+/// Mutates tokens and lines of a text: removes, repeats, swaps and replaces them. keywords: those of the format.
+void damage_tokens(std::string& text, const std::vector<std::string>& keywords, Random& random);
 
 /// Mutates values of a JSON text: removes, repeats or renames them, or changes their value or type. Returns false if
 /// the text is not JSON.

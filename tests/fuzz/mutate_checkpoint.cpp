@@ -1,5 +1,5 @@
-// Mutates the header or the values of checkpoints and recomputes the hash, so that the reader does not stop at a wrong
-// hash.
+// Mutates the header or the values of checkpoints and recomputes the hash, because the reader refuses a file with a
+// wrong hash.
 #include <algorithm>
 
 #include "host/base/encoding.hpp"
@@ -23,13 +23,14 @@ void damage_values(std::string& values, Random& random) {
 
 }  // namespace
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed) {
     Random random(seed);
     std::string text(reinterpret_cast<const char*>(data), size);
     const std::size_t magic = text.find('\n'), header = magic == std::string::npos ? magic : text.find('\n', magic + 1);
     if (header == std::string::npos || text.size() < header + 1 + kHashLetters || random.one_in(10)) {
         mutate_bytes(text);
-        return store(text, data, most);
+        return store(text, data, max_size);
     }
     std::string line = text.substr(magic + 1, header - magic - 1);
     std::string values = text.substr(header + 1, text.size() - header - 1 - kHashLetters);
@@ -39,6 +40,6 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
         mutate_bytes(line);
     std::replace(line.begin(), line.end(), '\n', ' ');  // the header is one line
     std::string whole = text.substr(0, magic + 1) + line + "\n" + values;
-    if (whole.size() + kHashLetters > most) whole.resize(most - kHashLetters);
-    return store(whole + bytes_hash(whole), data, most);
+    if (whole.size() + kHashLetters > max_size) whole.resize(max_size - kHashLetters);
+    return store(whole + bytes_hash(whole), data, max_size);
 }

@@ -9,10 +9,10 @@ namespace {
 
 using namespace raya::fuzz;
 
-const std::vector<std::string> kWords = {"v",     "from",  "at",      "up",    "angle",    "hither",   "resolution",
-                                         "b",     "l",     "f",       "s",     "p",        "pp",       "c",
-                                         "#raya", "plane", "checker", "#",     "nff",      "pl",       "k",
-                                         "tt",    "g",     "light",   "From:", "Subject:", "viewpoint"};
+const std::vector<std::string> kKeywords = {"v",     "from",  "at",      "up",    "angle",    "hither",   "resolution",
+                                            "b",     "l",     "f",       "s",     "p",        "pp",       "c",
+                                            "#raya", "plane", "checker", "#",     "nff",      "pl",       "k",
+                                            "tt",    "g",     "light",   "From:", "Subject:", "viewpoint"};
 
 // Generates entities that the reader accepts.
 class Grammar {
@@ -133,7 +133,8 @@ std::size_t line_start(const std::string& text, Random& random) {
 
 }  // namespace
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed) {
     Random random(seed);
     std::string text(reinterpret_cast<const char*>(data), size);
     if (text.empty() || random.one_in(10)) text = Grammar(random).scene();
@@ -143,7 +144,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
         else if (random.one_in(4))
             mutate_bytes(text);
         else
-            damage_words(text, kWords, random);
+            damage_tokens(text, kKeywords, random);
     }
-    return store(text, data, most);
+    return store(text, data, max_size);
 }

@@ -1,5 +1,6 @@
-// Runs a fuzz target on each of the given files and on each file in the given folders, as libFuzzer does. Needs no
-// clang.
+// Runs a fuzz target on files, as libFuzzer does, but without clang:
+//   fuzz_READER FILE|FOLDER...     a FOLDER stands for its files
+// Prints the number of files. Exit codes: 0 done; 2 a file cannot be read, or there are no files; a finding aborts.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

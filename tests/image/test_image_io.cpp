@@ -32,7 +32,7 @@ std::string contents(const fs::path& path) {
 }
 
 /// Returns an image with values that are negative, above 1, -0, infinite or denormal, among others.
-Image awkward_image() {
+Image special_image() {
     Image image{5, 3, {}};
     for (int i = 0; i < 45; ++i) image.rgb.push_back(static_cast<float>(i - 5) * 0.37f);
     image.rgb[7] = -0.0f;
@@ -43,7 +43,7 @@ Image awkward_image() {
 
 TEST_CASE("EXR, PFM: preserve every bit", "[image_io]") {
     const ScratchFolder folder;
-    const Image image = awkward_image();
+    const Image image = special_image();
     for (const char* name : {"a.exr", "a.pfm", "A.EXR"}) {
         CAPTURE(name);
         write_image(folder / name, image, kAttributes);
@@ -85,7 +85,7 @@ TEST_CASE("PPM: the codes of the PNG, top row first", "[image_io]") {
     write_image(folder / "two.ppm", Image{2, 2, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0.5f}}, {});
     CHECK(contents(folder / "two.ppm") ==
           std::string("P6\n2 2\n255\n\xff\x00\x00\x00\x00\xff\x00\x00\x00\xbc\xbc\xbc", 23));
-    for (const char* name : {"a.png", "a.PPM"}) write_image(folder / name, awkward_image(), kAttributes);
+    for (const char* name : {"a.png", "a.PPM"}) write_image(folder / name, special_image(), kAttributes);
     const Image png = read_image(folder / "a.png"), ppm = read_image(folder / "a.PPM");
     CHECK(ppm.width == 5);
     CHECK(ppm.height == 3);
@@ -137,12 +137,12 @@ TEST_CASE("TIFF, JPEG: the description has an attribute per line", "[image_io]")
     const ScratchFolder folder;
     for (const char* name : {"a.tif", "a.jpg"}) {
         CAPTURE(name);
-        write_image(folder / name, awkward_image(), kAttributes);
+        write_image(folder / name, special_image(), kAttributes);
         const auto file = OIIO::ImageInput::open((folder / name).string());
         REQUIRE(file);
         CHECK(file->spec().get_string_attribute("ImageDescription") ==
               "raya:scene=centre.nff\nraya:mapping=cyclic\nraya:offset=16\nraya:format=fp32");
-        write_image(folder / name, awkward_image(), {});
+        write_image(folder / name, special_image(), {});
         CHECK_THAT(contents(folder / name), !Contains("raya"));
     }
 }
@@ -150,7 +150,7 @@ TEST_CASE("TIFF, JPEG: the description has an attribute per line", "[image_io]")
 TEST_CASE("8-bit files: have the codes of the tone; PNG has its gamma", "[image_io]") {
     const ScratchFolder folder;
     const Tone tone{1, ToneCurve::kReinhard, 2.2};
-    const Image image = awkward_image();
+    const Image image = special_image();
     std::string expected = "P6\n5 3\n255\n";
     const ToneCodes codes(tone);
     for (std::size_t at = 0; at < image.rgb.size(); at += 3)
@@ -241,7 +241,7 @@ TEST_CASE("PNG, EXR: have attributes with the prefix raya:", "[image_io]") {
     const ScratchFolder folder;
     for (const char* name : {"a.png", "a.exr"}) {
         CAPTURE(name);
-        write_image(folder / name, awkward_image(), kAttributes);
+        write_image(folder / name, special_image(), kAttributes);
         const auto file = OIIO::ImageInput::open((folder / name).string());
         REQUIRE(file);
         for (const auto& [key, text] : kAttributes) CHECK(file->spec().get_string_attribute("raya:" + key) == text);
@@ -252,9 +252,9 @@ TEST_CASE("image files: contain no date, host or software version", "[image_io]"
     const ScratchFolder folder;
     for (const char* name : {"a.png", "a.exr", "a.pfm", "a.ppm", "a.tif", "a.jpg"}) {
         CAPTURE(name);
-        write_image(folder / name, awkward_image(), kAttributes);
+        write_image(folder / name, special_image(), kAttributes);
         const std::string first = contents(folder / name);
-        write_image(folder / name, awkward_image(), kAttributes);
+        write_image(folder / name, special_image(), kAttributes);
         CHECK(contents(folder / name) == first);
         for (const char* word : {"capDate", "tIME", "DateTime", "Software", "HostComputer", "OpenImageIO"})
             CHECK_THAT(first, !Contains(word));
@@ -266,7 +266,7 @@ TEST_CASE("write_image: refuses an unknown extension with the known ones", "[ima
     const auto message = Contains("use one of .png, .exr, .pfm, .ppm, .tif, .tiff, .jpg, .jpeg");
     for (const char* name : {"a.gif", "a", ".png", "a.png.gz"}) {
         CAPTURE(name);
-        CHECK_THROWS_WITH(write_image(folder / name, awkward_image(), {}), Contains(name) && message);
+        CHECK_THROWS_WITH(write_image(folder / name, special_image(), {}), Contains(name) && message);
         CHECK_THROWS_WITH(check_image_name(folder / name, kImageExtensions), Contains(name) && message);
         CHECK_THROWS_AS(check_image_name(folder / name, kImageExtensions), UserError);
     }
@@ -279,8 +279,8 @@ TEST_CASE("write_image: refuses a file that it cannot write, and leaves no part 
     const ScratchFolder folder;
     fs::create_symlink("/dev/full", folder / "full.png");
     check_image_name(folder / "new.png", kImageExtensions);
-    CHECK_THROWS_WITH(write_image(folder / "missing/a.exr", awkward_image(), {}), Contains("does not exist"));
-    CHECK_THROWS_WITH(write_image(folder / "full.png", awkward_image(), {}), Contains("No space left on device"));
+    CHECK_THROWS_WITH(write_image(folder / "missing/a.exr", special_image(), {}), Contains("does not exist"));
+    CHECK_THROWS_WITH(write_image(folder / "full.png", special_image(), {}), Contains("No space left on device"));
     Image wide{1'000'001, 1, {}};  // libpng's limit is 1,000,000
     wide.rgb.resize(3'000'003);
     CHECK_THROWS_WITH(write_image(folder / "wide.png", wide, {}), Contains("wide.png") && Contains(".ppm"));

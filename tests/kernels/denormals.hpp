@@ -11,7 +11,7 @@
 namespace raya {
 
 /// Returns true if denormals in kernels can be detected: on x86, with PoCL's basic device (POCL_DEVICES=basic).
-inline bool denormals_can_be_seen() {
+inline bool can_detect_denormals() {
     const char* devices = std::getenv("POCL_DEVICES");
 #if defined(__x86_64__)
     return devices != nullptr && std::string_view(devices) == "basic";
@@ -22,7 +22,7 @@ inline bool denormals_can_be_seen() {
 
 /// Returns true if `work` computes with a denormal operand.
 template <class Work>
-bool meets_denormals([[maybe_unused]] const Work& work) {
+bool uses_denormals([[maybe_unused]] const Work& work) {
 #if defined(__x86_64__)
     constexpr unsigned kAllFlags = 0x3f, kDenormal = 0x02;
     _mm_setcsr(_mm_getcsr() & ~kAllFlags);

@@ -35,11 +35,11 @@ DeviceInfo a_gpu() {
     return device;
 }
 
-const std::vector<std::pair<std::string, std::uint32_t>> kWalks = {{" grid", RAYA_ACCEL_GRID},
-                                                                   {" bvh", RAYA_ACCEL_BVH}};
+const std::vector<std::pair<std::string, std::uint32_t>> kAccelerators = {{" grid", RAYA_ACCEL_GRID},
+                                                                          {" bvh", RAYA_ACCEL_BVH}};
 constexpr std::uint32_t kDepth = 5;  // depth of a BVH of up to 16^5 objects
 
-KernelOptions with_walk(KernelOptions options, std::uint32_t accel) {
+KernelOptions with_accel(KernelOptions options, std::uint32_t accel) {
     options.words_local = false;  // scenes that need a grid or BVH rarely fit in local memory
     options.accel = accel;
     options.stack = accel == RAYA_ACCEL_BVH ? (RAYA_BVH_WIDTH - 1) * kDepth : 0;
@@ -62,9 +62,9 @@ std::vector<Build> builds_in(const std::string& format, const KernelOptions& all
         {"torus/compose.cl", format, check},  {"number/operations.cl", format, all},
         {"checks/numbers.cl", format, check}, {"checks/numbers.cl", format + " refined", refined},
     };
-    for (const auto& [walk, accel] : kWalks) {
-        builds.push_back({"ring/trace.cl", format + walk, with_walk(all, accel)});
-        builds.push_back({"checks/hits.cl", format + walk, with_walk(check, accel)});
+    for (const auto& [suffix, accel] : kAccelerators) {
+        builds.push_back({"ring/trace.cl", format + suffix, with_accel(all, accel)});
+        builds.push_back({"checks/hits.cl", format + suffix, with_accel(check, accel)});
     }
     return builds;
 }
@@ -89,7 +89,7 @@ std::vector<Build> all_builds(std::uint32_t group) {
 
 void write(const std::filesystem::path& to, std::uint32_t group, const KernelSources& sources) {
     std::filesystem::create_directories(to);
-    Json list = Json::list();
+    Json list = Json::array();
     for (const Build& build : all_builds(group)) {
         std::string name = fmt::format("{} {}.cl", build.file.substr(0, build.file.size() - 3), build.variant);
         for (char& letter : name)

@@ -36,7 +36,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void shade_once(__global const uint* restrict job,
                 __global const float* restrict rays,
                 const uint level,
-                __global uint* restrict state,     // [ray][3 + RAYA_EVENTS]: walking (0 or 1), level, waits, events
+                __global uint* restrict state,     // [ray][3 + RAYA_EVENTS]: active (0 or 1), level, pending, events
                 __global float* restrict numbers)  // [ray][17]: sum, current ray, ray pending at `level`
 {
     const uint first = first_ray();
@@ -46,7 +46,7 @@ void shade_once(__global const uint* restrict job,
     t.ray.origin = lanes_of_vec(r.origin);
     t.ray.direction = lanes_of_vec(r.direction);
     t.ray.weight.all = num_const(0.5f);
-    t.walking = mask_all(1);
+    t.active = mask_all(1);
     t.level = (index)(level);
     for (uint i = 0; i < RAYA_PENDING; ++i) t.pending[i] = t.ray;
     ray_pool pool;
@@ -55,9 +55,9 @@ void shade_once(__global const uint* restrict job,
 
     const uint words = 3 + RAYA_EVENTS;
     __global uint* to = state + first * words;
-    store_index(to, words, choose_index(t.walking, (index)(1), (index)(0)));
+    store_index(to, words, choose_index(t.active, (index)(1), (index)(0)));
     store_index(to + 1, words, t.level);
-    store_index(to + 2, words, t.waits.all);
+    store_index(to + 2, words, t.pending_levels.all);
     for (uint e = 0; e < RAYA_EVENTS; ++e) store_index(to + 3 + e, words, t.events[e].all);
     store_vec(numbers + first * 17, 17, t.sum);
     store_ray(numbers + first * 17 + 3, 17, &t.ray);

@@ -95,9 +95,9 @@ struct ProbedSteps {
     std::vector<std::uint32_t> state;  // [ray][kStateWords]: as shade_once in probe.cl
     std::vector<float> numbers;        // [ray][kNumberWords]: as shade_once in probe.cl
 
-    bool walking(std::size_t ray) const { return state[ray * kStateWords] != 0; }
+    bool active(std::size_t ray) const { return state[ray * kStateWords] != 0; }
     std::uint32_t level(std::size_t ray) const { return state[ray * kStateWords + 1]; }
-    std::uint32_t waits(std::size_t ray) const { return state[ray * kStateWords + 2]; }
+    std::uint32_t pending_levels(std::size_t ray) const { return state[ray * kStateWords + 2]; }
     std::uint32_t events(std::size_t ray, std::size_t kind) const { return state[ray * kStateWords + 3 + kind]; }
     Colour sum(std::size_t ray) const { return vector(ray, 0); }
     ProbedRay followed(std::size_t ray) const { return {vector(ray, 3), vector(ray, 6), number(ray, 9)}; }

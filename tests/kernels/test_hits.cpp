@@ -24,7 +24,7 @@ constexpr double kDistanceLimit = 1e-6;  // of the scene's extent
 
 // The maximum fraction of rays that may differ by more because they graze an edge or an outline. A band of 1e-6 of the
 // extent around the outlines of twenty objects covers about 1e-4 of the view.
-constexpr double kMostGrazing = 0.001;
+constexpr double kMaxGrazing = 0.001;
 
 Found reference_hit(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
@@ -49,7 +49,7 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
         CHECK(agreement.accepts(find, rays[i], found, {0, limit}));
     }
     CHECK(struck > kRays / 10);
-    CHECK(static_cast<double>(agreement.grazing) <= kMostGrazing * kRays);
+    CHECK(static_cast<double>(agreement.grazing) <= kMaxGrazing * kRays);
     return agreement.grazing;
 }
 

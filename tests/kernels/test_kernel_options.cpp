@@ -72,23 +72,24 @@ TEST_CASE("correctly rounded division is requested only if the device supports i
 }
 
 TEST_CASE("lanes, group sizes and bounces out of range are refused", "[ring]") {
-    const auto refuses = [](const KernelOptions& options, const DeviceInfo& device, const auto& message) {
+    const auto check_error = [](const KernelOptions& options, const DeviceInfo& device, const auto& message) {
         CHECK_THROWS_AS(build_options(options, device), UserError);
         CHECK_THROWS_WITH(build_options(options, device), message);
     };
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) CHECK_NOTHROW(build_options({.lanes = lanes}, kCpu));
     for (const std::uint32_t lanes : {0u, 2u, 3u, 17u, 32u})
-        refuses({.lanes = lanes}, kCpu,
-                Contains("--lanes " + std::to_string(lanes) + ":") && Contains("1, 4, 8 or 16"));
+        check_error({.lanes = lanes}, kCpu,
+                    Contains("--lanes " + std::to_string(lanes) + ":") && Contains("1, 4, 8 or 16"));
     CHECK_NOTHROW(build_options({.group_size = 1024}, kCpu));
     for (const std::uint32_t group : {0u, 1025u})
-        refuses({.group_size = group}, kCpu, Contains("--group " + std::to_string(group) + ":") && Contains("1..1024"));
+        check_error({.group_size = group}, kCpu,
+                    Contains("--group " + std::to_string(group) + ":") && Contains("1..1024"));
     const DeviceInfo small = a_device("gpu", 1, 16);
     CHECK_NOTHROW(build_options({.group_size = 16}, small));
-    refuses({.group_size = 17}, small, Contains("--group 17:") && Contains("1..16") && Contains("a device"));
+    check_error({.group_size = 17}, small, Contains("--group 17:") && Contains("1..16") && Contains("a device"));
     CHECK_NOTHROW(build_options({.bounces = 0}, kCpu));
     CHECK_NOTHROW(build_options({.bounces = 31}, kCpu));
-    refuses({.bounces = 32}, kCpu, Contains("--bounces 32:") && Contains("0..31"));
+    check_error({.bounces = 32}, kCpu, Contains("--bounces 32:") && Contains("0..31"));
 }
 
 TEST_CASE("lanes and group size follow the device", "[ring]") {
@@ -118,7 +119,7 @@ TEST_CASE("llvmpipe, which vectorises over work-items, has groups of 8 and one l
         CHECK((named.lanes == 4 && named.group_size == whole.group_size));
         CHECK(named.more.sphere_batch == whole.more.sphere_batch);
     }
-    for (const TunedFor& what :
-         {TunedFor{.accel = RAYA_ACCEL_GRID}, TunedFor{.accel = RAYA_ACCEL_BVH}, {.fp32 = false}})
+    for (const TuningKey& what :
+         {TuningKey{.accel = RAYA_ACCEL_GRID}, TuningKey{.accel = RAYA_ACCEL_BVH}, {.fp32 = false}})
         CHECK(chosen({}, llvmpipe, what).more.sphere_batch == 0);
 }

@@ -134,14 +134,14 @@ TEST_CASE("a patch changes its file wherever it is included, and nothing else", 
 }
 
 TEST_CASE("a patch that does not find its text exactly once is refused", "[kernels]") {
-    const auto refused = [](const SourcePatch& patch, const std::string& why) {
+    const auto check_patch_error = [](const SourcePatch& patch, const std::string& why) {
         const KernelSources sources{.patches = {patch}};
         CHECK_THROWS_AS(kernel_file(patch.file, sources), std::logic_error);
         CHECK_THROWS_WITH(check_patches(sources), why);
     };
-    refused({"ring/trace.cl", "no such text", ""}, "patch of ring/trace.cl: no text 'no such text'");
-    refused({"ring/trace.cl", "", "more"}, "patch of ring/trace.cl: no text ''");
-    refused({"ring/trace.cl", "uint", "int"}, "patch of ring/trace.cl: more than one text 'uint'");
+    check_patch_error({"ring/trace.cl", "no such text", ""}, "patch of ring/trace.cl: no text 'no such text'");
+    check_patch_error({"ring/trace.cl", "", "more"}, "patch of ring/trace.cl: no text ''");
+    check_patch_error({"ring/trace.cl", "uint", "int"}, "patch of ring/trace.cl: more than one text 'uint'");
     CHECK_THROWS_AS(check_patches({.patches = {{"ring/tarce.cl", "uint", "int"}}}), UserError);
     CHECK_NOTHROW(check_patches({.patches = {{"ring/trace.cl", "void trace(", "void retrace("}}}));
 }

@@ -22,7 +22,7 @@ struct ParameterName<Uint<Name>> {
 };
 
 // Returns false if the driver reports that it does not store parameter names.
-bool keeps_name(const cl::Kernel& kernel, cl_uint index) {
+bool has_parameter_name(const cl::Kernel& kernel, cl_uint index) {
     std::size_t size = 0;
     return clGetKernelArgInfo(kernel(), index, CL_KERNEL_ARG_NAME, 0, nullptr, &size) !=
            CL_KERNEL_ARG_INFO_NOT_AVAILABLE;
@@ -41,7 +41,7 @@ void check_parameter_names(const Kernel<Params...>& kernel, NamedParameters& cou
     const auto check = [&](const std::string& expected) {
         if (!expected.empty()) {
             ++counts.described;
-            if (keeps_name(kernel.handle(), index)) {
+            if (has_parameter_name(kernel.handle(), index)) {
                 ++counts.kept;
                 CHECK_THAT(argument_name(kernel.handle(), index), Catch::EndsWith(expected));
             }
@@ -55,7 +55,7 @@ void check_parameter_names(const Kernel<Params...>& kernel, NamedParameters& cou
 
 TEST_CASE("parameters have the same names in kernels and in their descriptions", "[kernels]") {
     Session session(choose_device(""));
-    StepLog log;
+    SpanLog log;
     session.observe(log, 1);  // builds with -cl-kernel-arg-info
     Kernels kernels(session, {});
     NamedParameters counts;
@@ -69,7 +69,7 @@ TEST_CASE("parameters have the same names in kernels and in their descriptions",
           std::type_identity<node_kernels::Accept>{}, std::type_identity<ExchangeKernel>{});
     CHECK(counts.described == 41);
     CHECK((counts.kept == 0 || counts.kept == counts.described));
-    CHECK(log.steps().size() == 9);  // one program for each file; the filter's two kernels share one
+    CHECK(log.spans().size() == 9);  // one program for each file; the filter's two kernels share one
 }
 
 TEST_CASE("a kernel with other parameters, another name or another file is refused", "[kernels]") {

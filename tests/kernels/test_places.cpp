@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t kPlaceRays = 4'000;
 
-constexpr double kPlaceLimit = 1e-6;          // of the scene's extent, as for the distance of a hit
-constexpr double kColourLimit = 1e-7;         // rounding of the scene's words
-constexpr double kMostPlacesGrazing = 0.002;  // as for hits, and sides of checker squares
+constexpr double kPlaceLimit = 1e-6;         // of the scene's extent, as for the distance of a hit
+constexpr double kColourLimit = 1e-7;        // rounding of the scene's words
+constexpr double kMaxPlacesGrazing = 0.002;  // as for hits, and sides of checker squares
 
 Found reference_place(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
@@ -74,7 +74,7 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
         leaving += places.leaving[i];
     }
     CHECK(leaving > agreement.rays / 50);  // rays hit both sides of objects
-    CHECK(static_cast<double>(agreement.grazing) <= kMostPlacesGrazing * static_cast<double>(agreement.rays));
+    CHECK(static_cast<double>(agreement.grazing) <= kMaxPlacesGrazing * static_cast<double>(agreement.rays));
     return agreement.grazing;
 }
 

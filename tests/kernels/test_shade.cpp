@@ -30,7 +30,7 @@ constexpr double kDirectionLimit = 2 * kPlaceLimit * 4 / 0.2;
 // 0.1.
 constexpr double kSumLimit = 100 * 0.1 * kDirectionLimit;
 constexpr double kWeightLimit = 1e-7;
-constexpr double kMostShadesGrazing = 0.01;  // as for hits, and edges of shadows, tips of cones, critical angles
+constexpr double kMaxShadesGrazing = 0.01;  // as for hits, and edges of shadows, tips of cones, critical angles
 
 void append_ray(Found& found, const ProbedRay& ray) {
     append(found, ray.origin);
@@ -59,8 +59,8 @@ struct Lit {
 };
 
 Lit reference_light(const Scene& scene, const reference::Hit& hit, const Vec3& start, const Vec3& mirror) {
-    const Surface& look = scene.surfaces[static_cast<std::size_t>(hit.surface)];
-    Lit lit{ambient_intensity(scene) * look.diffuse * hit.colour};
+    const Surface& surface = scene.surfaces[static_cast<std::size_t>(hit.surface)];
+    Lit lit{ambient_intensity(scene) * surface.diffuse * hit.colour};
     for (const Light& light : scene.lights) {
         const Vec3 arm = light.position - start, to_light = arm.normalized();
         if (hit.shading.dot(to_light) <= 0) continue;
@@ -69,10 +69,10 @@ Lit reference_light(const Scene& scene, const reference::Hit& hit, const Vec3& s
             ++lit.shadow_hits;
             continue;
         }
-        const double gloss = look.specular * std::pow(std::max(0.0, mirror.dot(to_light)), look.shine);
-        const bool shines = look.specular > 0 && mirror.dot(to_light) > 0;
+        const double gloss = surface.specular * std::pow(std::max(0.0, mirror.dot(to_light)), surface.shine);
+        const bool shines = surface.specular > 0 && mirror.dot(to_light) > 0;
         lit.sum += light_colour(scene, light) *
-                   (look.diffuse * hit.shading.dot(to_light) * hit.colour + Colour(shines ? gloss : 0.0));
+                   (surface.diffuse * hit.shading.dot(to_light) * hit.colour + Colour(shines ? gloss : 0.0));
     }
     return lit;
 }
@@ -84,22 +84,22 @@ Found reference_step(const Scene& scene, const reference::Ray& ray) {
         append(found, kWeight * scene.background);
         return found;
     }
-    const Surface& look = scene.surfaces[static_cast<std::size_t>(hit->surface)];
+    const Surface& surface = scene.surfaces[static_cast<std::size_t>(hit->surface)];
     double largest = scene_extent(scene);
     for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(hit->point[axis]));
     const Vec3 aside = 0x1p-20 * largest * hit->geometric;
     const Vec3 mirror = reference::reflected_direction(ray.direction, hit->shading);
-    const double e = hit->leaving ? look.refraction : 1 / look.refraction;
+    const double e = hit->leaving ? surface.refraction : 1 / surface.refraction;
     std::optional<Vec3> through;
-    if (look.transmittance > 0) through = reference::refracted_direction(ray.direction, hit->shading, e);
-    const double share = look.specular + (look.transmittance > 0 && !through ? look.transmittance : 0);
+    if (surface.transmittance > 0) through = reference::refracted_direction(ray.direction, hit->shading, e);
+    const double share = surface.specular + (surface.transmittance > 0 && !through ? surface.transmittance : 0);
     const Lit lit = reference_light(scene, *hit, hit->point + aside, mirror);
     for (const double whole :
          {double(lit.shadow_rays), double(lit.shadow_hits), double(share > 0), double(through.has_value())})
         found.push_back(whole);
     append(found, kWeight * lit.sum);
     if (share > 0) append_ray(found, ProbedRay{hit->point + aside, mirror, kWeight * share});
-    if (through) append_ray(found, ProbedRay{hit->point - aside, *through, kWeight * look.transmittance});
+    if (through) append_ray(found, ProbedRay{hit->point - aside, *through, kWeight * surface.transmittance});
     return found;
 }
 
@@ -132,9 +132,9 @@ void check_state(const Scene& scene, std::size_t faces, const ProbedSteps& steps
                refracted = steps.events(ray, at(RAYA_REFRACTED)) != 0;
     const std::uint32_t shadow = steps.events(ray, at(RAYA_SHADOW));
     const std::uint32_t lit = shadow - steps.events(ray, at(RAYA_SHADOW_HITS));
-    CHECK(steps.walking(ray) == (reflected || refracted));
+    CHECK(steps.active(ray) == (reflected || refracted));
     CHECK(steps.level(ray) == (reflected || refracted ? level + 1 : level));
-    CHECK(steps.waits(ray) == (reflected && refracted ? 1u << level : 0u));
+    CHECK(steps.pending_levels(ray) == (reflected && refracted ? 1u << level : 0u));
     CHECK(steps.events(ray, at(RAYA_PRIMARY)) == 0);
     CHECK(steps.events(ray, at(RAYA_PRIMARY_HITS)) == (hit && level == 0 ? 1u : 0u));
     CHECK(steps.events(ray, at(RAYA_SHADED)) == (hit ? 1u : 0u));
@@ -166,13 +166,13 @@ TEST_CASE("a step of a ray tree agrees with the reference's formulas", "[kernels
         CAPTURE(found);
         CHECK(agreement.accepts(find, rays[i], found, limits_for(found, scene_extent(scene))));
         check_state(scene, faces, steps, i, hit, 0);
-        both += steps.waits(i) != 0;
+        both += steps.pending_levels(i) != 0;
         through += steps.events(i, at(RAYA_REFRACTED)) && !steps.events(i, at(RAYA_REFLECTED));
         total += hit && steps.events(i, at(RAYA_REFLECTED)) && steps.followed(i).weight > 0.9 * kWeight;
     }
     fmt::print("Of {} shaded rays differ by more than the limits, at edges and tips: {}.\n", kShadeRays,
                agreement.grazing);
-    CHECK(static_cast<double>(agreement.grazing) <= kMostShadesGrazing * kShadeRays);
+    CHECK(static_cast<double>(agreement.grazing) <= kMaxShadesGrazing * kShadeRays);
     CHECK(both > kShadeRays / 50);     // reflected and refracted
     CHECK(through > kShadeRays / 50);  // refracted only
     CHECK(total > kShadeRays / 50);    // totally reflected: a weight of Ks + T, 0.92 or 0.95
@@ -190,8 +190,8 @@ TEST_CASE("a step at a deeper level differs only in its level, and the last leve
     for (std::size_t i = 0; i < kShadeRays; ++i) {
         CAPTURE(kSceneSeed, kRaySeed, i);
         check_state(scene, faces, deeper, i, first.events(i, at(RAYA_SHADED)) != 0, 5);
-        CHECK_FALSE(last.walking(i));
-        CHECK(last.waits(i) == 0);
+        CHECK_FALSE(last.active(i));
+        CHECK(last.pending_levels(i) == 0);
         CHECK(last.events(i, at(RAYA_REFLECTED)) + last.events(i, at(RAYA_REFRACTED)) == 0);
         CHECK(last.sum(i) == first.sum(i));
     }

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Compares the results of `raya study` with recorded ones:
+"""Compares the results of `raya study` with recorded results.
 
-    compare_golden.py OUT GOLDEN [STUDY...]
+    compare_golden.py OUT GOLDEN [STUDY...]     OUT: folder of `raya study -o`; GOLDEN: folder with the recorded *.csv and
+                                                claims.json; STUDY: names of studies (default: all recorded ones)
 
-Every figure that is not a measured time must agree to 1 part in 10^9 (intervals: 10^6), every claim and verdict word
-for word. golden_names.csv maps columns, cells and claims that were renamed after the recording. Prints the numbers of
-compared figures; exit code 1 if something differs.
+Figures except measured times must agree to 1 part in 10^9, half widths of intervals to 1 in 10^6, and the texts and
+verdicts of claims exactly. golden_names.csv maps columns, cells, claims and verdicts that were renamed after the
+recording. Prints the differences and the numbers of compared figures and claims. Exit codes: 0 equal; 1 a difference.
 """
 import csv
 import json
@@ -82,7 +83,7 @@ def main(out, golden, wanted):
     recorded = json.loads((golden / "claims.json").read_text())
     for study in wanted or sorted({claim["study"] for claim in recorded}):
         if not (out / f"{study}.json").exists():
-            differences.append(f"{study}: no results")
+            differences.append(f"{study}: there is no {study}.json")
             continue
         page = json.loads((out / f"{study}.json").read_text())
         theirs = [{member: renamed(text) for member, text in c.items()} for c in recorded if c["study"] == study]

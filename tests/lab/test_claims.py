@@ -31,7 +31,7 @@ class FakeLaboratory:
     def costs(self, scene, size, antialias="none"):
         return self.views[0]
 
-    def ensemble(self, scene, size, antialias="none", most=64):
+    def ensemble(self, scene, size, antialias="none", max_views=64):
         return Ensemble(self.views[0], self.views)
 
 
@@ -183,7 +183,7 @@ def choice(near, count=20):
                            chosen_by=np.tile(ms, (3, 1)), judged_by=np.tile(ms, (3, 1)))
 
 
-@pytest.mark.parametrize("nears, word", [([0, 0], "yes"), ([0, 50], "no"), ([0, best_offset.ENOUGH], "?")])
+@pytest.mark.parametrize("nears, word", [([0, 0], "yes"), ([0, 50], "no"), ([0, best_offset.MAX_LOSS], "?")])
 def test_best_offset(nears, word):
     choices = [choice(near) for near in nears]
     assert best_offset.claim_of_enough(choices).verdict == VERDICTS[word]
@@ -276,11 +276,11 @@ def test_random_objects(ratio, word):
     assert objects.claim_of_random(ratios).verdict == VERDICTS[word]
 
 
-@pytest.mark.parametrize("over, word", [(0.5, "yes"), (1.2, "no"), (scale.CLOSE, "?")])
+@pytest.mark.parametrize("over, word", [(0.5, "yes"), (1.2, "no"), (scale.KEEPS_UP, "?")])
 def test_two_dimensions(over, word):
     random = np.random.default_rng(SEED)
     between = pd.DataFrame({"P": [512, 1024]})
-    names = (scale.FIXED, scale.ROOT, scale.LIKE)
+    names = (scale.FIXED, scale.ROOT, scale.ADAPTED)
     of_views = [{scale.GRID: np.ones(2), **{n: over + random.normal(0, 0.02, 2) for n in names}} for _ in range(20)]
     assert scale.claim_of_2d(between, of_views).verdict == VERDICTS[word]
 

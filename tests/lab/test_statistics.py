@@ -31,7 +31,7 @@ def test_interval_of_64_skewed_values_contains_the_mean():
 def test_joint_intervals_contain_all_means(tests):
     generator = np.random.default_rng(SEED)
     values = generator.normal(0, 1, (DRAWS, tests, 20))
-    all_hold = [all(abs(e.mean) <= e.half for e in (s.estimate(row, s.each_of(tests)) for row in draw))
+    all_hold = [all(abs(e.mean) <= e.half for e in (s.estimate(row, s.bonferroni_confidence(tests)) for row in draw))
                 for draw in values]
     assert 0.93 <= np.mean(all_hold) <= 0.97, f"{np.mean(all_hold)} of {DRAWS}, seed {SEED}"
 
@@ -42,7 +42,7 @@ def test_prediction_interval_contains_one_more_value(name, count):
     generator = np.random.default_rng(SEED)
     values = getattr(generator, name)(size=(DRAWS * 4, count + 1))
     bounds = np.quantile(values[:, 1:], [0.025, 0.975], axis=1, method="weibull")
-    assert np.allclose(bounds[:, 0], s.prediction(values[0, 1:]))  # the same computation for all rows at once
+    assert np.allclose(bounds[:, 0], s.prediction_interval(values[0, 1:]))  # the same computation for all rows at once
     part = np.mean((bounds[0] <= values[:, 0]) & (values[:, 0] <= bounds[1]))
     assert 0.93 <= part <= 0.97, f"{part} of {DRAWS * 4}, seed {SEED}"
 
@@ -63,7 +63,7 @@ def test_estimate_of_one_value_has_no_interval():
 
 
 def test_prediction_of_39_values_is_their_range():
-    assert s.prediction(np.arange(39)) == (0, 38)
+    assert s.prediction_interval(np.arange(39)) == (0, 38)
 
 
 @pytest.mark.parametrize("seen, contrary, word", [(True, False, s.REPRODUCED), (False, True, s.NOT_REPRODUCED),
@@ -76,7 +76,7 @@ def test_verdict(seen, contrary, word):
 @pytest.mark.parametrize("paper, count, word", [(20, 39, s.REPRODUCED), (50, 39, s.NOT_REPRODUCED),
                                                 (20, 38, s.REPRODUCED), (50, 38, s.UNDECIDED)])
 def test_verdict_among_values(paper, count, word):
-    assert s.verdict_among(paper, np.arange(count)) == word
+    assert s.verdict_by_prediction(paper, np.arange(count)) == word
 
 
 @pytest.mark.parametrize("exponent", [-1, 0, 0.5, 3])

@@ -10,7 +10,7 @@ namespace raya {
 inline std::vector<SourcePatch> erring_device() {
     const std::string file = "number/divide.clh", before = "// The neighbour of z whose bits are";
     const std::string functions = R"(
-static inline real err_by(real z, mask bits, int reach) {
+static inline real with_error(real z, mask bits, int reach) {
     const count mixed = as_lanes_uint(bits) * 2654435761u;
     const mask step = as_lanes_int((mixed >> 16) % (count)(2 * reach + 1)) - reach;
     const mask normal = (fabs(z) > 0x1p-126f) & (fabs(z) < INFINITY);
@@ -18,8 +18,8 @@ static inline real err_by(real z, mask bits, int reach) {
 }
 )";
     return {{file, before, functions + before},
-            {file, "real z = a / b;", "real z = err_by(a / b, as_lanes_int(a) ^ (as_lanes_int(b) >> 1), 2);"},
-            {file, "real z = sqrt(x);", "real z = err_by(sqrt(x), as_lanes_int(x), 3);"}};
+            {file, "real z = a / b;", "real z = with_error(a / b, as_lanes_int(a) ^ (as_lanes_int(b) >> 1), 2);"},
+            {file, "real z = sqrt(x);", "real z = with_error(sqrt(x), as_lanes_int(x), 3);"}};
 }
 
 /// Returns a build of the format for the simulated device.

@@ -16,16 +16,16 @@ inline std::uint32_t widest_lanes() {
     return text == nullptr ? 16 : static_cast<std::uint32_t>(std::stoul(text));
 }
 
-/// Returns the number of rows of random tests: the environment variable RAYA_NUMBER_CASES or else `usual`, rounded up
-/// to a multiple of kMaxLanes.
-inline std::size_t number_cases(std::size_t usual) {
+/// Returns the number of rows of random tests: the environment variable RAYA_NUMBER_CASES or else `default_cases`,
+/// rounded up to a multiple of kMaxLanes.
+inline std::size_t number_cases(std::size_t default_cases) {
     const char* text = std::getenv("RAYA_NUMBER_CASES");
-    const std::size_t wanted = text == nullptr ? usual : std::stoul(text);
+    const std::size_t wanted = text == nullptr ? default_cases : std::stoul(text);
     return (wanted + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
 }
 
 /// Returns true if RAYA_NUMBER_CASES asks for more than twice the default number of rows.
-inline bool is_long_run(std::size_t usual) { return number_cases(usual) > 2 * usual; }
+inline bool is_long_run(std::size_t default_cases) { return number_cases(default_cases) > 2 * default_cases; }
 
 /// Returns a build that uses the device's division, square root and fma.
 inline NumberBuild number_build(const NumberFormat& format, std::uint32_t lanes = widest_lanes()) {

@@ -94,7 +94,7 @@ class RandomOperands {
             case 1:
                 return of_format(-product + std::ldexp(within(-2, 2), e - y));  // the same, except for a few units
             case 2:
-                return of_format(to_tie(product));  // the sum is a tie or next to one
+                return of_format(addend_for_tie(product));  // the sum is a tie or next to one
             case 3:
                 return number(e - within(y, 3 * y + 10));  // much smaller than the product
             case 4:
@@ -109,7 +109,7 @@ class RandomOperands {
     }
 
     // Returns the number that must be added to the product to get a tie: the middle between two numbers of the format.
-    double to_tie(double product) {
+    double addend_for_tie(double product) {
         const int e = exponent_of(product), y = format_.fraction_bits;
         const double unit = std::ldexp(1, e - y);
         return (std::floor(product / unit) + 0.5) * unit - product;

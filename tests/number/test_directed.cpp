@@ -22,8 +22,8 @@ struct Case {
 double two_to(int exponent) { return std::ldexp(1, exponent); }
 
 /// The numbers of a format from which its cases are made.
-struct Landmarks {
-    explicit Landmarks(const NumberFormat& format)
+struct SpecialNumbers {
+    explicit SpecialNumbers(const NumberFormat& format)
         : unit(two_to(-format.fraction_bits)),
           base(two_to(range_of(format).highest - 1)),
           step(base * unit),
@@ -38,7 +38,7 @@ struct Landmarks {
 };
 
 /// Returns cases of sums and differences.
-std::vector<Case> sums(const Landmarks& f) {
+std::vector<Case> sums(const SpecialNumbers& f) {
     const double b = f.base, s = f.step, above = 1 + f.unit, below = 1 - f.unit / 2, all_ones = b * (2 - f.unit);
     return {
         {"tie, the even number below", kAdd, b, s / 2, 0, b, b},
@@ -74,7 +74,7 @@ std::vector<Case> sums(const Landmarks& f) {
 }
 
 /// Returns cases of products.
-std::vector<Case> products(const Landmarks& f) {
+std::vector<Case> products(const SpecialNumbers& f) {
     const double above = 1 + f.unit, below = 1 - f.unit / 2, low = f.smallest, high = f.largest;
     return {
         {"(1 + u)^2, a last bit far away", kMul, above, above, 0, 1 + 2 * f.unit, 1 + 2 * f.unit},
@@ -97,7 +97,7 @@ std::vector<Case> products(const Landmarks& f) {
 }
 
 /// Returns cases of quotients and square roots.
-std::vector<Case> quotients(const Landmarks& f) {
+std::vector<Case> quotients(const SpecialNumbers& f) {
     const double above = 1 + f.unit, below = 1 - f.unit / 2, low = f.smallest, high = f.largest;
     return {
         {"x / 0 saturates", kDiv, 1, 0.0, 0, high, high},
@@ -125,7 +125,7 @@ std::vector<Case> quotients(const Landmarks& f) {
 }
 
 /// Returns cases of multiply-accumulates.
-std::vector<Case> accumulations(const Landmarks& f) {
+std::vector<Case> accumulations(const SpecialNumbers& f) {
     const double u = f.unit, above = 1 + u, low = f.smallest, high = f.largest, b = f.base, s = f.step;
     return {
         {"one rounding: (1 + u)^2 - (1 + 2 u) = u^2, or flushed", kMad, above, above, -(1 + 2 * u),
@@ -180,7 +180,7 @@ TEST_CASE("ties, carries, cancellation, ends of the range and zeros", "[number][
         for (const bool truncates : {false, true}) {
             NumberFormat both = format;
             both.truncates = truncates;
-            const Landmarks landmarks(both);
+            const SpecialNumbers landmarks(both);
             std::vector<Case> cases = sums(landmarks);
             for (const auto& more : {products(landmarks), quotients(landmarks), accumulations(landmarks)})
                 cases.insert(cases.end(), more.begin(), more.end());

@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kUsualRows = 40'000;
+constexpr std::size_t kDefaultRows = 40'000;
 constexpr std::uint64_t kOracleSeed = 1993;
 
 struct Size {
@@ -22,7 +22,7 @@ struct Size {
 /// the SPA's format, and formats with X = 8, with Y > 15 and with both, for which the layer has different code.
 std::vector<NumberFormat> tested_formats() {
     std::vector<Size> sizes = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
-    if (is_long_run(kUsualRows)) sizes.insert(sizes.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
+    if (is_long_run(kDefaultRows)) sizes.insert(sizes.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
     std::vector<NumberFormat> formats;
     for (const Size& size : sizes)
         for (const bool truncates : {false, true})
@@ -33,7 +33,7 @@ std::vector<NumberFormat> tested_formats() {
 /// Returns all numbers of lanes in a long run; else the largest number and, for the most important formats, also one
 /// lane.
 std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
-    if (is_long_run(kUsualRows)) return {1, 4, 8, 16};
+    if (is_long_run(kDefaultRows)) return {1, 4, 8, 16};
     if (format == NumberFormat{6, 15, false} || format == NumberFormat{8, 21, false}) return {1, widest_lanes()};
     return {widest_lanes()};
 }
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
 
 TEST_CASE("every operation rounds the exact value once, as MPFR does", "[number][oracle]") {
     for (const NumberFormat& format : tested_formats()) {
-        const NumberRows rows = RandomOperands(format, kOracleSeed).rows(number_cases(kUsualRows));
+        const NumberRows rows = RandomOperands(format, kOracleSeed).rows(number_cases(kDefaultRows));
         const std::vector<ExpectedNumbers> expected = expected_by_mpfr(format, rows);
         for (const std::uint32_t lanes : tested_lanes(format)) {
             const NumberBuild build = number_build(format, lanes);
@@ -57,7 +57,7 @@ TEST_CASE("refined division and square root give the same bits on a device that 
          {NumberFormat{6, 15, false}, NumberFormat{8, 21, false}, NumberFormat{5, 12, true}})
         for (const std::uint32_t lanes : {1u, widest_lanes()}) {
             if (lanes == 1 && format.fraction_bits != 15) continue;
-            const NumberRows rows = RandomOperands(format, kOracleSeed).rows(number_cases(kUsualRows));
+            const NumberRows rows = RandomOperands(format, kOracleSeed).rows(number_cases(kDefaultRows));
             const NumberBuild build = refined_build(format, lanes);
             CAPTURE(build.name(), kOracleSeed);
             CHECK(wrong_numbers(build, rows, expected_by_mpfr(format, rows)) == "");

@@ -96,9 +96,9 @@ void check_row(const PowerBounds& bounds, double x, double n, double y, const Nu
     CHECK(std::abs(value(1) - log_x) <= bounds.log(log_x));
     CHECK(std::abs(value(2) - std::exp2(y)) <= bounds.exp(y));
     const double off = bounds.exponent(n, std::min(log_x, 0.0));
-    const double least = std::exp2(exponent - off), most = std::exp2(exponent + off);
-    CHECK(value(0) <= most + bounds.exp(exponent + off));
-    if (exponent - off > -30) CHECK(value(0) >= least - bounds.exp(exponent - off));
+    const double min_value = std::exp2(exponent - off), max_value = std::exp2(exponent + off);
+    CHECK(value(0) <= max_value + bounds.exp(exponent + off));
+    if (exponent - off > -30) CHECK(value(0) >= min_value - bounds.exp(exponent - off));
     if (exponent + off < -30) CHECK(value(0) == 0);  // below 2^-30 a power is 0
     if (x >= 1 || n == 0) CHECK(value(0) == 1);
     if (x == 1) CHECK(value(1) == 0);

@@ -18,7 +18,7 @@ struct Mpi {
 
 /// Returns the MPI library that raya was built with and the other one, if installed. If none is installed, prints a
 /// warning and returns an empty list, so that the test passes.
-inline std::vector<Mpi> mpis_here() {
+inline std::vector<Mpi> installed_mpis() {
     std::vector<Mpi> all;
     for (const Mpi& mpi : {Mpi{RAYA_MPIRUN_OWN, RAYA_PROGRAM}, Mpi{RAYA_MPIRUN_OTHER, RAYA_OTHER_MPI "/raya"}})
         if (!mpi.launcher.empty()) all.push_back(mpi);
@@ -57,7 +57,7 @@ inline std::string variable_of(const std::string& environment, const std::string
 
 /// Live processes whose environment contains `mark`, with their environments. Zombies are omitted, because their
 /// environment is empty.
-inline std::vector<std::pair<pid_t, std::string>> marked(const std::string& mark) {
+inline std::vector<std::pair<pid_t, std::string>> marked_processes(const std::string& mark) {
     std::vector<std::pair<pid_t, std::string>> found;
     std::error_code gone;
     for (const auto& entry : std::filesystem::directory_iterator("/proc", gone)) {
@@ -72,7 +72,7 @@ inline std::vector<std::pair<pid_t, std::string>> marked(const std::string& mark
 
 inline std::vector<RankProcess> rank_processes(const std::string& mark, const std::string& program) {
     std::vector<RankProcess> ranks;
-    for (const auto& [process, environment] : marked(mark)) {
+    for (const auto& [process, environment] : marked_processes(mark)) {
         std::error_code gone;
         const auto exe = std::filesystem::read_symlink("/proc/" + std::to_string(process) + "/exe", gone);
         if (gone || exe != std::filesystem::canonical(program)) continue;
@@ -116,7 +116,7 @@ inline bool send_signal(const Mpi& mpi, const std::string& mark, pid_t launcher,
     return ::kill(target, f.signal) == 0;
 }
 
-inline std::size_t own_lines(const std::string& text) {
+inline std::size_t count_raya_lines(const std::string& text) {
     std::size_t lines = 0;
     for (std::size_t at = 0; (at = ("\n" + text).find("\nraya:", at)) != text.npos; ++at) ++lines;
     return lines;
@@ -151,8 +151,8 @@ inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& ar
     while (::waitpid(child, &status, WNOHANG) == 0 && !late()) pause();
     outcome.code = late() ? 124 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     const Clock::time_point deadline = Clock::now() + std::chrono::seconds(8);
-    while (!detail::marked(mark).empty() && Clock::now() < deadline && !late()) pause();
-    for (const auto& [process, environment] : detail::marked(mark)) {
+    while (!detail::marked_processes(mark).empty() && Clock::now() < deadline && !late()) pause();
+    for (const auto& [process, environment] : detail::marked_processes(mark)) {
         ++outcome.left;
         ::kill(process, SIGKILL);
     }
@@ -160,7 +160,7 @@ inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& ar
     outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     outcome.out = run_program_detail::contents(out.get());
     outcome.err = run_program_detail::contents(err.get());
-    outcome.messages = detail::own_lines(outcome.err);
+    outcome.messages = detail::count_raya_lines(outcome.err);
     if (!sent) throw std::runtime_error("the ranks did not start in time for the signal: " + outcome.describe());
     return outcome;
 }

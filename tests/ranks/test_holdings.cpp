@@ -54,7 +54,7 @@ TEST_CASE("a rank holds only its own nodes' words, equal to those of a single ra
             CHECK(own.words.size() == own.starts.back());
             bool same = true;
             for (std::uint32_t slot = 0; slot < share.nodes(); ++slot) {
-                const std::uint32_t node = share.own()[slot];
+                const std::uint32_t node = share.own_nodes()[slot];
                 const auto from = all.memories.words.begin() + all.memories.starts[node];
                 const auto end = all.memories.words.begin() + all.memories.starts[node + 1];
                 same &= std::equal(from, end, own.words.begin() + own.starts[slot],

@@ -10,7 +10,7 @@ namespace raya {
 namespace {
 
 std::optional<Launch> launch_in(const std::map<std::string, std::string>& environment) {
-    return launch_of([&](const char* name) {
+    return launch_from([&](const char* name) {
         const auto found = environment.find(name);
         return found == environment.end() ? nullptr : found->second.c_str();
     });

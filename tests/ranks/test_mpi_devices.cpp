@@ -26,7 +26,7 @@ TEST_CASE("ranks with devices of different kinds give the image of one process",
     std::vector<std::string> alone = render;
     alone.insert(alone.end(), {"--report", one});
     REQUIRE(run_raya(alone).code == 0);
-    for (const Mpi& mpi : mpis_here()) {
+    for (const Mpi& mpi : installed_mpis()) {
         std::vector<std::string> words = {"-n", "3", mpi.program};
         words.insert(words.end(), render.begin(), render.end());
         words.insert(words.end(), {"--report", many, "--device", "pthread,basic"});
@@ -60,7 +60,7 @@ TEST_CASE("a torus scene too large for one device is rendered on several ranks",
     INFO(refused.describe());
     CHECK(refused.code == 3);
     CHECK(contains(refused.err, "node memories"));
-    for (const Mpi& mpi : mpis_here()) {
+    for (const Mpi& mpi : installed_mpis()) {
         std::vector<std::string> words = {"-n",
                                           "4",
                                           "env",
@@ -78,7 +78,7 @@ TEST_CASE("a torus scene too large for one device is rendered on several ranks",
 TEST_CASE("a trace has host and device of every rank, on one clock", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
     const std::filesystem::path trace = folder.path() / "t.json", report = folder.path() / "r.json";
-    for (const Mpi& mpi : mpis_here())
+    for (const Mpi& mpi : installed_mpis())
         for (const char* machine : {"spa", "torus"}) {
             const RanksOutcome outcome =
                 run_ranks(mpi, {"-n", "3", mpi.program, "render", scene_file("spheres"), "--size", "32", "--machine",

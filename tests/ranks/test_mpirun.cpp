@@ -33,7 +33,7 @@ void check_all_counts(const ScratchFolder& folder, const Arguments& render) {
     INFO(alone.describe());
     REQUIRE(alone.code == 0);
     const Files one = files_in(folder);
-    for (const Mpi& mpi : mpis_here())
+    for (const Mpi& mpi : installed_mpis())
         for (const std::uint32_t count : kCounts) {
             Arguments words = {"-n", std::to_string(count), mpi.program};
             words.insert(words.end(), render.begin(), render.end());
@@ -84,7 +84,7 @@ TEST_CASE("mpirun: frames are those of one process, and existing frames are not 
     REQUIRE(run_raya(render).code == 0);
     const Files one = files_in(folder);
     REQUIRE(one.size() == 4);
-    for (const Mpi& mpi : mpis_here()) {
+    for (const Mpi& mpi : installed_mpis()) {
         Arguments words = {"-n", "3", mpi.program};
         words.insert(words.end(), render.begin(), render.end());
         for (const char* summary : {"3 frames, 3 rendered", "3 frames, 0 rendered"}) {
@@ -104,7 +104,7 @@ TEST_CASE("mpirun: only rank 0 reads stdin and writes stdout", "[ranks][.mpirun]
         return std::system(("cd '" + folder.path().string() + "' && " + line).c_str());
     };
     REQUIRE(shell(RAYA_PROGRAM " render " + scene_file("planes") + " -o one.ppm" + small) == 0);
-    for (const Mpi& mpi : mpis_here()) {
+    for (const Mpi& mpi : installed_mpis()) {
         const std::string launch =
             "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 " +
             mpi.launcher + " --bind-to none -n 3 " + mpi.program;
@@ -116,7 +116,7 @@ TEST_CASE("mpirun: only rank 0 reads stdin and writes stdout", "[ranks][.mpirun]
 
 TEST_CASE("mpirun: only rank 0 prints verbose messages", "[ranks][.mpirun][verbosity]") {
     const ScratchFolder folder;
-    for (const Mpi& mpi : mpis_here()) {
+    for (const Mpi& mpi : installed_mpis()) {
         const RanksOutcome run =
             run_ranks(mpi, {"-n", "3", mpi.program, "render", scene_file("planes"), "-o", folder / "x.pfm", "--size",
                             "16", "--lanes", "4", "--pes", "8", "-vv"});
@@ -132,7 +132,7 @@ TEST_CASE("mpirun: only rank 0 prints verbose messages", "[ranks][.mpirun][verbo
 }
 
 TEST_CASE("mpirun: messages of any size arrive, point to point and collective", "[ranks][.mpirun]") {
-    for (const Mpi& mpi : mpis_here())
+    for (const Mpi& mpi : installed_mpis())
         for (const std::uint32_t count : {2u, 3u, 7u}) {
             const RanksOutcome run = run_ranks(mpi, {"-n", std::to_string(count), RAYA_TRANSPORT_CHECK, mpi.program});
             INFO(run.describe());

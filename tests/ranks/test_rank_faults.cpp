@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-constexpr double kEnd_s = 10;  // all processes must end within this time after the fault
+constexpr double kMaxEnd_s = 10;  // all processes must end within this time after the fault
 
 Arguments on(const Mpi& mpi, std::uint32_t ranks, const Arguments& arguments) {
     Arguments words = {"-n", std::to_string(ranks), mpi.program};
@@ -25,7 +25,7 @@ Arguments render(const ScratchFolder& outputs, const Arguments& options = {}) {
 }
 
 void check_ended(const ScratchFolder& outputs, const RanksOutcome& run, std::size_t most_messages,
-                 double limit_s = kEnd_s) {
+                 double limit_s = kMaxEnd_s) {
     INFO(run.describe());
     CHECK(run.code != 0);
     CHECK(run.messages <= most_messages);
@@ -44,9 +44,9 @@ void check_message(const ScratchFolder& outputs, const RanksOutcome& run, int co
 }
 
 /// A script that runs a program and, on one rank, a shell command before it.
-class OneRank {
+class RankScript {
   public:
-    OneRank() {
+    RankScript() {
         std::ofstream(script_) << "#!/bin/sh\nonly=$1; what=$2; shift 2\n"
                                   "[ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = \"$only\" ] && eval \"$what\"\n"
                                   "exec \"$@\"\n";
@@ -103,7 +103,7 @@ TEST_CASE("mpirun: an error of all ranks is reported once, with rank and host", 
         {2, {"bench"}, 2, {"bench runs in one process"}},
         {2, {"verify", "--quick"}, 2, {"verify runs in one process"}},
         {2, {"generate", "uniform", "9", "-o", outputs / "u.nff"}, 2, {"generate runs in one process"}}};
-    for (const Mpi& mpi : mpis_here())
+    for (const Mpi& mpi : installed_mpis())
         for (const Case& c : cases) {
             const RanksOutcome run = run_ranks(mpi, on(mpi, c.ranks, c.arguments));
             Arguments message = c.message;
@@ -114,7 +114,7 @@ TEST_CASE("mpirun: an error of all ranks is reported once, with rank and host", 
 
 TEST_CASE("mpirun: ranks with different arguments refuse to run", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
-    for (const Mpi& mpi : mpis_here()) {
+    for (const Mpi& mpi : installed_mpis()) {
         Arguments words = on(mpi, 1, render(outputs)), others = on(mpi, 2, render(outputs, {"--pes", "8"}));
         words.push_back(":");
         words.insert(words.end(), others.begin(), others.end());
@@ -124,7 +124,7 @@ TEST_CASE("mpirun: ranks with different arguments refuse to run", "[ranks][.mpir
 
 TEST_CASE("mpirun of another MPI is refused with one message", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
-    const std::vector<Mpi> mpis = mpis_here();
+    const std::vector<Mpi> mpis = installed_mpis();
     for (const Mpi& mpi : mpis)
         for (const Mpi& other : mpis)
             if (mpi.launcher != other.launcher)
@@ -135,8 +135,8 @@ TEST_CASE("mpirun of another MPI is refused with one message", "[ranks][.mpirun]
 TEST_CASE("mpirun: a failing device or driver on one rank ends all ranks", "[ranks][.mpirun]") {
     if (kSanitized) return;
     const ScratchFolder outputs;
-    const OneRank one;
-    for (const Mpi& mpi : mpis_here())
+    const RankScript one;
+    for (const Mpi& mpi : installed_mpis())
         for (const std::uint32_t rank : quick(1, {2u, 0u})) {
             const std::string name = "raya: rank " + std::to_string(rank) + " on ";
             const auto run = [&](const std::string& fault, const Arguments& options) {
@@ -159,9 +159,9 @@ TEST_CASE("mpirun: a failing device or driver on one rank ends all ranks", "[ran
 TEST_CASE("mpirun: a rank out of memory ends all ranks", "[ranks][.mpirun]") {
     if (kSanitized) return;
     const ScratchFolder outputs;
-    const OneRank one;
+    const RankScript one;
     const Arguments large = render(outputs, {"--machine", "grande", "--size", "600"});
-    for (const Mpi& mpi : mpis_here()) {
+    for (const Mpi& mpi : installed_mpis()) {
         run_ranks(mpi, on(mpi, 2, large));  // builds the kernels
         std::filesystem::remove(outputs / "x.pfm");
         for (const std::uint32_t rank : quick(1, {2u, 0u}))
@@ -180,7 +180,7 @@ TEST_CASE("mpirun: a full disk on rank 0 ends all ranks", "[ranks][.mpirun]") {
     const RunOptions full{.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
                                         {"RAYA_FULL_DISK", "100000 " + folder},
                                         {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
-    for (const Mpi& mpi : mpis_here())
+    for (const Mpi& mpi : installed_mpis())
         check_message(outputs, run_ranks(mpi, on(mpi, 3, render(outputs, {"--size", "512"})), 0, {}, full), 2,
                       {"raya: rank 0 on ", "x.pfm", "No space left on device"});
 }
@@ -189,10 +189,10 @@ TEST_CASE("mpirun: a full disk on rank 0 ends all ranks", "[ranks][.mpirun]") {
 // rank one second after a signal, which is too early on a busy machine.
 TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.mpirun]") {
     const ScratchFolder outputs, messages;
-    const OneRank one;
+    const RankScript one;
     const std::string file = messages / "rank_0.txt";
     const RunOptions patient{.variables = {{"OMPI_MCA_odls_base_sigkill_timeout", "4"}}};
-    for (const Mpi& mpi : mpis_here())
+    for (const Mpi& mpi : installed_mpis())
         for (const char* machine : quick(1, {"grande", "torus"})) {
             const Arguments words = on(mpi, 3, long_render(outputs, machine));
             for (const std::uint32_t rank : quick(1, {2u, 0u}))
@@ -207,7 +207,7 @@ TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.m
 
 TEST_CASE("mpirun: a rank that hangs ends the run after RAYA_RANK_TIMEOUT", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
-    for (const Mpi& mpi : mpis_here()) {
+    for (const Mpi& mpi : installed_mpis()) {
         const RanksOutcome run = run_ranks(mpi, on(mpi, 3, long_render(outputs, "torus")), 3,
                                            {.signal = SIGSTOP, .rank = 2}, {.variables = {{"RAYA_RANK_TIMEOUT", "2"}}});
         check_message(outputs, run, 3, {"has waited for the other ranks for 2 s", "RAYA_RANK_TIMEOUT"});
@@ -216,9 +216,9 @@ TEST_CASE("mpirun: a rank that hangs ends the run after RAYA_RANK_TIMEOUT", "[ra
 
 TEST_CASE("mpirun: a process that ends before MPI_Init ends the others", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
-    const OneRank one;
+    const RankScript one;
     const RunOptions hasty{.variables = {{"RAYA_RANK_TIMEOUT", "2"}}};
-    for (const Mpi& mpi : mpis_here())
+    for (const Mpi& mpi : installed_mpis())
         for (const char* end : {"exit 1", "kill -KILL $$"})
             check_ended(outputs, run_ranks(mpi, one.words(mpi, 3, 2, end, render(outputs)), 0, {}, hasty), 1);
 }

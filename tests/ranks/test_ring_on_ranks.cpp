@@ -52,7 +52,7 @@ void check_same(const RingResult& one, const RingResult& many) {
 
 raya_mapping random_mapping(SplitMix& random) {
     const raya_mapping m = small_mapping(random, 12);
-    return random.next() % 2 ? m : of_kind(random, m, RAYA_ROWS + random_below(random, 5));
+    return random.next() % 2 ? m : mapping_of_kind(random, m, RAYA_ROWS + random_below(random, 5));
 }
 
 Antialias random_antialias(SplitMix& random) {
@@ -79,7 +79,7 @@ TEST_CASE("random rings: image, loads and counts are the same on 1 to 8 ranks", 
         settings.mapping = random_mapping(random);
         settings.antialias = random_antialias(random);
         if (settings.mapping.kind == RAYA_RANDOM) settings.antialias = {};  // refused: it has no neighbours nearby
-        settings.keep_costs = true;
+        settings.record_costs = true;
         const AccelKind kinds[] = {AccelKind::kNone, AccelKind::kGrid, AccelKind::kBvh};
         settings.accel.kind = kinds[random_below(random, 3)];
         settings.device_pixels = random.next() % 3 ? 1 << 22 : 1 + random_below(random, 60);

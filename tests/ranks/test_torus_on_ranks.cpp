@@ -112,7 +112,7 @@ TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its 
         for (std::uint32_t rank = 0; rank < ranks; ++rank) {
             const NodeShare share(torus, ranks, rank);
             for (std::uint32_t slot = 0; slot < share.nodes(); ++slot) {
-                const std::uint32_t node = share.own()[slot];
+                const std::uint32_t node = share.own_nodes()[slot];
                 CHECK(share.slot_of(node) == slot);
                 bool inner = true;
                 for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
@@ -121,7 +121,7 @@ TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its 
             }
             for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
                 std::vector<int> used(share.inboxes());
-                for (const std::uint32_t node : share.own()) {
+                for (const std::uint32_t node : share.own_nodes()) {
                     const std::uint32_t from = raya_link_end(torus, node, link ^ 1u), inbox = share.inbox(link, from);
                     REQUIRE(inbox < share.inboxes());
                     ++used[inbox];

@@ -53,36 +53,36 @@ struct MessageStore {
 
 class ThreadTransport final : public Transport {
   public:
-    ThreadTransport(MessageStore& box, std::uint32_t rank, std::uint32_t count, std::uint32_t of_host)
-        : box_(box), rank_(rank), count_(count), of_host_(of_host) {}
+    ThreadTransport(MessageStore& store, std::uint32_t rank, std::uint32_t count, std::uint32_t ranks_per_host)
+        : store_(store), rank_(rank), count_(count), ranks_per_host_(ranks_per_host) {}
 
     std::uint32_t rank() const override { return rank_; }
     std::uint32_t count() const override { return count_; }
-    std::string host() const override { return "host" + std::to_string(rank_ / of_host_); }
+    std::string host() const override { return "host" + std::to_string(rank_ / ranks_per_host_); }
     std::string library() const override { return "threads"; }
 
     void broadcast(std::span<std::byte> bytes) override {
-        if (rank_ > 0) return box_.take({0, rank_, kBroadcast}, bytes);
-        for (std::uint32_t to = 1; to < count_; ++to) box_.put({0, to, kBroadcast}, bytes);
+        if (rank_ > 0) return store_.take({0, rank_, kBroadcast}, bytes);
+        for (std::uint32_t to = 1; to < count_; ++to) store_.put({0, to, kBroadcast}, bytes);
     }
 
     void all_gather(std::span<const std::byte> own, std::span<std::byte> all,
                     std::span<const std::size_t> sizes) override {
-        for (std::uint32_t to = 0; to < count_; ++to) box_.put({rank_, to, kGather}, own);
+        for (std::uint32_t to = 0; to < count_; ++to) store_.put({rank_, to, kGather}, own);
         for (std::uint32_t from = 0; from < count_; ++from) {
-            box_.take({from, rank_, kGather}, all.first(sizes[from]));
+            store_.take({from, rank_, kGather}, all.first(sizes[from]));
             all = all.subspan(sizes[from]);
         }
     }
 
     void start(std::span<const Outgoing> out, std::span<const Incoming> in) override {
-        if (!waits_.empty()) throw std::logic_error("start: the last one has not been waited for");
-        for (const Outgoing& m : out) box_.put({rank_, m.to, m.tag}, m.bytes);
-        waits_.assign(in.begin(), in.end());
+        if (!pending_.empty()) throw std::logic_error("start: the last one has not been waited for");
+        for (const Outgoing& m : out) store_.put({rank_, m.to, m.tag}, m.bytes);
+        pending_.assign(in.begin(), in.end());
     }
     void wait() override {
-        for (const Incoming& m : waits_) box_.take({m.from, rank_, m.tag}, m.bytes);
-        waits_.clear();
+        for (const Incoming& m : pending_) store_.take({m.from, rank_, m.tag}, m.bytes);
+        pending_.clear();
     }
 
     void poll_failures() override {}
@@ -93,35 +93,35 @@ class ThreadTransport final : public Transport {
   private:
     static constexpr int kBroadcast = -1, kGather = -2;
 
-    MessageStore& box_;
-    std::uint32_t rank_, count_, of_host_;
-    std::vector<Incoming> waits_;
+    MessageStore& store_;
+    std::uint32_t rank_, count_, ranks_per_host_;
+    std::vector<Incoming> pending_;
 };
 
-/// Runs `work` on `count` concurrent ranks, `of_host` ranks per host. If ranks throw, rethrows the first exception.
+/// Runs `work` on `count` concurrent ranks, `ranks_per_host` per host. If ranks throw, rethrows the first exception.
 /// Throws std::logic_error if a sent message was not received.
-inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& work, std::uint32_t of_host = 8) {
+inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& work, std::uint32_t ranks_per_host = 8) {
     all_devices();  // concurrent first queries fail: PoCL 3.1 then returns no device to some threads
-    MessageStore box;
+    MessageStore store;
     std::exception_ptr thrown;
-    std::mutex of_thrown;
+    std::mutex thrown_mutex;
     std::vector<std::thread> threads;
     for (std::uint32_t rank = 0; rank < count; ++rank)
         threads.emplace_back([&, rank] {
             try {
-                Ranks ranks(std::make_unique<ThreadTransport>(box, rank, count, of_host));
+                Ranks ranks(std::make_unique<ThreadTransport>(store, rank, count, ranks_per_host));
                 work(ranks);
             } catch (const RankFailure&) {  // another rank throws the exception that caused it
-                box.fail();
+                store.fail();
             } catch (...) {
-                const std::lock_guard lock(of_thrown);
+                const std::lock_guard lock(thrown_mutex);
                 if (!thrown) thrown = std::current_exception();
-                box.fail();
+                store.fail();
             }
         });
     for (std::thread& thread : threads) thread.join();
     if (thrown) std::rethrow_exception(thrown);
-    for (const auto& [key, messages] : box.messages)
+    for (const auto& [key, messages] : store.messages)
         if (!messages.empty()) throw std::logic_error("a message was sent that no rank received");
 }
 

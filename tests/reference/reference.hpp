@@ -98,10 +98,10 @@ bool grazes_edge(const Scene& scene, const Options& options, int x, int y, doubl
 /// The difference between an image and the reference. Channels are clamped to 0..1. A value that is not finite counts
 /// as an infinite difference.
 struct Difference {
-    double psnr_db = 0;  // PSNR over all channels and pixels, peak 1; infinite for equal images
-    double largest = 0;  // largest difference of any channel
-    int over = 0;        // pixels in which any channel differs by more than the limit
-    int excused = 0;     // of these pixels, those for which grazes_edge() is true
+    double psnr_db = 0;   // PSNR over all channels and pixels, peak 1; infinite for equal images
+    double largest = 0;   // maximum difference of any channel
+    int above_limit = 0;  // pixels in which any channel differs by more than the limit
+    int excused = 0;      // of these pixels, those for which grazes_edge() is true
 };
 
 /// Compares `rgb` (height * width * 3 values, row 0 at the top, linear) with `reference`, which must have been rendered

@@ -50,7 +50,7 @@ Difference compare(const Image& reference, const std::vector<float>& rgb, const 
         const double off = channel_difference(reference.pixels[i], colour, squares);
         difference.largest = std::max(difference.largest, off);
         if (off <= limit) continue;
-        ++difference.over;
+        ++difference.above_limit;
         const int pixel = static_cast<int>(i);
         if (grazes_edge(scene, options, pixel % options.width, pixel / options.width, reach_pixels))
             ++difference.excused;

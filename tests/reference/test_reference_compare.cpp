@@ -44,7 +44,7 @@ TEST_CASE("an image agrees with itself, and render() with trace_pixel()") {
     const Difference same = compare(image, floats(image), scene, kOptions);
     CHECK(same.psnr_db > 140);
     CHECK(same.largest < 1e-7);
-    CHECK((same.over == 0 && same.excused == 0));
+    CHECK((same.above_limit == 0 && same.excused == 0));
     Counts counts;
     for (int y = 0; y < 33; ++y)
         for (int x = 0; x < 33; ++x)
@@ -63,14 +63,14 @@ TEST_CASE("pixels on an edge are excused, others are not") {
         return compare(image, rgb, scene, kOptions);
     };
     const Difference inside = with_error_at(12, 20, 0.1F);
-    CHECK((inside.over == 1 && inside.excused == 0));
+    CHECK((inside.above_limit == 1 && inside.excused == 0));
     CHECK(inside.largest == Approx(0.1).epsilon(1e-5));
     CHECK(inside.psnr_db == Approx(10 * std::log10(33 * 33 * 3 / 0.01)).epsilon(1e-5));
     CHECK(with_error_at(0, 0, 0.1F).excused == 0);
-    CHECK(with_error_at(12, 20, 0.007F).over == 0);
-    CHECK(with_error_at(12, 20, std::nanf("")).over == 1);
+    CHECK(with_error_at(12, 20, 0.007F).above_limit == 0);
+    CHECK(with_error_at(12, 20, std::nanf("")).above_limit == 1);
     CHECK(with_error_at(12, 20, std::nanf("")).psnr_db < 0);
-    CHECK(with_error_at(12, 20, HUGE_VALF).over == 1);
+    CHECK(with_error_at(12, 20, HUGE_VALF).above_limit == 1);
 
     // The silhouette of a sphere of radius 1, seen from distance 5, lies where tan(angle) = 1 / sqrt(24).
     const double edge = 16.5 * (1 + 1 / std::sqrt(24) / std::tan(20 * std::numbers::pi / 180)) - 0.5;
@@ -98,7 +98,7 @@ TEST_CASE("differences above 1 and below 0 do not count, and wrong sizes throw")
     std::vector<float> rgb = floats(image);
     rgb[value_of(0, 0)] = 3;
     rgb[value_of(0, 0) + 1] = -1;
-    CHECK(compare(image, rgb, scene, kOptions).over == 0);
+    CHECK(compare(image, rgb, scene, kOptions).above_limit == 0);
     rgb.pop_back();
     CHECK_THROWS_AS(compare(image, rgb, scene, kOptions), std::invalid_argument);
 }

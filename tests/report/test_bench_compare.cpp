@@ -90,7 +90,7 @@ TEST_CASE("read_bench_report: refuses other files with a remedy", "[bench]") {
     CHECK_THAT(refusal(folder, good.substr(0, good.size() / 2)), Contains("not valid JSON"));
     CHECK_THAT(refusal(folder, "[]"), Contains("b.json: valid JSON, but not a report of raya bench"));
     CHECK_THAT(refusal(folder, R"({"scene": "centre.nff"})"), Contains("not a report of raya bench"));
-    CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"].clear(); })), Contains("it has no rows"));
+    CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"].clear(); })), Contains("the report has no measurements"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j.erase("device"); })), Contains("b.json:1: 'device' is missing"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0].erase("hash"); })), Contains("hash"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0]["lanes"] = "many"; })),
@@ -99,7 +99,7 @@ TEST_CASE("read_bench_report: refuses other files with a remedy", "[bench]") {
     for (const char* part : {"best", "median"})
         for (const double bad : {0.0, -1.0})
             CHECK_THAT(refusal(folder, changed([&](auto& j) { j["rows"][0]["ms"][part] = bad; })),
-                       Contains("rays or times that are not positive"));
+                       Contains("rays and times must be positive"));
 }
 
 TEST_CASE("compare_bench: a row is slower if best and median both exceed the tolerance", "[bench]") {

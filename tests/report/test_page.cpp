@@ -54,7 +54,7 @@ TEST_CASE("cost_json: the cycles can be decoded exactly", "[page]") {
         for (std::uint64_t i = 0; i < 209; ++i) cycles.push_back(bits == 0 ? 0 : i * 0x9e3779b97f4a7c15 >> (64 - bits));
         const Json json = cost_json(cycles);
         const std::string bytes = gunzip(decoded(json.at("gzip").text()));
-        const std::size_t pixels = cycles.size(), planes = json.at("bytes").whole();
+        const std::size_t pixels = cycles.size(), planes = json.at("bytes").integer();
         CAPTURE(bits);
         CHECK(planes == std::max(1u, (bits + 7) / 8));
         REQUIRE(bytes.size() == pixels * planes);

@@ -1,4 +1,4 @@
-// Host steps and device commands in a trace, with times of different clocks.
+// Host spans and device commands in a trace, with times of different clocks.
 #include <catch2/catch.hpp>
 
 #include "host/report/session_trace.hpp"
@@ -28,22 +28,22 @@ Document slice_named(const Document& trace, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("add_host_steps: slices nest like the scopes of the steps", "[report]") {
+TEST_CASE("add_host_spans: slices nest like the scopes of the spans", "[report]") {
     const std::uint64_t begin = host_clock_ns();
-    StepLog log;
+    SpanLog log;
     const int answer = log.during("outer", [&] {
-        const StepLog::Step first(&log, "first");
+        const SpanLog::Span first(&log, "first");
         return log.during("inner", [] { return 42; });
     });
     CHECK(answer == 42);
-    const StepLog::Step open(&log, "open");
-    const StepLog::Step nobody(nullptr, "nobody");
-    const std::vector<HostStep> steps = log.steps();
-    REQUIRE(steps.size() == 4);
-    CHECK(steps[3].ended >= steps[3].started);
-    CHECK(steps[2].depth == 2);
+    const SpanLog::Span open(&log, "open");
+    const SpanLog::Span nobody(nullptr, "nobody");
+    const std::vector<HostSpan> spans = log.spans();
+    REQUIRE(spans.size() == 4);
+    CHECK(spans[3].ended >= spans[3].started);
+    CHECK(spans[2].depth == 2);
     TraceFile trace(100);
-    add_host_steps(trace, steps, begin);
+    add_host_spans(trace, spans, begin);
     const TraceSchema schema(json_of(trace));
     CHECK(schema.faults() == std::vector<std::string>{});
     const auto slices = schema.slices_of(kTraceHost);

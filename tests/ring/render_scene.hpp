@@ -26,7 +26,7 @@ struct RingCase {
     bool filter = true;
     std::vector<std::string> more_options{};
     Antialias antialias{};
-    bool keep_costs = false;
+    bool record_costs = false;
 };
 
 inline RingSettings settings_of(const RingCase& c) {
@@ -36,7 +36,7 @@ inline RingSettings settings_of(const RingCase& c) {
     settings.bounces = c.bounces;
     settings.sampling = c.sampling;
     settings.antialias = c.antialias;
-    settings.keep_costs = c.keep_costs;
+    settings.record_costs = c.record_costs;
     settings.format = parse_format(c.format);
     settings.kernels.filter = c.filter;
     settings.kernels.lanes = c.lanes;

@@ -29,7 +29,7 @@ inline std::uint32_t random_divisor(SplitMix& random, std::uint32_t side) {
 
 /// Returns the mapping changed to `kind`, with a random parameter. A grid may have more rows or columns of PEs than the
 /// image has rows or columns of pixels, but not more PEs than pixels.
-inline raya_mapping of_kind(SplitMix& random, raya_mapping m, std::uint32_t kind) {
+inline raya_mapping mapping_of_kind(SplitMix& random, raya_mapping m, std::uint32_t kind) {
     const std::uint32_t pixels = m.width * m.height;
     m.kind = kind;
     if (kind > RAYA_FOLD_BLOCK) m.parameter = 0;
@@ -47,7 +47,7 @@ inline raya_mapping of_kind(SplitMix& random, raya_mapping m, std::uint32_t kind
 /// A random mapping of a random kind.
 inline raya_mapping any_mapping(SplitMix& random, std::uint32_t largest_side) {
     const raya_mapping m = small_mapping(random, largest_side);
-    return of_kind(random, m, random_below(random, RAYA_RANDOM + 1));
+    return mapping_of_kind(random, m, random_below(random, RAYA_RANDOM + 1));
 }
 
 }  // namespace raya

@@ -14,7 +14,7 @@ namespace {
 
 // The results that do not depend on the acceleration structure: the image, and all counts except those of tests,
 // traversals and traversal steps.
-std::string image_and_events(const RingResult& r) { return one_image(r.image, r.all.events); }
+std::string image_and_events(const RingResult& r) { return image_and_counts(r.image, r.all.events); }
 
 RingResult render_with(Session& session, const Scene& scene, const RingCase& c, const Accel& accel) {
     RingSettings settings = raya::settings_of(c);
@@ -57,7 +57,7 @@ TEST_CASE("scenes of all kinds of objects have the same image with a grid or BVH
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(2, {"fp32", "e5m10", "e6m15t", "e8m12", "e5m6"})));
     SplitMix random(2026);
-    for (const std::uint64_t seed : quick_of(1, kRichScenes)) {
+    for (const std::uint64_t seed : quick_of(1, kSceneSeeds)) {
         const Scene scene = random_view_scene(seed);
         const RingCase c{.width = 24, .height = 20, .pes = 6, .format = format};
         const auto side = [&] { return 1 + static_cast<std::uint32_t>(random.next() % 9); };
@@ -83,7 +83,7 @@ Polygon star(SplitMix& random, const Vec3& at, const Vec3& u, const Vec3& v, int
 
 // Spheres, polygons and cones of very different sizes that touch, nest and coincide; many polygons are axis-aligned.
 Scene crowded_scene(std::uint64_t seed) {
-    Scene scene = random_view_scene(kRichScenes[0]);
+    Scene scene = random_view_scene(kSceneSeeds[0]);
     SplitMix random(seed);
     scene.spheres.clear();
     scene.polygons.clear();
@@ -191,7 +191,7 @@ Scene doubled_scene(std::uint64_t seed) {
 TEST_CASE("of objects at equal distances the lowest number is hit, in any voxels", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(2, {"fp32", "spa22", "e5m6"})));
-    for (const std::uint64_t seed : quick_of(1, kRichScenes)) {
+    for (const std::uint64_t seed : quick_of(1, kSceneSeeds)) {
         const Scene scene = doubled_scene(seed);
         const RingCase c{.width = 24, .height = 20, .pes = 6, .format = format};
         const std::string expected = image_and_events(render_with(session, scene, c, {}));
@@ -233,7 +233,7 @@ TEST_CASE("of a plane, a separately listed polygon and others at equal distances
         const RingResult grid = render_with(session, scene, c, automatic_grid);
         CAPTURE(plane);
         CHECK(image_and_events(grid) == expected);
-        CHECK(grid.accel->apart == 1);
+        CHECK(grid.accel->separate == 1);
         CHECK(image_and_events(render_with(session, scene, c, cut(9, 9, 3))) == expected);
         CHECK(image_and_events(render_with(session, scene, c, bvh)) == expected);
     }
@@ -285,7 +285,7 @@ TEST_CASE("a grid or BVH saves 95 % of the tests of many small spheres", "[ring]
     const RingResult plain = render_with(session, scene, c, {}), grid = render_with(session, scene, c, automatic_grid);
     CHECK(image_and_events(grid) == image_and_events(plain));
     REQUIRE(grid.accel);
-    CHECK(grid.accel->apart == 1);  // the ground
+    CHECK(grid.accel->separate == 1);  // the ground
     CHECK(tests_of(plain.all.events) > 20 * tests_of(grid.all.events));
     CHECK(grid.pe_memory.job_words == plain.pe_memory.job_words + grid.accel->words);
     const RingResult tree = render_with(session, scene, c, bvh);

@@ -14,7 +14,7 @@
 namespace raya {
 namespace {
 
-using whole_image::unlike_values;
+using whole_image::count_differences;
 using whole_image::value_at;
 
 constexpr double kPixelsOfUnit = 32;
@@ -76,7 +76,7 @@ class PlainImages {
                                                    .offset = 0,
                                                    .sampling = c.sampling,
                                                    .format = c.format,
-                                                   .keep_costs = true});
+                                                   .record_costs = true});
         RingRenderer renderer(session_, grid_scene(height, c.sampling, pixels_of_unit), settings);
         return images_.emplace(key, renderer.render()).first->second;
     }
@@ -86,7 +86,7 @@ class PlainImages {
 };
 
 RingResult render_grid(Session& session, RingCase c) {
-    c.keep_costs = true;
+    c.record_costs = true;
     return RingRenderer(session, grid_scene(c.height, c.sampling, kPixelsOfUnit), settings_of(c)).render();
 }
 
@@ -144,10 +144,10 @@ Image own_points(const Image& fine) {
 void check_supersampled(const RingResult& result, const RingResult& plain, const RingResult& fine, const RingCase& c) {
     const Image mask = whole_image::contrast_mask(plain.image, c.antialias.threshold, settings_of(c).format);
     const std::size_t marked = pixels_of(mask);
-    REQUIRE(unlike_values(own_points(fine.image), plain.image) == 0);
-    CHECK(unlike_values(result.mask, mask) == 0);
+    REQUIRE(count_differences(own_points(fine.image), plain.image) == 0);
+    CHECK(count_differences(result.mask, mask) == 0);
     CHECK(result.recomputed == marked);
-    CHECK(unlike_values(result.image, supersampled(plain.image, fine.image, mask, c)) == 0);
+    CHECK(count_differences(result.image, supersampled(plain.image, fine.image, mask, c)) == 0);
     REQUIRE(result.phases.size() == 2);
     CHECK(result.phases[0].events == plain.all.events);
     CHECK(result.phases[0].cost().cycles == plain.cost().cycles);
@@ -169,7 +169,7 @@ TEST_CASE("the ring's filter gives the filtered whole image", "[ring][antialias]
             c.antialias.method = AntialiasMethod::kFilter;
             CAPTURE(kSeed, format, i, c.width, c.height, c.pes, c.offset, c.fold);
             const RingResult result = render_grid(session, c), &expected = plain.of(c);
-            CHECK(unlike_values(result.image, whole_image::filtered(expected.image, settings_of(c).format)) == 0);
+            CHECK(count_differences(result.image, whole_image::filtered(expected.image, settings_of(c).format)) == 0);
             CHECK(result.all.events == expected.all.events);
             CHECK(result.cost().cycles == expected.cost().cycles);
             CHECK(result.phases.size() == 1);
@@ -228,7 +228,7 @@ TEST_CASE("the additional points lie half a pixel away, for any camera", "[ring]
             });
             CAPTURE(format, points);
             CHECK(result.recomputed == kWidth * kHeight);
-            CHECK(unlike_values(result.image, expected) == 0);
+            CHECK(count_differences(result.image, expected) == 0);
         }
     }
 }

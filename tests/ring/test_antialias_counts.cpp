@@ -14,7 +14,7 @@ constexpr Antialias kFilter{.method = AntialiasMethod::kFilter};
 constexpr Antialias kSupersample{.method = AntialiasMethod::kSupersample};
 
 RingResult render_case(Session& session, RingCase c) {
-    c.keep_costs = true;
+    c.record_costs = true;
     const Scene scene = grid_scene(c.height, c.sampling, 0.8 * c.height);
     return RingRenderer(session, scene, settings_of(c)).render();
 }
@@ -38,7 +38,7 @@ AntialiasAnswer antialias_answer(const RingResult& result) {
 }
 
 /// By PE: the sum of the cost image over the PE's pixels.
-std::vector<std::uint64_t> owners_cost(const CostImage& cost, const raya_mapping& m) {
+std::vector<std::uint64_t> loads_from_costs(const CostImage& cost, const raya_mapping& m) {
     std::vector<std::uint64_t> loads(m.pes);
     for (std::uint32_t row = 0; row < m.height; ++row)
         for (std::uint32_t column = 0; column < m.width; ++column)
@@ -51,7 +51,7 @@ void check_phase(const Phase& phase, const raya_mapping& m) {
     const auto cycles = cycles_of_events();
     std::uint64_t all = 0;
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) all += cycles[event] * phase.events[event];
-    CHECK(phase.load.per_pe == owners_cost(phase.cost(), m));
+    CHECK(phase.load.per_pe == loads_from_costs(phase.cost(), m));
     CHECK(std::accumulate(phase.load.per_pe.begin(), phase.load.per_pe.end(), std::uint64_t{0}) == all);
     CHECK(phase.load.max == *std::max_element(phase.load.per_pe.begin(), phase.load.per_pe.end()));
 }
@@ -144,7 +144,7 @@ TEST_CASE("phases are named after their passes", "[ring][antialias]") {
 TEST_CASE("a second anti-aliased render with the same renderer gives the same result", "[ring][antialias]") {
     Session session(choose_device(""));
     for (const Antialias& antialias : {kFilter, kSupersample}) {
-        const RingCase c{.antialias = antialias, .keep_costs = true};
+        const RingCase c{.antialias = antialias, .record_costs = true};
         RingRenderer renderer(session, grid_scene(c.height, c.sampling, 40), settings_of(c));
         const RingResult first = renderer.render(), second = renderer.render();
         CAPTURE(antialias_name(antialias.method));

@@ -16,20 +16,20 @@ TEST_CASE("a plan's text omits default values at its end", "[schedule]") {
 TEST_CASE("schedules reject cost images, mappings and plans that do not match", "[schedule]") {
     const CostImage image{2, 2, {1, 2, 3, 4}};
     const raya_mapping fits{2, 2, 2, 0, RAYA_FOLD_CYCLIC};
-    const auto refuses = [](const CostImage& costs, const raya_mapping& m) {
+    const auto check_error = [](const CostImage& costs, const raya_mapping& m) {
         CHECK_THROWS_AS(static_load(costs, m), std::invalid_argument);
         CHECK_THROWS_AS(dynamic_schedule(costs, m, {}), std::invalid_argument);
     };
-    refuses(image, {1, 2, 2, 0, RAYA_FOLD_CYCLIC});
-    refuses(image, {2, 1, 2, 0, RAYA_FOLD_CYCLIC});
-    refuses(image, {2, 2, 0, 0, RAYA_FOLD_CYCLIC});
-    refuses(image, {2, 2, 5, 0, RAYA_FOLD_CYCLIC});
-    refuses({2, 2, {1, 2, 3}}, fits);
-    refuses({0, 0, {}}, {0, 0, 1, 0, RAYA_FOLD_CYCLIC});
+    check_error(image, {1, 2, 2, 0, RAYA_FOLD_CYCLIC});
+    check_error(image, {2, 1, 2, 0, RAYA_FOLD_CYCLIC});
+    check_error(image, {2, 2, 0, 0, RAYA_FOLD_CYCLIC});
+    check_error(image, {2, 2, 5, 0, RAYA_FOLD_CYCLIC});
+    check_error({2, 2, {1, 2, 3}}, fits);
+    check_error({0, 0, {}}, {0, 0, 1, 0, RAYA_FOLD_CYCLIC});
     for (const double share : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()})
         CHECK_THROWS_AS(dynamic_schedule(image, fits, {1, 0, share}), std::invalid_argument);
     CHECK_THROWS_AS(dynamic_schedule(image, fits, {0, 0, 0}), std::invalid_argument);
-    CHECK_THROWS_AS(dynamic_schedule(image, fits, {1, kLargestOverhead + 1, 0}), std::invalid_argument);
+    CHECK_THROWS_AS(dynamic_schedule(image, fits, {1, kMaxOverhead + 1, 0}), std::invalid_argument);
     CHECK_THROWS_AS(imbalance_of_offsets(image, 2, RAYA_FOLD_CYCLIC, {0, 2}), std::invalid_argument);
     CHECK_THROWS_AS(imbalance_of_offsets(image, 2, 7, {0}), std::invalid_argument);
     CHECK_THROWS_AS(imbalance_of_offsets(image, 5, RAYA_FOLD_BLOCK, {0}), std::invalid_argument);

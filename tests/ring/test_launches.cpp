@@ -39,7 +39,7 @@ RingSettings random_settings(SplitMix& random, const AccelKind accel) {
     c.pes = 1 + random_below(random, 20);
     c.offset = random_below(random, c.width);
     c.bounces = accel == AccelKind::kNone ? 5 : 8;
-    c.keep_costs = true;
+    c.record_costs = true;
     c.lanes = random_below(random, 2) ? 4 : 16;  // few values, so that few kernels are built
     c.group = random_below(random, 2) ? 1 : 3;
     c.format = random_below(random, 2) ? "fp32" : "spa22";
@@ -77,7 +77,7 @@ TEST_CASE("a render completes if each launch runs one iteration of its loop", "[
     const Scene scene = project_scene("glass");
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 12, .height = 9, .pes = 3, .group = 1});
-    settings.keep_costs = true;
+    settings.record_costs = true;
     const RingResult whole = RingRenderer(session, scene, settings).render();
     settings.work_per_launch = 1;
     const RingResult cut = RingRenderer(session, scene, settings).render();
@@ -89,7 +89,7 @@ TEST_CASE("launches report monotonic progress, first when each lane has done a f
     const Scene scene = project_scene("centre");
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 96, .height = 96, .pes = 4});
-    settings.keep_costs = true;
+    settings.record_costs = true;
     RingRenderer renderer(session, scene, settings);
     std::vector<double> reported;
     const auto report = [&](double done) { reported.push_back(done); };
@@ -122,7 +122,7 @@ TEST_CASE("every injected fault in the state saved between launches is detected"
     const SourcePatch faults[] = {
         {"ring/saved_trees.clh", "    save_index(k, &t->level);\n", ""},
         {"ring/saved_trees.clh", "    save_vec(k, &sum);\n", ""},
-        {"ring/saved_trees.clh", "if (mask_any((t->waits.all & (index)(1u << level)) != (index)(0)))",
+        {"ring/saved_trees.clh", "if (mask_any((t->pending_levels.all & (index)(1u << level)) != (index)(0)))",
          "if (level == 0)"},
         {"ring/saved_trees.clh", "save_index(k, &t->events[e].all)", ""},
         {"ring/saved_trees.clh", "    save_vec(k, &p->colour);\n", ""},
@@ -131,7 +131,7 @@ TEST_CASE("every injected fault in the state saved between launches is detected"
     };
     const Scene scene = project_scene("glass");
     Session session(choose_device(""));
-    RingCase c{.width = 20, .height = 15, .pes = 4, .group = 1, .keep_costs = true};
+    RingCase c{.width = 20, .height = 15, .pes = 4, .group = 1, .record_costs = true};
     c.antialias.method = AntialiasMethod::kSupersample;
     RingSettings settings = settings_of(c);
     settings.work_per_launch = 300;
@@ -143,11 +143,11 @@ TEST_CASE("every injected fault in the state saved between launches is detected"
     }
 }
 
-// cut_launches() simulates a device that ends the loops of every launch with more work than this: such a launch sets
-// the cut flag and corrupts counts, costs, pixels and saved ray trees.
-constexpr std::uint32_t kUncut = 40;
+// truncating_patches() simulates a device that ends the loops of every launch with more work than this. Such a launch
+// sets the cut flag and corrupts counts, costs, pixels and saved ray trees.
+constexpr std::uint32_t kMaxCompletedWork = 40;
 
-std::vector<SourcePatch> cut_launches() {
+std::vector<SourcePatch> truncating_patches() {
     return {{"ring/trace.cl", "if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);",
              fmt::format(
                  "if (work > {}u) {{\n"
@@ -157,7 +157,7 @@ std::vector<SourcePatch> cut_launches() {
                  "        for (uint w = 0; w < 3; ++w) saved[(w * get_global_size(0) + get_global_id(0)) * RAYA_LANES] "
                  "= 9;\n"
                  "    }}",
-                 kUncut)}};
+                 kMaxCompletedWork)}};
 }
 
 TEST_CASE("a launch whose loops are cut is repeated with half the work, and its results are discarded", "[ring]") {
@@ -165,13 +165,13 @@ TEST_CASE("a launch whose loops are cut is repeated with half the work, and its 
     const auto method = GENERATE(AntialiasMethod::kNone, AntialiasMethod::kSupersample);
     CAPTURE(accel, antialias_name(method));
     const Scene scene = project_scene("glass");
-    RingCase c{.width = 20, .height = 15, .pes = 4, .group = 3, .keep_costs = true};
+    RingCase c{.width = 20, .height = 15, .pes = 4, .group = 3, .record_costs = true};
     c.antialias.method = method;
     RingSettings settings = settings_of(c);
     settings.accel.kind = accel;
     Session session(choose_device(""));
     const RingResult whole = RingRenderer(session, scene, settings).render();
-    settings.kernels.sources.patches = cut_launches();
+    settings.kernels.sources.patches = truncating_patches();
     session.launch_limit(kTracePass) = session.launch_limit(kSupersamplePass) = 300;
     const RingResult first = RingRenderer(session, scene, settings).render();
     CHECK(launch_result_of(first) == launch_result_of(whole));

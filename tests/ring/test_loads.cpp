@@ -11,7 +11,7 @@ TEST_CASE("each PE's load is the sum of its pixels' costs, in every phase", "[ri
     CAPTURE(scene, pes, offset);
     RingCase c{.width = 40, .height = 24, .pes = pes, .offset = offset, .lanes = 4};
     c.antialias.method = AntialiasMethod::kSupersample;
-    c.keep_costs = true;
+    c.record_costs = true;
     const RingResult result = render_scene(project_scene(scene), c);
     REQUIRE(result.phases.size() == 2);
     for (const Phase& phase : result.phases) {

@@ -56,22 +56,23 @@ TEST_CASE("the text of a mapping identifies it, except for the fold", "[mapping]
 }
 
 TEST_CASE("an invalid mapping is refused with the valid range or a valid value", "[mapping]") {
-    const auto refuses = [](const MappingRule& rule, const ImageSize& image, std::uint32_t pes, const auto& message) {
+    const auto check_error = [](const MappingRule& rule, const ImageSize& image, std::uint32_t pes,
+                                const auto& message) {
         CHECK_THROWS_AS(make_mapping(rule, image, pes), UserError);
         CHECK_THROWS_WITH(make_mapping(rule, image, pes), message);
     };
-    refuses(column_mapping(), {0, 8}, 1, Contains("--size 0x8") && Contains("1..16384"));
-    refuses(column_mapping(), {8, 0}, 1, Contains("--size 8x0") && Contains("1..16384"));
-    refuses(column_mapping(), {16'385, 8}, 8, Contains("--size 16385x8"));
-    refuses(column_mapping(), {65'536, 65'536}, 8, Contains("--size 65536x65536"));  // W H overflows 32 bits
-    refuses(column_mapping(), {8, 6}, 0, Contains("--pes 0") && Contains("1..48"));
-    refuses(rows_mapping(), {8, 6}, 49, Contains("--pes 49") && Contains("1..48"));
-    refuses(cyclic_mapping(8), {8, 6}, 8, Contains("--mapping cyclic:8") && Contains("0..7"));
-    refuses(grid_mapping(3, 4), {8, 6}, 8,
-            Contains("--pes 8 with --mapping grid:3x4") && Contains("12 PEs") && Contains("or use 12"));
-    refuses(grid_mapping(7, 7), {8, 6}, 49, Contains("--mapping grid:7x7: 49 PEs") && Contains("1..48"));
-    refuses(tiles_mapping(9, 25), {320, 200}, 8,
-            Contains("--mapping tiles:9x25") && Contains("320 x 200") && Contains("tiles:8x25"));
-    refuses(tiles_mapping(320, 99), {320, 200}, 8, Contains("tiles:320x100"));
-    refuses(tiles_mapping(16'384, 3), {7, 200}, 8, Contains("tiles:7x2"));  // 2 and 4 are equally near: the smaller one
+    check_error(column_mapping(), {0, 8}, 1, Contains("--size 0x8") && Contains("1..16384"));
+    check_error(column_mapping(), {8, 0}, 1, Contains("--size 8x0") && Contains("1..16384"));
+    check_error(column_mapping(), {16'385, 8}, 8, Contains("--size 16385x8"));
+    check_error(column_mapping(), {65'536, 65'536}, 8, Contains("--size 65536x65536"));  // W H overflows 32 bits
+    check_error(column_mapping(), {8, 6}, 0, Contains("--pes 0") && Contains("1..48"));
+    check_error(rows_mapping(), {8, 6}, 49, Contains("--pes 49") && Contains("1..48"));
+    check_error(cyclic_mapping(8), {8, 6}, 8, Contains("--mapping cyclic:8") && Contains("0..7"));
+    check_error(grid_mapping(3, 4), {8, 6}, 8,
+                Contains("--pes 8 with --mapping grid:3x4") && Contains("12 PEs") && Contains("or use 12"));
+    check_error(grid_mapping(7, 7), {8, 6}, 49, Contains("--mapping grid:7x7: 49 PEs") && Contains("1..48"));
+    check_error(tiles_mapping(9, 25), {320, 200}, 8,
+                Contains("--mapping tiles:9x25") && Contains("320 x 200") && Contains("tiles:8x25"));
+    check_error(tiles_mapping(320, 99), {320, 200}, 8, Contains("tiles:320x100"));
+    check_error(tiles_mapping(16'384, 3), {7, 200}, 8, Contains("tiles:7x2"));  // 2 and 4 are equally near
 }

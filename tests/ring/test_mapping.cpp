@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/ring/mapping.hpp"
-#include "tests/ring/mapping_laws.hpp"
+#include "tests/ring/mapping_checks.hpp"
 #include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
@@ -41,15 +41,15 @@ TEST_CASE("slot mappings: every pixel has one owner, and shares are as even as t
         CAPTURE(kSeed, i, m.width, m.height, m.pes, m.parameter, m.kind);
         std::vector<std::uint32_t> sizes;
         const auto defined = [&](std::uint32_t row, std::uint32_t column) { return defined_owner(m, row, column); };
-        CHECK(strays(m, defined, sizes) == 0);
-        const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
-        CHECK(largest_share(m) == *most);
+        CHECK(count_wrong_owners(m, defined, sizes) == 0);
+        const auto [smallest, largest] = std::minmax_element(sizes.begin(), sizes.end());
+        CHECK(largest_share(m) == *largest);
         if (m.pes <= m.width) {  // a PE owns W / P whole slots, rounded down or up
-            CHECK(*least == m.width / m.pes * m.height);
-            CHECK(*most == ceil_ratio(m.width, m.pes) * m.height);
+            CHECK(*smallest == m.width / m.pes * m.height);
+            CHECK(*largest == ceil_ratio(m.width, m.pes) * m.height);
         } else {  // P / W PEs, rounded down or up, share the H pixels of a slot
-            CHECK(*least >= m.height / ceil_ratio(m.pes, m.width));
-            CHECK(*most == ceil_ratio(m.height, m.pes / m.width));
+            CHECK(*smallest >= m.height / ceil_ratio(m.pes, m.width));
+            CHECK(*largest == ceil_ratio(m.height, m.pes / m.width));
         }
     }
 }
@@ -103,7 +103,7 @@ TEST_CASE("block fold: a PE owns a run of slots if P < W, a run of a slot's rows
 
 TEST_CASE("slot mappings of the largest images and arrays agree with the definition", "[mapping]") {
     constexpr std::uint64_t kSeed = 3;
-    constexpr std::uint32_t kSide = kLargestSide, kPixels = kSide * kSide;
+    constexpr std::uint32_t kSide = kMaxSide, kPixels = kSide * kSide;
     SplitMix random(kSeed);
     for (const std::uint32_t pes : {1u, 12'345u, kSide, kSide + 1, 1'000'003u, kPixels / 2 + 1, kPixels - 1, kPixels})
         for (const std::uint32_t offset : {0u, 1u, 128u, kSide - 1})

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/ring/mapping.hpp"
-#include "tests/ring/mapping_laws.hpp"
+#include "tests/ring/mapping_checks.hpp"
 #include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
@@ -19,38 +19,38 @@ using Owners = std::vector<std::uint32_t>;  // [row][column]
 constexpr std::uint32_t kKinds[] = {RAYA_ROWS, RAYA_BLOCKS, RAYA_GRID, RAYA_TILES, RAYA_RANDOM};
 
 /// A set of pixels: every `step_across`-th pixel of every `step_down`-th row, from `top` and `left` to before `bottom`
-/// and `right`. paint() assigns them to `pe`.
-struct Brush {
+/// and `right`. set_owner() assigns them to `pe`.
+struct PixelLattice {
     std::uint32_t top, step_down, bottom, left, step_across, right;
 };
-void paint(Owners& owners, const raya_mapping& m, const Brush& b, std::uint32_t pe) {
+void set_owner(Owners& owners, const raya_mapping& m, const PixelLattice& b, std::uint32_t pe) {
     for (std::uint32_t j = b.top; j < b.bottom; j += b.step_down)
         for (std::uint32_t x = b.left; x < b.right; x += b.step_across) owners[j * m.width + x] = pe;
 }
 
-Owners painted_blocks(const raya_mapping& m) {
+Owners owners_of_blocks(const raya_mapping& m) {
     Owners owners(m.width * m.height);
     for (std::uint32_t j = 0, pe = 0; j < m.height; ++j) {
         while ((pe + 1) * m.height <= j * m.pes) ++pe;  // the last PE whose first row is j or less
-        paint(owners, m, {j, 1, j + 1, 0, 1, m.width}, pe);
+        set_owner(owners, m, {j, 1, j + 1, 0, 1, m.width}, pe);
     }
     return owners;
 }
 
-Owners painted_tiles(const raya_mapping& m) {
+Owners owners_of_tiles(const raya_mapping& m) {
     const std::uint32_t w = raya_first_of(m.parameter), h = raya_second_of(m.parameter);
     Owners owners(m.width * m.height);
     std::uint32_t pe = 0;
     for (std::uint32_t top = 0; top < m.height; top += h)
         for (std::uint32_t left = 0; left < m.width; left += w) {
-            paint(owners, m, {top, 1, top + h, left, 1, left + w}, pe);
+            set_owner(owners, m, {top, 1, top + h, left, 1, left + w}, pe);
             pe = pe + 1 < m.pes ? pe + 1 : 0;
         }
     return owners;
 }
 
 /// Assigns the permuted pixels to the PEs in turn. The permutation itself has its own tests.
-Owners dealt_at_random(const raya_mapping& m) {
+Owners owners_of_random(const raya_mapping& m) {
     Owners owners(m.width * m.height);
     for (std::uint32_t n = 0; n < owners.size(); ++n)
         owners[raya_unscramble(n, m.width * m.height, m.parameter)] = n % m.pes;
@@ -58,20 +58,20 @@ Owners dealt_at_random(const raya_mapping& m) {
 }
 
 /// The owners according to the definition in mapping.h, computed PE by PE without the formulas of mapping.h.
-Owners painted(const raya_mapping& m) {
-    if (m.kind == RAYA_BLOCKS) return painted_blocks(m);
-    if (m.kind == RAYA_TILES) return painted_tiles(m);
-    if (m.kind == RAYA_RANDOM) return dealt_at_random(m);
+Owners defined_owners(const raya_mapping& m) {
+    if (m.kind == RAYA_BLOCKS) return owners_of_blocks(m);
+    if (m.kind == RAYA_TILES) return owners_of_tiles(m);
+    if (m.kind == RAYA_RANDOM) return owners_of_random(m);
     const std::uint32_t down = m.kind == RAYA_GRID ? raya_first_of(m.parameter) : m.pes;
     const std::uint32_t across = m.kind == RAYA_GRID ? raya_second_of(m.parameter) : 1;
     Owners owners(m.width * m.height);
     for (std::uint32_t a = 0; a < down; ++a)
         for (std::uint32_t b = 0; b < across; ++b)
-            paint(owners, m, {a, down, m.height, b, across, m.width}, a * across + b);
+            set_owner(owners, m, {a, down, m.height, b, across, m.width}, a * across + b);
     return owners;
 }
 
-/// The owner in 64-bit arithmetic, for images that are too large for painted().
+/// The owner in 64-bit arithmetic, for images that are too large for defined_owners().
 std::uint64_t wide_owner(const raya_mapping& m, std::uint64_t row, std::uint64_t column) {
     const std::uint64_t first = raya_first_of(m.parameter), second = raya_second_of(m.parameter), width = m.width;
     if (m.kind == RAYA_ROWS) return row % m.pes;
@@ -82,7 +82,7 @@ std::uint64_t wide_owner(const raya_mapping& m, std::uint64_t row, std::uint64_t
 }
 
 /// The maximum difference between the pixel counts of two PEs: one row, tile or pixel.
-std::uint32_t unevenness(const raya_mapping& m) {
+std::uint32_t max_size_difference(const raya_mapping& m) {
     if (m.kind == RAYA_RANDOM) return 1;
     if (m.kind == RAYA_TILES) return raya_first_of(m.parameter) * raya_second_of(m.parameter);
     return m.width;
@@ -96,18 +96,18 @@ TEST_CASE("rows, blocks, grid, tiles, random: every pixel has one owner, and sha
     std::uint32_t idle = 0;
     for (int i = 0; i < 300; ++i)
         for (const std::uint32_t kind : kKinds) {
-            const raya_mapping m = of_kind(random, small_mapping(random, 30), kind);
+            const raya_mapping m = mapping_of_kind(random, small_mapping(random, 30), kind);
             CAPTURE(kSeed, i, m.width, m.height, m.pes, mapping_text(m));
-            const Owners owners = painted(m);
+            const Owners owners = defined_owners(m);
             const auto defined = [&](std::uint32_t row, std::uint32_t column) {
                 return owners[row * m.width + column];
             };
             std::vector<std::uint32_t> sizes;
-            CHECK(strays(m, defined, sizes) == 0);
-            const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
-            CHECK(largest_share(m) == *most);
-            if (kind != RAYA_GRID) CHECK(*most - *least <= unevenness(m));
-            idle += *least == 0;
+            CHECK(count_wrong_owners(m, defined, sizes) == 0);
+            const auto [smallest, largest] = std::minmax_element(sizes.begin(), sizes.end());
+            CHECK(largest_share(m) == *largest);
+            if (kind != RAYA_GRID) CHECK(*largest - *smallest <= max_size_difference(m));
+            idle += *smallest == 0;
         }
     CHECK(idle > 100);  // some PEs had no pixels
 }
@@ -127,7 +127,7 @@ TEST_CASE("a grid's PEs own one pixel of every A x B rectangle", "[mapping]") {
 
 TEST_CASE("mappings of every kind agree with the definition on the largest images and arrays", "[mapping]") {
     constexpr std::uint64_t kSeed = 22;
-    constexpr std::uint32_t kSide = kLargestSide, kPixels = kSide * kSide;
+    constexpr std::uint32_t kSide = kMaxSide, kPixels = kSide * kSide;
     SplitMix random(kSeed);
     std::vector<raya_mapping> cases;
     for (const std::uint32_t pes : {1u, 12'345u, kSide, kSide + 1, 1'000'003u, kPixels - 1, kPixels}) {
@@ -173,18 +173,18 @@ TEST_CASE("random mapping: the scramble is a bijection for every count, and unsc
 }
 
 TEST_CASE("random mapping: the seed determines the mapping, and different seeds give independent ones", "[mapping]") {
-    const auto owners = [](std::uint32_t seed) { return painted({64, 64, 16, seed, RAYA_RANDOM}); };
+    const auto owners = [](std::uint32_t seed) { return defined_owners({64, 64, 16, seed, RAYA_RANDOM}); };
     constexpr std::uint32_t kSeeds = 50;
     std::vector<Owners> all;
     for (std::uint32_t seed = 0; seed < kSeeds; ++seed) all.push_back(owners(seed));
-    std::uint32_t pairs = 0, apart = 0;
+    std::uint32_t pairs = 0, uncorrelated = 0;
     for (std::uint32_t a = 0; a < kSeeds; ++a)
         for (std::uint32_t b = a + 1; b < kSeeds; ++b, ++pairs) {
             const std::uint32_t same =
                 std::inner_product(all[a].begin(), all[a].end(), all[b].begin(), 0u, std::plus<>(), std::equal_to<>());
-            apart += same > 176 && same < 336;  // 4096 / 16 = 256, +- 5 standard deviations of 15.5
+            uncorrelated += same > 176 && same < 336;  // 4096 / 16 = 256, +- 5 standard deviations of 15.5
         }
-    CHECK(apart == pairs);
+    CHECK(uncorrelated == pairs);
     // The recorded start of the mapping random:1, which must never change, because reports name mappings by their seed.
     const Owners first(all[1].begin(), all[1].begin() + 12);
     CHECK(first == Owners{12, 9, 15, 13, 2, 10, 13, 10, 14, 10, 14, 5});

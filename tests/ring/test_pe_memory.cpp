@@ -13,7 +13,7 @@ using Catch::Contains;
 namespace {
 
 /// Bytes of the stack for the ray tree, without the job's words and pixels. The stack grows by one ray per bounce.
-std::uint64_t walk_bytes(std::uint32_t bounces) {
+std::uint64_t ray_tree_bytes(std::uint32_t bounces) {
     return plan_pe_memory(machine_named("grande"), {.scene = "s", .bounces = bounces}).bytes();
 }
 
@@ -29,13 +29,13 @@ PeDemand demand(std::uint64_t job_words, std::uint32_t share, AntialiasMethod me
 
 /// Bytes of a PE that exchanges pixels, without the pixels in transit: per pixel three words of colour, and three words
 /// of sums (filter) or a mark of one byte (supersampling).
-std::uint64_t bytes_at_rest(const PeDemand& d) {
+std::uint64_t bytes_without_band(const PeDemand& d) {
     const std::uint64_t a_pixel = d.antialias == AntialiasMethod::kFilter ? 24 : 13;
-    return 4 * d.job_words + walk_bytes(d.bounces) + a_pixel * d.share;
+    return 4 * d.job_words + ray_tree_bytes(d.bounces) + a_pixel * d.share;
 }
 
 /// The longest band if the PE's pixels are cut into the minimum number of equal parts that fit; 0 if none fits.
-std::uint32_t fewest_parts(std::uint32_t share, std::uint64_t free_bytes) {
+std::uint32_t min_parts(std::uint32_t share, std::uint64_t free_bytes) {
     for (std::uint32_t parts = 1; parts <= share; ++parts) {
         const std::uint32_t longest = share / parts + (share % parts != 0);
         if (12ull * longest <= free_bytes) return longest;
@@ -50,35 +50,35 @@ TEST_CASE("a PE's memory is the job's words, the traversal stack and three words
     CHECK(memory.job_words == 1000);
     CHECK(memory.block_pixels == 256);
     CHECK((memory.sum_pixels == 0 && memory.band_pixels == 0 && memory.marks == 0));
-    CHECK(memory.bytes() == 4 * 1000 + walk_bytes(8) + 12 * 256);
-    CHECK(walk_bytes(8) - walk_bytes(7) == 4 * 7);  // 7 words: origin, direction, weight
-    CHECK(walk_bytes(0) > 0);
+    CHECK(memory.bytes() == 4 * 1000 + ray_tree_bytes(8) + 12 * 256);
+    CHECK(ray_tree_bytes(8) - ray_tree_bytes(7) == 4 * 7);  // 7 words: origin, direction, weight
+    CHECK(ray_tree_bytes(0) > 0);
 }
 
 TEST_CASE("anti-aliasing adds sums or marks, and the pixels in transit", "[ring]") {
     const PeMemory filter = plan_pe_memory(machine_named("spa"), demand(1000, 256, AntialiasMethod::kFilter));
     CHECK((filter.block_pixels == 256 && filter.sum_pixels == 256 && filter.band_pixels == 256 && filter.marks == 0));
-    CHECK(filter.bytes() == 4 * 1000 + walk_bytes(8) + (12 + 12 + 12) * 256);
+    CHECK(filter.bytes() == 4 * 1000 + ray_tree_bytes(8) + (12 + 12 + 12) * 256);
     const PeMemory sampled = plan_pe_memory(machine_named("spa"), demand(1000, 255, AntialiasMethod::kSupersample));
     CHECK((sampled.block_pixels == 255 && sampled.sum_pixels == 0 && sampled.band_pixels == 255));
     CHECK(sampled.marks == 255);
-    CHECK(sampled.bytes() == 4 * 1000 + walk_bytes(8) + (12 + 12 + 1) * 255);
+    CHECK(sampled.bytes() == 4 * 1000 + ray_tree_bytes(8) + (12 + 12 + 1) * 255);
 }
 
 TEST_CASE("a machine without a limit holds everything", "[ring]") {
     const PeMemory memory = plan_pe_memory(machine_named("grande"), demand(100'000'000, 1'000'000));
     CHECK(memory.block_pixels == 1'000'000);
     CHECK(memory.bytes() > 400'000'000);
-    constexpr std::uint32_t kLargest = 1u << 28;  // one PE for the largest image
-    const PeMemory filter = plan_pe_memory(machine_named("grande"), demand(0, kLargest, AntialiasMethod::kFilter));
-    CHECK(filter.band_pixels == kLargest);
-    CHECK(filter.bytes() == walk_bytes(8) + (36ull << 28));
+    constexpr std::uint32_t kMaxPixels = 1u << 28;  // one PE for the largest image
+    const PeMemory filter = plan_pe_memory(machine_named("grande"), demand(0, kMaxPixels, AntialiasMethod::kFilter));
+    CHECK(filter.band_pixels == kMaxPixels);
+    CHECK(filter.bytes() == ray_tree_bytes(8) + (36ull << 28));
 }
 
 TEST_CASE("a share that does not fit is cut into the largest blocks that fit", "[ring]") {
     const std::uint64_t words = 500;
     for (const std::uint32_t pixels : {1u, 2u, 99u}) {
-        const std::uint64_t exact = 4 * words + walk_bytes(8) + 12 * pixels;
+        const std::uint64_t exact = 4 * words + ray_tree_bytes(8) + 12 * pixels;
         const auto block = [&](std::uint64_t bytes, std::uint32_t share) {
             return plan_pe_memory(machine_of(bytes), demand(words, share)).block_pixels;
         };
@@ -104,19 +104,19 @@ TEST_CASE("PEs exchange the whole share, or the minimum number of equal parts of
         const PeDemand d = demand(random.next() % 300, 1 + static_cast<std::uint32_t>(random.next() % 300), method);
         const std::uint64_t free_bytes = 12 + random.next() % (13 * d.share);
         CAPTURE(kSeed, i, d.job_words, d.share, free_bytes, antialias_name(method));
-        const PeMemory memory = plan_pe_memory(machine_of(bytes_at_rest(d) + free_bytes), d);
+        const PeMemory memory = plan_pe_memory(machine_of(bytes_without_band(d) + free_bytes), d);
         CHECK(memory.block_pixels == d.share);  // all pixels stay in the PE, as any may be a neighbour of another PE's
         CHECK(memory.sum_pixels == (method == AntialiasMethod::kFilter ? d.share : 0));
         CHECK(memory.marks == (method == AntialiasMethod::kSupersample ? d.share : 0));
-        CHECK(memory.band_pixels == fewest_parts(d.share, free_bytes));
-        CHECK(memory.bytes() == bytes_at_rest(d) + 12ull * memory.band_pixels);
-        CHECK(memory.bytes() <= bytes_at_rest(d) + free_bytes);
+        CHECK(memory.band_pixels == min_parts(d.share, free_bytes));
+        CHECK(memory.bytes() == bytes_without_band(d) + 12ull * memory.band_pixels);
+        CHECK(memory.bytes() <= bytes_without_band(d) + free_bytes);
         cut += memory.band_pixels < d.share;
     }
     CHECK(cut > 500);
     const auto band = [](std::uint64_t pixels) {
         const PeDemand d = demand(100, 100, AntialiasMethod::kFilter);
-        return plan_pe_memory(machine_of(bytes_at_rest(d) + 12 * pixels), d).band_pixels;
+        return plan_pe_memory(machine_of(bytes_without_band(d) + 12 * pixels), d).band_pixels;
     };
     CHECK((band(100) == 100 && band(99) == 50 && band(50) == 50 && band(49) == 34 && band(1) == 1));
 }
@@ -126,16 +126,16 @@ TEST_CASE("a scene that leaves no memory for a pixel is refused with both figure
         return plan_pe_memory(machine_named("spa"),
                               {.scene = "big.nff", .job_words = words, .bounces = 8, .share = 256});
     };
-    const std::uint64_t words = (32 * 1024 - walk_bytes(8) - 12) / 4;  // the maximum that fits
+    const std::uint64_t words = (32 * 1024 - ray_tree_bytes(8) - 12) / 4;  // the maximum that fits
     CHECK(plan(words).block_pixels == 1);
     try {
         plan(words + 1);
         FAIL("it fits");
     } catch (const DoesNotFit& error) {
-        CHECK(error.needed_bytes == 4 * (words + 1) + walk_bytes(8) + 12);
+        CHECK(error.needed_bytes == 4 * (words + 1) + ray_tree_bytes(8) + 12);
         CHECK(error.memory_bytes == 32 * 1024);
     }
-    const std::uint64_t hundred_kb = (100 * 1024 - walk_bytes(8) - 12) / 4;
+    const std::uint64_t hundred_kb = (100 * 1024 - ray_tree_bytes(8) - 12) / 4;
     CHECK_THROWS_WITH(plan(hundred_kb), Contains("big.nff") && Contains("100.0 KB") && Contains("32 KB") &&
                                             Contains("the SPA") && Contains("--machine grande") &&
                                             !Contains("more PEs"));  // would not help: every PE holds the whole scene
@@ -147,13 +147,13 @@ TEST_CASE("a share that leaves no memory for a pixel in transit is refused with 
         const std::string name = antialias_name(method);
         CAPTURE(name);
         PeDemand d = demand(700, 333, method);
-        const std::uint64_t minimum = bytes_at_rest(d) + 12;
+        const std::uint64_t minimum = bytes_without_band(d) + 12;
         CHECK(plan_pe_memory(machine_of(minimum), d).band_pixels == 1);
         CHECK_THROWS_AS(plan_pe_memory(machine_of(minimum - 1), d), DoesNotFit);
         CHECK_NOTHROW(plan_pe_memory(machine_of(minimum - 1), demand(700, 333)));
         d.scene = "wide.nff";
         d.share = 1;
-        d.job_words = (50 * 1024 - bytes_at_rest(demand(0, 1, method)) - 12) / 4;  // 50 KB in all, less up to 3 bytes
+        d.job_words = (50 * 1024 - bytes_without_band(demand(0, 1, method)) - 12) / 4;  // 50 KB, less up to 3 bytes
         CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), d),
                           Contains("wide.nff with --antialias " + name) && Contains("50.0 KB") && Contains("32 KB") &&
                               Contains("the SPA") && Contains("more PEs") && Contains("smaller image") &&

@@ -85,15 +85,15 @@ TEST_CASE("P rotations in either direction bring every block back", "[ring]") {
     SplitMix random(kSeed);
     Session session(choose_device(""));
     for (const std::size_t pes : kRings)
-        for (const Turn turn : {Turn::kDown, Turn::kUp}) {
-            CAPTURE(kSeed, pes, int(turn));
+        for (const RingDirection direction : {RingDirection::kDown, RingDirection::kUp}) {
+            CAPTURE(kSeed, pes, int(direction));
             Communication counted;
             Ring ring(session, counted, static_cast<std::uint32_t>(pes), 1, 5);
             const Bits before = random_words(random, pes * 5);
             ring.load(filled(session, "own", before), 5, 0);
             for (std::size_t n = 1; n <= pes; ++n) {
-                ring.rotate(turn);
-                const std::size_t distance = turn == Turn::kDown ? n : pes - n;
+                ring.rotate(direction);
+                const std::size_t distance = direction == RingDirection::kDown ? n : pes - n;
                 if (contents(session, ring.blocks()) != turned(before, pes, distance)) FAIL_CHECK("after " << n);
             }
             CHECK(contents(session, ring.blocks()) == before);
@@ -114,8 +114,8 @@ TEST_CASE("rotations are counted by the words that were copied", "[ring]") {
         session.clear_profile();
         ring.load(own, block, 0);
         CHECK((counted.rotations == 0 && counted.rotation_words == 0));  // a PE's own words do not move
-        for (std::uint32_t n = 0; n < down; ++n) ring.rotate(Turn::kDown);
-        for (std::uint32_t n = 0; n < up; ++n) ring.rotate(Turn::kUp);
+        for (std::uint32_t n = 0; n < down; ++n) ring.rotate(RingDirection::kDown);
+        for (std::uint32_t n = 0; n < up; ++n) ring.rotate(RingDirection::kUp);
         CHECK(counted.rotations == down + up);
         CHECK(counted.rotation_words == (down + up) * pes * block);
         CHECK(copied_bytes(session, "ring.rotate") == 4 * counted.rotation_words);

@@ -20,13 +20,13 @@ class TestCheckpoint {
     explicit TestCheckpoint(int bands = 1 << 30, std::string from = "") : left_(bands), saved_(std::move(from)) {
         checkpointing_.band_s = 0;  // makes bands as short as possible
         checkpointing_.due = [] { return true; };
-        checkpointing_.keep = [this](const RingState& state, const StateSettings& settings) {
+        checkpointing_.save = [this](const RingState& state, const StateSettings& settings) {
             saved_ = state_bytes(state, settings);
             ++count_;
             if (--left_ == 0) throw Stopped();
         };
-        checkpointing_.resume = [this](const StateSettings& settings, const RingState& like) {
-            return saved_.empty() ? std::optional<RingState>() : read_state(saved_, settings, like);
+        checkpointing_.resume = [this](const StateSettings& settings, const RingState& shape) {
+            return saved_.empty() ? std::optional<RingState>() : read_state(saved_, settings, shape);
         };
     }
     const RingCheckpointing* checkpointing() const { return &checkpointing_; }
@@ -63,7 +63,7 @@ void check_same(const RingResult& a, const RingResult& b) {
 RingSettings settings_for(AntialiasMethod method, std::uint64_t device_pixels) {
     RingSettings settings =
         settings_of({.width = 50, .height = 37, .pes = 7, .machine = "grande", .lanes = 4, .bounces = 3});
-    settings.keep_costs = true;
+    settings.record_costs = true;
     settings.antialias.method = method;
     settings.device_pixels = device_pixels;
     return settings;
@@ -119,9 +119,9 @@ TEST_CASE("one renderer renders with and without a checkpoint, in any order", "[
     check_same(renderer.render(), whole);
     TestCheckpoint last(1 << 30, first.saved());
     check_same(renderer.render({}, last.checkpointing()), whole);
-    const RingResult again = renderer.render();
-    check_same(again, whole);
-    CHECK(again.earlier_s == 0);
+    const RingResult without = renderer.render();
+    check_same(without, whole);
+    CHECK(without.earlier_s == 0);
 }
 
 TEST_CASE("a checkpoint of another render is refused, naming the difference", "[ring][checkpoint]") {
@@ -145,7 +145,7 @@ TEST_CASE("a checkpoint of another render is refused, naming the difference", "[
         refused(scene, changed, why);
     };
     differs("was rendered with --bounces 3, not 2", [](RingSettings& s) { s.bounces = 2; });
-    differs("was rendered with --cost or --mapping dynamic", [](RingSettings& s) { s.keep_costs = false; });
+    differs("was rendered with --cost or --mapping dynamic", [](RingSettings& s) { s.record_costs = false; });
     differs("was rendered with --format fp32, not e8m21", [](RingSettings& s) { s.format = parse_format("e8m21"); });
     differs("was rendered with --group 1, not 2", [](RingSettings& s) { s.kernels.group_size = 2; });
     differs("was rendered with --accel none, not bvh", [](RingSettings& s) { s.accel.kind = AccelKind::kBvh; });
@@ -168,7 +168,7 @@ TEST_CASE("a checkpoint with the right hash but other vector sizes than the rend
         RingCheckpointing checkpointing;
         checkpointing.band_s = 0;
         checkpointing.due = [] { return true; };
-        checkpointing.keep = [&](const RingState& state, const StateSettings& its) {
+        checkpointing.save = [&](const RingState& state, const StateSettings& its) {
             saved = state;
             of = its;
             throw Stopped();

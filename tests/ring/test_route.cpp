@@ -52,16 +52,17 @@ Distances defined_distances(const raya_mapping& m, raya_u32 side) {
     return {found.begin(), found.end()};
 }
 
-std::uint64_t turns_of(const std::vector<Leg>& route) {
+std::uint64_t route_rotations(const std::vector<Leg>& route) {
     return std::accumulate(route.begin(), route.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const Leg& leg) { return sum + leg.turns(); });
+                           [](std::uint64_t sum, const Leg& leg) { return sum + leg.rotations(); });
 }
 
 /// The distances at which a route stops, in ascending order, with repetitions.
 Distances stops_of(const std::vector<Leg>& route, std::uint32_t pes) {
     Distances stops;
     for (const Leg& leg : route)
-        for (const std::uint32_t stop : leg.stops) stops.push_back(leg.turn == Turn::kDown ? stop : (pes - stop) % pes);
+        for (const std::uint32_t stop : leg.stops)
+            stops.push_back(leg.direction == RingDirection::kDown ? stop : (pes - stop) % pes);
     std::sort(stops.begin(), stops.end());
     return stops;
 }
@@ -70,9 +71,10 @@ Distances stops_of(const std::vector<Leg>& route, std::uint32_t pes) {
 /// stops must ascend and lie within one round of the ring.
 bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
     if (route.size() > 2) return false;
-    if (route.size() == 2 && (route[0].turn != Turn::kDown || route[1].turn != Turn::kUp)) return false;
+    if (route.size() == 2 && (route[0].direction != RingDirection::kDown || route[1].direction != RingDirection::kUp))
+        return false;
     return std::all_of(route.begin(), route.end(), [&](const Leg& leg) {
-        return !leg.stops.empty() && leg.turns() < pes &&
+        return !leg.stops.empty() && leg.rotations() < pes &&
                std::adjacent_find(leg.stops.begin(), leg.stops.end(), std::greater_equal<>()) == leg.stops.end();
     });
 }
@@ -80,31 +82,31 @@ bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
 /// The minimum number of rotations that visit all distances in `wanted` (bit d: distance d). A rotation in either
 /// direction costs 1; a restart from the PEs' own blocks costs 0. Breadth-first search over the states (distance,
 /// visited distances).
-int fewest_turns(std::uint32_t pes, std::uint32_t wanted) {
+int min_rotations(std::uint32_t pes, std::uint32_t wanted) {
     constexpr int kFar = std::numeric_limits<int>::max();
     const std::uint32_t all = 1u << pes;
-    std::vector<int> turns(std::size_t{pes} * all, kFar);
+    std::vector<int> rotations(std::size_t{pes} * all, kFar);
     std::deque<std::uint32_t> next;  // states: distance * all + seen
     const auto reach = [&](std::uint32_t distance, std::uint32_t seen, int cost, bool costs_nothing) {
         const std::uint32_t state = distance * all + (seen | 1u << distance);
-        if (cost >= turns[state]) return;
-        turns[state] = cost;
+        if (cost >= rotations[state]) return;
+        rotations[state] = cost;
         costs_nothing ? next.push_front(state) : next.push_back(state);
     };
     reach(0, 0, 0, true);
     while (!next.empty()) {
         const std::uint32_t state = next.front(), distance = state / all, seen = state % all;
         next.pop_front();
-        if ((seen & wanted) == wanted) return turns[state];
-        reach(0, seen, turns[state], true);
-        reach((distance + 1) % pes, seen, turns[state] + 1, false);
-        reach((distance + pes - 1) % pes, seen, turns[state] + 1, false);
+        if ((seen & wanted) == wanted) return rotations[state];
+        reach(0, seen, rotations[state], true);
+        reach((distance + 1) % pes, seen, rotations[state] + 1, false);
+        reach((distance + pes - 1) % pes, seen, rotations[state] + 1, false);
     }
     return kFar;
 }
 
 /// The number of rotations that go round the ring except across the widest gap between adjacent distances, 0 included.
-std::uint32_t turns_round_widest_gap(std::uint32_t pes, Distances stops) {
+std::uint32_t rotations_round_widest_gap(std::uint32_t pes, Distances stops) {
     stops.push_back(0);
     std::sort(stops.begin(), stops.end());
     stops.push_back(pes);
@@ -156,13 +158,13 @@ TEST_CASE("routes have the minimum number of rotations: every set of distances o
                 if (wanted >> d & 1u) distances.push_back(d);
             const std::vector<Leg> route = shortest_route(pes, distances);
             const bool good = well_formed(route, pes) && stops_of(route, pes) == distances &&
-                              turns_of(route) == static_cast<std::uint64_t>(fewest_turns(pes, wanted));
+                              route_rotations(route) == static_cast<std::uint64_t>(min_rotations(pes, wanted));
             if (good) continue;
-            CAPTURE(pes, distances, turns_of(route), fewest_turns(pes, wanted), stops_of(route, pes));
+            CAPTURE(pes, distances, route_rotations(route), min_rotations(pes, wanted), stops_of(route, pes));
             CHECK(good);
         }
-    CHECK(fewest_turns(9, 0b000101001) == 5);  // checks the reference: 5 rotations down reach 3 and 5, 6 up
-    CHECK(fewest_turns(9, 0b100000010) == 2);  // 1 and 8 are one rotation away, in opposite directions
+    CHECK(min_rotations(9, 0b000101001) == 5);  // checks the reference: 5 rotations down reach 3 and 5, 6 up
+    CHECK(min_rotations(9, 0b100000010) == 2);  // 1 and 8 are one rotation away, in opposite directions
 }
 
 TEST_CASE("large rings: a route omits the widest gap", "[ring][route]") {
@@ -177,7 +179,7 @@ TEST_CASE("large rings: a route omits the widest gap", "[ring][route]") {
         CAPTURE(kSeed, i, pes, distances);
         CHECK(well_formed(route, pes));
         CHECK(stops_of(route, pes) == distances);
-        CHECK(turns_of(route) == turns_round_widest_gap(pes, distances));
+        CHECK(route_rotations(route) == rotations_round_widest_gap(pes, distances));
     }
 }
 

@@ -87,7 +87,7 @@ TEST_CASE("scaling a scene into the format moves only the horizon of its planes"
 TEST_CASE("a scene scaled by a power of ten gives the same image to rounding", "[ring][scales]") {
     // The different rounding of lengths moves edges by a fraction of a pixel, and rays between mirrors by more than
     // that.
-    for (const auto& [format, most] : {std::pair{"fp32", 2e-6}, {"spa22", 2e-4}, {"e5m10", 5e-3}})
+    for (const auto& [format, max_difference] : {std::pair{"fp32", 2e-6}, {"spa22", 2e-4}, {"e5m10", 5e-3}})
         for (const char* name : quick(1, {"mirrors", "polygons", "cones", "centre"}))
             for (const int k : {-5, 4, -12, 12}) {
                 const Scene scene = without_planes(name);
@@ -95,7 +95,7 @@ TEST_CASE("a scene scaled by a power of ten gives the same image to rounding", "
                     mean_difference(render_scene(scene, in_format(format)).image,
                                     render_scene(scaled_scene(scene, std::pow(10, k)), in_format(format)).image);
                 CAPTURE(format, name, k, difference);
-                CHECK(difference < most);
+                CHECK(difference < max_difference);
             }
 }
 

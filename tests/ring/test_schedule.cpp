@@ -159,11 +159,11 @@ TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]"
         const auto [width, height, pes, offset, fold] = m;
         const CostImage image = random_image(random, width, height);
         DynamicPlan plan = random_plan(random, width * height);
-        const std::uint64_t total = total_cycles(image), least = lower_bound(image, pes);
-        CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_share, total, least);
+        const std::uint64_t total = total_cycles(image), bound = lower_bound(image, pes);
+        CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_share, total, bound);
         const Schedule any = dynamic_schedule(image, m, plan);
         CHECK(sum_of(any.load.per_pe) == total + any.requests * plan.overhead);
-        CHECK(makespan(any) >= least);
+        CHECK(makespan(any) >= bound);
         CHECK(speedup(any, image) <= any.load.speedup);
 
         plan.overhead = 0;
@@ -178,7 +178,7 @@ TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]"
         CHECK(pes * makespan(list) <= total + (pes - 1) * largest_chunk);
         CHECK(speedup(list, image) == list.load.speedup);  // equal without overhead
         plan.chunk = 1;
-        CHECK(pes * makespan(dynamic_schedule(image, m, plan)) <= (2 * pes - 1) * least);  // 2 - 1/P times the optimum
+        CHECK(pes * makespan(dynamic_schedule(image, m, plan)) <= (2 * pes - 1) * bound);  // 2 - 1/P times the optimum
     }
 }
 

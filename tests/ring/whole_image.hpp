@@ -112,7 +112,7 @@ inline float mean_of_five(const std::array<float, 5>& values, const NumberFormat
 
 /// The number of colour values whose bits differ. If the images' sizes differ, the number of values of the larger
 /// image.
-inline std::size_t unlike_values(const Image& a, const Image& b) {
+inline std::size_t count_differences(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height || a.rgb.size() != b.rgb.size())
         return std::max(a.rgb.size(), b.rgb.size());
     std::size_t unlike = 0;

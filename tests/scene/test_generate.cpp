@@ -225,10 +225,10 @@ TEST_CASE("gears: teeth mesh with the neighbours' gaps without touching", "[gene
         for (std::size_t j = 0; j < i; ++j) {
             CAPTURE(i, j);
             CHECK_FALSE(cross(layer[i], layer[j]));
-            const Vec3 apart = middle_of(layer[i]) - middle_of(layer[j]);
-            CHECK(apart.z == 0);
+            const Vec3 offset = middle_of(layer[i]) - middle_of(layer[j]);
+            CHECK(offset.z == 0);
             if (i + j == 3) continue;  // diagonal neighbours
-            double nearest = apart.length();
+            double nearest = offset.length();
             for (const Vec3& v : layer[i].vertices) nearest = std::min(nearest, (v - middle_of(layer[j])).length());
             CHECK(nearest < 0.97 * reach);
         }
@@ -286,7 +286,7 @@ TEST_CASE("random: centres lie in the cube, the volume is moderate, and the seed
 
 TEST_CASE("cluster: seven spheres above the floor that do not touch", "[generate]") {
     const ClusterShape shape;
-    int apart = 0;
+    int disjoint = 0;
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
         CAPTURE(seed);
         const Scene s = generate_cluster(seed);
@@ -311,9 +311,9 @@ TEST_CASE("cluster: seven spheres above the floor that do not touch", "[generate
         }
         CHECK(glass == shape.glass);
         CHECK(mirrors == shape.mirrors);
-        apart += !touching;
+        disjoint += !touching;
     }
-    CHECK(apart >= 297);  // 200 attempts per sphere nearly always find a free position
+    CHECK(disjoint >= 297);  // 200 attempts per sphere nearly always find a free position
     ClusterShape none;
     none.glass = none.mirrors = none.matt = 0;
     CHECK(generate_cluster(1, none).spheres.empty());
@@ -338,16 +338,16 @@ TEST_CASE("generated scenes are equal after writing and reading", "[generate]") 
 }
 
 TEST_CASE("generators refuse parameters out of range", "[generate]") {
-    CHECK_THROWS_WITH(generate_balls(-1), "balls: level -1: must lie in 0..6");
-    CHECK_THROWS_WITH(generate_balls(7), "balls: level 7: must lie in 0..6");
-    CHECK_THROWS_WITH(generate_lattice(0), "lattice: size 0: must lie in 1..64");
-    CHECK_THROWS_WITH(generate_lattice(65), "lattice: size 65: must lie in 1..64");
-    CHECK_THROWS_WITH(generate_gears(0), "gears: size 0: must lie in 1..16");
-    CHECK_THROWS_WITH(generate_gears(17), "gears: size 17: must lie in 1..16");
-    CHECK_THROWS_WITH(generate_random(0, 1), "random: 0 spheres: must lie in 1..1000000");
-    CHECK_THROWS_WITH(generate_uniform(1000001, {1, 1, 1}), "uniform: 1000001 spheres: must lie in 1..1000000");
-    CHECK_THROWS_WITH(generate_uniform(1, {1, 0, 1}), "uniform: 0 voxels along an axis: must lie in 1..256");
-    CHECK_THROWS_WITH(generate_uniform(1, {1, 1, 257}), "uniform: 257 voxels along an axis: must lie in 1..256");
+    CHECK_THROWS_WITH(generate_balls(-1), "balls: level -1: must be 0..6");
+    CHECK_THROWS_WITH(generate_balls(7), "balls: level 7: must be 0..6");
+    CHECK_THROWS_WITH(generate_lattice(0), "lattice: size 0: must be 1..64");
+    CHECK_THROWS_WITH(generate_lattice(65), "lattice: size 65: must be 1..64");
+    CHECK_THROWS_WITH(generate_gears(0), "gears: size 0: must be 1..16");
+    CHECK_THROWS_WITH(generate_gears(17), "gears: size 17: must be 1..16");
+    CHECK_THROWS_WITH(generate_random(0, 1), "random: 0 spheres: must be 1..1000000");
+    CHECK_THROWS_WITH(generate_uniform(1000001, {1, 1, 1}), "uniform: 1000001 spheres: must be 1..1000000");
+    CHECK_THROWS_WITH(generate_uniform(1, {1, 0, 1}), "uniform: 0 voxels along an axis: must be 1..256");
+    CHECK_THROWS_WITH(generate_uniform(1, {1, 1, 257}), "uniform: 257 voxels along an axis: must be 1..256");
     CHECK_THROWS_WITH(generate_uniform(1, {256, 256, 17}), "uniform: 1114112 voxels: at most 1048576");
     CHECK_THROWS_AS(generate_balls(7), UserError);
     CHECK_THROWS_AS(generate_random(-1, 1), UserError);

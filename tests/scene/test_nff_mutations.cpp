@@ -98,7 +98,7 @@ bool has_place(const std::string& message) {
 
 /// Describes the error in the reader's handling of a text; empty if there is none. Counts the accepted texts in
 /// `accepted`.
-std::string complaint(const std::string& text, int& accepted) {
+std::string reader_defect(const std::string& text, int& accepted) {
     try {
         const Scene scene = parse_nff(text, "m.nff");
         ++accepted;
@@ -118,7 +118,7 @@ TEST_CASE("mutated files are either read or refused", "[nff]") {
     int accepted = 0;
     for (int seed = 0; seed < count; ++seed) {
         const std::string text = Mutator(static_cast<std::uint64_t>(seed)).mutated();
-        const std::string wrong = complaint(text, accepted);
+        const std::string wrong = reader_defect(text, accepted);
         if (wrong.empty()) continue;
         CAPTURE(seed, text);
         FAIL_CHECK(wrong);

@@ -9,8 +9,9 @@
 namespace raya {
 namespace {
 
-Vec3 random_vector(SplitMix& random, double most) {
-    return {random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most)};
+Vec3 random_vector(SplitMix& random, double magnitude) {
+    return {random.uniform(-magnitude, magnitude), random.uniform(-magnitude, magnitude),
+            random.uniform(-magnitude, magnitude)};
 }
 
 Scene of_cone(const Cone& cone) {

@@ -12,7 +12,7 @@ WIDTHS = (400, 820, 1400)
 
 # Returns complaints about the page, and counts of checked elements. A link to # with an = contains settings and is not an anchor. The colour of SVG
 # text is in `fill`, its background is that of the document.
-LOOK = r"""(() => {
+INSPECT = r"""(() => {
   const wrong = [];
   const seen = (e) => e.checkVisibility() && e.getClientRects().length > 0;
   const say = (what, e) => wrong.push(`${what}: ${(e.textContent || e.outerHTML).trim().slice(0, 60)}`);
@@ -37,7 +37,7 @@ LOOK = r"""(() => {
     const words = (name) => (svg.getAttribute(name) || "").split(" ").map((id) => document.getElementById(id)?.textContent || "").join(" ");
     if (svg.getAttribute("role") !== "img") say("a drawing without role=img", figure);
     if (!(svg.getAttribute("aria-label") || words("aria-labelledby")).trim()) say("a drawing without a name", figure);
-    if (!/Across: .+ Up: .+ Series: .+/s.test(words("aria-describedby"))) say("a drawing without a description", figure);
+    if (!/Horizontal axis: .+ Vertical axis: .+ Series: .+/s.test(words("aria-describedby"))) say("a drawing without a description", figure);
   }
   for (const img of document.querySelectorAll("img"))
     if (!img.alt.trim() || !img.complete || img.naturalWidth === 0) say("an image without alternative text or pixels", img);
@@ -104,7 +104,7 @@ def main():
             if scripts:  # wait until they have run
                 page.value("new Promise((done) => setTimeout(done, 1500))")
             name = f"{width}-{'dark' if dark else 'light'}{'' if scripts else '-no-scripts'}"
-            wrong += [f"{name}: {text}" for text in [*page.value(LOOK)["wrong"], *complaints(page)]]
+            wrong += [f"{name}: {text}" for text in [*page.value(INSPECT)["wrong"], *complaints(page)]]
             if asked.pictures:
                 page.picture(Path(asked.pictures, f"{Path(asked.page).stem}-{name}.png"))
     print("\n".join(wrong) or "no complaints")

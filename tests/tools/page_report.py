@@ -1,4 +1,4 @@
-"""Reads and replaces the report that is embedded in a page of raya; makes a report of tools/gpu_day."""
+"""Helpers for tests of pages: reads and replaces the report that is embedded in a page; makes a report of tools/gpu_day."""
 import json, re, subprocess
 from pathlib import Path
 
@@ -20,13 +20,13 @@ def with_report(html, report):
     return REPORT.sub(lambda found: found[1] + text + found[3], html)
 
 
-def places(value, holds):
+def values_of(value, holds):
     """Yields (container, key) of every value in a report for which `holds` is true."""
     for key in value if isinstance(value, dict) else range(len(value)):
         if holds(value[key]):
             yield value, key
         if isinstance(value[key], (dict, list)):
-            yield from places(value[key], holds)
+            yield from values_of(value[key], holds)
 
 
 def gpu_day(raya, folder):

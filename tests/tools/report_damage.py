@@ -14,18 +14,18 @@ def variant(value):
     return f"<{words[0] if words else ''}{' torus' * ('torus' in value)}>"
 
 
-def spots(value, path):
+def values_of(value, path):
     """Yields (path, container, key) of every value in a report, but only of the first and last item of a list."""
     if isinstance(value, dict):
         own = path + variant(value)
         for key in value:
             below = f"{own}.{key}"
             yield below, value, key
-            yield from spots(value[key], below)
+            yield from values_of(value[key], below)
     if isinstance(value, list) and value:
         for i in {0, len(value) - 1}:
             yield path + "[]", value, i
-            yield from spots(value[i], path + "[]")
+            yield from values_of(value[i], path + "[]")
 
 
 def plain(path):
@@ -39,7 +39,7 @@ class Damage:
     def __init__(self, made, seed):
         self.random, self.made, self.always, self.negative = random.Random(seed), made, {}, set()
         for form, _, report in made:
-            for path, holder, key in spots({"": report}, form + ": "):
+            for path, holder, key in values_of({"": report}, form + ": "):
                 value = holder[key]
                 if isinstance(value, dict):
                     own = path + variant(value)
@@ -47,11 +47,11 @@ class Damage:
                 if isinstance(value, (int, float)) and value < 0:
                     self.negative.add(path)
 
-    def one(self):
+    def random_damage(self):
         """(schema, description of the fault, damaged report), for a random fault at a random place; None if the fault is not possible there."""
         form, name, report = self.random.choice(self.made)
         root = {"": copy.deepcopy(report)}
-        path, holder, key = self.random.choice(list(spots(root, form + ": ")))
+        path, holder, key = self.random.choice(list(values_of(root, form + ": ")))
         value, kind = holder[key], self.random.choice(["drop", "other type", "unknown member", "negative"])
         open_ended = OPEN.match(plain(path))
         if kind == "drop" and isinstance(value, dict):

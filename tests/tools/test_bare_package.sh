@@ -23,7 +23,7 @@ find "$bare/usr/share/doc" -type f ! -name copyright -delete
 
 mkdir "$bare/out"
 "$root/tools/package" --build "$build" -o "$bare/out"
-cp "$root"/tools/container/{install,left_out} "$bare/out"
+cp "$root"/tools/container/{install,dpkg_excludes} "$bare/out"
 
 # Without recommended packages: raya starts, and its message names the missing driver.
 in_root sh -c 'apt-get install -qq -y --no-install-recommends /out/raya_*.deb' >"$bare.log" 2>&1 || fail "$(<"$bare.log")"

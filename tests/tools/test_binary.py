@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Fails if git tracks binary files, such as caches and build products, except the kinds in WANTED.
-  test_binary.py     exit code 77: not a git checkout"""
+"""Checks that git tracks no binary files, such as caches and build products, except those in WANTED.
+  test_binary.py     exit codes: 0 none; 1 an unwanted binary file; 77 not a git checkout"""
 import fnmatch
 import pathlib
 import subprocess

@@ -57,14 +57,14 @@ if [[ -e $top/raya_mpi.so ]] && ldd "$top/raya_mpi.so" | grep -q 'libmpi.* => /'
 fi
 
 # Bad options, and a build that cannot be packed: no file is written.
-mkdir -p "$scratch/build/alone"
+mkdir -p "$scratch/build/standalone"
 bundle --nonsense
 expect 2 "unknown option"
 bundle --build "$build" -o "$scratch/none/x.tar.gz"
 expect 2 "does not exist"
 bundle --build "$scratch/build" -o "$scratch/x.tar.gz"
-expect 3 "no $scratch/build/alone/raya"
-ln -s "$build/raya" "$scratch/build/alone"
+expect 3 "no $scratch/build/standalone/raya"
+ln -s "$build/raya" "$scratch/build/standalone"
 bundle --build "$scratch/build" -o "$scratch/x.tar.gz"
 expect 4 "needs libfmt.so"
 [[ ! -e $scratch/x.tar.gz ]] || fail "a tarball was written"

@@ -98,7 +98,7 @@ class Zsh:
         return re.split(r"[\s]+", shown.replace(line, "", 1))
 
 
-def check(shell, offered, line, wanted, unwanted):
+def check_completions(shell, offered, line, wanted, unwanted):
     names = {one.rstrip("/").rsplit("/", 1)[-1].rsplit(",", 1)[-1].rsplit("=", 1)[-1] for one in offered} | set(offered)
     for name in wanted:
         if name not in names:
@@ -126,7 +126,7 @@ def run():
             offered = Zsh(script).offered if shell == "zsh" else lambda line, its={"bash": in_bash, "fish": in_fish}.get(shell), at=script: its(at, line)
             for line, wanted, unwanted in EXPECTED:
                 line = line.replace("FOLDER", str(folder))
-                check(shell, offered(line), line, wanted, unwanted)
+                check_completions(shell, offered(line), line, wanted, unwanted)
                 count += 1
         os.chdir("/")
     refused = subprocess.run([raya, "completion", "tcsh"], capture_output=True, text=True)

@@ -10,7 +10,7 @@ import math, os, subprocess, sys, tempfile
 from pathlib import Path
 
 import browser
-from page_checks import LOOK, complaints
+from page_checks import INSPECT, complaints
 
 WIDTHS = (400, 1000, 1600)
 HOSTILE = "<script>document.title = 'injected'</script><img src=x onerror='injected()'> \"&amp;\" `a` | {x} $x$ +- \\.nff"
@@ -66,7 +66,7 @@ def write_small_document(packages, folder):
     write_document(folder, pages, {page.name: write_page(folder, page) for page in pages}, [f"study x: {HOSTILE}"])
 
 
-def looks(page, url, count):
+def check_views(page, url, count):
     """Yields complaints about a document with `count` figures."""
     titles = set()
     views = [(width, dark, True, "") for width in WIDTHS for dark in (False, True)]
@@ -74,11 +74,11 @@ def looks(page, url, count):
         page.open(url, width, dark, scripts, media)
         page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")  # unfolds everything
         view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
-        look = page.value(LOOK)
-        titles.add(look["title"])
-        yield from (view + wrong for wrong in [*look["wrong"], *complaints(page)])
-        if look["figures"] != count or look["texts"] < 50:
-            yield f"{view}{look['figures']} figures of {count}, {look['texts']} texts"
+        found_elements = page.value(INSPECT)
+        titles.add(found_elements["title"])
+        yield from (view + wrong for wrong in [*found_elements["wrong"], *complaints(page)])
+        if found_elements["figures"] != count or found_elements["texts"] < 50:
+            yield f"{view}{found_elements['figures']} figures of {count}, {found_elements['texts']} texts"
         active = page.value("document.querySelectorAll('script, iframe, object, embed, form, button').length")
         if active:
             yield f"{view}{active} active elements"
@@ -105,7 +105,7 @@ FAULTS = [
 ]
 
 
-def faults_missed(page, text, count, folder):
+def undetected_faults(page, text, count, folder):
     for old, new, expected in FAULTS:
         if old not in text:
             yield f"the document has no '{old}': update FAULTS of this test"
@@ -113,7 +113,7 @@ def faults_missed(page, text, count, folder):
         broken = Path(folder, "broken.html")
         broken.write_text(text.replace(old, new))
         found = []
-        for wrong in looks(page, broken.as_uri(), count):  # stops at the expected complaint
+        for wrong in check_views(page, broken.as_uri(), count):  # stops at the expected complaint
             found.append(wrong)
             if expected in wrong:
                 break
@@ -133,12 +133,12 @@ def main(given):
         index = Path(folder, "index.html") if made else Path(given).resolve()
         text = index.read_text(errors="replace")
         count = text.count("<figure class=\"plot\">")
-        wrong = list(looks(page, index.as_uri(), count))
+        wrong = list(check_views(page, index.as_uri(), count))
         if made:
             wrong += [f"{count} figures"] * (count != 5)
             shown = page.value("document.body.textContent").replace("±", "+-")
             wrong += [f"{shown.count(part)} times {part}" for part in HOSTILE.split("`") if shown.count(part) < 400]
-            wrong += faults_missed(page, text, count, folder) if not wrong else []
+            wrong += undetected_faults(page, text, count, folder) if not wrong else []
     for line in wrong:
         print("test_document.py:", line, file=sys.stderr)
     return 1 if wrong else 0

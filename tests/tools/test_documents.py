@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Checks the documents: targets of links exist, paragraphs are short, and the outputs printed in README.md equal raya's outputs.
 
-  test_documents.py RAYA    RAYA: the program; its examples in README.md are run in the project's folder
+  test_documents.py RAYA    RAYA: the program, which runs the examples of README.md in the project's folder
+
+Exit codes: 0 no fault; 1 a fault.
 """
 import re
 import subprocess
@@ -11,9 +13,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 GENERATED = {"report.md", "gpu_resources.md", "portability.md", "performance.md", "sweep.md"}  # tools write these
-MOST_WORDS, MOST_CELL_WORDS, MOST_COLUMNS = 80, 30, 170
-# Lines with measured figures, and what in them differs between machines and runs: times, rates, lanes, sizes of binaries, the device's name.
-# All other lines are compared exactly.
+MAX_WORDS, MAX_CELL_WORDS, MAX_COLUMNS = 80, 30, 170
+# Lines with measured figures, and the parts of these lines that differ between machines and runs: times, rates, lanes, sizes of binaries, the name
+# of the device. All other lines are compared exactly.
 MEASURED_LINES = re.compile(r"time |PASS |trace |ring/|torus/|pthread-")
 MEASURED = re.compile(r"\d+(\.\d+)?(?= s\b| Mrays/s\b)|pthread-[^(:]*?(?= \(|:|$)|(?<=\s)\d+\.\d+|\b\d+ lanes?\b|(?<=\s)\d+(?=\s+\d)|(?<=\s)\d{2,3}$")
 
@@ -48,13 +50,13 @@ def long_texts(page, text):
     for item in items:
         rows = [line for line in item.splitlines() if line.startswith("|")]
         words = " ".join(line for line in item.splitlines() if not line.startswith(("|", "#"))).split()
-        if len(words) > MOST_WORDS:
+        if len(words) > MAX_WORDS:
             yield f"{name}: {len(words)} words in one paragraph: {' '.join(words[:8])} ..."
         for cell in (cell for row in rows for cell in re.split(r"(?<!\\)\|", row)):
-            if len(cell.split()) > MOST_CELL_WORDS:
+            if len(cell.split()) > MAX_CELL_WORDS:
                 yield f"{name}: {len(cell.split())} words in one cell: {' '.join(cell.split()[:8])} ..."
     for number, line in enumerate(text.splitlines(), 1):
-        if len(line) > MOST_COLUMNS and not line.startswith("|") and "](" not in line:
+        if len(line) > MAX_COLUMNS and not line.startswith("|") and "](" not in line:
             yield f"{name}:{number}: {len(line)} columns"
 
 
@@ -102,7 +104,7 @@ def main():
             faults += long_texts(page, text)
     readme = (ROOT / "README.md").read_text()
     if not list(broken_links(ROOT / "README.md", "[a](docs/none.md)")) or not list(long_texts(ROOT / "README.md", "word " * 81)):
-        faults.append("test_documents.py: finds no fault where there is one")
+        faults.append("test_documents.py: does not detect a broken link or a long paragraph")
     faults += wrong_examples(raya, readme)
     wrong = "    $ build/raya devices\n    a device that nobody has\n"
     if masked("load u = 0.180") == masked("load u = 0.181") or not list(wrong_examples(raya, wrong)) or not list(stale_counts("PASS  image a\n")):

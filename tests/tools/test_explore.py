@@ -10,7 +10,7 @@ import base64, gzip, json, os, random, re, subprocess, sys, tempfile
 from pathlib import Path
 
 import browser
-from page_checks import LOOK, complaints
+from page_checks import INSPECT, complaints
 from page_report import report_of, with_report
 
 THOROUGH = os.environ.get("RAYA_THOROUGH") == "1"
@@ -19,7 +19,7 @@ WIDTHS = (400, 820, 1400)
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 
 # Opens links and returns the page's texts and figures for each link; with `whole`, also loads and curves.
-FOLLOW = r"""(async (cases) => {
+FOLLOW_LINKS = r"""(async (cases) => {
   const answers = [];
   for (const {link, whole} of cases) {
     if (location.hash !== "#" + link) {
@@ -37,7 +37,7 @@ FOLLOW = r"""(async (cases) => {
 })"""
 
 # [(id, accessible name)] of all visible controls.
-NAMES = r"""(() => [...document.querySelectorAll("input, select, button")].filter((e) => e.checkVisibility())
+CONTROL_NAMES = r"""(() => [...document.querySelectorAll("input, select, button")].filter((e) => e.checkVisibility())
   .map((e) => [e.id || e.name, (e.getAttribute("aria-label") || [...(e.labels || [])].map((l) => l.textContent).join(" ") || e.textContent).trim()]))()"""
 
 
@@ -56,7 +56,7 @@ SETTINGS = [("cyclic:7", 48, "cyclic"), ("cyclic:13", 12, "cyclic"), ("cyclic:5"
             ("grid:7x2", 14, ""), ("tiles:8x3", 9, ""), ("random:1", 17, ""), ("random:4000000000", 48, "")]
 
 
-def some_setting(rng):
+def random_setting(rng):
     kind, pes = rng.choice(["cyclic", "cyclic", "rows", "blocks", "grid", "tiles", "random"]), rng.choice([1, 12, 48, rng.randint(2, 300)])
     a, b = rng.randint(1, 12), rng.randint(1, 12)
     more = {"cyclic": f":{rng.randrange(WIDE)}", "grid": f":{a}x{b}", "tiles": rng.choice([":8x6", ":4x4", ":1x36"]), "random": f":{rng.randrange(2 ** 32)}"}
@@ -67,7 +67,7 @@ def grouped(number):
     return f"{number:,}".replace(",", "\u202f")
 
 
-def rendered(raya, folder, scene, settings):
+def expected_figures(raya, folder, scene, settings):
     """Yields the figures that the page must show for each setting, from renders: loads, and moves of the 3 x 3 filter if the mapping allows it."""
     # A machine without a memory limit, so that all pixels of a PE move at the same time.
     report, size = Path(folder, "report.json"), ["--size", f"{WIDE}x{HIGH}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32"]
@@ -93,10 +93,10 @@ def rendered(raya, folder, scene, settings):
         yield case
 
 
-def compared(page, cases):
+def figure_differences(page, cases):
     """Yields the differences between the figures of the page and of the renders."""
     asked = [{"link": case["link"], "whole": True} for case in cases]
-    for case, answer in zip(cases, page.value(f"{FOLLOW}({json.dumps(asked)})")):
+    for case, answer in zip(cases, page.value(f"{FOLLOW_LINKS}({json.dumps(asked)})")):
         if answer["message"]:
             yield f"{case['link']}: '{answer['message']}'"
         if case["mapping"].startswith("cyclic"):
@@ -107,7 +107,7 @@ def compared(page, cases):
                 yield f"{case['link']}: {part}: the program has {str(case[part])[:200]}, the page {str(answer[part])[:200]}"
 
 
-def arithmetic(page):
+def check_arithmetic(page):
     """Complaints about figures that no render prints: shortest vectors (compared with a search of all pairs), rotations on Kohata & Ito's array,
     digits (compared with fmt's), times."""
     wrong = page.value("""(() => {
@@ -141,7 +141,7 @@ def arithmetic(page):
     return wrong
 
 
-def costs(page, html, folder):
+def check_costs(page, html, folder):
     """The page must decode costs of any size, up to a sum of 2^53 - 1, and report incomplete costs."""
     report, rng, changed = report_of(html.read_text()), random.Random(SEED), Path(folder, "costs.html")
     for bits in (0, 9, 33, 41):
@@ -165,22 +165,22 @@ def costs(page, html, folder):
         yield "incomplete costs are not reported"
 
 
-def looks(page, html):
+def check_views(page, html):
     """Complaints about the page at all widths, with both colour schemes, printed, and without scripts."""
     for width, dark, scripts, media in [(w, d, True, "") for w in WIDTHS for d in (False, True)] + [(820, False, False, ""), (700, False, True, "print")]:
         start(page, html.as_uri(), width=width, dark=dark, scripts=scripts, media=media)
         view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
         if not scripts:
-            yield from (view + wrong for wrong in [*page.value(LOOK)["wrong"], *complaints(page)])
+            yield from (view + wrong for wrong in [*page.value(INSPECT)["wrong"], *complaints(page)])
             if page.value("JSON.parse(document.getElementById('report').innerText).kind") != "raya explore":
                 yield f"{view}the report is not shown as JSON"
             continue
         page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
-        look = page.value(LOOK)
-        yield from (view + wrong for wrong in [*look["wrong"], *complaints(page)])
-        if look["texts"] < 50 or look["title"] != "raya explore: spheres.nff":
-            yield f"{view}{look['texts']} texts, title {look['title']}"
-        controls = page.value(NAMES)
+        found_elements = page.value(INSPECT)
+        yield from (view + wrong for wrong in [*found_elements["wrong"], *complaints(page)])
+        if found_elements["texts"] < 50 or found_elements["title"] != "raya explore: spheres.nff":
+            yield f"{view}{found_elements['texts']} texts, title {found_elements['title']}"
+        controls = page.value(CONTROL_NAMES)
         if any(not name for _, name in controls):
             yield f"{view}without a name: {controls}"
         if bool([id for id, _ in controls if id == "offset"]) == bool(media):
@@ -194,7 +194,7 @@ def looks(page, html):
                 yield f"{view}a drawing '{name}' of {marks} paths, {width_} pixels wide"
 
 
-def key(page, name):
+def press_key(page, name):
     page.ask("Input.dispatchKeyEvent", type="keyDown", key=name, code=name, windowsVirtualKeyCode={"ArrowRight": 39, "ArrowLeft": 37, "End": 35}.get(name, 0))
     page.ask("Input.dispatchKeyEvent", type="keyUp", key=name, code=name)
     settle(page)
@@ -212,7 +212,7 @@ def mouse(page, kind, canvas, across, down=0.5, **more):
     settle(page)
 
 
-def handled(page, html):
+def check_controls(page, html):
     """Complaints about pointer, keys, fields, buttons and links of the square page, 64 x 64."""
     state = "[mappingText(explorer.state), settingOf(explorer.state).pes, explorer.state.fold, explorer.state.pe, explorer.state.view]"
 
@@ -224,12 +224,12 @@ def handled(page, html):
     start(page, html.as_uri() + "#mapping=cyclic:8&pes=64", width=1400)
     yield from expect("a link", "cyclic:8", 64, "cyclic", None, "owners")
     page.value("document.getElementById('offset-slider').focus()")
-    key(page, "ArrowRight")
+    press_key(page, "ArrowRight")
     yield from expect("right on the slider", "cyclic:9", 64)
-    key(page, "End")
+    press_key(page, "End")
     yield from expect("end on the slider", "cyclic:63", 64)
     page.value("document.getElementById('pes-slider').focus()")
-    key(page, "ArrowLeft")
+    press_key(page, "ArrowLeft")
     yield from expect("left on the PEs' slider", "cyclic:63", 63)
     page.value("document.getElementById('root').click()")
     settle(page)
@@ -286,7 +286,7 @@ def handled(page, html):
         yield f"the command is {command}"
 
     for link in page.value("[...document.querySelectorAll('main li a')].map((a) => a.getAttribute('href').slice(1))"):
-        answer = page.value(f"{FOLLOW}([{{link: '{link}'}}])")[0]
+        answer = page.value(f"{FOLLOW_LINKS}([{{link: '{link}'}}])")[0]
         if answer["message"] or f"pes={answer['pes']}" not in link:
             yield f"the page's own link {link}: '{answer['message']}', {answer['pes']} PEs"
 
@@ -332,7 +332,7 @@ FAULTS = [
 ]
 
 
-def faults_missed(page, html, cases, folder):
+def undetected_faults(page, html, cases, folder):
     text, broken = html.read_text(), Path(folder, "broken.html")
     for old, new in FAULTS if THOROUGH else FAULTS[::6]:
         if text.count(old) != 1:
@@ -340,7 +340,7 @@ def faults_missed(page, html, cases, folder):
             continue
         broken.write_text(text.replace(old, new))
         start(page, broken.as_uri())
-        if not [*compared(page, cases), *arithmetic(page)] and not [*costs(page, broken, folder)]:
+        if not [*figure_differences(page, cases), *check_arithmetic(page)] and not [*check_costs(page, broken, folder)]:
             yield f"{new!r} instead of {old!r} is not detected"
 
 
@@ -350,7 +350,7 @@ def main():
         print("skipped: no Chromium (tools/setup --browser)")
         return 77
     wrong, rng = [], random.Random(SEED)
-    settings = SETTINGS + [some_setting(rng) for _ in range(40 if THOROUGH else 0)]
+    settings = SETTINGS + [random_setting(rng) for _ in range(40 if THOROUGH else 0)]
     with tempfile.TemporaryDirectory() as folder, browser.Browser() as page:
         def explore(name, *size):
             html = Path(folder, name)
@@ -361,9 +361,9 @@ def main():
 
         html = explore("scene.html", "--size", f"{WIDE}x{HIGH}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32")
         square = explore("square.html", *SQUARE)
-        cases = list(rendered(raya, folder, scene, settings))
+        cases = list(expected_figures(raya, folder, scene, settings))
         start(page, html.as_uri())
-        wrong += [*compared(page, cases), *arithmetic(page), *complaints(page), *costs(page, html, folder)]
+        wrong += [*figure_differences(page, cases), *check_arithmetic(page), *complaints(page), *check_costs(page, html, folder)]
         print(f"seed {SEED}: {len(cases)} settings, {len(wrong)} complaints")
         report = Path(folder, "square.json")
         subprocess.run([raya, "render", scene, *SQUARE, "-o", Path(folder, "x.ppm"), "--report", report, "--quiet"], check=True)
@@ -371,10 +371,10 @@ def main():
         time = page.value("explorer.texts.time")
         if not time.startswith(f"{json.loads(report.read_text())['modelled_ms']['compute']:.1f} ms to trace, "):
             wrong.append(f"the page shows the time '{time}'")
-        wrong += looks(page, square)
-        wrong += handled(page, square)
+        wrong += check_views(page, square)
+        wrong += check_controls(page, square)
         if not wrong:
-            wrong += faults_missed(page, html, cases, folder)
+            wrong += undetected_faults(page, html, cases, folder)
     for line in wrong:
         print("test_explore.py:", line, file=sys.stderr)
     return 1 if wrong else 0

@@ -66,7 +66,7 @@ file = SCRATCH / "budget.csv"
 had = Figures("k", "v", "t", 32, 32, 100, 0, 40, 0)
 Budget(file).write([had], {"t": "a 1"})
 budget = Budget(file)
-expect(budget.judges("t", "a 1") and not budget.judges("t", "a 2") and not budget.judges("u", "a 1"))
+expect(budget.applies_to("t", "a 1") and not budget.applies_to("t", "a 2") and not budget.applies_to("u", "a 1"))
 for change, fault in (({}, ""), ({"registers": 105}, ""), ({"registers": 106}, "registers: 106, 100 in the budget"), ({"spills": 1}, "spills: 1, 0"),
                       ({"scalar_spills": 1}, "scalar spills"), ({"stack": 43}, "stack"), ({"local": 4}, "local"),
                       ({"width": 16}, "threads of 16 work-items, 32"), ({"width": 64, "registers": 50}, ""), ({"variant": "w"}, "no budget")):
@@ -152,12 +152,12 @@ if able:
           texts=[f"torus/compose fp32, {able}: a call is not inlined: "])
 
 # Unchanged kernels are not compiled again and have the same figures; a changed comment is not a change, any changed code is.
-looks = len(versions) - ("sm_90" in versions and "sm_80" in versions)  # NVIDIA's targets are compiled together
-expect(check(*small, "--anew", texts=["0 of 0 builds cached"]) == first_report == check(*small, texts=[f"{looks} of {looks} builds cached"]))
-check(*small, "--kernel-dir", patched("torus/compose.cl", (sum_line, "// a sum\n" + sum_line)), texts=[f"{looks} of {looks} builds cached"])
+compilations = len(versions) - ("sm_90" in versions and "sm_80" in versions)  # NVIDIA's targets are compiled together
+expect(check(*small, "--anew", texts=["0 of 0 builds cached"]) == first_report == check(*small, texts=[f"{compilations} of {compilations} builds cached"]))
+check(*small, "--kernel-dir", patched("torus/compose.cl", (sum_line, "// a sum\n" + sum_line)), texts=[f"{compilations} of {compilations} builds cached"])
 changed = "--kernel-dir", patched("torus/compose.cl", (sum_line, f"sum.x = c.x * {time.time_ns() % 10**9}.0f;"))  # differs from all earlier runs
-check(*small, *changed, texts=[f"0 of {looks} builds cached"])
-check(*small, *changed, texts=[f"{looks} of {looks} builds cached"])
+check(*small, *changed, texts=[f"0 of {compilations} builds cached"])
+check(*small, *changed, texts=[f"{compilations} of {compilations} builds cached"])
 for _ in range(2):  # a build with a fault is not cached
     check(*small, "--kernel-dir", patched("torus/compose.cl", (sum_line, "sum.x = (float)((double)c.x * c.y / 3.0);")), code=4, texts=["; 0 of "])
 print(f"tools/gpu_check: as expected, for {', '.join(versions)}")

@@ -2,7 +2,7 @@
 """Checks every #include of the project against the table in docs/architecture.md ("Folders and includes"): a folder includes only folders of its
 row. Also: no include cycles; reports and machine models do not include OpenCL; files include the precompiled headers that they use; no type's
 name is in two headers of namespace raya, which would violate the one-definition rule.
-  test_includes.py [ROOT]"""
+  test_includes.py [ROOT]     ROOT: the project's folder (default: this checkout). Exit codes: 0 no fault; 1 a fault"""
 import pathlib
 import re
 import sys
@@ -42,7 +42,7 @@ def full_name(name, known):
     return name if name in known else "host/" + name
 
 
-def may_know(rows):
+def allowed_includes(rows):
     """{folder: the folders that it may include}; a folder may always include itself."""
     allowed, above = {}, []
     known = {folder for folders, _ in rows for folder in folders}
@@ -51,7 +51,7 @@ def may_know(rows):
         named = [full_name(name, known) for name in re.findall(r"`([a-z_/]+/)`", all_above)]
         for name in named:
             if name not in known and not name.startswith("tests/"):
-                faults.append(f"docs/architecture.md: {folders[0]} may know {name}, which has no row")
+                faults.append(f"docs/architecture.md: {folders[0]} may include {name}, which has no row")
         may = set(named)
         if "everything" in text:
             may |= known | {"tests/reference/"}
@@ -99,7 +99,7 @@ def precompiled():
 def missing(used, given, graph):
     found = []
     for name, headers in used.items():
-        reached = set().union(*(given.get(file, set()) for file in reaches(graph, name) | {name}))
+        reached = set().union(*(given.get(file, set()) for file in reachable_files(graph, name) | {name}))
         found += [f"{name} uses <{header}> but does not include it" for header in sorted(headers - reached)]
     return found
 
@@ -109,7 +109,7 @@ def folder_of(name, folders):
     return max((folder for folder in folders if name.startswith(folder)), key=len, default=None)
 
 
-def reaches(graph, start):
+def reachable_files(graph, start):
     seen, waiting = set(), [start]
     while waiting:
         for target in graph.get(waiting.pop(), ()):
@@ -130,9 +130,9 @@ def faults_of(graph, allowed):
         for target in sorted(targets - FOR_ALL):
             other = folder_of(target, allowed) or "/".join(target.split("/")[:2]) + "/"
             if not name.startswith("tests/") and other not in allowed[folder]:
-                found.append(f"{name} includes {target}: {folder} may not know {other}")
+                found.append(f"{name} includes {target}: {folder} may not include {other}")
     for name in graph:
-        reached = reaches(graph, name)
+        reached = reachable_files(graph, name)
         if name in reached:
             found.append(f"{name} includes itself in a cycle")
         if name.startswith(tuple(NO_OPENCL)) and "host/cl/opencl.hpp" in reached:
@@ -159,8 +159,8 @@ def named_twice(types):
 
 # (file, injected include, part of the error message): a folder lower in the table, an independent folder, a cycle, OpenCL in a report.
 INJECTED = [
-    ("host/scene/scene.hpp", "host/ring/mapping.hpp", "may not know host/ring/"),
-    ("host/torus/node_transfers.cpp", "host/ring/mapping.hpp", "may not know host/ring/"),
+    ("host/scene/scene.hpp", "host/ring/mapping.hpp", "may not include host/ring/"),
+    ("host/torus/node_transfers.cpp", "host/ring/mapping.hpp", "may not include host/ring/"),
     ("kernels/number/lanes.clh", "kernels/number/number.clh", "in a cycle"),
     ("host/report/table.hpp", "host/cl/opencl.hpp", "includes OpenCL's headers"),
 ]
@@ -168,7 +168,7 @@ INJECTED = [
 
 def main():
     rows = list(table_rows((root / "docs/architecture.md").read_text()))
-    allowed, graph = may_know(rows), includes()
+    allowed, graph = allowed_includes(rows), includes()
     faults.extend(faults_of(graph, allowed))
     used, given = precompiled()
     faults.extend(missing(used, given, graph))
@@ -184,8 +184,8 @@ def main():
         elif not any(fault in text for text in faults_of({**graph, name: graph[name] | {target}}, allowed)):
             faults.append(f"{name} including {target} is not detected as '{fault}'")
     print("\n".join(faults))
-    arrows = sum(len(targets) for targets in graph.values())
-    print(f"{len(graph)} files, {arrows} includes, {len(types)} types, {len(rows)} rows of folders: {len(faults)} faults; {len(INJECTED)} injected ones detected")
+    count = sum(len(targets) for targets in graph.values())
+    print(f"{len(graph)} files, {count} includes, {len(types)} types, {len(rows)} rows of folders: {len(faults)} faults; {len(INJECTED)} injected ones detected")
     return 1 if faults or len(graph) < 100 or len(rows) < 10 else 0
 
 

@@ -4,9 +4,12 @@
     tests/tools/test_memory.py RAYA FAULTS CL_FAULTS [--sample N] [--seed S] [--log FILE] [--results FILE]
 
 RAYA is the program, FAULTS and CL_FAULTS are the libraries made of tests/cli/memory_faults.cpp and cl_faults.cpp.
-Without --sample every allocation site in raya fails once, in the first of the commands below that reaches it, and 200
-allocations elsewhere; that takes about an hour on one core. --log FILE records finished runs, so that an interrupted test resumes. --results FILE
-receives the summary that is committed as tests/limits/memory.csv. Exit code 1: a run ended in a way that is not allowed, or left a damaged file.
+--sample N       N random allocations (default: every allocation site of raya once, in the first command that reaches it, and 200 allocations of
+                 libraries: about an hour on one core)
+--seed S         of the random allocations (default: 1; with --sample: random)
+--log FILE       records finished runs, so that an interrupted test resumes
+--results FILE   writes the summary that is committed as tests/limits/memory.csv
+Exit codes: 0 done; 1 a run ended with a wrong exit code or message, or left a damaged file.
 """
 import argparse
 import collections
@@ -37,7 +40,7 @@ COMMANDS = {
     "resume": BANDS + ["--resume"],
 }
 INPUTS = {"page": ["saved.json"], "resume": ["s.rst"]}
-ELSEWHERE = 200  # number of tested allocations by libraries
+LIBRARY_ALLOCATIONS = 200  # number of tested allocations by libraries
 LIMIT_S = 120  # seconds; a run takes half a second on an idle machine
 
 
@@ -93,7 +96,7 @@ class Trial:
         rows = [line.split() for line in listed.read_text().splitlines()]
         return sorted(row[0] for row in rows if row[0] != "elsewhere"), int(rows[-1][1])
 
-    def fail(self, name, fault):
+    def run_with_fault(self, name, fault):
         """Runs a command in which one allocation fails. Returns (ending, exit code, message)."""
         elsewhere = fault.startswith("+")
         with tempfile.TemporaryDirectory(dir=self.folder) as work:
@@ -108,10 +111,10 @@ class Trial:
                 variables["POCL_CACHE_DIR"] = str(cache)
             code, output = self.run(COMMANDS[name], here, variables)
             message = " | ".join(line for line in output.splitlines() if line.startswith("raya: "))
-            return self.judge(name, elsewhere, code, message, mark.exists(), before, files_of(here)), code, message
+            return self.classify(name, elsewhere, code, message, mark.exists(), before, files_of(here)), code, message
 
     def run(self, arguments, here, variables):
-        """(exit code, stderr) of a run. A run in which the driver waits for memory forever is terminated; its exit code is that of SIGTERM."""
+        """Runs raya; returns (exit code, stderr). Terminates a run in which the driver waits for memory forever; its exit code is that of SIGTERM."""
         with subprocess.Popen([self.raya, *arguments], cwd=here, env=environment(**variables),
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
             try:
@@ -125,7 +128,8 @@ class Trial:
                     _, output = process.communicate()
             return process.returncode, output.decode(errors="replace")
 
-    def judge(self, name, elsewhere, code, message, failed, before, after):
+    def classify(self, name, elsewhere, code, message, failed, before, after):
+        """Text of a run's outcome; it starts with BAD if raya may not end so. elsewhere: the failed allocation is one of a library."""
         if code == 0:
             if {file: comparable(file, content) for file, content in after.items()} != self.expected[name]:
                 return "BAD: exit 0, other files"
@@ -187,7 +191,7 @@ def faults_of(trial, seed, sample):
     if sample:
         few = max(1, sample // 5)
         return chosen.sample(sites, sample - few) + chosen.sample(elsewhere, few)
-    return sites + chosen.sample(elsewhere, ELSEWHERE)
+    return sites + chosen.sample(elsewhere, LIBRARY_ALLOCATIONS)
 
 
 def read_log(path, program):
@@ -231,7 +235,7 @@ def main():
         outcomes = {}
         done = read_log(options.log, hashlib.sha256(Path(options.raya).read_bytes()).hexdigest())
         for name, fault in faults_of(trial, seed, options.sample):
-            outcome = done.get((name, fault)) or trial.fail(name, fault)
+            outcome = done.get((name, fault)) or trial.run_with_fault(name, fault)
             outcomes[name, fault] = outcome
             if outcome[0].startswith("BAD"):
                 print(f"{name} {fault}: {outcome[0]} {outcome[2]}", flush=True)

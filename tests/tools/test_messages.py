@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Messages of raya: prints the texts of all errors and warnings of host/ in one list, and refuses private words and loose ends in them.
+"""Checks the texts of all errors and warnings of host/: no private words, and no full stop at the end.
 
-  test_messages.py           checks, and prints what is wrong
+  test_messages.py           prints the faults
   test_messages.py --list    prints every message with its file and line
+
+Exit codes: 0 no fault; 1 a fault, or fewer than 200 messages were found.
 """
 import re
 import sys
@@ -10,7 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 CALLS = re.compile(r"\b(?:throw\s+)?(UserError|DeviceError|NffError|JsonError|CheckFailure|runtime_error|warn|add_warning|complain|refuse)\s*[({]")
-# Private words, which have a standard term (docs/glossary.md), and punctuation that a message must not end with.
+# Private words; docs/glossary.md has the standard terms.
 PRIVATE = re.compile(r"\b(told|tells|beside|standstill|stands still|in place of|of use|thrown away|put aside|held against|wants to|no longer goes)\b", re.I)
 
 
@@ -56,7 +58,7 @@ def messages():
 
 def faults_of(message):
     if PRIVATE.search(message):
-        yield f"says '{PRIVATE.search(message)[0]}'"
+        yield f"contains '{PRIVATE.search(message)[0]}'"
     if message.endswith((".", "!")) and not message.endswith("..."):
         yield "ends with a full stop"
 

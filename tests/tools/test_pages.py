@@ -10,8 +10,8 @@ import json, os, random, subprocess, sys, tempfile
 from pathlib import Path
 
 import browser
-from page_checks import LOOK, complaints
-from page_report import HOSTILE, gpu_day, places, report_of, with_report
+from page_checks import INSPECT, complaints
+from page_report import HOSTILE, gpu_day, report_of, values_of, with_report
 
 WIDTHS = (400, 820, 1400)
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
@@ -21,8 +21,8 @@ DAMAGE = 8 if THOROUGH else 2
 VIEWS = [(w, d, True, "") for w in WIDTHS for d in (False, True)] + [(820, False, False, ""), (700, False, True, "print")]
 VIEWS = VIEWS if THOROUGH else [VIEWS[0], VIEWS[-3]]
 
-# Complaints about landmarks, headings, tables and drawings for screen readers, and about scrolling boxes that the keyboard cannot reach.
-BUILD = r"""(() => {
+# Returns complaints about landmarks, headings, tables and drawings for screen readers, and about scrolling boxes that the keyboard cannot reach.
+INSPECT_STRUCTURE = r"""(() => {
   const wrong = [];
   for (const mark of ["header", "nav", "main", "footer"])
     if (document.querySelectorAll(mark).length !== 1) wrong.push(`${document.querySelectorAll(mark).length} of ${mark}`);
@@ -34,7 +34,7 @@ BUILD = r"""(() => {
   }
   for (const svg of document.querySelectorAll("svg")) {
     const {width, height} = svg.getBoundingClientRect();
-    if (svg.getAttribute("role") !== "img" || !(svg.getAttribute("aria-label")?.length > 20)) wrong.push("a drawing without words");
+    if (svg.getAttribute("role") !== "img" || !(svg.getAttribute("aria-label")?.length > 20)) wrong.push("a drawing without a description");
     if (width < 250 || height < 30 || svg.querySelectorAll("path").length < 2 || svg.querySelectorAll("text").length < 2) wrong.push(`a drawing of ${width} x ${height}`);
     const box = svg.viewBox.baseVal;
     for (const e of svg.querySelectorAll("text, path")) {
@@ -45,7 +45,7 @@ BUILD = r"""(() => {
   if (!document.documentElement.lang) wrong.push("no language");
   for (const c of document.querySelectorAll("canvas"))
     if (c.getAttribute("role") !== "img" || !c.getAttribute("aria-label") || new Set(new Uint32Array(c.getContext("2d").getImageData(0, 0, c.width, c.height).data.buffer)).size < 2)
-      wrong.push("a map without words or colours");
+      wrong.push("a map without a description or colours");
   for (const t of document.querySelectorAll("table"))
     if (!t.getAttribute("aria-label") || !t.tHead || [...t.tHead.rows[0].cells].some((c) => c.scope !== "col")) wrong.push("a table without a name or headers");
   for (const e of document.querySelectorAll("main *"))
@@ -54,7 +54,7 @@ BUILD = r"""(() => {
 })()"""
 
 
-def make(raya, folder):
+def make_pages(raya, folder):
     """{name: HTML file} of the pages under test. The reports are in the same folder."""
     small, pages = ["--size", "48x32", "--lanes", "4"], {}
 
@@ -97,7 +97,7 @@ def start(page, url, **view):
         page.value("ready")
 
 
-def looks(page, name, html, folder):
+def check_views(page, name, html, folder):
     report = json.loads(html.with_suffix(".json").read_text())
     for width, dark, scripts, media in VIEWS:
         view = f"{name}, {width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
@@ -107,13 +107,13 @@ def looks(page, name, html, folder):
         if not scripts:
             if json.loads(page.value("document.getElementById('report').innerText"))["kind"] != report["kind"] or not page.value("document.getElementById('report').checkVisibility()"):
                 yield f"{view}the report is not shown as JSON"
-            yield from (view + wrong for wrong in [*page.value(LOOK)["wrong"], *complaints(page)])
+            yield from (view + wrong for wrong in [*page.value(INSPECT)["wrong"], *complaints(page)])
             continue
         page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
-        look = page.value(LOOK)
-        yield from (view + wrong for wrong in [*look["wrong"], *page.value(BUILD), *complaints(page)])
-        if look["texts"] < 40 or not look["title"].startswith("raya ") or not look["buttons"]:
-            yield f"{view}{look['texts']} texts, {look['buttons']} headers that sort, title {look['title']}"
+        found_elements = page.value(INSPECT)
+        yield from (view + wrong for wrong in [*found_elements["wrong"], *page.value(INSPECT_STRUCTURE), *complaints(page)])
+        if found_elements["texts"] < 40 or not found_elements["title"].startswith("raya ") or not found_elements["buttons"]:
+            yield f"{view}{found_elements['texts']} texts, {found_elements['buttons']} headers that sort, title {found_elements['title']}"
     text = page.value("document.body.innerText")
     if "cannot be shown" in text:
         yield f"{name}: a part cannot be shown"
@@ -127,7 +127,7 @@ def looks(page, name, html, folder):
             yield f"{name}: the check {check['name']} is not shown"
 
 
-def maps(page, name, html):
+def check_map(page, name, html):
     """Checks the map of loads. Each pixel has the colour of its owner's load, so there are as many colours as loads; a torus has a cell per node."""
     loads = set(json.loads(html.with_suffix(".json").read_text())["load"]["per_pe"])
     start(page, html.as_uri())
@@ -141,14 +141,14 @@ STRUCTURE = """[...document.querySelectorAll("*")].filter((e) => /^(SCRIPT|STYLE
 NAMED = {"kind", "png", "mapping", "fold", "links", "format", "status"}  # members that select which parts are shown
 
 
-def hostile(page, name, html, folder):
+def check_escaping(page, name, html, folder):
     """Replaces every text of the report, and names of members, by HOSTILE, which the page must show as text."""
     text, changed = html.read_text(), Path(folder, "hostile.html")
     start(page, html.as_uri())
     whole = page.value(STRUCTURE)
     for spared in (NAMED, {"kind"}):
         report = report_of(text)
-        for holder, key in list(places(report, lambda value: isinstance(value, str))):
+        for holder, key in list(values_of(report, lambda value: isinstance(value, str))):
             if key not in spared:
                 holder[key] = HOSTILE
         for part in ("rays", "shading", "load"):
@@ -162,7 +162,7 @@ def hostile(page, name, html, folder):
             subprocess.run([RAYA, "page", saved, "-o", changed, "--quiet"], check=True)
         start(page, changed.as_uri())
         page.value("new Promise((done) => setTimeout(done, 200))")
-        yield from (f"{name}, hostile: {wrong}" for wrong in [*complaints(page), *(w for w in page.value(LOOK)["wrong"] if "attribute" in w)])
+        yield from (f"{name}, hostile: {wrong}" for wrong in [*complaints(page), *(w for w in page.value(INSPECT)["wrong"] if "attribute" in w)])
         if page.value("window.hit"):
             yield f"{name}: the page ran a text of the report"
         if page.value(STRUCTURE) != whole:
@@ -174,12 +174,12 @@ def hostile(page, name, html, folder):
             yield f"{name}: the report is incomplete without scripts"
 
 
-def damaged(page, name, html, folder, count):
+def check_damaged_reports(page, name, html, folder, count):
     """Removes members or changes their type: the page must report the damage, and no script may fail."""
     text, rng, named, changed = html.read_text(), random.Random(SEED), 0, Path(folder, "damaged.html")
     for i in range(count):
         report = report_of(text)
-        holder, key = rng.choice([place for place in places(report, lambda value: True) if rng.random() < 0.2 or place[1] != 0] or [(report, "kind")])
+        holder, key = rng.choice([place for place in values_of(report, lambda value: True) if rng.random() < 0.2 or place[1] != 0] or [(report, "kind")])
         if i == 0:  # later faults may only change a number in a long list, which the page cannot detect
             key = "every part"
             report |= {part: 7 for part, value in report.items() if isinstance(value, (dict, list))}
@@ -198,7 +198,7 @@ def damaged(page, name, html, folder, count):
         yield f"{name}: none of {count} damaged reports is reported"
 
 
-def sorts(page, html):
+def check_sorting(page, html):
     """The column of counts is sorted by value, although its numbers contain narrow spaces."""
     start(page, html.as_uri(), width=1400)
     order = page.value(r"""(() => { const t = document.querySelector("#counts table"); const b = t.tHead.querySelectorAll("button")[1]; b.click();
@@ -223,7 +223,7 @@ FAULTS = [
 ]
 
 
-def faults_missed(page, html, folder):
+def undetected_faults(page, html, folder):
     text = html.read_text()
     for old, new in FAULTS:
         if old not in text:
@@ -232,7 +232,7 @@ def faults_missed(page, html, folder):
         broken = Path(folder, "ring-broken.html")
         broken.write_text(text.replace(old, new))
         page.open(broken.as_uri(), width=400)
-        if not [*page.value(LOOK)["wrong"], *page.value(BUILD), *complaints(page)]:
+        if not [*page.value(INSPECT)["wrong"], *page.value(INSPECT_STRUCTURE), *complaints(page)]:
             yield f"{new!r} instead of {old!r} is not detected"
 
 
@@ -243,19 +243,19 @@ def main():
         return 77
     wrong = []
     with tempfile.TemporaryDirectory() as folder, browser.Browser() as page:
-        pages = make(raya, folder)
+        pages = make_pages(raya, folder)
         for name, html in pages.items():
-            wrong += looks(page, name, html, pictures)
-            wrong += hostile(page, name, html, folder)
-            wrong += damaged(page, name, html, folder, DAMAGE)
-        wrong += sorts(page, pages["ring"])
+            wrong += check_views(page, name, html, pictures)
+            wrong += check_escaping(page, name, html, folder)
+            wrong += check_damaged_reports(page, name, html, folder, DAMAGE)
+        wrong += check_sorting(page, pages["ring"])
         for name in ("ring", "torus"):
-            wrong += maps(page, name, pages[name])
+            wrong += check_map(page, name, pages[name])
         explore = Path(folder, "explore.html")
         subprocess.run([raya, "explore", SCENES / "planes.nff", "--size", "48x32", "--lanes", "4", "-o", explore, "--quiet"], check=True)
-        wrong += hostile(page, "explore", explore, folder)
-        wrong += damaged(page, "explore", explore, folder, DAMAGE)
-        wrong += faults_missed(page, pages["ring"], folder)
+        wrong += check_escaping(page, "explore", explore, folder)
+        wrong += check_damaged_reports(page, "explore", explore, folder, DAMAGE)
+        wrong += undetected_faults(page, pages["ring"], folder)
     print("\n".join(wrong))
     print(f"{len(pages)} pages in {len(VIEWS)} views: {len(wrong)} complaints; {len(FAULTS)} injected faults checked")
     return 1 if wrong else 0

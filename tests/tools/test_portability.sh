@@ -67,14 +67,14 @@ proved=0
 while IFS=, read -r scene options hash counts; do
     name="$scene ${options#--format }"
     name=${name/--antialias /}
-    known=$(sed -n "s/^${name/supersample/axes}: //p" "$root/host/verify/pictures.txt")
-    [[ -z $known || $known == "$hash" ]] || fail "$name: $hash in $real, $known in host/verify/pictures.txt"
+    known=$(sed -n "s/^${name/supersample/axes}: //p" "$root/host/verify/reference_images.txt")
+    [[ -z $known || $known == "$hash" ]] || fail "$name: $hash in $real, $known in host/verify/reference_images.txt"
     rays=$(awk -v name="${name/supersample/axes}: " 'index($0, name) == 1 { here = 1 } here && sub(/^counts ring: /, "") { print; exit }' \
-        "$root/host/verify/pictures.txt" | sed 's/[^0-9]*\([0-9]*\)/\1,/g')
-    [[ -z $known || $counts == "$(cut -d, -f1-10 <<<"$rays"),"* ]] || fail "$name: $counts in $real, $rays in host/verify/pictures.txt"
+        "$root/host/verify/reference_images.txt" | sed 's/[^0-9]*\([0-9]*\)/\1,/g')
+    [[ -z $known || $counts == "$(cut -d, -f1-10 <<<"$rays"),"* ]] || fail "$name: $counts in $real, $rays in host/verify/reference_images.txt"
     proved=$((proved + ${#known} / 32))
 done < <(grep -v '^#' "$real")
-((proved == 7)) || fail "$proved images of $real are in host/verify/pictures.txt, not 7"
+((proved == 7)) || fail "$proved images of $real are in host/verify/reference_images.txt, not 7"
 matrix --only "PoCL loopvec" --checks build
 ((code == 0)) || fail "exit code $code for a compiler within the budget"
 expect "| 1.5 s |"
@@ -108,7 +108,7 @@ unset RAYA_BUILD_OPTIONS POCL_DEVICES OCL_ICD_VENDORS RAYA_NUMBER_CASES
 ((code == 0)) || fail "exit code $code where all is right"
 expect "| PoCL loopvec | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | 1 known |"
 expect "PoCL loopvec, image: SKIP groups: one work-item only"
-[[ $out == *$'\n'"8 cells: 5 right, 0 FAIL, 3 not decided." ]] || fail "the last line does not count the cells"
+[[ $out == *$'\n'"8 cells: 5 right, 0 FAIL, 3 undecided." ]] || fail "the last line does not count the cells"
 expect "PoCL loopvec, defects: long_loop, n = 9: expected failure, 8 instead of 9: a reason"
 
 matrix --only PoCL
@@ -122,7 +122,7 @@ expect "basic; right: 5a5a5a5a"
 # Matrices without a right cell: every case is skipped, or too slow. A check that passes and then crashes.
 matrix --only "PoCL loopvec" --checks image,machine
 ((code == 1)) || fail "exit code $code where nothing was decided"
-expect "2 cells: 0 right, 0 FAIL, 2 not decided. Nothing is right of: PoCL loopvec."
+expect "2 cells: 0 right, 0 FAIL, 2 undecided. No right cell: PoCL loopvec."
 touch "$build/raya.slow"
 matrix --only "PoCL loopvec" --checks number --limit 1
 ((code == 1)) || fail "exit code $code where all was too slow"
@@ -130,7 +130,7 @@ expect "| too slow |"
 expect "PoCL loopvec, number: not done after 1 s"
 matrix --only "PoCL loopvec" --checks number,renders --limit 1
 ((code == 0)) || fail "exit code $code where one check was too slow"
-expect "2 cells: 1 right, 0 FAIL, 1 not decided."
+expect "2 cells: 1 right, 0 FAIL, 1 undecided."
 rm "$build/raya.slow"
 touch "$build/raya.crash"
 matrix --only "PoCL loopvec" --checks number,renders
@@ -140,10 +140,10 @@ rm "$build/raya.crash"
 
 # Oclgrind: a render without a fault; then a kernel that makes the same image but also writes beyond a buffer.
 "$patch_kernels" "$build/kernels"
-mv "$build/raya" "$build/stand_in"
+mv "$build/raya" "$build/mock_raya"
 cat >"$build/raya" <<RAYA
 #!/usr/bin/env bash
-"$build/stand_in" "\$@"
+"$build/mock_raya" "\$@"
 [[ \$1 != render ]] || exec "$raya" render "$root/scenes/planes.nff" -o "$build/x.pfm" --quiet --size 2 --pes 1 --lanes 1 --kernel-dir "$build/kernels"
 RAYA
 chmod +x "$build/raya"

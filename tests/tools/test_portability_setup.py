@@ -67,7 +67,7 @@ def check_setting_up(scratch):
     expect("Intel CPU: here\n" in listed and "PoCL 3.0 (PyPI): here\n" in listed, listed)
 
     code, output = set_up(build, packages, empty)
-    expect(code == 0 and "intel-cpu: is here" in output and "pocl-3.0: is here" in output, f"again, without packages: {output}")
+    expect(code == 0 and "intel-cpu: already set up" in output and "pocl-3.0: already set up" in output, f"again, without packages: {output}")
 
     wrong = (packages / "intel-cpu.txt").read_text().replace("sha256:", "sha256:0")[:-2] + "\n"
     (packages / "intel-cpu.txt").write_text(wrong)
@@ -86,15 +86,15 @@ def check_setting_up(scratch):
 
 
 def check_naming_the_cpu(scratch):
-    lacks = portability_setup.cpu_that_llvm_14_lacks
-    expect(lacks(ZEN5) == "skylake-avx512", "AMD's family 26")
-    expect(lacks(ZEN5.replace("avx512vl", "")) == "haswell", "AMD's family 26 without AVX-512")
-    expect(lacks(ZEN5.replace("26", "25")) == "skylake-avx512", "AMD's family 25 with AVX-512, Zen 4")
-    expect(lacks(ZEN5.replace("26", "25").replace("avx512vl", "")) is None, "AMD's family 25 without AVX-512, Zen 3, which LLVM 14 knows")
-    expect(lacks(ZEN5.replace("AuthenticAMD", "GenuineIntel")) is None and lacks("") is None, "other makers")
+    substitute = portability_setup.llvm_14_substitute
+    expect(substitute(ZEN5) == "skylake-avx512", "AMD's family 26")
+    expect(substitute(ZEN5.replace("avx512vl", "")) == "haswell", "AMD's family 26 without AVX-512")
+    expect(substitute(ZEN5.replace("26", "25")) == "skylake-avx512", "AMD's family 25 with AVX-512, Zen 4")
+    expect(substitute(ZEN5.replace("26", "25").replace("avx512vl", "")) is None, "AMD's family 25 without AVX-512, Zen 3, which LLVM 14 knows")
+    expect(substitute(ZEN5.replace("AuthenticAMD", "GenuineIntel")) is None and substitute("") is None, "other makers")
     library = scratch / "libpocl.so"
     library.write_bytes(DRIVER)
-    portability_setup.name_cpu(library, "skylake-avx512")
+    portability_setup.patch_cpu_name(library, "skylake-avx512")
     code = library.read_bytes()
     at = 64 + 6  # lea rax, [rip + d]; push length; pop rdx
     expect(code[at:at + 3] == b"\x48\x8d\x05" and code[at + 7:at + 10] == b"\x6a\x0e\x5a", "the instructions")
@@ -102,7 +102,7 @@ def check_naming_the_cpu(scratch):
     expect(code[text:text + 15] == b"skylake-avx512\0", "the address of the name")
     expect(code[:at] == DRIVER[:at] and code[at + 10:] == DRIVER[at + 10:], "something else was changed")
     try:
-        portability_setup.name_cpu(library, "haswell")
+        portability_setup.patch_cpu_name(library, "haswell")
         expect(False, "a library without that place was taken")
     except portability_setup.SetupError:
         expect(library.read_bytes() == code, "a library without that place was changed")
@@ -116,10 +116,10 @@ def check_missing_devices(scratch):
     raya.write_text("#!/bin/sh\ncase $OCL_ICD_VENDORS in */other.icd) exit 1 ;; esac; exit 3\n")  # 3: no device; 1: a fault
     raya.chmod(0o755)
     known = portability_implementations.known_implementations(scratch)
-    portability_implementations.note_missing_devices(known, str(raya))
-    lacking = {i.name: i.lacking for i in known}
-    expect(lacking["gpu"] == "its driver is installed, and shows no device", f"a driver without its device: {lacking['gpu']}")
-    expect(lacking["other"] is None and lacking["PoCL"] is None, "a driver with a fault, and PoCL without a device, were left out")
+    portability_implementations.mark_missing_devices(known, str(raya))
+    unavailable = {i.name: i.unavailable for i in known}
+    expect(unavailable["gpu"] == "its driver is installed, and shows no device", f"a driver without its device: {unavailable['gpu']}")
+    expect(unavailable["other"] is None and unavailable["PoCL"] is None, "a driver with a fault, and PoCL without a device, were left out")
 
 
 def main():

@@ -27,10 +27,10 @@ SCENES = ROOT / "scenes"
 RARE = {
     "render.json: measured.earlier_s": "resumed renders: tests/cli/test_checkpoint.cpp",
     "bench.json: rows[].no_roofline": "devices that do not time their commands",
-    "tune.json: results[].configuration.trees": "a knob of the grid, whose search takes long",
+    "tune.json: results[].configuration.trees": "a parameter of the grid, whose search takes long",
     "tune.json: results[].configuration.beams": "the same",
     "tune.json: results[].configuration.registers": "NVIDIA only",
-    "tune.json: results[].configuration.link_exchange": "a knob of the torus, whose search takes long",
+    "tune.json: results[].configuration.link_exchange": "a parameter of the torus, whose search takes long",
 }
 OF_RANKS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.")  # these members need MPI
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
@@ -56,26 +56,26 @@ class Rules:
         """Messages of the errors in a report."""
         return [f"{'.'.join(map(str, e.absolute_path)) or 'the report'}: {e.message[:200]}" for e in self.whole[name].iter_errors(report)]
 
-    def meet(self, node, value, met):
-        """Adds to `met` the places of all schema members that describe parts of `value`."""
+    def mark_used(self, node, value, used):
+        """Adds to `used` the places of all schema members that describe parts of `value`."""
         if node.has("$ref"):
-            self.meet(node.target(), value, met)
+            self.mark_used(node.target(), value, used)
         for key in ("anyOf", "oneOf"):
             for i in range(len(node.get(key, []))):
                 if self.validator(node[key][i]).is_valid(value):
-                    self.meet(node[key][i], value, met)
+                    self.mark_used(node[key][i], value, used)
         if node.has("if"):
             branch = "then" if self.validator(node["if"]).is_valid(value) else "else"
             if node.has(branch):
-                self.meet(node[branch], value, met)
+                self.mark_used(node[branch], value, used)
         if isinstance(value, dict):
             for name, member in node.members():
                 if name in value:
-                    met.add(place(member))
-                    self.meet(member, value[name], met)
+                    used.add(place(member))
+                    self.mark_used(member, value[name], used)
         if isinstance(value, list) and node.has("items"):
             for item in value:
-                self.meet(node["items"], item, met)
+                self.mark_used(node["items"], item, used)
 
 
 def place(node):
@@ -179,29 +179,29 @@ class Reports:
         self.take("tuned", "the stored settings", next(self.folder.glob("cache/raya/tuned-*.json")).read_text())
 
 
-def members_met(rules, made):
-    met = set()
+def used_members(rules, made):
+    used = set()
     for form, _, report in made:
-        rules.meet(rules.schemas[form], report, met)
-    return met
+        rules.mark_used(rules.schemas[form], report, used)
+    return used
 
 
-def unseen(rules, met, ranks):
+def unused_members(rules, used, ranks):
     """Yields members of the schemas that are in no report, and members of RARE that are in a report."""
     for root in rules.schemas.values():
         for node in root.walk():
             for _, member in node.members():
                 name = place(member)
-                if name not in met and name not in RARE and (ranks or not name.startswith(OF_RANKS)):
+                if name not in used and name not in RARE and (ranks or not name.startswith(OF_RANKS)):
                     yield f"{name}: described, but in no report of this test"
-    yield from (f"{name}: in RARE, but in a report of this test" for name in RARE if name in met)
+    yield from (f"{name}: in RARE, but in a report of this test" for name in RARE if name in used)
 
 
-def missed(rules, made, met, seed, wanted=40):
+def undetected_removals(rules, made, used, seed, wanted=40):
     """Removes random members from the schemas, one at a time. Yields a member if the schema without it still accepts every report that has it."""
     members = {place(member): (node, name) for root in rules.schemas.values() for node in root.walk() for name, member in node.members()
                if "/if/" not in member.pointer}
-    for name in random.Random(seed).sample(sorted(met & set(members)), wanted):
+    for name in random.Random(seed).sample(sorted(used & set(members)), wanted):
         properties, key = members[name][0].value["properties"], members[name][1]
         described = properties.pop(key)
         if all(rules.whole[form].is_valid(report) for form, _, report in made):
@@ -213,7 +213,7 @@ def description(node):
     return node.get("description") or node.has("$ref") and description(node.target())
 
 
-def loose(rules):
+def incomplete_schemas(rules):
     """Yields schema members without a description, and objects that accept undescribed members."""
     for root in rules.schemas.values():
         jsonschema.Draft202012Validator.check_schema(root.value)
@@ -245,11 +245,11 @@ def wrong_examples():
         yield from (f"{name}: its example: {line}" for example in root.get("examples", []) for line in rules.wrong(name, example))
 
 
-def accepted(rules, damage, wanted):
+def undetected_damage(rules, damage, wanted):
     """Yields damaged reports that the schemas accept."""
     injected = 0
     while injected < wanted:
-        fault = damage.one()
+        fault = damage.random_damage()
         if fault is None:
             continue
         injected += 1
@@ -269,11 +269,11 @@ def main(raya, patch_kernels, mpirun=""):
                 done.result()
     start, made = time.monotonic(), both[0].made + both[1].made
     wrong = [f"{form}, {name}: {line}" for form, name, report in made for line in rules.wrong(form, report)]
-    met = members_met(rules, made)
-    wrong += [*loose(rules), *wrong_examples(), *unseen(rules, met, bool(mpirun)), *missed(rules, made, met, seed)]
+    used = used_members(rules, made)
+    wrong += [*incomplete_schemas(rules), *wrong_examples(), *unused_members(rules, used, bool(mpirun)), *undetected_removals(rules, made, used, seed)]
     print(f"{time.monotonic() - start:6.2f} s  {len(made)} reports compared with {len(rules.schemas)} schemas", flush=True)
     mutations = int(os.environ.get("RAYA_REPORT_MUTATIONS") or 600)
-    wrong += accepted(rules, Damage(made, seed), mutations)
+    wrong += undetected_damage(rules, Damage(made, seed), mutations)
     print(f"{time.monotonic() - start:6.2f} s  and {mutations} damaged ones")
     print("\n".join(f"FAILED: {line}" for line in wrong))
     return bool(wrong)

@@ -34,7 +34,7 @@ run
 [[ $out != *Linking* ]] || fail "ninja's output is printed: $out"
 echo 2 >"$scratch/steps"
 run
-[[ $code == 0 && $out == "raya devices" ]] || fail "not silent: $out"
+[[ $code == 0 && $out == "raya devices" ]] || fail "unexpected output: $out"
 touch "$scratch/broken"
 run
 [[ $code == 1 && $out == *"one.cpp:1: error"*"tools/run: cannot build raya: "* ]] || fail "$out"

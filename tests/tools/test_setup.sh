@@ -7,7 +7,7 @@ trap 'rm -rf "$machine"' EXIT
 chmod 755 "$machine"
 ln -s "$(command -v env)" "$(command -v bash)" "$machine"
 
-stand_in() {  # stand_in NAME BODY
+mock_program() {  # mock_program NAME BODY
     printf '#!%s\n%s\n' "$(command -v bash)" "$2" >"$machine/$1"
     chmod 755 "$machine/$1"
 }
@@ -29,7 +29,7 @@ expect() {  # expect CODE TEXT...: the exit code, and texts in the output
     done
 }
 
-expect_silence() { [[ -z $out ]] || { echo "FAILED line ${BASH_LINENO[0]}: not silent: $out"; exit 1; }; }
+expect_no_output() { [[ -z $out ]] || { echo "FAILED line ${BASH_LINENO[0]}: unexpected output: $out"; exit 1; }; }
 
 line='sudo apt-get update && sudo apt-get install -y --no-install-recommends'
 
@@ -46,10 +46,10 @@ expect 0 "$line g++ cmake" "oclgrind clang-15 llvm-15 libclc-15 intel-opencl-icd
 [[ $out != *debootstrap* ]] || { echo "FAILED: a group that was not named"; exit 1; }
 
 # Nothing is missing.
-stand_in dpkg-query "printf '%s installed\n' ${all[*]}"
+mock_program dpkg-query "printf '%s installed\n' ${all[*]}"
 run_setup
 expect 0
-expect_silence
+expect_no_output
 
 # Optional groups are installed on request.
 run_setup --studies
@@ -66,32 +66,32 @@ run_setup --bare-root --gpu --studies --bare-root
 expect 1 "neither root nor sudo" "$line debootstrap clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools libsimgrid-dev"
 
 # Two packages are missing, one of them removed but not purged; neither root nor sudo.
-stand_in dpkg-query "printf '%s installed\n' ${all[*]} | { while read -r p s; do [[ \$p == cmake || \$p == catch2 ]] || echo \$p \$s; done; }
+mock_program dpkg-query "printf '%s installed\n' ${all[*]} | { while read -r p s; do [[ \$p == cmake || \$p == catch2 ]] || echo \$p \$s; done; }
 echo catch2 config-files; exit 1"
 run_setup
 expect 1 "neither root nor sudo" "$line cmake catch2"
 
 # The same with a sudo that refuses this user, and without a terminal for a password.
-stand_in sudo 'exit 1'
+mock_program sudo 'exit 1'
 run_setup
 expect 1 "neither root nor sudo" "$line cmake catch2"
 
 # With sudo: tools/setup updates the package lists, then installs exactly the missing packages.
-stand_in sudo '[[ $* == "-n true" ]] || echo "sudo $*"'
+mock_program sudo '[[ $* == "-n true" ]] || echo "sudo $*"'
 run_setup
 apt='sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq'
 expect 0 "$apt update"$'\n'"$apt install -y --no-install-recommends cmake catch2"
 
 # apt-get fails.
-stand_in sudo '[[ $* != *apt-get* ]]'
+mock_program sudo '[[ $* != *apt-get* ]]'
 run_setup
 expect 1 "apt-get failed" "$line cmake catch2"
 
 # Another program holds apt's locks: the lock of `update` until the third attempt, that of `install` until the second. Then: for longer than
 # tools/setup waits.
 chmod 777 "$machine"
-stand_in sleep "echo \$1 >>$machine/slept"
-stand_in sudo '[[ $* == *apt-get* ]] || exit 0
+mock_program sleep "echo \$1 >>$machine/slept"
+mock_program sudo '[[ $* == *apt-get* ]] || exit 0
 echo "$*" >>"${0%/*}/calls"
 mapfile -t calls <"${0%/*}/calls"
 case ${#calls[@]} in
@@ -103,7 +103,7 @@ run_setup
 expect 0 "another program holds apt's lock; waiting for it, up to 10 minutes: E: Could not get lock /var/lib/apt/lists/lock" "process 7" \
     "up to 10 minutes: E: Unable to acquire" "$apt update"$'\n' "$apt install -y --no-install-recommends cmake catch2"
 [[ $(<"$machine/slept") == $'5\n5\n5' ]] || { echo "FAILED: slept $(<"$machine/slept")"; exit 1; }
-stand_in sudo '[[ $* == "-n true" ]] || { echo "E: Could not get lock /a" >&2; exit 100; }'
+mock_program sudo '[[ $* == "-n true" ]] || { echo "E: Could not get lock /a" >&2; exit 100; }'
 rm "$machine/slept"
 run_setup
 expect 1 "update failed" "apt-get failed" "$line cmake catch2"
@@ -114,8 +114,8 @@ mapfile -t slept <"$machine/slept"
 rm "$machine/dpkg-query"
 run_setup
 expect 1 "not a Debian system" libopenimageio-dev "'c++' is missing"
-for tool in c++ cmake ninja; do stand_in "$tool" ''; done
+for tool in c++ cmake ninja; do mock_program "$tool" ''; done
 run_setup
 expect 0 "not a Debian system" libopenimageio-dev
 
-echo "tools/setup: all as expected"
+echo "tools/setup: as expected"

@@ -14,17 +14,17 @@ namespace raya {
 class HistoryBuilder {
   public:
     /// Adds a task of the node, started by the message `cause` or by injection; returns the task's number.
-    std::uint32_t task(std::uint32_t node, std::uint64_t cycles, std::uint32_t cause = HistoryTask::kInjection) {
+    std::uint32_t add_task(std::uint32_t node, std::uint64_t cycles, std::uint32_t cause = HistoryTask::kInjection) {
         history.tasks.push_back({.node = node,
                                  .cause = cause,
                                  .cycles = cycles,
-                                 .first = static_cast<std::uint32_t>(history.messages.size())});
+                                 .first_message = static_cast<std::uint32_t>(history.messages.size())});
         return static_cast<std::uint32_t>(history.tasks.size()) - 1;
     }
-    /// ray() and back() add a message that the last task sends, a ray to node `to` or a return to the root, and return
-    /// the message's number.
-    std::uint32_t ray(std::uint32_t to) { return send(to, RAYA_PACKET_WORDS, RAYA_KIND_PRIMARY); }
-    std::uint32_t back() { return send(RAYA_ROOT, RAYA_RETURN_WORDS, RAYA_KIND_RETURN); }
+    /// add_ray() and add_return() add a message that the last task sends, a ray to node `to` or a return to the root.
+    /// They return the message's number.
+    std::uint32_t add_ray(std::uint32_t to) { return send(to, RAYA_PACKET_WORDS, RAYA_KIND_PRIMARY); }
+    std::uint32_t add_return() { return send(RAYA_ROOT, RAYA_RETURN_WORDS, RAYA_KIND_RETURN); }
 
     History history;
 
@@ -38,28 +38,28 @@ class HistoryBuilder {
 /// A history of about `max_tasks` tasks of very different lengths. Injected tasks start at random nodes or all at the
 /// root. Rays have 8, 16 or 24 words and go to any node, including their sender.
 inline History random_history(SplitMix& random, const raya_torus& torus, std::uint32_t max_tasks) {
-    struct Due {
+    struct PendingTask {
         std::uint32_t node, cause;
     };
     const std::uint32_t nodes = raya_nodes(torus), begin = 1 + random_below(random, max_tasks / 4);
     const bool root = random.next() % 3 == 0;
     const std::uint32_t longest = 1 + random_below(random, 4000);
-    std::deque<Due> due;
+    std::deque<PendingTask> pending;
     for (std::uint32_t i = 0; i < begin; ++i)
-        due.push_back({root ? RAYA_ROOT : random_below(random, nodes), HistoryTask::kInjection});
+        pending.push_back({root ? RAYA_ROOT : random_below(random, nodes), HistoryTask::kInjection});
     HistoryBuilder built;
-    while (!due.empty()) {
-        const Due next = due.front();
-        due.pop_front();
-        built.task(next.node, random_below(random, longest), next.cause);
-        const bool more = built.history.tasks.size() + due.size() < max_tasks;
+    while (!pending.empty()) {
+        const PendingTask next = pending.front();
+        pending.pop_front();
+        built.add_task(next.node, random_below(random, longest), next.cause);
+        const bool more = built.history.tasks.size() + pending.size() < max_tasks;
         const std::uint32_t rays = more ? random_below(random, 4) : 0;
         for (std::uint32_t i = 0; i < rays; ++i) {
             const std::uint32_t to = random.next() % 4 == 0 ? next.node : random_below(random, nodes);
-            due.push_back({to, built.ray(to)});
+            pending.push_back({to, built.add_ray(to)});
             built.history.messages.back().words = static_cast<std::uint16_t>(8 + 8 * random_below(random, 3));
         }
-        for (std::uint32_t i = random_below(random, 3); i > 0; --i) built.back();
+        for (std::uint32_t i = random_below(random, 3); i > 0; --i) built.add_return();
     }
     return built.history;
 }
@@ -74,8 +74,9 @@ inline TorusResult traffic_of(const raya_torus& torus, const History& history) {
     for (const HistoryTask& task : history.tasks) loads[task.node] += task.cycles;
     for (const HistoryMessage& message : history.messages)
         for (std::uint32_t node = history.tasks[message.task].node; node != message.to;) {
-            const bool home = message.kind == RAYA_KIND_RETURN;
-            const std::uint32_t link = home ? raya_return_link(torus, node) : raya_next_link(torus, node, message.to);
+            const bool is_return = message.kind == RAYA_KIND_RETURN;
+            const std::uint32_t link =
+                is_return ? raya_return_link(torus, node) : raya_next_link(torus, node, message.to);
             result.link_words[node * RAYA_LINKS + link] += message.words;
             ++result.link_packets[node * RAYA_LINKS + link];
             node = raya_link_end(torus, node, link);

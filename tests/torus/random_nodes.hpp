@@ -21,22 +21,22 @@ inline PackedJob pack(const Scene& scene) {
     return pack_job(scene, settings);
 }
 
-/// A scene with 0 to `most` objects of each kind, 1 to 12 surfaces and 0 to 5 lights.
-inline Scene random_objects(SplitMix& random, std::uint64_t most) {
+/// A scene with 0 to `max_count` objects of each kind, 1 to 12 surfaces and 0 to 5 lights.
+inline Scene random_objects(SplitMix& random, std::uint64_t max_count) {
     Scene scene = empty_scene();
     for (const ObjectKind& kind : object_kinds()) {
-        const std::uint32_t count = random.next() % 3 == 0 ? 0 : random_below(random, most + 1);
+        const std::uint32_t count = random.next() % 3 == 0 ? 0 : random_below(random, max_count + 1);
         for (std::uint32_t i = 0; i < count; ++i) kind.add(scene, random);
     }
     scene.surfaces.resize(1 + random_below(random, 12));
     for (Surface& surface : scene.surfaces) surface.colour = random_point(random, 1);
-    const auto paint = [&](auto& objects) {
+    const auto assign_surfaces = [&](auto& objects) {
         for (auto& object : objects) object.surface = static_cast<int>(random_below(random, scene.surfaces.size()));
     };
-    paint(scene.spheres);
-    paint(scene.planes);
-    paint(scene.polygons);
-    paint(scene.cones);
+    assign_surfaces(scene.spheres);
+    assign_surfaces(scene.planes);
+    assign_surfaces(scene.polygons);
+    assign_surfaces(scene.cones);
     scene.lights.resize(random_below(random, 6), {{1, 2, 3}, {}});
     for (Light& light : scene.lights) light.position = random_point(random, 5);
     return scene;
@@ -72,13 +72,13 @@ inline std::vector<std::uint32_t> finite_objects(const PackedJob& job) {
     return finite;
 }
 
-/// Lists every finite object in random voxels: about half of the objects in one voxel, the others in up to `most`
-/// voxels.
+/// Lists every finite object in random voxels: about half of the objects in one voxel, the others in up to
+/// `max_copies` voxels.
 inline Partition random_partition(SplitMix& random, const PackedJob& job, const Divisions& divisions,
-                                  std::uint32_t most) {
+                                  std::uint32_t max_copies) {
     std::vector<std::set<std::uint32_t>> lists(divisions[0] * divisions[1] * divisions[2]);
     for (const std::uint32_t object : finite_objects(job)) {
-        const std::uint32_t times = random.next() % 2 ? 1 : 1 + random_below(random, most);
+        const std::uint32_t times = random.next() % 2 ? 1 : 1 + random_below(random, max_copies);
         for (std::uint32_t i = 0; i < times; ++i) lists[random_below(random, lists.size())].insert(object);
     }
     return partition_of(divisions, lists);

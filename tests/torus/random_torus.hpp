@@ -31,14 +31,14 @@ inline std::string torus_text(const raya_torus& t) {
     return sides_text({t.nodes[0], t.nodes[1], t.nodes[2]}) + " on " + sides_text({t.sides[0], t.sides[1], t.sides[2]});
 }
 
-/// Returns the message of the UserError that `call` throws, or "not refused" if it throws none.
-inline std::string refusal_of(const std::function<void()>& call) {
+/// Returns the message of the UserError that `call` throws, or "no error" if it throws none.
+inline std::string user_error_message(const std::function<void()>& call) {
     try {
         call();
     } catch (const UserError& error) {
         return error.what();
     }
-    return "not refused";
+    return "no error";
 }
 
 }  // namespace raya

@@ -80,17 +80,17 @@ inline TorusResult render_torus(const Scene& scene, const TorusCase& c, const Pa
 
 /// The results that must be equal on all machines, as text: image hash and ray counts. Intersection tests, grid steps
 /// and highlights are omitted, because a node computes a highlight before it is known whether the light is occluded.
-inline std::string one_image(const Image& image, const EventCounts& e) {
+inline std::string image_and_counts(const Image& image, const EventCounts& e) {
     return fmt::format("{} primary {} hits {} reflected {} refracted {} shadow {} shadow hits {} lit {} shaded {}",
                        pixel_hash(image), e[RAYA_PRIMARY], e[RAYA_PRIMARY_HITS], e[RAYA_REFLECTED], e[RAYA_REFRACTED],
                        e[RAYA_SHADOW], e[RAYA_SHADOW_HITS], e[RAYA_LIT], e[RAYA_SHADED]);
 }
 
-inline std::string one_image(const TorusResult& r) { return one_image(r.image, r.events); }
+inline std::string image_and_counts(const TorusResult& r) { return image_and_counts(r.image, r.events); }
 
-/// Image hash and ray counts (one_image()) of a ring render of the same size, format and bounces, which tests every ray
-/// against every object.
-inline std::string ring_image(const Scene& scene, const TorusCase& c) {
+/// image_and_counts() of a ring render of the same size, format and bounces, which tests every ray against every
+/// object.
+inline std::string ring_image_and_counts(const Scene& scene, const TorusCase& c) {
     const RingCase ring{.width = c.width,
                         .height = c.height,
                         .pes = 1,
@@ -100,14 +100,15 @@ inline std::string ring_image(const Scene& scene, const TorusCase& c) {
                         .bounces = c.bounces,
                         .format = c.format};
     const RingResult r = render_scene(scene, ring);
-    return one_image(r.image, r.all.events);
+    return image_and_counts(r.image, r.all.events);
 }
 
 /// Adds the packet's words to each link of its route according to the routing rules; `words`: [node][link].
 inline void add_route(std::vector<std::uint64_t>& words, const raya_torus& torus, const PacketRecord& p) {
     for (std::uint32_t node = p.source; node != p.destination;) {
-        const bool home = raya_state_kind(p.head.state) == RAYA_KIND_RETURN;
-        const std::uint32_t link = home ? raya_return_link(torus, node) : raya_next_link(torus, node, p.destination);
+        const bool is_return = raya_state_kind(p.head.state) == RAYA_KIND_RETURN;
+        const std::uint32_t link =
+            is_return ? raya_return_link(torus, node) : raya_next_link(torus, node, p.destination);
         words.at(std::size_t{node} * RAYA_LINKS + link) += p.words;
         node = raya_link_end(torus, node, link);
     }
@@ -120,11 +121,11 @@ inline Scene random_view_scene(std::uint64_t seed) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0x5eed);
     const double distances[] = {0.5, 2.5, 6, 25};
-    const double away = distances[random_below(random, 4)];
-    scene.view.from = away * random_direction(random);
+    const double distance = distances[random_below(random, 4)];
+    scene.view.from = distance * random_direction(random);
     scene.view.at = random_point(random, 1);
     scene.view.up = random_direction(random);
-    scene.view.angle_degrees = away > 20 ? 25 : random.uniform(30, 110);
+    scene.view.angle_degrees = distance > 20 ? 25 : random.uniform(30, 110);
     // A plane hides everything behind it, so keep a random number of the planes.
     scene.planes.resize(random_below(random, scene.planes.size() + 1));
     scene.lights.resize(1 + random_below(random, 4), {random_point(random, 8), {}});
@@ -132,20 +133,20 @@ inline Scene random_view_scene(std::uint64_t seed) {
 }
 
 /// Seeds with which random_view_scene() has many rays of every kind and some lit points.
-inline constexpr std::array<std::uint64_t, 11> kRichScenes = {27, 41, 53, 63, 14, 19, 35, 8, 21, 29, 69};
+inline constexpr std::array<std::uint64_t, 11> kSceneSeeds = {27, 41, 53, 63, 14, 19, 35, 8, 21, 29, 69};
 
 /// A scene with objects of every kind, seen in a mirror so far away that the rays reflected by it are wide (is_wide(),
-/// kernels/grid/walk.clh).
+/// kernels/grid/traversal.clh).
 inline Scene far_mirror_scene(std::uint64_t seed, const std::string& format) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0xfa5);
     // Rays are wide from 1024 times the scene's size on in fp32, from a few times its size on in formats of fewer bits.
-    const double away = (format == "fp32" ? 20'000 : 500) * (1 + random_below(random, 3));
+    const double distance = (format == "fp32" ? 20'000 : 500) * (1 + random_below(random, 3));
     scene.surfaces.push_back({.colour = {0.9, 1, 0.9}, .diffuse = 0.5, .specular = 0.5, .shine = 5});
-    scene.planes = {{{-1, 0, 0}, -away, static_cast<int>(scene.surfaces.size()) - 1}};
+    scene.planes = {{{-1, 0, 0}, -distance, static_cast<int>(scene.surfaces.size()) - 1}};
     scene.view.from = {kSceneReach + 1, random.uniform(-1, 1), random.uniform(-1, 1)};
     scene.view.at = scene.view.from + Vec3{1, 0, 0};
-    scene.view.angle_degrees = 200 / away;  // mirror images are twice as far away
+    scene.view.angle_degrees = 200 / distance;  // mirror images are twice as far away
     return scene;
 }
 

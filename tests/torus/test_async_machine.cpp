@@ -30,9 +30,9 @@ double total(const std::vector<AsyncNode>& nodes, double AsyncNode::*figure) {
 TEST_CASE("a ray crosses one link after another, and its return crosses them back", "[torus]") {
     const std::uint32_t hops = GENERATE(0u, 1u, 2u, 3u);
     HistoryBuilder h;
-    h.task(0, 1000);
-    h.task(hops, 2000, h.ray(hops));
-    h.back();
+    h.add_task(0, 1000);
+    h.add_task(hops, 2000, h.add_ray(hops));
+    h.add_return();
     const AsyncResult r = simulate(ring_of(7), h.history);
     const double transfer_ms = hops * (2 * kRayEnd + kRay) + hops * (2 * kReturnEnd + kReturn);
     CHECK(r.finish_ms == about(3000 * kCycle + transfer_ms));
@@ -44,20 +44,20 @@ TEST_CASE("a ray crosses one link after another, and its return crosses them bac
 
 TEST_CASE("a link carries one message at a time in each direction, and both directions share its rate", "[torus]") {
     HistoryBuilder one_way;
-    one_way.task(1, 500);
-    const std::uint32_t first = one_way.ray(2), second = one_way.ray(2);
-    one_way.task(2, 10, first);
-    one_way.task(2, 20, second);
+    one_way.add_task(1, 500);
+    const std::uint32_t first = one_way.add_ray(2), second = one_way.add_ray(2);
+    one_way.add_task(2, 10, first);
+    one_way.add_task(2, 20, second);
     // The input thread holds one message, so the transfer of the second starts when the first has been received.
     CHECK(simulate(ring_of(4), one_way.history).finish_ms == about(520 * kCycle + 4 * kRayEnd + 2 * kRay));
 
     HistoryBuilder both;
-    both.task(1, 500);
-    const std::uint32_t up = both.ray(2);
-    both.task(2, 500);
-    const std::uint32_t down = both.ray(1);
-    both.task(2, 10, up);
-    both.task(1, 10, down);
+    both.add_task(1, 500);
+    const std::uint32_t up = both.add_ray(2);
+    both.add_task(2, 500);
+    const std::uint32_t down = both.add_ray(1);
+    both.add_task(2, 10, up);
+    both.add_task(1, 10, down);
     CHECK(simulate(ring_of(4), both.history).finish_ms == about(510 * kCycle + 2 * kRayEnd + kRayBoth));
     // The second transfer starts when half of the first is done. Both continue at the lower rate; then the second
     // continues alone.
@@ -70,11 +70,11 @@ TEST_CASE("a link carries one message at a time in each direction, and both dire
 
 TEST_CASE("messages interrupt the main task, which ends later by their time", "[torus]") {
     HistoryBuilder h;
-    h.task(1, 100'000);  // runs during all other tasks
-    h.task(0, 10);
-    h.task(2, 10, h.ray(2));  // passes through node 1
-    h.task(3, 10);
-    h.back();  // takes the other direction
+    h.add_task(1, 100'000);  // runs during all other tasks
+    h.add_task(0, 10);
+    h.add_task(2, 10, h.add_ray(2));  // passes through node 1
+    h.add_task(3, 10);
+    h.add_return();  // takes the other direction
     const AsyncResult r = simulate(ring_of(5), h.history);
     CHECK(r.finish_ms == about(100'000 * kCycle + 2 * kRayEnd));
     CHECK(r.nodes[1].messages_ms == about(2 * kRayEnd));
@@ -84,10 +84,10 @@ TEST_CASE("a full port makes the main task wait", "[torus]") {
     constexpr std::uint32_t kRays = 12;
     HistoryBuilder h;
     std::vector<std::uint32_t> sent;
-    h.task(1, 0);
-    for (std::uint32_t i = 0; i < kRays; ++i) sent.push_back(h.ray(2));
-    for (const std::uint32_t message : sent) h.task(2, 0, message);
-    h.task(1, 1000);
+    h.add_task(1, 0);
+    for (std::uint32_t i = 0; i < kRays; ++i) sent.push_back(h.add_ray(2));
+    for (const std::uint32_t message : sent) h.add_task(2, 0, message);
+    h.add_task(1, 1000);
     const AsyncMachine machine{.buffer = 5};
     const AsyncResult r = simulate(ring_of(4), h.history, machine);
     // A ray may enter while two slots are free: four enter at once, each further one when another ray has left.
@@ -106,13 +106,13 @@ TEST_CASE("a ring whose buffers may fill up deadlocks; with one slot kept free i
     HistoryBuilder h;
     std::vector<std::uint32_t> sent;
     for (std::uint32_t node = 0; node < 6; ++node) {
-        h.task(node, 0);
-        for (int i = 0; i < 30; ++i) sent.push_back(h.ray((node + 3) % 6));
+        h.add_task(node, 0);
+        for (int i = 0; i < 30; ++i) sent.push_back(h.add_ray((node + 3) % 6));
     }
-    for (const std::uint32_t message : sent) h.task(h.history.messages[message].to, 0, message);
+    for (const std::uint32_t message : sent) h.add_task(h.history.messages[message].to, 0, message);
     for (const std::uint32_t buffer : {2u, 3u, 8u}) {
         CAPTURE(buffer);
-        CHECK_THROWS_WITH(simulate(torus, h.history, {.buffer = buffer, .entering = 1}),
+        CHECK_THROWS_WITH(simulate(torus, h.history, {.buffer = buffer, .entry_slots = 1}),
                           Catch::Contains("deadlock") && Catch::Contains("of 180 messages"));
         CHECK(simulate(torus, h.history, {.buffer = buffer}).delivered == 180);
     }
@@ -123,12 +123,12 @@ TEST_CASE("a ring whose buffers may fill up deadlocks; with one slot kept free i
 TEST_CASE("supersteps can be faster than asynchronous execution, because they order the tasks", "[torus]") {
     constexpr std::uint64_t kLong = 10'000'000;
     HistoryBuilder h;
-    h.task(0, 10);
-    const std::uint32_t one = h.ray(0), other = h.ray(1);
-    h.task(0, kLong, one);       // superstep 2 of node 0, starts before
-    h.task(1, 100'000, other);   // superstep 2 of node 1
-    h.task(0, 10, h.ray(0));     // superstep 3 of node 0
-    h.task(2, kLong, h.ray(2));  // superstep 4 of node 2, after the task above
+    h.add_task(0, 10);
+    const std::uint32_t one = h.add_ray(0), other = h.add_ray(1);
+    h.add_task(0, kLong, one);           // superstep 2 of node 0, starts before
+    h.add_task(1, 100'000, other);       // superstep 2 of node 1
+    h.add_task(0, 10, h.add_ray(0));     // superstep 3 of node 0
+    h.add_task(2, kLong, h.add_ray(2));  // superstep 4 of node 2, after the task above
     const double none_orders = simulate(ring_of(4), h.history).finish_ms;
     h.history.tasks[1].cycles = 0;
     const double ordered = simulate(ring_of(4), h.history).finish_ms;

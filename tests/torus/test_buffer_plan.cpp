@@ -20,7 +20,7 @@ constexpr std::uint32_t kDefaultQueue = 8192;
 
 // A row of nodes with one voxel each. Node i's voxel contains counts[i] spheres of one surface; there are no lights and
 // no planes.
-NodeMemories row_of_nodes(const std::vector<std::uint32_t>& counts, const raya_torus& torus) {
+NodeMemories nodes_with_spheres(const std::vector<std::uint32_t>& counts, const raya_torus& torus) {
     Scene scene = empty_scene();
     scene.lights.clear();
     std::vector<std::set<std::uint32_t>> lists(counts.size());
@@ -37,7 +37,7 @@ constexpr std::uint64_t padded_to_rows(std::uint64_t bytes) { return (bytes + 15
 
 // Bytes of such a node's words: header, one voxel, one surface, and six words per sphere. The spheres are padded to
 // whole rows.
-constexpr std::uint64_t bytes_with(std::uint32_t spheres) {
+constexpr std::uint64_t node_words_bytes(std::uint32_t spheres) {
     return padded_to_rows(padded_to_rows(sizeof(raya_node) + sizeof(raya_voxel_memory) + 4 * RAYA_SURFACE_WORDS) +
                           24ull * spheres);
 }
@@ -79,9 +79,9 @@ TEST_CASE("a node has two links to other nodes for each side of more than one no
 
 TEST_CASE("without a memory limit the queue has the requested or the default length", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
-    const NodeMemories memories = row_of_nodes({3, 4}, torus);
-    const auto plan = [&](std::uint32_t queue, std::uint32_t fewest) {
-        const NodeBuffers buffers = plan_buffers("s", memories, torus, {}, queue, fewest);
+    const NodeMemories memories = nodes_with_spheres({3, 4}, torus);
+    const auto plan = [&](std::uint32_t queue, std::uint32_t min_queue) {
+        const NodeBuffers buffers = plan_buffers("s", memories, torus, {}, queue, min_queue);
         return std::vector<std::uint32_t>{buffers.queue, buffers.box};
     };
     CHECK(plan(0, 5) == std::vector<std::uint32_t>{kDefaultQueue, kDefaultQueue / 4});
@@ -102,20 +102,21 @@ TEST_CASE("the default queue is shorter on machines of more than 2048 nodes", "[
 TEST_CASE("queues and mailboxes that exceed the device's memory are refused, with a length that fits", "[torus]") {
     DeviceMemory device;
     // 64 nodes: the mailboxes, 64 x 6 x (1 + 1000) packets of 64 bytes, are the largest buffer.
-    device.one_buffer = 64ull * 6 * 1001 * 64;
-    device.all = std::uint64_t{1} << 40;
+    device.max_buffer = 64ull * 6 * 1001 * 64;
+    device.total = std::uint64_t{1} << 40;
     const auto refusal = [&](std::uint32_t queue) {
-        return refusal_of([&] { check_device_memory("s.nff", buffers_for(queue), 64, "a small device", device); });
+        return user_error_message(
+            [&] { check_device_memory("s.nff", buffers_for(queue), 64, "a small device", device); });
     };
-    CHECK(refusal(4000) == "not refused");
-    CHECK(refusal(4003) == "not refused");
+    CHECK(refusal(4000) == "no error");
+    CHECK(refusal(4003) == "no error");
     CHECK(refusal(4004) ==
           "s.nff: queues of 4004 packets and their mailboxes in 64 nodes do not fit the memory of a small device; use "
           "--queue 2002 or fewer nodes");
     // Limit on the total: the queues, and the mailboxes for rays and returns at both ends of each link.
-    device.all = 64ull * 64 * 4000 + 3 * device.one_buffer;
-    CHECK(refusal(4000) == "not refused");
-    --device.all;
+    device.total = 64ull * 64 * 4000 + 3 * device.max_buffer;
+    CHECK(refusal(4000) == "no error");
+    --device.total;
     CHECK_THAT(refusal(4000), Catch::Contains("use --queue 2000 or fewer nodes"));
 }
 
@@ -126,51 +127,51 @@ TEST_CASE("the planned queue is the longest that fits, to the byte", "[torus]") 
         const raya_torus torus = make_torus(nodes, Links::kTorus3d);
         std::vector<std::uint32_t> counts(nodes[0] * nodes[1]);
         for (std::uint32_t& count : counts) count = 1 + random_below(random, 50);
-        const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
-        const std::uint32_t fewest = 1 + random_below(random, 40), links = links_of_node(torus);
-        const NodeMemories memories = row_of_nodes(counts, torus);
-        const std::uint32_t queue = fewest + random_below(random, kDefaultQueue - fewest);
-        const std::uint64_t exact = bytes_with(most) + packet_bytes(queue, links);
-        CAPTURE(seed, torus_text(torus), most, fewest, queue);
+        const std::uint32_t max_count = *std::max_element(counts.begin(), counts.end());
+        const std::uint32_t min_queue = 1 + random_below(random, 40), links = links_of_node(torus);
+        const NodeMemories memories = nodes_with_spheres(counts, torus);
+        const std::uint32_t queue = min_queue + random_below(random, kDefaultQueue - min_queue);
+        const std::uint64_t exact = node_words_bytes(max_count) + packet_bytes(queue, links);
+        CAPTURE(seed, torus_text(torus), max_count, min_queue, queue);
         const auto plan = [&](std::uint64_t bytes, std::uint32_t asked) {
-            return plan_buffers("s", memories, torus, bytes, asked, fewest);
+            return plan_buffers("s", memories, torus, bytes, asked, min_queue);
         };
         REQUIRE(node_bytes(memories.starts.back() - memories.starts[counts.size() - 1], {0, 0}, links) ==
-                bytes_with(counts.back()));
+                node_words_bytes(counts.back()));
         CHECK(plan(exact, 0).queue == queue);
         CHECK(plan(exact, 0).box == (queue < 8 ? 1 : queue / 4));
         CHECK(plan(exact + 63, 0).queue == queue);
         CHECK(plan(exact, queue).queue == queue);
         CHECK_THROWS_AS(plan(exact - 1, queue), UserError);
-        if (queue > fewest) CHECK(plan(exact - 1, 0).queue == queue - 1);
-        if (queue == fewest) CHECK_THROWS_AS(plan(exact - 1, 0), UserError);
+        if (queue > min_queue) CHECK(plan(exact - 1, 0).queue == queue - 1);
+        if (queue == min_queue) CHECK_THROWS_AS(plan(exact - 1, 0), UserError);
         CHECK(plan(std::uint64_t{1} << 32, 0).queue == kDefaultQueue);
     }
 }
 
 TEST_CASE("a queue shorter than a ray's tree can need is refused, with the needed length", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
-    const NodeMemories memories = row_of_nodes({3, 4}, torus);
-    CHECK(refusal_of([&] { plan_buffers("balls.nff", memories, torus, {}, 6, 7); }) ==
+    const NodeMemories memories = nodes_with_spheres({3, 4}, torus);
+    CHECK(user_error_message([&] { plan_buffers("balls.nff", memories, torus, {}, 6, 7); }) ==
           "balls.nff: --queue 6: the tree of a single ray may need 7 packets; use --queue 7 or more");
     CHECK(plan_buffers("balls.nff", memories, torus, {}, 7, 7).queue == 7);
 }
 
 TEST_CASE("a scene that does not fit is refused with figures, the fullest node and the remedy", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus3d);
-    const NodeMemories memories = row_of_nodes({100, 300, 20, 200}, torus);
-    const std::uint64_t limit = bytes_with(200) + packet_bytes(9, 4);
+    const NodeMemories memories = nodes_with_spheres({100, 300, 20, 200}, torus);
+    const std::uint64_t limit = node_words_bytes(200) + packet_bytes(9, 4);
     const std::string figures = fmt::format(
         "s.nff: does not fit: 3 of 4 nodes can hold their voxels, 1 cannot; node 1 (voxel 1, 0, 0 with 300 objects) "
         "needs {:.1f} KB and 1.9 KB of buffers, a node has {:.1f} KB; ",
-        std::ceil(bytes_with(300) / 102.4) / 10, std::floor(double(limit) / 102.4) / 10);
+        std::ceil(node_words_bytes(300) / 102.4) / 10, std::floor(double(limit) / 102.4) / 10);
     REQUIRE(packet_bytes(9, 4) == 1920);  // 1.875 KB
-    const std::uint64_t enough = (bytes_with(300) + 1920 + 1023) / 1024 * 1024;
+    const std::uint64_t sufficient_bytes = (node_words_bytes(300) + 1920 + 1023) / 1024 * 1024;
     const auto refusal = [&](std::uint32_t queue, const NodeTrial& trial = {}) {
-        return refusal_of([&] { plan_buffers("s.nff", memories, torus, limit, queue, 9, trial); });
+        return user_error_message([&] { plan_buffers("s.nff", memories, torus, limit, queue, 9, trial); });
     };
-    CHECK(refusal(0) == figures + fmt::format("use --pe-memory {}", enough));
-    CHECK(plan_buffers("s.nff", memories, torus, enough, 0, 9).queue >= 9);
+    CHECK(refusal(0) == figures + fmt::format("use --pe-memory {}", sufficient_bytes));
+    CHECK(plan_buffers("s.nff", memories, torus, sufficient_bytes, 0, 9).queue >= 9);
 
     try {
         plan_buffers("s.nff", memories, torus, limit, 0, 9);
@@ -179,55 +180,57 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
         CHECK(error.nodes == 4);
         CHECK(error.fitting == 3);
         CHECK(error.fullest == 1);
-        CHECK(error.needed_bytes == bytes_with(300) + packet_bytes(9, 4));
+        CHECK(error.needed_bytes == node_words_bytes(300) + packet_bytes(9, 4));
         CHECK(error.memory_bytes == limit);
     }
 
     // With six links instead of four, a node has four more mailboxes of two rays and two more of two returns. They
     // leave 640 bytes less for the words.
-    EvenTrial trial{8 * (bytes_with(200) - 640) / 4, 0};
+    EvenTrial trial{8 * (node_words_bytes(200) - 640) / 4, 0};
     const auto remedy = [&](const char* nodes) {
-        return figures + fmt::format("use --nodes {} or --pe-memory {}", nodes, enough);
+        return figures + fmt::format("use --nodes {} or --pe-memory {}", nodes, sufficient_bytes);
     };
     CHECK(refusal(0, std::ref(trial)) == remedy("2x2x2"));
     CHECK(trial.calls == 1);
-    trial = {8 * (bytes_with(200) - 640) / 4 + 8, 0};
+    trial = {8 * (node_words_bytes(200) - 640) / 4 + 8, 0};
     CHECK(refusal(0, std::ref(trial)) == remedy("4x2x2"));
     CHECK(trial.calls == 2);
     trial = {~0ull, 0};
-    CHECK_THAT(refusal(0, std::ref(trial)),
-               Contains("no machine of up to 65536 nodes is large enough; use --pe-memory " + std::to_string(enough)));
+    CHECK_THAT(
+        refusal(0, std::ref(trial)),
+        Contains(fmt::format("no machine of up to 65536 nodes is large enough; use --pe-memory {}", sufficient_bytes)));
     CHECK(trial.calls == 14);  // 2^3 to 2^16 nodes
     const NodeTrial none = [](const auto&) { return std::nullopt; };
     CHECK(refusal(0, none) ==
-          figures + fmt::format("no machine of up to 65536 nodes is large enough; use --pe-memory {}", enough));
+          figures +
+              fmt::format("no machine of up to 65536 nodes is large enough; use --pe-memory {}", sufficient_bytes));
     const NodeTrial cut = [](const auto&) { return NodeTrialResult{1, {8, 8, 8}}; };
     CHECK(refusal(0, cut) == remedy("2x2x2 --voxels 8x8x8"));
 }
 
 TEST_CASE("machines too small even for evenly shared words are not tried", "[torus]") {
     const raya_torus torus = make_torus({2, 2, 2}, Links::kTorus3d);
-    const NodeMemories memories = row_of_nodes(std::vector<std::uint32_t>(8, 1000), torus);
+    const NodeMemories memories = nodes_with_spheres(std::vector<std::uint32_t>(8, 1000), torus);
     EvenTrial trial{memories.words.size(), 0};
-    const std::uint64_t limit = bytes_with(1000) / 32 + packet_bytes(1, 6);  // an even share on 2^8 nodes
-    CHECK_THAT(refusal_of([&] { plan_buffers("s", memories, torus, limit, 0, 1, std::ref(trial)); }),
+    const std::uint64_t limit = node_words_bytes(1000) / 32 + packet_bytes(1, 6);  // an even share on 2^8 nodes
+    CHECK_THAT(user_error_message([&] { plan_buffers("s", memories, torus, limit, 0, 1, std::ref(trial)); }),
                Contains("use --nodes 8x8x4 or"));
     CHECK(trial.calls == 1);
 }
 
 TEST_CASE("if a shorter queue fits, the refusal names it", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus3d);
-    const NodeMemories memories = row_of_nodes({100, 300, 20, 200}, torus);
-    const std::uint64_t limit = bytes_with(300) + packet_bytes(100, 4);
+    const NodeMemories memories = nodes_with_spheres({100, 300, 20, 200}, torus);
+    const std::uint64_t limit = node_words_bytes(300) + packet_bytes(100, 4);
     EvenTrial trial;
     const std::string message =
-        refusal_of([&] { plan_buffers("s", memories, torus, limit, 1000, 9, std::ref(trial)); });
-    const std::uint64_t enough = (bytes_with(300) + packet_bytes(1000, 4) + 1023) / 1024 * 1024;
+        user_error_message([&] { plan_buffers("s", memories, torus, limit, 1000, 9, std::ref(trial)); });
+    const std::uint64_t sufficient_bytes = (node_words_bytes(300) + packet_bytes(1000, 4) + 1023) / 1024 * 1024;
     CHECK_THAT(message, Contains("0 of 4 nodes can hold") && Contains("and 226.6 KB of buffers") &&
-                            Contains(fmt::format("; use --queue 100 or --pe-memory {}", enough)));
+                            Contains(fmt::format("; use --queue 100 or --pe-memory {}", sufficient_bytes)));
     CHECK(trial.calls == 0);
     CHECK(plan_buffers("s", memories, torus, limit, 100, 9).queue == 100);
-    CHECK(plan_buffers("s", memories, torus, enough, 1000, 9).queue == 1000);
+    CHECK(plan_buffers("s", memories, torus, sufficient_bytes, 1000, 9).queue == 1000);
 }
 
 TEST_CASE("a refusal gives the fullest node's number of voxels, or the position of its only voxel", "[torus]") {
@@ -246,7 +249,7 @@ TEST_CASE("a refusal gives the fullest node's number of voxels, or the position 
     const auto refusal = [&](const std::array<std::uint32_t, 3>& nodes) {
         const raya_torus torus = make_torus(nodes, Links::kTorus3d);
         const NodeMemories memories = pack_nodes(job, partition, torus);
-        return refusal_of([&] { plan_buffers("s", memories, torus, 100, 0, 1); });
+        return user_error_message([&] { plan_buffers("s", memories, torus, 100, 0, 1); });
     };
     CHECK_THAT(refusal({4, 3, 2}), Contains("0 of 24 nodes") && Contains("node 3 (voxel 3, 0, 0 with 7 objects)"));
     CHECK_THAT(refusal({2, 3, 2}), Contains("0 of 12 nodes") && Contains("node 1 (2 voxels with 7 objects)"));
@@ -259,7 +262,7 @@ TEST_CASE("each larger machine that is tried doubles the shortest side, up to 65
         const raya_torus torus = random_torus(random, 8);
         std::vector<std::uint32_t> counts(raya_nodes(torus), 0);
         counts[0] = 2000;
-        const NodeMemories memories = row_of_nodes(counts, torus);
+        const NodeMemories memories = nodes_with_spheres(counts, torus);
         std::vector<std::array<std::uint32_t, 3>> tried = {{torus.nodes[0], torus.nodes[1], torus.nodes[2]}};
         const NodeTrial trial = [&](const std::array<std::uint32_t, 3>& nodes) {
             tried.push_back(nodes);
@@ -268,7 +271,7 @@ TEST_CASE("each larger machine that is tried doubles the shortest side, up to 65
         CAPTURE(seed, torus_text(torus));
         // The limit is one byte too small for the fullest node, but large enough for an even share of the words on more
         // nodes.
-        const std::uint64_t limit = bytes_with(2000) + packet_bytes(1, links_of_node(torus)) - 1;
+        const std::uint64_t limit = node_words_bytes(2000) + packet_bytes(1, links_of_node(torus)) - 1;
         CHECK_THROWS_AS(plan_buffers("s", memories, torus, limit, 0, 1, trial), UserError);
         for (std::size_t i = 1; i < tried.size(); ++i) {
             const auto &before = tried[i - 1], &after = tried[i];

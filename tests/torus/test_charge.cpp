@@ -6,7 +6,7 @@
 
 #include "host/torus/torus_plan.hpp"
 #include "tests/thorough.hpp"
-#include "tests/torus/recorded.hpp"
+#include "tests/torus/record_packets.hpp"
 
 namespace raya {
 namespace {
@@ -28,7 +28,7 @@ RayKey key_of(const PacketRecord& p) { return {p.head.pixel, p.head.path, raya_s
 
 // A ray has at most one return. It leaves from the node where the shadow ray to the last light that the surface faces
 // ends.
-void check_last_lights(const Recorded& r) {
+void check_last_lights(const RecordedRender& r) {
     std::map<RayKey, PacketRecord> last;  // by ray: the last record of its last shadow ray
     for (const PacketRecord& p : r.records) {
         if (kind_of(p) != RAYA_KIND_SHADOW) continue;
@@ -59,7 +59,7 @@ TEST_CASE("nodes discard as many rays as their windows hold, and the root discar
     Session session(choose_device(""));
     std::uint64_t discarded = 0;
     for (unsigned i = 0; i < quick_cases(8, 40); ++i) {
-        const Scene scene = random_view_scene(kRichScenes[i % kRichScenes.size()]);
+        const Scene scene = random_view_scene(kSceneSeeds[i % kSceneSeeds.size()]);
         TorusCase c{.width = 1 + random_below(random, 30), .height = 1 + random_below(random, 30), .bounces = 0};
         c.lanes = i % 2 ? 4 : 1;
         c.group = 1 + i % 3;
@@ -87,17 +87,17 @@ TEST_CASE("one return per ray: it leaves where the ray's last shadow ray ends", 
     Session session(choose_device(""));
     std::uint64_t late = 0;
     for (unsigned i = 0; i < quick_cases(6, 30); ++i) {
-        const Scene scene = random_view_scene(kRichScenes[i % kRichScenes.size()]);
+        const Scene scene = random_view_scene(kSceneSeeds[i % kSceneSeeds.size()]);
         TorusCase c{.width = 16, .height = 12, .nodes = {3, 2, 2}, .group = 1 + i % 2};
         c.packets = {22, true};
         if (i % 2) c.queue = 6 * raya_min_queue(lights_of(scene), c.bounces);
         CAPTURE(seed, i, case_text(c));
-        const Recorded r = record(session, scene, c);
+        const RecordedRender r = render_and_record(session, scene, c);
         check_last_lights(r);
         TorusCase terms = c;
         terms.packets = {};
         const TorusResult each = render_torus(session, scene, terms);
-        CHECK(one_image(r.result) == one_image(each));
+        CHECK(image_and_counts(r.result) == image_and_counts(each));
         CHECK(r.result.returns < each.returns);
         CHECK(r.result.contributions >= each.contributions);
         late += r.result.contributions - each.contributions;

@@ -15,20 +15,20 @@ namespace {
 
 // Generates the contributions of a random ray tree in depth-first order, reflection before refraction. This is the
 // expected order after sorting.
-class TreeWalk {
+class RandomRayTree {
   public:
-    TreeWalk(SplitMix& random, std::vector<raya_head>& to, std::uint32_t pixel)
+    RandomRayTree(SplitMix& random, std::vector<raya_head>& to, std::uint32_t pixel)
         : random_(random), to_(to), pixel_(pixel) {}
 
-    void ray(std::uint32_t path, std::uint32_t level, std::uint32_t deepest) {
+    void add_ray(std::uint32_t path, std::uint32_t level, std::uint32_t deepest) {
         add(path, level, 0);
         for (std::uint32_t light = 1; light <= 3; ++light)
             if (below(2)) add(path, level, light);
-        if (below(6) == 0) add(path, level, RAYA_MOST_LIGHTS);
+        if (below(6) == 0) add(path, level, RAYA_MAX_LIGHTS);
         if (level == deepest) return;
         const std::uint32_t which = level < 3 ? 1 + below(3) : 1u << below(2);
-        if (which & 1) ray(raya_path_reflected(path), level + 1, deepest);
-        if (which & 2) ray(raya_path_refracted(path, level), level + 1, deepest);
+        if (which & 1) add_ray(raya_path_reflected(path), level + 1, deepest);
+        if (which & 2) add_ray(raya_path_refracted(path, level), level + 1, deepest);
     }
 
     std::uint32_t below(std::uint32_t end) { return random_below(random_, end); }
@@ -108,8 +108,8 @@ TEST_CASE("contributions are sorted in depth-first order of their pixels' trees"
         std::vector<raya_head> walked;
         std::vector<std::uint32_t> starts = {0};
         for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
-            TreeWalk walk(random, walked, pixel);
-            if (walk.below(4)) walk.ray(0, 0, walk.below(6) ? walk.below(6) : 31);
+            RandomRayTree walk(random, walked, pixel);
+            if (walk.below(4)) walk.add_ray(0, 0, walk.below(6) ? walk.below(6) : 31);
             starts.push_back(static_cast<std::uint32_t>(walked.size()));
         }
         std::vector<raya_head> returns = walked;
@@ -125,7 +125,7 @@ TEST_CASE("a duplicate contribution, or one outside the image, is an error", "[t
     for (int i = 0; i < 100; ++i) {
         CAPTURE(i);
         std::vector<raya_head> returns;
-        for (std::uint32_t pixel = 0; pixel < 4; ++pixel) TreeWalk(random, returns, pixel).ray(0, 0, 3);
+        for (std::uint32_t pixel = 0; pixel < 4; ++pixel) RandomRayTree(random, returns, pixel).add_ray(0, 0, 3);
         CHECK_NOTHROW(sort_contributions(returns, 4));
         CHECK_THROWS_AS(sort_contributions(returns, 3), std::logic_error);
         raya_head twice = returns[random_below(random, returns.size())];

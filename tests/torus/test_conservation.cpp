@@ -10,7 +10,7 @@
 #include "host/torus/torus_trace.hpp"
 #include "tests/base/gunzip.hpp"
 #include "tests/thorough.hpp"
-#include "tests/torus/recorded.hpp"
+#include "tests/torus/record_packets.hpp"
 
 namespace raya {
 namespace {
@@ -56,7 +56,7 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t light
 }
 
 // Checks that each record crosses as many links as the torus distance between its nodes, however long it waits.
-void check_traffic(const Recorded& r, const TorusSettings& s) {
+void check_traffic(const RecordedRender& r, const TorusSettings& s) {
     std::uint64_t hops = 0;
     std::vector<std::uint64_t> words(r.result.link_words.size());
     std::size_t to_itself = 0, wrong_words = 0;
@@ -87,7 +87,7 @@ std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
 }
 
 // Returns true if a ray goes from voxel to neighbouring voxel and never reverses its direction along an axis.
-bool walks(const std::vector<PacketRecord>& stages) {
+bool is_walk(const std::vector<PacketRecord>& stages) {
     bool right = true;
     for (std::size_t i = 1; i < stages.size(); ++i) {
         const raya_place a = raya_unpack_place(stages[i - 1].head.voxel);
@@ -108,7 +108,7 @@ bool walks(const std::vector<PacketRecord>& stages) {
 // Returns true if a wide ray visits all voxels in cyclic order, starting with the voxel after that of the node that
 // made it. A shadow ray may end earlier, where it is blocked. At most one more stage follows, to the voxel where the
 // ray is shaded.
-bool tours(const std::vector<PacketRecord>& stages, const raya_torus& torus, const raya_grid& grid) {
+bool is_tour(const std::vector<PacketRecord>& stages, const raya_torus& torus, const raya_grid& grid) {
     const std::uint32_t voxels = raya_voxels(grid);
     const std::size_t visits = stages.size() - (state_of(stages.back()) & RAYA_STATE_FOUND ? 1 : 0);
     std::uint32_t number = raya_voxel_of_node(torus, grid, stages[0].source, 0);
@@ -121,13 +121,13 @@ bool tours(const std::vector<PacketRecord>& stages, const raya_torus& torus, con
     return right;
 }
 
-struct RayWalks {
+struct RayCounts {
     std::size_t narrow = 0, wide = 0;
 };
 
 // Checks the voxels that each ray visits. The case must have one voxel per node, so that every step is a record.
-RayWalks check_walks(const Recorded& r, const TorusSettings& s) {
-    RayWalks walked;
+RayCounts check_walks(const RecordedRender& r, const TorusSettings& s) {
+    RayCounts walked;
     std::size_t broken = 0, early = 0, wrong_walks = 0, wrong_tours = 0;
     raya_grid grid{};
     std::copy_n(s.voxels.begin(), 3, grid.divisions);
@@ -137,8 +137,8 @@ RayWalks check_walks(const Recorded& r, const TorusSettings& s) {
             early += stages[i].superstep <= stages[i - 1].superstep;
         }
         (is_wide(stages[0]) ? walked.wide : walked.narrow) += 1;
-        wrong_walks += !is_wide(stages[0]) && !walks(stages);
-        wrong_tours += is_wide(stages[0]) && !tours(stages, s.torus, grid);
+        wrong_walks += !is_wide(stages[0]) && !is_walk(stages);
+        wrong_tours += is_wide(stages[0]) && !is_tour(stages, s.torus, grid);
     }
     CHECK(broken == 0);
     CHECK(early == 0);
@@ -149,15 +149,15 @@ RayWalks check_walks(const Recorded& r, const TorusSettings& s) {
 
 // Checks that every return goes to the root, and that each ray of a pixel's ray tree, shadow rays included, has at most
 // one return.
-void check_returns(const Recorded& r) {
+void check_returns(const RecordedRender& r) {
     std::map<LightKey, int> answers;
-    std::size_t astray = 0;
+    std::size_t misrouted = 0;
     for (const PacketRecord& p : r.records) {
         if (kind_of(p) != RAYA_KIND_RETURN) continue;
-        astray += p.destination != RAYA_ROOT || p.source == RAYA_ROOT;
+        misrouted += p.destination != RAYA_ROOT || p.source == RAYA_ROOT;
         ++answers[light_key(p)];
     }
-    CHECK(astray == 0);
+    CHECK(misrouted == 0);
     CHECK(std::all_of(answers.begin(), answers.end(), [](const auto& a) { return a.second == 1; }));
 }
 
@@ -187,12 +187,12 @@ TEST_CASE("random machines: packets, hops and words agree with the events and th
     const std::uint64_t seed = 5150;
     SplitMix random(seed);
     Session session(choose_device(""));
-    RayWalks all;
+    RayCounts all;
     const unsigned cases = quick_cases(20, 60);
     for (unsigned i = 0; i < cases; ++i) {
         const std::string format = i % 6 == 0 ? "spa22" : "fp32";
         const Scene scene =
-            i % 3 == 0 ? far_mirror_scene(seed + i, format) : random_view_scene(kRichScenes[i % kRichScenes.size()]);
+            i % 3 == 0 ? far_mirror_scene(seed + i, format) : random_view_scene(kSceneSeeds[i % kSceneSeeds.size()]);
         TorusCase c{
             .width = 1 + random_below(random, 24), .height = 1 + random_below(random, 20), .lanes = 4, .group = 1};
         c.format = format;
@@ -206,12 +206,12 @@ TEST_CASE("random machines: packets, hops and words agree with the events and th
         c.pixels.stride = i % 5 == 4 ? 1 + random_below(random, 5) : 1;
         CAPTURE(seed, i, case_text(c));
         const TorusSettings s = settings_of(c);
-        const Recorded r = record(session, scene, c);
+        const RecordedRender r = render_and_record(session, scene, c);
         check_kinds(r.result, (c.width * c.height - 1) / c.pixels.stride + 1, lights_of(scene), c.packets.return_a_ray);
         check_traffic(r, s);
         check_returns(r);
         if (!one_each) continue;
-        const RayWalks here = check_walks(r, s);
+        const RayCounts here = check_walks(r, s);
         all.narrow += here.narrow;
         all.wide += here.wide;
     }
@@ -221,17 +221,17 @@ TEST_CASE("random machines: packets, hops and words agree with the events and th
 
 TEST_CASE("recording the packets changes no result", "[torus]") {
     Session session(choose_device(""));
-    const Scene scene = random_view_scene(kRichScenes[1]);
+    const Scene scene = random_view_scene(kSceneSeeds[1]);
     const TorusCase c{.nodes = {3, 2, 2}, .lanes = 4, .group = 1};
-    const TorusResult with = record(session, scene, c).result, without = render_torus(session, scene, c);
-    CHECK(one_image(with) == one_image(without));
+    const TorusResult with = render_and_record(session, scene, c).result, without = render_torus(session, scene, c);
+    CHECK(image_and_counts(with) == image_and_counts(without));
     CHECK(with.link_words == without.link_words);
     CHECK(with.supersteps.size() == without.supersteps.size());
 }
 
 TEST_CASE("the supersteps' maxima sum to between the busiest node or link and the total", "[torus]") {
     const TorusResult r =
-        render_torus(random_view_scene(kRichScenes[2]), TorusCase{.nodes = {3, 2, 3}, .lanes = 4, .group = 1});
+        render_torus(random_view_scene(kSceneSeeds[2]), TorusCase{.nodes = {3, 2, 3}, .lanes = 4, .group = 1});
     std::uint64_t cycles = 0, words = 0;
     for (const Superstep& step : r.supersteps) {
         cycles += step.max_node_cycles;
@@ -250,7 +250,7 @@ TEST_CASE("the packet trace of a render gives each ray the right parent", "[toru
         .nodes = {2, 3, 2}, .inject = GENERATE(Injection::kAll, Injection::kRoot), .lanes = 4, .group = 1};
     PacketTrace trace;
     const TorusResult r =
-        render_torus(random_view_scene(kRichScenes[0]), c, [&](const PacketRecord& record) { trace.add(record); });
+        render_torus(random_view_scene(kSceneSeeds[0]), c, [&](const PacketRecord& record) { trace.add(record); });
     const std::vector<Row> rows = rows_of(gunzip(trace.finish()));
     REQUIRE(rows.size() == trace.rows());
     std::map<std::uint64_t, Row> last;  // by ray: its latest row

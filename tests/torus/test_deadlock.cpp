@@ -12,7 +12,7 @@
 namespace raya {
 namespace {
 
-std::uint32_t shortest_of(const Scene& scene, const TorusCase& c) {
+std::uint32_t min_queue_of(const Scene& scene, const TorusCase& c) {
     return raya_min_queue(lights_of(scene), c.bounces);
 }
 
@@ -37,20 +37,20 @@ Scene scene_in_one_voxel(std::uint64_t seed) {
 }
 
 // Hash and counts of a finished render, or the figures of its deadlock.
-struct Ending {
+struct RenderOutcome {
     std::string image;
     std::optional<DeadlockFigures> deadlock;
 };
 
-Ending outcome_of(TorusRenderer& renderer) {
+RenderOutcome render_outcome(TorusRenderer& renderer) {
     try {
-        return {one_image(renderer.render()), {}};
+        return {image_and_counts(renderer.render()), {}};
     } catch (const TorusDeadlock& error) {
         return {{}, error.figures};
     }
 }
 
-QueueFound search(TorusRenderer& renderer, std::uint32_t queue) {
+QueueSearchResult search(TorusRenderer& renderer, std::uint32_t queue) {
     return find_longer_queue(queue, renderer.queue_trial());
 }
 
@@ -63,13 +63,13 @@ bool same(const DeadlockFigures& a, const DeadlockFigures& b) {
 TEST_CASE("a single node renders with the shortest queue", "[torus]") {
     Session session(choose_device(""));
     for (std::size_t i = 0; i < 6; ++i) {
-        const Scene scene = random_view_scene(kRichScenes[i]);
+        const Scene scene = random_view_scene(kSceneSeeds[i]);
         TorusCase c{.nodes = {1, 1, 1}, .voxels = {1, 1, 1}, .lanes = 4, .group = 1};
         if (i % 2) c.voxels = {3, 2, 4};
-        c.queue = shortest_of(scene, c);
-        CAPTURE(kRichScenes[i], case_text(c));
+        c.queue = min_queue_of(scene, c);
+        CAPTURE(kSceneSeeds[i], case_text(c));
         const TorusResult r = render_torus(session, scene, c);
-        CHECK(one_image(r) == ring_image(scene, c));
+        CHECK(image_and_counts(r) == ring_image_and_counts(scene, c));
         CHECK(r.queue_max <= c.queue);
         CHECK(r.hops == 0);
     }
@@ -82,10 +82,10 @@ TEST_CASE("the shortest queue suffices for a node that has all rays", "[torus]")
             for (const Injection inject : {Injection::kAll, Injection::kRoot}) {
                 const Scene scene = scene_in_one_voxel(seed);
                 TorusCase c{.nodes = {4, 4, 4}, .links = links, .inject = inject, .lanes = 4, .group = 1};
-                c.queue = shortest_of(scene, c);
+                c.queue = min_queue_of(scene, c);
                 CAPTURE(seed, case_text(c));
                 const TorusResult r = render_torus(session, scene, c);
-                CHECK(one_image(r) == ring_image(scene, c));
+                CHECK(image_and_counts(r) == ring_image_and_counts(scene, c));
                 CHECK(r.events[RAYA_PRIMARY_HITS] == c.width * c.height);
                 CHECK(r.events[RAYA_REFLECTED] > 2 * c.width * c.height);
                 const auto& loads = r.load.per_pe;
@@ -101,11 +101,11 @@ TEST_CASE("a queue shorter than the shortest is refused, with the shortest lengt
         Scene scene = random_view_scene(5);
         scene.lights.resize(random_below(random, 5), scene.lights[0]);
         TorusCase c{.lanes = 4, .group = 1, .bounces = random_below(random, 32)};
-        const std::uint32_t shortest = shortest_of(scene, c);
+        const std::uint32_t shortest = min_queue_of(scene, c);
         c.queue = 1 + random_below(random, shortest - 1);
         if (i % 2) c.queue = shortest - 1;
         CAPTURE(i, case_text(c), shortest);
-        const std::string refusal = refusal_of([&] { render_torus(session, scene, c); });
+        const std::string refusal = user_error_message([&] { render_torus(session, scene, c); });
         CHECK_THAT(refusal, Catch::Contains("--queue") && Catch::Contains(std::to_string(shortest)));
     }
 }
@@ -116,8 +116,8 @@ TEST_CASE("a machine that deadlocks ends with the queue that the search finds", 
     Session session(choose_device(""));
     TorusCase c{.width = 40, .height = 40, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
     c.format = "spa22";
-    c.queue = shortest_of(scene, c);
-    const std::string expected = ring_image(scene, c);
+    c.queue = min_queue_of(scene, c);
+    const std::string expected = ring_image_and_counts(scene, c);
     int deadlocks = 0;
     for (const Injection inject : {Injection::kAll, Injection::kRoot}) {
         TorusCase short_one = c;
@@ -125,7 +125,7 @@ TEST_CASE("a machine that deadlocks ends with the queue that the search finds", 
         short_one.inject = inject;
         CAPTURE(name, case_text(short_one));
         TorusRenderer renderer(session, scene, settings_of(short_one));
-        const Ending first = outcome_of(renderer);
+        const RenderOutcome first = render_outcome(renderer);
         if (!first.deadlock) CHECK(first.image == expected);
         if (!first.deadlock) continue;
         ++deadlocks;
@@ -134,16 +134,16 @@ TEST_CASE("a machine that deadlocks ends with the queue that the search finds", 
         CHECK(first.deadlock->full <= 64);
         CHECK(first.deadlock->live > first.deadlock->full * short_one.queue);
         CHECK(first.deadlock->superstep > 0);
-        const QueueFound found = search(renderer, short_one.queue);
-        CHECK((found.ends && found.fits));
+        const QueueSearchResult found = search(renderer, short_one.queue);
+        CHECK((found.completes && found.fits));
         CHECK(found.queue > short_one.queue);
         const TorusResult r = renderer.render();  // with the queue that was found
-        CHECK(one_image(r) == expected);
+        CHECK(image_and_counts(r) == expected);
         CHECK(r.queue_max <= found.queue);
         CHECK(r.made == r.ended);
         // The deadlock repeats identically: no state of the first render or of the search remains.
         renderer.set_queue(short_one.queue);
-        const Ending again = outcome_of(renderer);
+        const RenderOutcome again = render_outcome(renderer);
         REQUIRE(again.deadlock);
         CHECK(same(*again.deadlock, *first.deadlock));
     }
@@ -156,19 +156,19 @@ TEST_CASE("the queue that the search finds fits a node's memory", "[torus]") {
     TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
     c.format = "spa22";
     c.bounces = 8;
-    const std::uint32_t shortest = shortest_of(scene, c);
+    const std::uint32_t shortest = min_queue_of(scene, c);
     c.queue = shortest;
     TorusSettings settings = settings_of(c);
     settings.memory_bytes = 16384;  // less than twice the memory of the shortest queue
     TorusRenderer renderer(session, scene, settings);
-    REQUIRE(outcome_of(renderer).deadlock);
-    const QueueFound found = search(renderer, shortest);
-    CHECK((found.ends && found.fits));
+    REQUIRE(render_outcome(renderer).deadlock);
+    const QueueSearchResult found = search(renderer, shortest);
+    CHECK((found.completes && found.fits));
     CHECK(found.bytes <= 16384);
     REQUIRE(found.queue > shortest);
     CHECK(found.queue < 2 * shortest);
     settings.queue = found.queue;  // as a user would set it
-    CHECK(one_image(TorusRenderer(session, scene, settings).render()) == ring_image(scene, c));
+    CHECK(image_and_counts(TorusRenderer(session, scene, settings).render()) == ring_image_and_counts(scene, c));
 }
 
 TEST_CASE("with one packet less than just enough the machine deadlocks", "[torus]") {
@@ -176,12 +176,13 @@ TEST_CASE("with one packet less than just enough the machine deadlocks", "[torus
     Session session(choose_device(""));
     TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
     c.format = "spa22";
-    const std::string expected = ring_image(scene, c);
-    const std::uint32_t shortest = shortest_of(scene, c);
+    const std::string expected = ring_image_and_counts(scene, c);
+    const std::uint32_t shortest = min_queue_of(scene, c);
     const auto outcome = [&](std::uint32_t queue) {
         c.queue = queue;
         std::string image;
-        const std::string refusal = refusal_of([&] { image = one_image(render_torus(session, scene, c)); });
+        const std::string refusal =
+            user_error_message([&] { image = image_and_counts(render_torus(session, scene, c)); });
         return image.empty() ? refusal : image;
     };
     std::uint32_t queue = shortest;
@@ -199,21 +200,21 @@ TEST_CASE("queues of any length give the ring's image, or a deadlock that a foun
     Session session(choose_device(""));
     int deadlocks = 0;
     for (std::uint32_t i = 0; i < 10; ++i) {
-        const Scene scene = random_view_scene(kRichScenes[i % 4]);
+        const Scene scene = random_view_scene(kSceneSeeds[i % 4]);
         TorusCase c{.width = 24, .height = 20, .lanes = 4, .group = 1};
         c.nodes = {1 + random_below(random, 5), 1 + random_below(random, 4), 1 + random_below(random, 4)};
         c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
         c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
-        c.queue = shortest_of(scene, c) + random_below(random, 8);
+        c.queue = min_queue_of(scene, c) + random_below(random, 8);
         CAPTURE(seed, i, case_text(c));
         TorusRenderer renderer(session, scene, settings_of(c));
-        Ending outcome = outcome_of(renderer);
+        RenderOutcome outcome = render_outcome(renderer);
         if (outcome.deadlock) {
             ++deadlocks;
-            REQUIRE(search(renderer, c.queue).ends);
-            outcome = outcome_of(renderer);
+            REQUIRE(search(renderer, c.queue).completes);
+            outcome = render_outcome(renderer);
         }
-        CHECK(outcome.image == ring_image(scene, c));
+        CHECK(outcome.image == ring_image_and_counts(scene, c));
     }
     CAPTURE(deadlocks);
     CHECK(deadlocks < 10);

@@ -15,37 +15,37 @@ struct KernelFault {
     SourcePatch patch;
 };
 
-const KernelFault kFaults[] = {
+const KernelFault kKernelFaults[] = {
     {"accept drops a packet",
      {"torus/accept.cl", "packet.head.state &= ~RAYA_STATE_FRESH;",
       "packet.head.state &= packet.head.pixel == 7 ? 0 : ~RAYA_STATE_FRESH;"}},
     {"accept takes a packet twice",
      {"torus/accept.cl", "left += votes_for(votes, RAYA_LEFT_THERE, goal);",
       "left += votes_for(votes, RAYA_LEFT_THERE, goal); if (first == 0 && queue->used > 3) left = 1;"}},
-    {"route sends the wrong way",
+    {"route swaps source and destination",
      {"shared/torus.h", "raya_next_link(raya_torus t, raya_u32 from, raya_u32 to)",
       "raya_next_link(raya_torus t, raya_u32 to, raya_u32 from)"}},
-    {"of equal routes the one down",
+    {"of two equally long routes, packets take the descending one",
      {"shared/torus.h", "*up = higher <= side - higher;", "*up = higher < side - higher;"}},
-    {"the nearest hit of a wide ray is its last",
+    {"a wide ray records its last hit as the nearest",
      {"torus/outcome.clh", "!= RAYA_NO_VOXEL && !nearer) return;",
       "!= RAYA_NO_VOXEL && !nearer && number > 100000) return;"}},
-    {"a wide ray forgets its last voxel",
-     {"torus/outcome.clh", "if (next == p->start)", "if (next_of_tour(n->grid, next) == p->start)"}},
-    {"a wide ray starts one voxel behind",
+    {"a wide ray skips its last voxel",
+     {"torus/outcome.clh", "if (next == p->start)", "if (next_tour_voxel(n->grid, next) == p->start)"}},
+    {"wide rays start at i = 0",
      {"torus/node.clh", "const raya_place p = n->place;", "raya_place p = n->place; p.at[0] = 0;"}},
     {"hits behind the voxel's exit count", {"torus/outcome.clh", "(hits & (h.distance <= leaves))", "hits"}},
     {"hits count only in the first half of a voxel",
      {"torus/outcome.clh", "(hits & (h.distance <= leaves))", "(hits & (h.distance <= leaves * 0.5f))"}},
-    {"the walk is a voxel off",
-     {"grid/walk.clh", "const index k = at + choose_index(a->up, (index)(1), (index)(0));",
+    {"the traversal moves up by two voxels",
+     {"grid/traversal.clh", "const index k = at + choose_index(a->up, (index)(1), (index)(0));",
       "const index k = at + choose_index(a->up, (index)(2), (index)(0));"}},
-    {"a return is counted twice", {"torus/route.cl", "+= home_used - home_before;", "+= home_used;"}},
+    {"a return is counted twice", {"torus/route.cl", "+= returns_used - returns_before;", "+= returns_used;"}},
     {"a return is lost between mailboxes", {"torus/accept.cl", "return moves;", "return moves - (moves > 1);"}},
     {"a shadow ray passes through near objects",
      {"torus/outcome.clh", "o.stopped = m & shadow & hits;", "o.stopped = m & shadow & hits & (h.distance > 1.0f);"}},
     {"a pixel is made twice", {"torus/pixel_rows.clh", "p.misses = root || !in_window;", "p.misses = 1;"}},
-    {"windows are a row short",
+    {"windows start one row too late",
      {"torus/pixel_rows.clh", "p.row = root ? i : in_window ? header->window[0] + i",
       "p.row = root ? i : in_window ? header->window[0] + i + 1"}},
     {"refraction takes the reflected path",
@@ -74,7 +74,7 @@ struct Traffic {
 };
 
 // Stops a machine that does not finish.
-void stop_endless(int& calls) {
+void limit_calls(int& calls) {
     if (++calls > 5'000) throw std::runtime_error("does not end");
 }
 
@@ -84,9 +84,9 @@ Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
     int calls = 0;
     t.expected.assign(std::size_t{raya_nodes(s.torus)} * RAYA_LINKS, 0);
     const TorusResult r = TorusRenderer(session, scene, s)
-                              .render([&](double) { stop_endless(calls); },
+                              .render([&](double) { limit_calls(calls); },
                                       {.packets = [&](const PacketRecord& p) { add_route(t.expected, s.torus, p); }});
-    t.image = one_image(r);
+    t.image = image_and_counts(r);
     t.made = r.made;
     t.discarded = r.events[RAYA_DISCARDED];
     t.words = r.link_words;
@@ -94,7 +94,8 @@ Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
 }
 
 // Returns the first difference or error that reveals the fault; empty if there is none.
-std::string symptom(Session& session, const Scene& scene, TorusCase c, const Traffic& right, const SourcePatch& patch) {
+std::string detect_fault(Session& session, const Scene& scene, TorusCase c, const Traffic& right,
+                         const SourcePatch& patch) {
     c.sources.patches = {patch};
     try {
         const Traffic t = traffic_of(session, scene, c);
@@ -114,25 +115,26 @@ TEST_CASE("every injected kernel fault is detected", "[torus][.][faults]") {
         Scene scene;
         TorusCase c;
     };
-    TorusCase walks{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
-    walks.queue = raya_min_queue(lights_of(random_view_scene(kRichScenes[1])), walks.bounces) + 30;
-    TorusCase tours{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
-    tours.format = "spa22";
-    tours.packets = {22, true};
+    TorusCase narrow_rays{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
+    narrow_rays.queue = raya_min_queue(lights_of(random_view_scene(kSceneSeeds[1])), narrow_rays.bounces) + 30;
+    TorusCase wide_rays{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
+    wide_rays.format = "spa22";
+    wide_rays.packets = {22, true};
     // The eye is outside the box, so several nodes test the same pixel.
     const TorusCase outside{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
-    const Trial trials[] = {{random_view_scene(kRichScenes[1]), walks},
-                            {far_mirror_scene(kRichScenes[3], "spa22"), tours},
-                            {random_view_scene(kRichScenes[6]), outside}};
+    const Trial trials[] = {{random_view_scene(kSceneSeeds[1]), narrow_rays},
+                            {far_mirror_scene(kSceneSeeds[3], "spa22"), wide_rays},
+                            {random_view_scene(kSceneSeeds[6]), outside}};
     std::vector<Traffic> right;
     for (const Trial& t : trials) right.push_back(traffic_of(session, t.scene, t.c));
-    for (std::size_t i = 0; i < right.size(); ++i) CHECK(right[i].image == ring_image(trials[i].scene, trials[i].c));
-    for (const KernelFault& fault : kFaults) {
+    for (std::size_t i = 0; i < right.size(); ++i)
+        CHECK(right[i].image == ring_image_and_counts(trials[i].scene, trials[i].c));
+    for (const KernelFault& fault : kKernelFaults) {
         CAPTURE(fault.what);
         check_patches({.patches = {fault.patch}});
         std::string how;
         for (std::size_t i = 0; i < right.size() && how.empty(); ++i)
-            how = symptom(session, trials[i].scene, trials[i].c, right[i], fault.patch);
+            how = detect_fault(session, trials[i].scene, trials[i].c, right[i], fault.patch);
         WARN(fault.what << ": " << how);
         CHECK(how != "");
     }

@@ -12,19 +12,19 @@
 namespace raya {
 namespace {
 
-struct Recorded {
+struct RenderHistory {
     raya_torus torus{};
     TorusResult result;
     History history;
 };
 
-Recorded recorded(const Scene& scene, const TorusCase& c) {
+RenderHistory render_with_history(const Scene& scene, const TorusCase& c) {
     TorusSettings settings = settings_of(c);
     settings.history = true;
     Session session(choose_device(""));
     TorusRenderer renderer(session, scene, settings);
     HistoryRecorder recorder(settings.torus, settings.packets);
-    Recorded r;
+    RenderHistory r;
     r.torus = settings.torus;
     r.result = renderer.render({}, {.work = [&](const NodeWork& work) { recorder.add(work); }});
     r.history = recorder.finish();
@@ -32,7 +32,7 @@ Recorded recorded(const Scene& scene, const TorusCase& c) {
 }
 
 // By kind: the number of messages whose sending task was started by a message of another kind or by injection.
-std::map<std::uint32_t, std::uint64_t> made_by_others(const History& history) {
+std::map<std::uint32_t, std::uint64_t> count_new_messages(const History& history) {
     std::map<std::uint32_t, std::uint64_t> made;
     for (const HistoryMessage& message : history.messages) {
         const std::uint32_t cause = history.tasks[message.task].cause;
@@ -41,15 +41,15 @@ std::map<std::uint32_t, std::uint64_t> made_by_others(const History& history) {
     return made;
 }
 
-std::vector<std::uint64_t> cycles_of_tasks(const Recorded& r) {
+std::vector<std::uint64_t> cycles_of_tasks(const RenderHistory& r) {
     std::vector<std::uint64_t> cycles(raya_nodes(r.torus));
     for (const HistoryTask& task : r.history.tasks) cycles[task.node] += task.cycles;
     return cycles;
 }
 
-void check_against_counts(const Recorded& r) {
+void check_against_counts(const RenderHistory& r) {
     CHECK(cycles_of_tasks(r) == r.result.load.per_pe);
-    auto made = made_by_others(r.history);
+    auto made = count_new_messages(r.history);
     for (const std::uint32_t kind : {RAYA_KIND_PRIMARY, RAYA_KIND_SHADOW}) CHECK(made[kind] == r.result.made[kind]);
     CHECK(made[RAYA_KIND_RETURN] == r.result.returns);
     const AsyncResult async = simulate(r.torus, r.history);
@@ -63,8 +63,8 @@ void check_against_counts(const Recorded& r) {
     CHECK(async.finish_ms <= time.stepwise_ms);
 }
 
-const Scene& rich_scene() {
-    static const Scene scene = random_view_scene(kRichScenes[0]);
+const Scene& test_scene() {
+    static const Scene scene = random_view_scene(kSceneSeeds[0]);
     return scene;
 }
 
@@ -76,18 +76,19 @@ TEST_CASE("a history contains all that the render counted, on every kind of mach
                    TorusCase{.nodes = {2, 3, 2}, .voxels = {5, 3, 4}, .inject = Injection::kRoot, .queue = 120},
                    TorusCase{.nodes = {1, 1, 1}, .voxels = {3, 2, 2}}, TorusCase{.nodes = {2, 2, 1}, .group = 4}})) {
         CAPTURE(case_text(c));
-        const Recorded r = recorded(rich_scene(), c);
+        const RenderHistory r = render_with_history(test_scene(), c);
         check_against_counts(r);
     }
 }
 
 TEST_CASE("recording a history does not change the image or the counts", "[torus]") {
     const TorusCase c{.nodes = {2, 2, 2}, .voxels = {3, 3, 3}};
-    CHECK(one_image(recorded(rich_scene(), c).result) == one_image(render_torus(rich_scene(), c)));
+    CHECK(image_and_counts(render_with_history(test_scene(), c).result) ==
+          image_and_counts(render_torus(test_scene(), c)));
 }
 
 TEST_CASE("the history contains wide rays, which visit all voxels and return to their hit", "[torus]") {
-    const Recorded r = recorded(far_mirror_scene(1, "fp32"), {.nodes = {2, 2, 1}, .voxels = {3, 2, 2}});
+    const RenderHistory r = render_with_history(far_mirror_scene(1, "fp32"), {.nodes = {2, 2, 1}, .voxels = {3, 2, 2}});
     check_against_counts(r);
 }
 
@@ -113,24 +114,24 @@ TEST_CASE("the cost of discarded rays is charged to the rays that a node keeps",
 
 TEST_CASE("reading a history without settings.history is an error", "[torus]") {
     Session session(choose_device(""));
-    TorusRenderer renderer(session, rich_scene(), settings_of({.nodes = {2, 2, 2}, .voxels = {3, 3, 3}}));
+    TorusRenderer renderer(session, test_scene(), settings_of({.nodes = {2, 2, 2}, .voxels = {3, 3, 3}}));
     CHECK_THROWS_AS(renderer.render({}, {.work = [](const NodeWork&) {}}), std::logic_error);
 }
 
 TEST_CASE("every injected fault in the cost counters is detected", "[.][faults]") {
     const SourcePatch faults[] = {
         {"torus/trace_voxel.cl", "add_cost(f, event, m, objects);", ""},
-        {"torus/flight.clh", "    add_cost(f, event, m, 1);", "    add_cost(f, event, m, 2);"},
+        {"torus/packet_batch.clh", "    add_cost(f, event, m, 1);", "    add_cost(f, event, m, 2);"},
         {"torus/trace_voxel.cl", "f->processed.lane[lane] ? f->state.lane[lane] : RAYA_KIND_NONE",
          "f->state.lane[lane]"},
-        {"torus/flight.clh", "f->cycles.all = f->processed.all = (index)(0);", "f->processed.all = (index)(0);"}};
+        {"torus/packet_batch.clh", "f->cycles.all = f->processed.all = (index)(0);", "f->processed.all = (index)(0);"}};
     for (const SourcePatch& fault : faults) {
         CAPTURE(fault.find);
         TorusCase c{.nodes = {2, 2, 2}, .voxels = {3, 3, 3}, .queue = 60};
         c.sources.patches = {fault};
         bool seen = false;
         try {
-            const Recorded r = recorded(rich_scene(), c);
+            const RenderHistory r = render_with_history(test_scene(), c);
             seen = cycles_of_tasks(r) != r.result.load.per_pe;
         } catch (const std::logic_error&) {
             seen = true;

@@ -90,7 +90,7 @@ TEST_CASE("bounded launches and links moved by a kernel give the image and count
     Session session(choose_device(""));
     std::uint64_t once = 0, bounded = 0;
     for (unsigned i = 0; i < quick_cases(40, 300); ++i) {
-        const Scene scene = random_view_scene(kRichScenes[i % kRichScenes.size()]);
+        const Scene scene = random_view_scene(kSceneSeeds[i % kSceneSeeds.size()]);
         TorusCase c = random_case(random, scene);
         c.link_move = LinkMove::kCopies;
         TorusSettings settings = settings_of(c);
@@ -114,22 +114,22 @@ TEST_CASE("bounded launches and links moved by a kernel give the image and count
 // Group sizes up to a GPU's default and the maximum.
 TEST_CASE("work-groups of many work-items give the same image", "[torus][slow]") {
     Session session(choose_device(""));
-    const Scene scene = random_view_scene(kRichScenes[0]);
+    const Scene scene = random_view_scene(kSceneSeeds[0]);
     TorusCase c{.width = 12, .height = 10, .nodes = {2, 2, 1}, .lanes = 1, .group = 1, .bounces = 3};
     c.queue = 400;
-    const std::string right = one_image(render_torus(session, scene, c));
+    const std::string right = image_and_counts(render_torus(session, scene, c));
     for (const std::uint32_t group : quick(2, {128u, 64u, 33u, 256u, 1024u})) {
         if (group > session.device().max_group_size) continue;
         CAPTURE(group);
         c.group = group;
         c.link_move = group == 128 ? LinkMove::kKernel : LinkMove::kCopies;
-        CHECK(one_image(render_torus(session, scene, c)) == right);
+        CHECK(image_and_counts(render_torus(session, scene, c)) == right);
     }
 }
 
 TEST_CASE("the link method is the device's tuned one unless an option names it", "[torus]") {
     Session session(choose_device(""));
-    const Scene scene = random_view_scene(kRichScenes[0]);
+    const Scene scene = random_view_scene(kSceneSeeds[0]);
     const auto rendered = [&](LinkMove named) {
         const TorusCase c{.width = 6, .height = 5, .nodes = {2, 1, 1}, .lanes = 0, .bounces = 1, .link_move = named};
         return render_torus(session, scene, c);
@@ -138,7 +138,7 @@ TEST_CASE("the link method is the device's tuned one unless an option names it",
     const TorusResult untuned = rendered(LinkMove::kAutomatic);
     CHECK(untuned.links_origin == (cpu ? "defaults" : "measured"));
     if (cpu) CHECK(untuned.links_by_kernel);
-    const ScopedTunedSource use([](const DeviceInfo& device, const TunedFor& what) {
+    const ScopedTunedSource use([](const DeviceInfo& device, const TuningKey& what) {
         TunedValues values = default_values(device, what);
         values.link_exchange = static_cast<std::uint32_t>(LinkMove::kCopies);
         return std::optional(TunedChoice{values, "FILE, DATE"});
@@ -148,8 +148,8 @@ TEST_CASE("the link method is the device's tuned one unless an option names it",
     CHECK(tuned.links_origin == "FILE, DATE");
     CHECK(named.links_by_kernel);
     CHECK(named.links_origin == "options");
-    CHECK(one_image(tuned) == one_image(untuned));
-    CHECK(one_image(named) == one_image(untuned));
+    CHECK(image_and_counts(tuned) == image_and_counts(untuned));
+    CHECK(image_and_counts(named) == image_and_counts(untuned));
 }
 
 TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterations where the device limits them",
@@ -168,29 +168,29 @@ TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterati
     status.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 500;  // may arrive at node 0
 
     LaunchPlan few = plan_of(100), many = plan_of(1'000'000);
-    CHECK(many.trace_voxel().once);  // the queue is empty
-    few.look(status);
-    many.look(status);
-    CHECK(few.trace_voxel().once);
-    CHECK(few.inject().once);
+    CHECK(many.trace_voxel().single_launch);  // the queue is empty
+    few.update(status);
+    many.update(status);
+    CHECK(few.trace_voxel().single_launch);
+    CHECK(few.inject().single_launch);
     CHECK(many.trace_voxel() == LaunchBudget{100'000'000, false});
     many.clear();
-    CHECK(many.trace_voxel().once);
+    CHECK(many.trace_voxel().single_launch);
 
     device.max_loop_iterations = 65'535;
     LaunchPlan short_loops = plan_of(100), one_voxel_too_long = plan_of(10'000);
     CHECK(short_loops.route() == LaunchBudget{7679, false});  // (65535 - 4096) / 8; a queue may hold 8192 packets
-    CHECK_FALSE(short_loops.accept().once);
+    CHECK_FALSE(short_loops.accept().single_launch);
     // Units of work per packet: 1 for its batch, 100 for the tests, 12 for its processing (RAYA_WORK_OF_PROCESSING).
     for (const auto& [packets, once] : {std::pair{22u, true}, std::pair{23u, false}}) {
         NodeStatus waiting(2);
         waiting.words[RAYA_STATUS_QUEUE] = packets - 5;
         waiting.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 5;
-        short_loops.look(waiting);
+        short_loops.update(waiting);
         CAPTURE(packets);
         CHECK(short_loops.trace_voxel() == (once ? LaunchBudget{2559, true} : LaunchBudget{2559 - 113, false}));
     }
-    one_voxel_too_long.look(status);
+    one_voxel_too_long.update(status);
     CHECK(one_voxel_too_long.trace_voxel() == LaunchBudget{1, false});  // one packet per launch
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("a launch of any kernel whose loops are cut is repeated with half the 
         "ended[(size_t)slot * RAYA_KINDS + 2] += 9; status[RAYA_STATUS_QUEUE_MAX] += 1000; "
         "queues[(size_t)slot * run->queue].head.pixel += 1;";
     const Row rows[] = {{"inject", counted}, {"trace_voxel", counted}, {"route", moved}, {"accept", moved}};
-    const Scene scene = random_view_scene(kRichScenes[0]);
+    const Scene scene = random_view_scene(kSceneSeeds[0]);
     TorusCase c{.width = 6, .height = 5, .nodes = {2, 2, 1}, .lanes = 1, .group = 3, .bounces = 3};
     for (const Row& row : rows) {
         CAPTURE(row.kernel);
@@ -226,17 +226,17 @@ TEST_CASE("a launch of any kernel whose loops are cut is repeated with half the 
 
 TEST_CASE("compose uses more work-groups if its loops were cut", "[torus]") {
     Session session(choose_device(""));
-    const Scene scene = random_view_scene(kRichScenes[0]);
+    const Scene scene = random_view_scene(kSceneSeeds[0]);
     TorusCase c{.width = 16, .height = 15, .nodes = {2, 1, 1}, .lanes = 1, .group = 1, .bounces = 1};
-    const std::string right = one_image(render_torus(session, scene, c));
+    const std::string right = image_and_counts(render_torus(session, scene, c));
     c.sources.patches = {
         {"torus/compose.cl", "if (loops_were_cut(", "if (pixels > 4 * get_global_size(0) || loops_were_cut("}};
-    CHECK(one_image(render_torus(session, scene, c)) == right);
+    CHECK(image_and_counts(render_torus(session, scene, c)) == right);
 }
 
 TEST_CASE("a loop that the device ends early is detected in every kernel", "[torus]") {
     Session session(choose_device(""));
-    const Scene scene = random_view_scene(kRichScenes[0]);
+    const Scene scene = random_view_scene(kSceneSeeds[0]);
     TorusCase c{.width = 6, .height = 5, .nodes = {2, 1, 1}, .lanes = 1, .group = 1, .bounces = 1};
     for (const char* file :
          {"torus/inject.cl", "torus/trace_voxel.cl", "torus/route.cl", "torus/accept.cl", "torus/compose.cl"}) {
@@ -247,8 +247,8 @@ TEST_CASE("a loop that the device ends early is detected in every kernel", "[tor
         CHECK_THROWS_AS(render_torus(session, scene, c), DeviceError);
     }
     // The canary must detect that its loop ends after the first iteration.
-    c.sources.patches = {
-        {"shared/loop_canary.clh", "i < two; ++i) turns = turns + 1;", "i < two; ++i) { turns = turns + 1; break; }"}};
+    c.sources.patches = {{"shared/loop_canary.clh", "i < two; ++i) iterations = iterations + 1;",
+                          "i < two; ++i) { iterations = iterations + 1; break; }"}};
     CHECK_THROWS_AS(render_torus(session, scene, c), DeviceError);
 }
 

@@ -39,14 +39,14 @@ class Mailboxes {
         links_.use_kernel(kernels.get<ExchangeKernel>(), kernels.options().group_size, device_status_);
     }
 
-    /// For each outbox, with probability 1 / `rareness`: adds a random number of packets, at most `most` and at most
-    /// the free space.
-    void put(SplitMix& random, std::uint32_t rareness, std::uint32_t most) {
+    /// For each outbox, with probability 1 / `rareness`: adds a random number of packets, at most `max_packets` and at
+    /// most the free space.
+    void put(SplitMix& random, std::uint32_t rareness, std::uint32_t max_packets) {
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             for (std::uint32_t node = 0; node < nodes_ && torus_.sides[link / 2] > 1; ++node) {
                 std::uint32_t& packets = outbox(link, node);
                 if (random_below(random, rareness) > 0) continue;
-                const std::uint32_t more = std::min(capacity_ - packets, random_below(random, most + 1));
+                const std::uint32_t more = std::min(capacity_ - packets, random_below(random, max_packets + 1));
                 for (std::uint32_t i = 0; i < more; ++i) put_packet(link, node, packets++);
                 out_[at(link * nodes_ + node)] = packets;
             }
@@ -68,20 +68,20 @@ class Mailboxes {
         links_.exchange(status_, words);
         count_copies();
         session_.read("test", links_.inboxes(), in_);
-        std::vector<std::uint32_t> sent(links_.sent().size());
-        session_.read("test", links_.sent(), sent);
+        std::vector<std::uint32_t> sent(links_.sent_flags().size());
+        session_.read("test", links_.sent_flags(), sent);
         std::size_t wrong_flags = 0, touched = 0;
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             for (std::uint32_t node = 0; node < nodes_; ++node) {
                 const std::uint32_t end = raya_link_end(torus_, node, link), packets = outbox(link, node);
-                const bool busy = inbox(link, end) > 0, goes = packets > 0 && !busy;
-                wrong_flags += sent[link * nodes_ + node] != goes;
+                const bool occupied = inbox(link, end) > 0, sends = packets > 0 && !occupied;
+                wrong_flags += sent[link * nodes_ + node] != sends;
                 const std::size_t to = at(link * nodes_ + node);
-                if (busy) touched += !std::equal(&in_[to], &in_[to] + (1 + capacity_) * words_, &before[to]);
-                if (!busy && !goes) touched += in_[to] != 0;  // an empty inbox stays empty; only its header counts
-                if (!goes) continue;
+                if (occupied) touched += !std::equal(&in_[to], &in_[to] + (1 + capacity_) * words_, &before[to]);
+                if (!occupied && !sends) touched += in_[to] != 0;  // an empty inbox stays empty; only its header counts
+                if (!sends) continue;
                 expected[node * RAYA_LINKS + link] += std::uint64_t{packets} * words_;
-                arrive(link, node, end);
+                check_arrival(link, node, end);
             }
         CHECK(wrong_flags == 0);
         CHECK(touched == 0);
@@ -115,7 +115,8 @@ class Mailboxes {
     }
 
     std::uint64_t arrived() const { return arrived_.size(); }
-    static inline std::uint64_t spans = 0, single_boxes = 0;  // copy commands of several mailboxes, of one
+    /// Copy commands of several mailboxes, and of a single one.
+    static inline std::uint64_t multi_box_copies = 0, single_box_copies = 0;
 
   private:
     std::uint32_t& outbox(std::uint32_t link, std::uint32_t node) {
@@ -134,7 +135,7 @@ class Mailboxes {
             out_[at(link * nodes_ + node) + (1 + slot) * words_ + w] = number + (w << 24);
     }
 
-    void arrive(std::uint32_t link, std::uint32_t node, std::uint32_t end) {
+    void check_arrival(std::uint32_t link, std::uint32_t node, std::uint32_t end) {
         const std::uint32_t packets = outbox(link, node);
         const std::size_t box = at(link * nodes_ + node);
         CHECK(in_[box] == packets);
@@ -149,7 +150,7 @@ class Mailboxes {
     void count_copies() {
         const std::uint64_t box = (1 + capacity_) * words_ * sizeof(std::uint32_t);
         for (const CommandRecord& c : session_.profile().commands())
-            if (c.kind == "copy") (c.bytes > box ? spans : single_boxes) += 1;
+            if (c.kind == "copy") (c.bytes > box ? multi_box_copies : single_box_copies) += 1;
     }
 
     Session& session_;
@@ -190,8 +191,8 @@ TEST_CASE("random toruses: links carry every packet to the neighbour once", "[to
         arrived += boxes.arrived();
     }
     CHECK(arrived > 10'000);
-    CHECK(Mailboxes::spans > 100);
-    CHECK(Mailboxes::single_boxes > 100);
+    CHECK(Mailboxes::multi_box_copies > 100);
+    CHECK(Mailboxes::single_box_copies > 100);
 }
 
 TEST_CASE("a long mailbox is copied separately from short ones if that moves fewer bytes", "[torus]") {

@@ -167,17 +167,17 @@ TEST_CASE("nodes hold copies of the job's objects in their voxels, and nothing e
         CAPTURE(seed, torus_text(torus), sides_text(divisions));
         REQUIRE(memories.starts.size() == raya_nodes(torus) + 1);
         REQUIRE(memories.starts.back() == memories.words.size());
-        std::uint64_t most_words = 0;
+        std::uint64_t max_words = 0;
         for (std::uint32_t number = 0; number < raya_nodes(torus); ++number) {
             CAPTURE(number);
             NodeReader node(memories, number);
             REQUIRE(node.header().number == number);
             check_node(job, partition, torus, node);
-            most_words = std::max<std::uint64_t>(most_words, node.size());
+            max_words = std::max<std::uint64_t>(max_words, node.size());
             idle += node.header().voxels == 0;
             shared += node.header().voxels > 1;
         }
-        CHECK(fullest_node_words(job, partition, torus) == most_words);
+        CHECK(fullest_node_words(job, partition, torus) == max_words);
         CHECK(memories.copies == partition.objects.size() - finite_objects(job).size());
         CHECK(memories.max_objects == max_objects(job, partition, torus));
         objects += partition.objects.size();
@@ -239,7 +239,7 @@ TEST_CASE("nodes with more words than 32 bits can address are refused before the
     const Partition everywhere = partition_of({16, 16, 16}, std::vector<std::set<std::uint32_t>>(4096, {0}));
     const raya_torus torus = make_torus({4, 4, 4}, Links::kTorus3d);
     CHECK(fullest_node_words(job, everywhere, torus) > 64 * 400'000);
-    CHECK_THAT(refusal_of([&] { pack_nodes(job, everywhere, torus); }),
+    CHECK_THAT(user_error_message([&] { pack_nodes(job, everywhere, torus); }),
                Contains("64 nodes, 4096 voxels") && Contains("fewer"));
 }
 

@@ -46,7 +46,7 @@ TorusResult render_without_deadlock(Session& session, const Scene& scene, const 
     try {
         return renderer.render();
     } catch (const TorusDeadlock& still) {
-        if (!find_longer_queue(still.figures.queue, renderer.queue_trial()).ends) throw;
+        if (!find_longer_queue(still.figures.queue, renderer.queue_trial()).completes) throw;
         return renderer.render();
     }
 }
@@ -73,13 +73,13 @@ TEST_CASE("ten scenes on several machines and queue lengths: the image is the ri
     Session session(choose_device(""));
     std::vector<Scene> scenes;
     for (const std::string& name : project_scenes()) scenes.push_back(project_scene(name));
-    for (int i = 0; i < 3; ++i) scenes.push_back(random_view_scene(kRichScenes[i]));
+    for (int i = 0; i < 3; ++i) scenes.push_back(random_view_scene(kSceneSeeds[i]));
     REQUIRE(scenes.size() >= 10);
     int scenes_done = 0;
     for (const Scene& scene : scenes) {
         ++scenes_done;
         TorusCase c{.width = 18, .height = 12, .lanes = 4, .group = 1, .format = format};
-        const std::string expected = ring_image(scene, c);
+        const std::string expected = ring_image_and_counts(scene, c);
         CHECK_THAT(expected, Catch::Contains("primary 216 "));
         for (const Row& row : rows) {
             if ((&row - rows + scenes_done) % 2 == (format == "spa22")) continue;  // each format takes half of the rows
@@ -91,7 +91,7 @@ TEST_CASE("ten scenes on several machines and queue lengths: the image is the ri
             c.queue = row.queue * raya_min_queue(lights_of(scene), c.bounces);
             if (row.queue == 1 && scenes_done % 4) c.queue = 0;  // the shortest queues take very many supersteps
             CAPTURE(scene.name, case_text(c));
-            CHECK(one_image(render_without_deadlock(session, scene, c)) == expected);
+            CHECK(image_and_counts(render_without_deadlock(session, scene, c)) == expected);
         }
     }
 }
@@ -107,17 +107,17 @@ TEST_CASE("random scenes on random machines: the image is the ring's", "[torus][
         TorusCase c{
             .width = 1 + random_below(random, 20), .height = 1 + random_below(random, 16), .lanes = 4, .group = 1};
         c.format = format;
-        const std::string expected = ring_image(scene, c);
+        const std::string expected = ring_image_and_counts(scene, c);
         for (std::uint32_t k = 0; k < random_cases() / scenes; ++k) {
             const TorusCase drawn = random_machine(random, scene, c);
             CAPTURE(seed, i, k, case_text(drawn));
-            CHECK(one_image(render_without_deadlock(session, scene, drawn)) == expected);
+            CHECK(image_and_counts(render_without_deadlock(session, scene, drawn)) == expected);
         }
     }
 }
 
 TEST_CASE("lanes and group size change no bit of the torus's image and no packet's route", "[torus][slow]") {
-    const Scene scene = random_view_scene(kRichScenes[3]);
+    const Scene scene = random_view_scene(kSceneSeeds[3]);
     struct Row {
         std::uint32_t lanes, group;
         const char* format;
@@ -129,7 +129,7 @@ TEST_CASE("lanes and group size change no bit of the torus's image and no packet
     std::map<std::pair<std::string, Injection>, TorusResult> first;
     for (const Row& row : quick_of(3, rows)) {
         TorusCase c{.lanes = row.lanes, .group = row.group, .format = row.format};
-        if (!expected.contains(row.format)) expected[row.format] = ring_image(scene, c);
+        if (!expected.contains(row.format)) expected[row.format] = ring_image_and_counts(scene, c);
         for (const Injection inject : {Injection::kAll, Injection::kRoot})
             for (const std::uint32_t queue : {raya_min_queue(lights_of(scene), c.bounces), 0u}) {
                 c.inject = inject;
@@ -137,7 +137,7 @@ TEST_CASE("lanes and group size change no bit of the torus's image and no packet
                 c.nodes = {3, 2, 2};
                 CAPTURE(case_text(c));
                 const TorusResult r = render_without_deadlock(session, scene, c);
-                CHECK(one_image(r) == expected[row.format]);
+                CHECK(image_and_counts(r) == expected[row.format]);
                 const TorusResult& before = first.try_emplace({row.format, inject}, r).first->second;
                 CHECK(r.made == before.made);
                 CHECK(r.ended == before.ended);
@@ -152,11 +152,11 @@ TEST_CASE("subsets of the pixels combine to the whole image", "[torus]") {
     const std::uint64_t seed = 77'001;
     SplitMix random(seed);
     Session session(choose_device(""));
-    const Scene scene = random_view_scene(kRichScenes[4]);
+    const Scene scene = random_view_scene(kSceneSeeds[4]);
     for (int i = 0; i < 6; ++i) {
         TorusCase c{
             .width = 1 + random_below(random, 9), .height = 1 + random_below(random, 9), .lanes = 4, .group = 1};
-        const std::string expected = ring_image(scene, c);
+        const std::string expected = ring_image_and_counts(scene, c);
         c = random_machine(random, scene, c);
         c.queue = 0;
         c.pixels.stride = std::array{1u, 2u, 3u, 7u, c.width, c.width + 1}[static_cast<std::size_t>(i)];
@@ -176,12 +176,12 @@ TEST_CASE("subsets of the pixels combine to the whole image", "[torus]") {
             CHECK(outside == 0);
         }
         CAPTURE(seed, i, case_text(c));
-        CHECK(one_image(whole, events) == expected);
+        CHECK(image_and_counts(whole, events) == expected);
     }
 }
 
 TEST_CASE("a subset without pixels gives a black image", "[torus]") {
-    const Scene scene = random_view_scene(kRichScenes[7]);
+    const Scene scene = random_view_scene(kSceneSeeds[7]);
     TorusCase c{.width = 5, .height = 3, .lanes = 4, .group = 1};
     c.pixels = {20, 15};
     c.inject = GENERATE(Injection::kAll, Injection::kRoot);
@@ -192,38 +192,38 @@ TEST_CASE("a subset without pixels gives a black image", "[torus]") {
 }
 
 TEST_CASE("512 nodes with few pixels each give the ring's image", "[torus]") {
-    const Scene scene = random_view_scene(kRichScenes[5]);
+    const Scene scene = random_view_scene(kSceneSeeds[5]);
     Session session(choose_device(""));
     TorusCase c{.width = 9, .height = 7, .lanes = 4, .group = 1};
-    const std::string expected = ring_image(scene, c);
+    const std::string expected = ring_image_and_counts(scene, c);
     c.nodes = {8, 8, 8};
     for (const Links links : {Links::kTorus3d, Links::kTorus2d})
         for (const Injection inject : {Injection::kAll, Injection::kRoot}) {
             c.links = links;
             c.inject = inject;
             CAPTURE(case_text(c));
-            CHECK(one_image(render_torus(session, scene, c)) == expected);
+            CHECK(image_and_counts(render_torus(session, scene, c)) == expected);
         }
 }
 
 TEST_CASE("a scene scaled beyond the format's range gives the image of the unscaled scene", "[torus]") {
     Session session(choose_device(""));
     for (const std::string format : {"spa22", "e6m10"}) {
-        Scene scene = random_view_scene(kRichScenes[0]);
+        Scene scene = random_view_scene(kSceneSeeds[0]);
         scene.planes.clear();
         const TorusCase c{.width = 18, .height = 12, .nodes = {3, 2, 2}, .lanes = 4, .group = 1, .format = format};
         const Scene large = scaled_scene(scene, 0x1p16);
         CAPTURE(format);
-        CHECK(one_image(render_torus(session, large, c)) == ring_image(scene, c));
+        CHECK(image_and_counts(render_torus(session, large, c)) == ring_image_and_counts(scene, c));
         CHECK(render_torus(session, large, c).scale.exponent < -8);
     }
 }
 
 TEST_CASE("a second render on the same machine gives the same image and counts", "[torus]") {
     Session session(choose_device(""));
-    TorusRenderer renderer(session, random_view_scene(kRichScenes[6]), settings_of(TorusCase{.lanes = 4, .group = 1}));
+    TorusRenderer renderer(session, random_view_scene(kSceneSeeds[6]), settings_of(TorusCase{.lanes = 4, .group = 1}));
     const TorusResult first = renderer.render(), second = renderer.render();
-    CHECK(one_image(first) == one_image(second));
+    CHECK(image_and_counts(first) == image_and_counts(second));
     CHECK(first.events == second.events);
     CHECK(first.made == second.made);
     CHECK(first.link_words == second.link_words);

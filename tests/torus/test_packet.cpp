@@ -23,7 +23,8 @@ struct Contribution {
 // its refracted subtree. Chains of only reflections or only refractions often reach the last level.
 struct RandomTree {
     SplitMix random;
-    std::uint32_t last_level = kLastLevel, most = 400;  // most: contributions at which the tree stops growing
+    std::uint32_t last_level = kLastLevel;
+    std::uint32_t max_contributions = 400;  // the tree stops growing at this number
     std::vector<Contribution> contributions{};
 
     void add(std::uint32_t path, std::uint32_t level, std::uint32_t light) {
@@ -34,8 +35,8 @@ struct RandomTree {
         add(path, level, 0);
         for (std::uint32_t light = 1; light <= 3; ++light)
             if (random.next() % 2) add(path, level, light);
-        if (random.next() % 16 == 0) add(path, level, RAYA_MOST_LIGHTS);
-        if (level == last_level || contributions.size() > most) return;
+        if (random.next() % 16 == 0) add(path, level, RAYA_MAX_LIGHTS);
+        if (level == last_level || contributions.size() > max_contributions) return;
         const std::uint64_t choice = random.next() % 64;  // of 64: 14 both, 24 reflected, 24 refracted, 2 none
         if (choice < 38) walk(raya_path_reflected(path), level + 1);
         if (choice < 14 || (choice >= 38 && choice < 62)) walk(raya_path_refracted(path, level), level + 1);
@@ -105,7 +106,7 @@ TEST_CASE("kind, level, light and flags of a packet's state do not overlap", "[t
     for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
         SplitMix random(seed);
         const std::uint32_t kind = random_below(random, RAYA_KINDS), level = random_below(random, kLastLevel + 1);
-        const std::uint32_t light = random_below(random, RAYA_MOST_LIGHTS + 1);
+        const std::uint32_t light = random_below(random, RAYA_MAX_LIGHTS + 1);
         const std::uint32_t plain = raya_state(kind, level, light);
         CAPTURE(seed, kind, level, light);
         CHECK((plain & flags) == 0);
@@ -116,5 +117,5 @@ TEST_CASE("kind, level, light and flags of a packet's state do not overlap", "[t
             CHECK(raya_packet_words(state) == (kind == RAYA_KIND_RETURN ? 8u : 16u));
         }
     }
-    CHECK(raya_state_light(raya_state(RAYA_KIND_SHADOW, kLastLevel, RAYA_MOST_LIGHTS)) == RAYA_MOST_LIGHTS);
+    CHECK(raya_state_light(raya_state(RAYA_KIND_SHADOW, kLastLevel, RAYA_MAX_LIGHTS)) == RAYA_MAX_LIGHTS);
 }

@@ -19,14 +19,14 @@ const std::string kHeading = "superstep,source,destination,kind,bytes,ray,parent
 
 /// A sent packet and its name: "17" is the primary ray of pixel 17, "17RT" the refracted ray of that ray's reflected
 /// ray, "17RT+3" the shadow ray of "17RT" to light 3, and "17RT+3!" the return packet of that shadow ray.
-struct Sent {
+struct SentPacket {
     PacketRecord record;
     std::string kind, name, parent;
 };
 
-class Tree {
+class NamedRayTree {
   public:
-    explicit Tree(std::uint64_t seed) : random_(seed) {}
+    explicit NamedRayTree(std::uint64_t seed) : random_(seed) {}
 
     /// Adds packets of the ray and of its subtree, each sent up to three times.
     void grow(std::uint32_t pixel, std::uint32_t path, std::uint32_t level, const std::string& name,
@@ -49,7 +49,7 @@ class Tree {
         if (which & 2) grow(pixel, raya_path_refracted(path, level), level + 1, name + "T", depth);
     }
 
-    std::vector<Sent> shuffled() {
+    std::vector<SentPacket> shuffled() {
         for (std::size_t i = sent_.size(); i > 1; --i) std::swap(sent_[i - 1], sent_[random_.next() % i]);
         return std::move(sent_);
     }
@@ -77,7 +77,7 @@ class Tree {
     }
 
     SplitMix random_;
-    std::vector<Sent> sent_;
+    std::vector<SentPacket> sent_;
 };
 
 raya_head head_of(std::uint32_t pixel, std::uint32_t state, std::uint32_t path) {
@@ -89,11 +89,11 @@ raya_head head_of(std::uint32_t pixel, std::uint32_t state, std::uint32_t path) 
 }
 
 // The expected rows; rays are numbered in the order in which their names first appear in the table.
-std::string expected_rows(const std::vector<Sent>& sent) {
+std::string expected_rows(const std::vector<SentPacket>& sent) {
     std::map<std::string, std::size_t> numbers;
     const auto number = [&](const std::string& name) { return numbers.emplace(name, numbers.size()).first->second; };
     std::string rows;
-    for (const Sent& s : sent) {
+    for (const SentPacket& s : sent) {
         rows += fmt::format("{},{},{},{},{},{},", s.record.superstep, s.record.source, s.record.destination, s.kind,
                             4 * s.record.words, number(s.name));
         if (!s.parent.empty()) rows += std::to_string(number(s.parent));
@@ -106,15 +106,15 @@ TEST_CASE("random ray trees: rays and parents are numbered in order of appearanc
     constexpr std::uint64_t kSeed = 2025;
     for (std::uint64_t i = 0; i < 300; ++i) {
         CAPTURE(kSeed, i);
-        Tree tree(kSeed + i);
+        NamedRayTree tree(kSeed + i);
         const std::uint32_t pixels = 1 + tree.below(5);
         for (std::uint32_t p = 0; p < pixels; ++p) {
             const std::uint32_t pixel = p == 0 ? (1u << 28) - 1 : p << 20 | tree.below(1u << 20);
             tree.grow(pixel, 0, 0, std::to_string(pixel), tree.below(4) == 0 ? 31 : tree.below(8));
         }
-        const std::vector<Sent> sent = tree.shuffled();
+        const std::vector<SentPacket> sent = tree.shuffled();
         PacketTrace trace;
-        for (const Sent& s : sent) trace.add(s.record);
+        for (const SentPacket& s : sent) trace.add(s.record);
         CHECK(trace.rows() == sent.size());
         const bool same = gunzip(trace.finish()) == kHeading + expected_rows(sent);
         CHECK(same);
@@ -162,7 +162,7 @@ TEST_CASE("a ray keeps its number while the table grows", "[torus]") {
     const auto ray = [](std::uint32_t i) { return RayId{i / 8, 1 + i % 4, i % 8 < 4 ? 0 : 1 + i % 65'535}; };
     for (std::uint32_t i = 0; i < kRays; ++i) REQUIRE(numbers.number_of(ray(i)) == i);
     for (std::uint32_t i = kRays; i-- > 0;) REQUIRE(numbers.number_of(ray(i)) == i);
-    CHECK(numbers.next() == kRays);
+    CHECK(numbers.next_number() == kRays);
     CHECK_THROWS_AS(numbers.number_of({0, 0, 0}), std::logic_error);
     CHECK_THROWS_AS(numbers.number_of({0, 1, 65'536}), std::logic_error);
 }

@@ -8,29 +8,31 @@
 namespace raya {
 namespace {
 
-// A machine that finishes if its queues hold at least `enough` packets of 10 bytes. It records the lengths that the
-// search tries.
-struct TriedMachine {
-    std::uint32_t enough;
-    std::uint64_t limit = UINT64_MAX;
-    std::uint32_t device = UINT32_MAX;  // the longest queue that fits into the device
-    std::uint32_t driver = UINT32_MAX;  // the longest queue that the driver allocates
-    std::uint32_t most = kLongestQueue;
+// A machine that finishes if its queues hold at least `sufficient_queue` packets of 10 bytes. It records the lengths
+// that the search tries.
+struct SimulatedMachine {
+    std::uint32_t sufficient_queue;
+    std::uint64_t node_memory = UINT64_MAX;
+    std::uint32_t device_limit = UINT32_MAX;  // the longest queue that fits into the device
+    std::uint32_t driver_limit = UINT32_MAX;  // the longest queue that the driver allocates
+    std::uint32_t max_queue = kMaxQueue;
     std::vector<std::uint32_t> tried{};
 
     std::string remedy(std::uint32_t queue) { return queue_remedy(search(queue)); }
 
-    QueueFound search(std::uint32_t queue) {
-        return find_longer_queue(queue, {.bytes = [](const NodeBuffers& b) { return std::uint64_t{10} * b.queue; },
-                                         .limit = limit,
-                                         .most = most,
-                                         .fits_device = [this](const NodeBuffers& b) { return b.queue <= device; },
-                                         .ends =
-                                             [this](const NodeBuffers& b) {
-                                                 tried.push_back(b.queue);
-                                                 if (b.queue > driver) throw DeviceError("too long");
-                                                 return b.queue >= enough;
-                                             }});
+    QueueSearchResult search(std::uint32_t queue) {
+        const auto bytes = [](const NodeBuffers& b) { return std::uint64_t{10} * b.queue; };
+        const auto fits = [this](const NodeBuffers& b) { return b.queue <= device_limit; };
+        const auto completes = [this](const NodeBuffers& b) {
+            tried.push_back(b.queue);
+            if (b.queue > driver_limit) throw DeviceError("too long");
+            return b.queue >= sufficient_queue;
+        };
+        return find_longer_queue(queue, {.node_bytes = bytes,
+                                         .node_memory = node_memory,
+                                         .max_queue = max_queue,
+                                         .fits_device = fits,
+                                         .completes = completes});
     }
 };
 
@@ -39,52 +41,52 @@ using Queues = std::vector<std::uint32_t>;
 }  // namespace
 
 TEST_CASE("the queue length is doubled until the machine ends", "[torus]") {
-    TriedMachine machine{.enough = 100};
+    SimulatedMachine machine{.sufficient_queue = 100};
     CHECK(machine.remedy(20) == "--queue 160 is long enough (tried)");
     CHECK(machine.tried == Queues{40, 80, 160});
 }
 
 TEST_CASE("the longest queue that fits a node's memory is tried before longer ones", "[torus]") {
-    TriedMachine machine{.enough = 65, .limit = 10 * 67 + 9};
+    SimulatedMachine machine{.sufficient_queue = 65, .node_memory = 10 * 67 + 9};
     CHECK(machine.remedy(37) == "--queue 67 is long enough (tried)");
     CHECK(machine.tried == Queues{67});
 }
 
 TEST_CASE("if no queue that fits is long enough, the remedy also names the memory", "[torus]") {
-    TriedMachine machine{.enough = 500, .limit = 10 * 100};
+    SimulatedMachine machine{.sufficient_queue = 500, .node_memory = 10 * 100};
     CHECK(machine.remedy(30) ==
           "no queue that fits a node's memory is long enough, --queue 800 --pe-memory 8192 is (tried)");
     CHECK(machine.tried == Queues{60, 100, 200, 400, 800});
 }
 
 TEST_CASE("if the queue already is the longest that fits, it is not tried again", "[torus]") {
-    TriedMachine machine{.enough = 101, .limit = 10 * 100};
+    SimulatedMachine machine{.sufficient_queue = 101, .node_memory = 10 * 100};
     CHECK(machine.remedy(100) ==
           "no queue that fits a node's memory is long enough, --queue 200 --pe-memory 2048 is (tried)");
     CHECK(machine.tried == Queues{200});
 }
 
 TEST_CASE("the search ends at the longest queue that the device holds", "[torus]") {
-    TriedMachine machine{.enough = 5000, .device = 300};
+    SimulatedMachine machine{.sufficient_queue = 5000, .device_limit = 300};
     CHECK(machine.remedy(50) ==
           "no queue up to 200 packets is long enough, and the device cannot hold longer ones; use fewer nodes");
     CHECK(machine.tried == Queues{100, 200});
-    TriedMachine surprised{.enough = 5000, .driver = 300};
+    SimulatedMachine surprised{.sufficient_queue = 5000, .driver_limit = 300};
     CHECK(surprised.remedy(50) == machine.remedy(50));
     CHECK(surprised.tried == Queues{100, 200, 400});
-    TriedMachine endless{.enough = UINT32_MAX};
+    SimulatedMachine endless{.sufficient_queue = UINT32_MAX};
     CHECK(endless.remedy(1).find("no queue up to 1073741824 packets") == 0);
 }
 
 TEST_CASE("a search with a maximum length tries that one last", "[torus]") {
-    TriedMachine machine{.enough = 90, .most = 100};
-    const QueueFound found = machine.search(30);
+    SimulatedMachine machine{.sufficient_queue = 90, .max_queue = 100};
+    const QueueSearchResult found = machine.search(30);
     CHECK(machine.tried == Queues{60, 100});
-    CHECK((found.ends && found.fits));
+    CHECK((found.completes && found.fits));
     CHECK(found.queue == 100);
     CHECK(found.bytes == 1000);
-    machine.enough = 101;
-    CHECK_FALSE(machine.search(30).ends);
+    machine.sufficient_queue = 101;
+    CHECK_FALSE(machine.search(30).completes);
 }
 
 TEST_CASE("bisection finds the last number that satisfies the predicate, in at most 32 calls", "[torus]") {

@@ -36,11 +36,11 @@ TEST_CASE("a platform has a host per node, two directions and a wire per link, a
 
 TEST_CASE("a replay has tasks, their causes, and the routes of messages", "[torus]") {
     HistoryBuilder h;
-    h.task(2, 500);
-    const std::uint32_t ray = h.ray(0), own = h.ray(2);
-    h.task(0, 7, ray);
-    h.task(2, 9, own);
-    h.back();
+    h.add_task(2, 500);
+    const std::uint32_t ray = h.add_ray(0), own = h.add_ray(2);
+    h.add_task(0, 7, ray);
+    h.add_task(2, 9, own);
+    h.add_return();
     CHECK(simgrid_replay(make_torus({3, 1, 1}, Links::kTorus3d), h.history, {.buffer = 3}) ==
           "machine 3 3 2 19 2\nt 2 500 -\nm 16 1 0 0\nm 16 1\nt 0 7 0\nt 2 9 1\nm 8 0 0 0\n");
 }

@@ -34,45 +34,47 @@ Vec3 direction_of(const Camera& c, double row, double column) {
     return {in(d.x * inverse), in(d.y * inverse), in(d.z * inverse)};
 }
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kNoEntry = std::numeric_limits<double>::infinity();
 
-// The distance in double at which a ray enters the block of voxels from `first` to `last`; kNever if it misses them.
-double meets(const raya_grid& grid, const raya_place& first, const raya_place& last, const Vec3& origin,
-             const Vec3& direction) {
-    double in = 0, out = kNever;
+// The distance in double at which a ray enters the block of voxels from `first` to `last`; kNoEntry if it misses them.
+double entry_distance(const raya_grid& grid, const raya_place& first, const raya_place& last, const Vec3& origin,
+                      const Vec3& direction) {
+    double in = 0, out = kNoEntry;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const double o = origin[static_cast<int>(axis)], d = direction[static_cast<int>(axis)];
         const double low = raya_voxel_plane(grid, axis, first.at[axis]) - o;
         const double high = raya_voxel_plane(grid, axis, last.at[axis] + 1) - o;
-        if (d == 0 && (low > 0 || high < 0)) return kNever;
+        if (d == 0 && (low > 0 || high < 0)) return kNoEntry;
         if (d == 0) continue;
         in = std::max(in, std::min(low / d, high / d));
         out = std::min(out, std::max(low / d, high / d));
     }
-    return in <= out ? in : kNever;
+    return in <= out ? in : kNoEntry;
 }
 
 // Returns true if a ray enters the box at voxel `at`.
 bool enters(const raya_grid& grid, const raya_place& at, const Vec3& origin, const Vec3& direction) {
     const raya_place last{{grid.divisions[0] - 1, grid.divisions[1] - 1, grid.divisions[2] - 1}};
-    const double box = meets(grid, {{0, 0, 0}}, last, origin, direction);
-    return box < kNever && meets(grid, at, at, origin, direction) <= box * (1 + 1e-12);
+    const double box = entry_distance(grid, {{0, 0, 0}}, last, origin, direction);
+    return box < kNoEntry && entry_distance(grid, at, at, origin, direction) <= box * (1 + 1e-12);
 }
 
 // The range ([0]: rows, [1]: columns) of the image points whose rays enter the box at a node's voxels.
-struct Met {
+struct EntryBounds {
     double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
     bool any() const { return low[0] <= high[0]; }
 };
 
-// Finds that range from `fine` x `fine` rays per pixel.
-Met met_by(const Camera& c, const raya_grid& grid, const raya_torus& torus, std::uint32_t node, int fine) {
-    Met met;
+// Finds that range from `rays_per_side` x `rays_per_side` rays per pixel.
+EntryBounds entry_bounds(const Camera& c, const raya_grid& grid, const raya_torus& torus, std::uint32_t node,
+                         int rays_per_side) {
+    EntryBounds bounds;
     const Vec3 eye = vector_of(c.job.eye);
     const int rows = static_cast<int>(c.job.mapping.height), columns = static_cast<int>(c.job.mapping.width);
-    for (int row = 0; row < rows * fine; ++row)
-        for (int column = 0; column < columns * fine; ++column) {
-            const double place[2] = {static_cast<double>(row) / fine, static_cast<double>(column) / fine};
+    for (int row = 0; row < rows * rays_per_side; ++row)
+        for (int column = 0; column < columns * rays_per_side; ++column) {
+            const double place[2] = {static_cast<double>(row) / rays_per_side,
+                                     static_cast<double>(column) / rays_per_side};
             const Vec3 d = direction_of(c, place[0], place[1]);
             bool hit = false;
             for (std::uint32_t i = 0; i < raya_node_voxels(torus, grid, node) && !hit; ++i) {
@@ -80,11 +82,11 @@ Met met_by(const Camera& c, const raya_grid& grid, const raya_torus& torus, std:
                 hit = enters(grid, raya_place_of(voxel, grid.divisions[0], grid.divisions[1]), eye, d);
             }
             for (int i = 0; i < 2 && hit; ++i) {
-                met.low[i] = std::min(met.low[i], place[i]);
-                met.high[i] = std::max(met.high[i], place[i]);
+                bounds.low[i] = std::min(bounds.low[i], place[i]);
+                bounds.high[i] = std::max(bounds.high[i], place[i]);
             }
         }
-    return met;
+    return bounds;
 }
 
 raya_grid random_grid(SplitMix& random, const Divisions& divisions) {
@@ -142,7 +144,7 @@ TEST_CASE("a node's window holds every pixel whose ray enters the box at its vox
             CHECK((raya_node_voxels(torus, grid, node) > 0 || empty));
             CHECK(w.rows[1] <= camera.job.mapping.height);
             CHECK(w.columns[1] <= camera.job.mapping.width);
-            const Met m = met_by(camera, grid, torus, node, 1);
+            const EntryBounds m = entry_bounds(camera, grid, torus, node, 1);
             if (!m.any()) continue;
             ++met;
             partial += w.rows[1] - w.rows[0] < camera.job.mapping.height;
@@ -167,7 +169,7 @@ TEST_CASE("a window exceeds the projection of the node's outer faces by at most 
         const auto windows = pixel_windows(camera.job, grid, torus, camera.format);
         for (std::uint32_t node = 0; node < windows.size(); ++node) {
             const PixelWindow& w = windows[node];
-            const Met m = met_by(camera, grid, torus, node, 4);
+            const EntryBounds m = entry_bounds(camera, grid, torus, node, 4);
             CAPTURE(seed, i, node, w.rows[0], w.rows[1], w.columns[0], w.columns[1], m.low[0], m.high[0], m.low[1],
                     m.high[1]);
             // The window of a projection that the image's edge clips may be larger.

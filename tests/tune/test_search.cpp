@@ -17,10 +17,10 @@ const ShouldStop kNeverEnds = [] { return false; };
 Space random_space(std::mt19937& random) {
     const auto below = [&](std::uint32_t end) { return static_cast<std::size_t>(random() % end); };
     Space space;
-    const std::size_t knobs = 3 + below(3);
-    for (std::size_t k = 0; k < knobs; ++k) {
-        space.knobs.push_back({&TunedValues::lanes, std::vector<std::uint32_t>(2 + below(5))});
-        space.start.push_back(below(static_cast<std::uint32_t>(space.knobs.back().values.size())));
+    const std::size_t parameters = 3 + below(3);
+    for (std::size_t k = 0; k < parameters; ++k) {
+        space.parameters.push_back({&TunedValues::lanes, std::vector<std::uint32_t>(2 + below(5))});
+        space.start.push_back(below(static_cast<std::uint32_t>(space.parameters.back().values.size())));
     }
     return space;
 }
@@ -31,18 +31,18 @@ double minimum_cost(const Space& space, const Cost& cost) {
     return minimum;
 }
 
-// A cost factor for each knob, with its minimum at a random best value of the knob. Each step away from this value
-// multiplies the cost by the same factor, which is random for each knob.
-struct Valley {
-    Valley(const Space& space, std::mt19937& random) {
+// A cost factor for each parameter, with its minimum at a random best value of the parameter. Each step away from this
+// value multiplies the cost by the same factor, which is random for each parameter.
+struct CostValley {
+    CostValley(const Space& space, std::mt19937& random) {
         std::uniform_real_distribution<double> step(0.02, 0.6);
-        for (const Knob& knob : space.knobs) {
-            best.push_back(random() % knob.values.size());
+        for (const TuningParameter& parameter : space.parameters) {
+            best.push_back(random() % parameter.values.size());
             steps.push_back(step(random));
         }
     }
-    double at(std::size_t knob, double place) const {
-        return std::exp(steps[knob] * std::abs(place - static_cast<double>(best[knob])));
+    double at(std::size_t parameter, double place) const {
+        return std::exp(steps[parameter] * std::abs(place - static_cast<double>(best[parameter])));
     }
 
     std::vector<std::size_t> best;
@@ -50,17 +50,18 @@ struct Valley {
 };
 
 Cost separable(const Space& space, std::mt19937& random) {
-    return [valley = Valley(space, random)](const Candidate& c) {
+    return [valley = CostValley(space, random)](const Candidate& c) {
         double cost = 1;
         for (std::size_t k = 0; k < c.size(); ++k) cost *= valley.at(k, static_cast<double>(c[k]));
         return cost;
     };
 }
 
-// The best value of knob 1 depends on the value of knob 0. Example: lanes and group size share a device's registers.
+// The best value of parameter 1 depends on the value of parameter 0. Example: lanes and group size share a device's
+// registers.
 Cost shared(const Space& space, std::mt19937& random) {
     const double share = std::uniform_real_distribution<double>(-0.8, 0.8)(random);
-    return [valley = Valley(space, random), share](const Candidate& c) {
+    return [valley = CostValley(space, random), share](const Candidate& c) {
         double cost = 1;
         for (std::size_t k = 0; k < c.size(); ++k) {
             const double other = k == 1 ? static_cast<double>(c[0]) - static_cast<double>(valley.best[0]) : 0;
@@ -70,10 +71,10 @@ Cost shared(const Space& space, std::mt19937& random) {
     };
 }
 
-// The cost jumps where the sum of two knobs exceeds a limit, as when a kernel spills registers.
+// The cost jumps where the sum of two parameters exceeds a limit, as when a kernel spills registers.
 Cost spilling(const Space& space, std::mt19937& random) {
     const std::size_t limit = 2 + random() % 5;
-    return [valley = Valley(space, random), limit](const Candidate& c) {
+    return [valley = CostValley(space, random), limit](const Candidate& c) {
         double cost = c[0] + c[1] > limit ? 1.5 : 1.0;
         for (std::size_t k = 0; k < c.size(); ++k) cost *= valley.at(k, static_cast<double>(c[k]));
         return cost;
@@ -135,7 +136,7 @@ TEST_CASE("search: never returns a dropped candidate", "[tune]") {
         std::mt19937 random(seed);
         const Space space = random_space(random);
         const Cost cost = separable(space, random);
-        const std::size_t bad = random() % space.knobs[0].values.size();
+        const std::size_t bad = random() % space.parameters[0].values.size();
         const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
             if (candidate[0] == bad) return {};
             return cost(candidate) / cost(best);
@@ -163,15 +164,17 @@ TEST_CASE("search: ends when the caller says so, with the best candidate so far"
     }
 }
 
-TEST_CASE("search: tries the knobs with two values first", "[tune]") {
+TEST_CASE("search: tries the parameters with two values first", "[tune]") {
     for (unsigned seed = 1; seed <= 200; ++seed) {
         std::mt19937 random(seed);
         Space space = random_space(random);
-        const std::size_t gains = space.knobs.size();  // index of the knob added below, the only one with a gain
-        space.knobs.push_back({&TunedValues::link_exchange, {0, 1}});
+        const std::size_t gains =
+            space.parameters.size();  // index of the parameter added below, the only one with a gain
+        space.parameters.push_back({&TunedValues::link_exchange, {0, 1}});
         space.start.push_back(random() % 2);
-        const auto switches = static_cast<std::size_t>(std::count_if(
-            space.knobs.begin(), space.knobs.end(), [](const Knob& knob) { return knob.values.size() == 2; }));
+        const auto switches = static_cast<std::size_t>(
+            std::count_if(space.parameters.begin(), space.parameters.end(),
+                          [](const TuningParameter& parameter) { return parameter.values.size() == 2; }));
         std::size_t judged = 0;
         const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) {
             ++judged;
@@ -218,7 +221,8 @@ TEST_CASE("space_of: starts at the defaults, and has only values that the device
             CAPTURE(type, group_limit, platform, accel);
             CHECK(space.values_of(space.start) == default_values(device, {.accel = accel}));
             bool limits_registers = false;
-            for (const Knob& knob : space.knobs) limits_registers |= knob.value == &TunedValues::registers;
+            for (const TuningParameter& parameter : space.parameters)
+                limits_registers |= parameter.value == &TunedValues::registers;
             CHECK(limits_registers == (device.platform == "NVIDIA CUDA"));
             for_each_candidate(space, [&](const Candidate& candidate) {
                 const KernelChoice kernels = with_values({}, space.values_of(candidate));
@@ -230,30 +234,31 @@ TEST_CASE("space_of: starts at the defaults, and has only values that the device
 }
 
 TEST_CASE("space_of: groups on CPUs have a few work-items, more if they form vectors, one per torus node", "[tune]") {
-    const auto groups_of = [](std::uint32_t max_loop_iterations, const TunedFor& workload) {
+    const auto groups_of = [](std::uint32_t max_loop_iterations, const TuningKey& workload) {
         DeviceInfo device;
         device.type = "cpu";
         device.max_group_size = 256;
         device.max_loop_iterations = max_loop_iterations;
-        for (const Knob& knob : space_of(device, workload).knobs)
-            if (knob.value == &TunedValues::group) return knob.values;
+        for (const TuningParameter& parameter : space_of(device, workload).parameters)
+            if (parameter.value == &TunedValues::group) return parameter.values;
         return std::vector<std::uint32_t>{};
     };
     const std::uint32_t llvmpipe = 65'535;
     CHECK(groups_of(0, {}) == std::vector<std::uint32_t>{1, 2, 4});
     CHECK(groups_of(llvmpipe, {}) == std::vector<std::uint32_t>{1, 2, 4, 8, 16});
-    for (const std::uint32_t turns : {0u, llvmpipe})
-        CHECK(groups_of(turns, {.torus = true}) == std::vector<std::uint32_t>{1});
+    for (const std::uint32_t max_iterations : {0u, llvmpipe})
+        CHECK(groups_of(max_iterations, {.torus = true}) == std::vector<std::uint32_t>{1});
 }
 
-TEST_CASE("space_of: link exchange is a knob of the torus only, with an explicit kernel if that is not the default",
-          "[tune]") {
-    const auto moves_of = [](const char* type, const TunedFor& workload) {
+TEST_CASE(
+    "space_of: link exchange is a parameter of the torus only, with an explicit kernel if that is not the default",
+    "[tune]") {
+    const auto moves_of = [](const char* type, const TuningKey& workload) {
         DeviceInfo device;
         device.type = type;
         device.max_group_size = 256;
-        for (const Knob& knob : space_of(device, workload).knobs)
-            if (knob.value == &TunedValues::link_exchange) return knob.values;
+        for (const TuningParameter& parameter : space_of(device, workload).parameters)
+            if (parameter.value == &TunedValues::link_exchange) return parameter.values;
         return std::vector<std::uint32_t>{};
     };
     CHECK(moves_of("cpu", {}).empty());

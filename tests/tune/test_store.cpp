@@ -23,11 +23,11 @@ DeviceInfo some_device() {
 }
 
 const TunedFile kFile{.date = "2026-11-22",
-                      .entries = {{.what = {.torus = false, .accel = RAYA_ACCEL_GRID, .fp32 = true},
+                      .entries = {{.key = {.torus = false, .accel = RAYA_ACCEL_GRID, .fp32 = true},
                                    .values = {4, 16, 0, 8, 2, 1, 96},
                                    .speedup = 1.25,
                                    .scene = "own"},
-                                  {.what = {.torus = true, .accel = RAYA_ACCEL_NONE, .fp32 = false},
+                                  {.key = {.torus = true, .accel = RAYA_ACCEL_NONE, .fp32 = false},
                                    .values = {1, 64, 1, 0, 0, 0, 0, 2},
                                    .speedup = 1,
                                    .scene = "x.nff"}}};
@@ -61,7 +61,7 @@ TEST_CASE("read_tuned: inverts tuned_text", "[tune]") {
     CHECK(read.date == kFile.date);
     REQUIRE(read.entries.size() == kFile.entries.size());
     for (std::size_t i = 0; i < read.entries.size(); ++i) {
-        CHECK(read.entries[i].what == kFile.entries[i].what);
+        CHECK(read.entries[i].key == kFile.entries[i].key);
         CHECK(read.entries[i].values == kFile.entries[i].values);
         CHECK(read.entries[i].speedup == kFile.entries[i].speedup);
         CHECK(read.entries[i].scene == kFile.entries[i].scene);
@@ -80,7 +80,7 @@ TEST_CASE("read_tuned: refuses damaged and foreign files with the reason", "[tun
          {std::pair<std::string, std::string>{text.substr(0, text.size() / 2), "not valid JSON"},
           {"", "t.json:1: not valid JSON (byte 1)"},
           {"{}", "t.json: not a file of raya tune"},
-          {changed("\"version\": 2", "\"version\": 1"), "another form"},
+          {changed("\"version\": 2", "\"version\": 1"), "another version of the file format: 1, not 2"},
           {changed("\"raya\": \"", "\"raya\": \"9."), "another version of raya: 9."},
           {changed("550.1", "551.0"), "another device's driver: 551.0, not 550.1"},
           {changed("GeForce", "Radeon"), "another device's name"},
@@ -102,14 +102,14 @@ TEST_CASE("stored values: found by device, driver and kind of kernels", "[tune]"
     const DeviceInfo device = some_device();
     save_tuned(device, kFile);
     WarningRecorder warned;
-    const auto found = warned.source(device, kFile.entries[0].what);
+    const auto found = warned.source(device, kFile.entries[0].key);
     REQUIRE(found);
     CHECK(found->values == kFile.entries[0].values);
     CHECK_THAT(found->origin, Catch::Contains(tuned_file_name(device)) && Catch::EndsWith(", 2026-11-22"));
     CHECK_FALSE(warned.source(device, {.torus = false, .accel = RAYA_ACCEL_BVH, .fp32 = true}));
     DeviceInfo newer = device;
     newer.driver = "551.0";
-    CHECK_FALSE(warned.source(newer, kFile.entries[0].what));
+    CHECK_FALSE(warned.source(newer, kFile.entries[0].key));
     CHECK(warned.texts.empty());
     CHECK(cache.folder().entries() == 1);
 }
@@ -122,9 +122,9 @@ TEST_CASE("stored values: an entry replaces that of the same kind, and others st
     other.values.lanes = 16;
     save_tuned(device, {"2027-01-01", {other}});
     WarningRecorder warned;
-    CHECK(warned.source(device, other.what)->values.lanes == 16);
-    CHECK(warned.source(device, kFile.entries[1].what)->values == kFile.entries[1].values);
-    CHECK(warned.source(device, kFile.entries[1].what)->origin.ends_with(", 2027-01-01"));
+    CHECK(warned.source(device, other.key)->values.lanes == 16);
+    CHECK(warned.source(device, kFile.entries[1].key)->values == kFile.entries[1].values);
+    CHECK(warned.source(device, kFile.entries[1].key)->origin.ends_with(", 2027-01-01"));
 }
 
 TEST_CASE("stored values: an invalid file causes one warning, is ignored, and overwritten", "[tune]") {
@@ -135,13 +135,13 @@ TEST_CASE("stored values: an invalid file causes one warning, is ignored, and ov
         if (!folder) std::ofstream(file) << "{\"kind\":";
         if (folder) std::filesystem::create_directory(file);
         WarningRecorder warned;
-        for (const TunedEntry& entry : kFile.entries) CHECK_FALSE(warned.source(device, entry.what));
+        for (const TunedEntry& entry : kFile.entries) CHECK_FALSE(warned.source(device, entry.key));
         REQUIRE(warned.texts.size() == 1);
         CHECK_THAT(warned.texts[0],
                    Catch::Contains(file.string()) && Catch::Contains("ignored") && Catch::Contains("raya tune"));
         if (folder) break;
         save_tuned(device, kFile);
-        CHECK(WarningRecorder().source(device, kFile.entries[0].what));
+        CHECK(WarningRecorder().source(device, kFile.entries[0].key));
         std::filesystem::remove(file);
     }
     CHECK_THROWS_AS(tuned_path(device), UserError);  // a folder, not a file
@@ -153,7 +153,7 @@ TEST_CASE("stored values: a file that other users may write causes a warning and
     save_tuned(device, kFile);
     std::filesystem::permissions(tuned_path(device), std::filesystem::perms(0666));
     WarningRecorder warned;
-    CHECK_FALSE(warned.source(device, kFile.entries[0].what));
+    CHECK_FALSE(warned.source(device, kFile.entries[0].key));
     REQUIRE(warned.texts.size() == 1);
     CHECK_THAT(warned.texts[0],
                Catch::Contains("other users may write '") && Catch::Contains("(mode 0666); the file is ignored"));
@@ -174,9 +174,9 @@ TEST_CASE("chosen: uses stored values unless lanes or group are given", "[tune]"
     DeviceInfo device = some_device();
     device.type = "cpu";
     device.native_float_width = 16;
-    const TunedFor workload{.torus = false, .accel = RAYA_ACCEL_NONE, .fp32 = true};
+    const TuningKey workload{.torus = false, .accel = RAYA_ACCEL_NONE, .fp32 = true};
     CHECK(chosen({}, device, workload).origin == "defaults");
-    const ScopedTunedSource use([](const DeviceInfo&, const TunedFor& asked) -> std::optional<TunedChoice> {
+    const ScopedTunedSource use([](const DeviceInfo&, const TuningKey& asked) -> std::optional<TunedChoice> {
         if (asked.torus) return {};
         return TunedChoice{{4, 2, 0, 8, 2, 1, 96, 2}, "FILE, DATE"};
     });

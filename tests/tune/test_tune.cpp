@@ -20,7 +20,7 @@ Trial make_trial(TrialStatus status) {
 TEST_CASE("t4_text: follows results-schema.json 1.0.0", "[tune]") {
     Tuning tuning;
     tuning.workload = default_workloads().front();
-    tuning.space = space_of({}, tuning.workload.what());
+    tuning.space = space_of({}, tuning.workload.key());
     for (const TrialStatus status : {TrialStatus::kCorrect, TrialStatus::kCompile, TrialStatus::kRuntime,
                                      TrialStatus::kCorrectness, TrialStatus::kTimeout, TrialStatus::kUnfinished})
         tuning.trials.push_back(make_trial(status));
@@ -34,8 +34,9 @@ TEST_CASE("t4_text: follows results-schema.json 1.0.0", "[tune]") {
         for (const char* key : {"configuration", "times", "invalidity", "correctness"}) CHECK(one.contains(key));
         ends.push_back(one["invalidity"]);
         CHECK(one["configuration"]["workload"] == "ring none fp32");
-        CHECK(one["configuration"].size() == 1 + tuning.space.knobs.size());
-        for (const Knob& knob : tuning.space.knobs) CHECK(one["configuration"][knob.name()].is_number_unsigned());
+        CHECK(one["configuration"].size() == 1 + tuning.space.parameters.size());
+        for (const TuningParameter& parameter : tuning.space.parameters)
+            CHECK(one["configuration"][parameter.name()].is_number_unsigned());
         CHECK(one["correctness"] == (one["invalidity"] == "correctness" ? 0 : 1));
         CHECK(one["times"]["compilation_time"] == 500.0);
         for (const Document& measured : one["measurements"])

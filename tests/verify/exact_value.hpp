@@ -92,34 +92,37 @@ inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const N
         note("flushed");
         return all;
     }
-    Mpfr near(bits), finer(bits + 1), twice(24), again(bits), fine(bits + 12), away(bits + 12), tie(bits + 1);
-    mpfr_set(near, exact, MPFR_RNDZ);
-    mpfr_set(finer, exact, MPFR_RNDZ);
-    const bool half = mpfr_cmp(near, finer) != 0;
-    mpfr_set(tie, near, MPFR_RNDZ);
-    if (mpfr_cmp_ui(near, 0) > 0)
-        mpfr_nextabove(tie);
+    // Truncations of `exact` to the format, with 1 and with 12 bits more; the 12 bits more also rounded away from 0.
+    Mpfr truncated(bits), half_steps(bits + 1), fine(bits + 12), fine_away(bits + 12);
+    Mpfr midpoint(bits + 1);           // between `truncated` and the next number of the format
+    Mpfr as_fp32(24), via_fp32(bits);  // `exact` rounded to fp32, and then to the format
+    mpfr_set(truncated, exact, MPFR_RNDZ);
+    mpfr_set(half_steps, exact, MPFR_RNDZ);
+    const bool half = mpfr_cmp(truncated, half_steps) != 0;
+    mpfr_set(midpoint, truncated, MPFR_RNDZ);
+    if (mpfr_cmp_ui(truncated, 0) > 0)
+        mpfr_nextabove(midpoint);
     else
-        mpfr_nextbelow(tie);
+        mpfr_nextbelow(midpoint);
     mpfr_set(fine, exact, MPFR_RNDZ);
-    mpfr_set(away, exact, MPFR_RNDA);
-    const bool up = mpfr_cmpabs(near, (mpfr_set_flt(twice, expected, MPFR_RNDN), twice)) < 0;
-    if (mpfr_cmp(exact, near) == 0)
+    mpfr_set(fine_away, exact, MPFR_RNDA);
+    const bool up = mpfr_cmpabs(truncated, (mpfr_set_flt(as_fp32, expected, MPFR_RNDN), as_fp32)) < 0;
+    if (mpfr_cmp(exact, truncated) == 0)
         note("exact");
-    else if (half && mpfr_cmp(exact, finer) == 0)
+    else if (half && mpfr_cmp(exact, half_steps) == 0)
         note(up ? "tie up" : "tie down");
-    else if (mpfr_cmp(fine, tie) == 0)
+    else if (mpfr_cmp(fine, midpoint) == 0)
         note("just above a tie");
-    else if (mpfr_cmp(away, tie) == 0)
+    else if (mpfr_cmp(fine_away, midpoint) == 0)
         note("just below a tie");
-    else if (mpfr_cmp(fine, near) == 0)
+    else if (mpfr_cmp(fine, truncated) == 0)
         note("just above a number");
     else
         note(half ? "upper half" : "lower half");
     // Does rounding to fp32 first give another result?
-    mpfr_set(twice, exact, MPFR_RNDN);
-    mpfr_set(again, twice, format.truncates ? MPFR_RNDZ : MPFR_RNDN);
-    if (bits < 24 && mpfr_get_flt(again, MPFR_RNDN) != expected) all.insert(kTwice);
+    mpfr_set(as_fp32, exact, MPFR_RNDN);
+    mpfr_set(via_fp32, as_fp32, format.truncates ? MPFR_RNDZ : MPFR_RNDN);
+    if (bits < 24 && mpfr_get_flt(via_fp32, MPFR_RNDN) != expected) all.insert(kTwice);
     int exponent = 0;
     if (up && std::frexp(std::abs(expected), &exponent) == 0.5F) note("carries into the next binade");
     return all;

@@ -19,7 +19,7 @@ inline const SourcePatch kDivisionFault{"number/divide.clh", "return a / b;", "r
 inline const SourcePatch kTieFault{"geometry/sphere.clh", "& (t < h.distance)",
                                    "& ((t < h.distance) | ((t == h.distance) & (h.object != RAYA_NO_OBJECT)))"};
 /// The grid traversal ends one voxel early.
-inline const SourcePatch kWalkFault{"grid/walk.clh", "raya_voxel_plane(g, axis, g.divisions[axis])",
+inline const SourcePatch kGridFault{"grid/traversal.clh", "raya_voxel_plane(g, axis, g.divisions[axis])",
                                     "raya_voxel_plane(g, axis, g.divisions[axis] - 1)"};
 /// A 64-bit product is truncated to 32 bits.
 inline const SourcePatch kMappingFault{"shared/ratios.h", "(raya_u64)a * b / c", "a * b / c"};
@@ -33,7 +33,8 @@ inline const SourcePatch kBorderFault{"ring/filter.cl", "raya_has_neighbour(m, p
 inline const SourcePatch kExchangeFault{"torus/exchange.cl", "to[i] = from[i];",
                                         "to[i] = from[i] ^ (uint8)(0, 0, 0, 0, 0, 0, 1 << 21, 0);"};
 /// A resumed launch takes the returns that the previous launch wrote as already transferred, and overwrites them.
-inline const SourcePatch kAgainFault{"torus/accept.cl", "gone = !again && (root", "gone = (root"};
+inline const SourcePatch kResumedLaunchFault{"torus/accept.cl", "already_sent = !resume && (root",
+                                             "already_sent = (root"};
 
 /// A fault of one counter, which a kernel increments at one place: counted as another event, not counted, or counted
 /// twice.
@@ -67,12 +68,12 @@ inline const std::vector<CountFault> kCountFaults = {
     {"plane_tests", {"shading/tree.clh", "m, all->planes)", "m, 0)"}, kOnGlass},
     {"polygon_tests", {"shading/tree.clh", "m, all->polygons)", "m, 2 * all->polygons)"}, kOnGlass},
     {"cone_tests", {"shading/tree.clh", "m, all->cones)", "m, all->planes)"}, kOnCones},
-    {"walks", {"grid/ray_pool.clh", "count_event(t, RAYA_WALKS, walks.truth);", ""}, kOnGrid},
+    {"walks", {"grid/ray_pool.clh", "count_event(t, RAYA_WALKS, entered.truth);", ""}, kOnGrid},
     {"polygon_tests",
      {"grid/ray_pool.clh", "t->events[RAYA_POLYGON_TESTS].all += p->counts",
       "t->events[RAYA_CONE_TESTS].all += p->counts"},
      kOnGrid},
-    {"walks", {"bvh/ray_pool.clh", "RAYA_WALKS, p->waits.truth", "RAYA_STEPS, p->waits.truth"}, kOnBvh},
+    {"walks", {"bvh/ray_pool.clh", "RAYA_WALKS, p->queued.truth", "RAYA_STEPS, p->queued.truth"}, kOnBvh},
     {"steps",
      {"bvh/ray_pool.clh", "+= p->nodes.all;\n    t->events[RAYA_SPHERE",
       "+= 2u * p->nodes.all;\n    t->events[RAYA_SPHERE"},

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/verify/pictures.hpp"
+#include "host/verify/reference_images.hpp"
 #include "host/verify/verify.hpp"
 #include "tests/base/scratch_folder.hpp"
 #include "tests/paths.h"
@@ -89,7 +89,7 @@ TEST_CASE("tie fault: fails known hits of coincident spheres, no others", "[veri
 }
 
 TEST_CASE("grid fault: fails all checks of hits by search", "[verify][faults]") {
-    const auto checks = run({kWalkFault}, ", fp32");
+    const auto checks = run({kGridFault}, ", fp32");
     CHECK(failures(checks).size() == 5);
     CHECK_THAT(first_fault(checks).where, Catch::Contains("hits_by_search"));
 }
@@ -108,8 +108,8 @@ TEST_CASE("faults of arithmetic, hits and grid: fail image checks too", "[verify
          "image glass fp32: cyclic:8 on 7",
          {"glass fp32: cyclic:8 on 7, block fold, launches of 40 tests"}},
         {kTieFault, "image ties", {"ties fp32: blocks on 5, global words, division refined"}},
-        {kWalkFault, "image polygons fp32: cyclic:8 on 20, grid", {"polygons fp32: cyclic:8 on 20, grid"}},
-        {kWalkFault,
+        {kGridFault, "image polygons fp32: cyclic:8 on 20, grid", {"polygons fp32: cyclic:8 on 20, grid"}},
+        {kGridFault,
          "image polygons fp32: torus3d 2x2x2, ",
          {"polygons fp32: torus3d 2x2x2, launches of 3 units, links by a kernel"}}};
     for (const Row& row : rows) {
@@ -125,10 +125,12 @@ TEST_CASE("a kernel that does nothing: fails its checks", "[verify][faults]") {
         const char *file, *kernel, *only;
         std::size_t wrong;
     };
-    const Row rows[] = {
-        {"checks/hits.cl", "hits_of_all", ", fp32", 5},         {"checks/hits.cl", "hits_by_search", ", fp32", 5},
-        {"checks/machine.cl", "find_owners", "mapping", 7},     {"checks/machine.cl", "find_ways", "routes", 1},
-        {"checks/machine.cl", "turn_round", "local memory", 2}, {"checks/numbers.cl", "operations", "number fp32", 1}};
+    const Row rows[] = {{"checks/hits.cl", "hits_of_all", ", fp32", 5},
+                        {"checks/hits.cl", "hits_by_search", ", fp32", 5},
+                        {"checks/machine.cl", "find_owners", "mapping", 7},
+                        {"checks/machine.cl", "find_routes", "routes", 1},
+                        {"checks/machine.cl", "reverse_words", "local memory", 2},
+                        {"checks/numbers.cl", "operations", "number fp32", 1}};
     for (const Row& row : rows) {
         CAPTURE(row.kernel);
         const auto checks = run({emptied(row.file, row.kernel)}, row.only);
@@ -158,7 +160,7 @@ TEST_CASE("faults of link exchange by kernel and of resumed launches: fail the t
     CHECK(failures(run({kExchangeFault}, "exchange of")) == by_kernel);
     CHECK(failures(run({emptied("torus/exchange.cl", "exchange")}, "exchange of")) == by_kernel);
     const Names bounded = {"polygons fp32: torus3d 2x2x2, launches of 3 units, links by a kernel"};
-    for (const SourcePatch& fault : {kExchangeFault, kAgainFault}) {
+    for (const SourcePatch& fault : {kExchangeFault, kResumedLaunchFault}) {
         CAPTURE(fault.file);
         const auto checks = run({fault}, "image polygons fp32: torus3d 2x2x2");
         CHECK(checks.size() == 2);
@@ -209,9 +211,10 @@ TEST_CASE("count faults: fail only image checks, all with the event", "[verify][
     CHECK(failures(checks).size() >= 8);
 }
 
-TEST_CASE("known pictures: have the counts of a ring and of the other variants", "[verify]") {
-    for (const Picture& picture : pictures()) CHECK(known_picture(picture).counts.contains("ring"));
-    CHECK_THAT(known_picture(picture_named("polygons fp32")).counts.at("bvh"), Catch::StartsWith("primary 400 "));
+TEST_CASE("reference images: have the counts of a ring and of the other variants", "[verify]") {
+    for (const ReferenceImage& image : reference_images()) CHECK(stored_image(image).counts.contains("ring"));
+    CHECK_THAT(stored_image(reference_image_named("polygons fp32")).counts.at("bvh"),
+               Catch::StartsWith("primary 400 "));
 }
 
 TEST_CASE("verify: a failed build fails its check, and the others continue", "[verify]") {

@@ -37,7 +37,7 @@ void cone_bounds(const RTCBoundsFunctionArguments* args) {
 }
 
 // Returns t of the ray's nearest hit between `near` and `far`, or a value beyond `far` if there is no hit.
-float meet_cone(const PeerCone& c, V3 origin, V3 direction, float near, float far, V3& normal) {
+float cone_hit(const PeerCone& c, V3 origin, V3 direction, float near, float far, V3& normal) {
     // Starts from the point of the ray nearest to the cone's base: otherwise, through rounding, a ray that starts on
     // the cone would hit it.
     const float moved = dot(c.base - origin, direction);
@@ -80,8 +80,8 @@ void intersect_cones(const RTCIntersectFunctionNArguments* args) {
         if (args->valid[i] == 0) continue;
         V3 normal;
         float& far = RTCRayN_tfar(ray, args->N, i);
-        const float t = meet_cone(c, origin_of(ray, args->N, i), direction_of(ray, args->N, i),
-                                  RTCRayN_tnear(ray, args->N, i), far, normal);
+        const float t = cone_hit(c, origin_of(ray, args->N, i), direction_of(ray, args->N, i),
+                                 RTCRayN_tnear(ray, args->N, i), far, normal);
         if (!(t < far)) continue;
         far = t;
         RTCHitN_Ng_x(hit, args->N, i) = normal.x;
@@ -98,8 +98,8 @@ void occlude_cones(const RTCOccludedFunctionNArguments* args) {
         if (args->valid[i] == 0) continue;
         V3 normal;
         float& far = RTCRayN_tfar(args->ray, args->N, i);
-        const float t = meet_cone(c, origin_of(args->ray, args->N, i), direction_of(args->ray, args->N, i),
-                                  RTCRayN_tnear(args->ray, args->N, i), far, normal);
+        const float t = cone_hit(c, origin_of(args->ray, args->N, i), direction_of(args->ray, args->N, i),
+                                 RTCRayN_tnear(args->ray, args->N, i), far, normal);
         if (t < far) far = -INFINITY;
     }
 }

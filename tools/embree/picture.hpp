@@ -18,12 +18,12 @@ inline constexpr float kFar = 1e30f;
 /// Stack of the pending rays of a pixel's ray tree.
 class RayStack {
   public:
-    void push_back(const Waiting& r) { rays_[size_++] = r; }
-    Waiting pop() { return rays_[--size_]; }
+    void push_back(const PendingRay& r) { rays_[size_++] = r; }
+    PendingRay pop() { return rays_[--size_]; }
     bool empty() const { return size_ == 0; }
 
   private:
-    std::array<Waiting, 64> rays_;
+    std::array<PendingRay, 64> rays_;
     std::size_t size_ = 0;
 };
 
@@ -34,7 +34,7 @@ class Picture {
 
     /// Calls trace_row(row), which returns a number of rays, for all rows, on all cores. Returns the sum.
     template <class Row>
-    long all(int rows, const Row& trace_row) {
+    long trace_rows(int rows, const Row& trace_row) {
         std::atomic<int> next = 0;
         std::atomic<long> rays = 0;
         std::vector<std::thread> threads;
@@ -50,8 +50,9 @@ class Picture {
         return rays;
     }
 
+    /// Renders ray by ray; returns the number of rays.
     long single() {
-        return all(camera_.height, [&](int row) {
+        return trace_rows(camera_.height, [&](int row) {
             long rays = 0;
             for (int column = 0; column < camera_.width; ++column)
                 pixel(row, column) = trace(camera_.direction(row, column), rays);
@@ -59,15 +60,17 @@ class Picture {
         });
     }
 
+    /// Renders tiles of 4 x 4 pixels with packets of sixteen rays; returns the number of rays.
     long sixteen() {
         const int across = (camera_.width + kTile - 1) / kTile, down = (camera_.height + kTile - 1) / kTile;
-        return all(down, [&](int row) {
+        return trace_rows(down, [&](int row) {
             long rays = 0;
             for (int column = 0; column < across; ++column) rays += trace_tile(row * kTile, column * kTile);
             return rays;
         });
     }
 
+    /// Mean colour of the pixels.
     V3 mean() const {
         V3 sum;
         for (const V3& p : pixels_) sum = sum + p;
@@ -84,7 +87,7 @@ class Picture {
         RayStack stack;
         stack.push_back({camera_.eye, direction, 1, 0});
         while (!stack.empty()) {
-            const Waiting r = stack.pop();
+            const PendingRay r = stack.pop();
             ++rays;
             RTCRayHit q{};
             q.ray = {r.origin.x, r.origin.y, r.origin.z, 0, r.direction.x, r.direction.y, r.direction.z, 0,
@@ -97,7 +100,7 @@ class Picture {
                 colour = colour + r.weight * whitted_.background();
                 continue;
             }
-            const Met m = whitted_.meet(r, h);
+            const ShadingPoint m = whitted_.shading_point(r, h);
             colour = colour + r.weight * whitted_.ambient(m);
             for (const PeerLight& light : whitted_.lights()) {
                 const V3 arm = light.position - m.outer;
@@ -116,10 +119,11 @@ class Picture {
         return colour;
     }
 
+    /// Ray tree of one pixel of a tile.
     struct Lane {
         RayStack stack;
-        Waiting ray;
-        Met met;
+        PendingRay ray;
+        ShadingPoint point;
         V3 colour;
     };
 
@@ -141,17 +145,18 @@ class Picture {
         return rays;
     }
 
-    // Traces the next ray of each lane's tree. Returns their number; adds the number of shadow rays to `rays`.
+    // Traces the next ray of each lane's tree. Returns the number of traced rays; adds the number of shadow rays to
+    // `rays`.
     long step(std::array<Lane, kWide>& lanes, RTCIntersectContext& context, long& rays) const {
         alignas(64) std::array<int, kWide> valid{};
         alignas(64) RTCRayHit16 q;
         long taken = 0;
         for (int i = 0; i < kWide; ++i) {
             if (lanes[i].stack.empty()) continue;
-            const Waiting& r = lanes[i].ray = lanes[i].stack.pop();
+            const PendingRay& r = lanes[i].ray = lanes[i].stack.pop();
             valid[i] = -1;
             ++taken;
-            put(q.ray, i, r.origin, r.direction, kFar);
+            set_ray(q.ray, i, r.origin, r.direction, kFar);
             q.hit.geomID[i] = q.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         }
         if (taken == 0) return 0;
@@ -167,24 +172,25 @@ class Picture {
                 valid[i] = 0;
                 continue;
             }
-            lane.met = whitted_.meet(lane.ray, h);
-            lane.colour = lane.colour + lane.ray.weight * whitted_.ambient(lane.met);
+            lane.point = whitted_.shading_point(lane.ray, h);
+            lane.colour = lane.colour + lane.ray.weight * whitted_.ambient(lane.point);
         }
-        for (const PeerLight& light : whitted_.lights()) rays += light_up(lanes, valid, light, context);
+        for (const PeerLight& light : whitted_.lights()) rays += add_light(lanes, valid, light, context);
         for (int i = 0; i < kWide; ++i)
-            if (valid[i] != 0) whitted_.follow(lanes[i].stack, lanes[i].ray, lanes[i].met);
+            if (valid[i] != 0) whitted_.follow(lanes[i].stack, lanes[i].ray, lanes[i].point);
         return taken;
     }
 
-    long light_up(std::array<Lane, kWide>& lanes, const std::array<int, kWide>& valid, const PeerLight& light,
-                  RTCIntersectContext& context) const {
+    // Adds the contribution of a light to the lanes with a hit. Returns the number of shadow rays.
+    long add_light(std::array<Lane, kWide>& lanes, const std::array<int, kWide>& valid, const PeerLight& light,
+                   RTCIntersectContext& context) const {
         alignas(64) std::array<int, kWide> open{};
         alignas(64) RTCRay16 s;
         std::array<V3, kWide> to_light;
         long rays = 0;
         bool any = false;
         for (int i = 0; i < kWide; ++i) {
-            const Met& m = lanes[i].met;
+            const ShadingPoint& m = lanes[i].point;
             if (valid[i] == 0) continue;
             const V3 arm = light.position - m.outer;
             if (!(dot(m.normal, arm) > 0)) continue;
@@ -192,7 +198,7 @@ class Picture {
             const float distance = std::sqrt(dot(arm, arm));
             to_light[i] = (1 / distance) * arm;
             if (whitted_.embree().plane_blocks(m.outer, to_light[i], distance)) continue;
-            put(s, i, m.outer, to_light[i], distance);
+            set_ray(s, i, m.outer, to_light[i], distance);
             open[i] = -1;
             any = true;
         }
@@ -200,11 +206,11 @@ class Picture {
         for (int i = 0; i < kWide; ++i)
             if (open[i] != 0 && s.tfar[i] > 0)
                 lanes[i].colour = lanes[i].colour +
-                                  lanes[i].ray.weight * whitted_.lit(lanes[i].ray, lanes[i].met, light, to_light[i]);
+                                  lanes[i].ray.weight * whitted_.lit(lanes[i].ray, lanes[i].point, light, to_light[i]);
         return rays;
     }
 
-    static void put(RTCRay16& rays, int i, V3 origin, V3 direction, float far) {
+    static void set_ray(RTCRay16& rays, int i, V3 origin, V3 direction, float far) {
         rays.org_x[i] = origin.x;
         rays.org_y[i] = origin.y;
         rays.org_z[i] = origin.z;

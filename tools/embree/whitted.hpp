@@ -41,17 +41,17 @@ struct PeerLight {
 };
 
 /// A pending ray of a pixel's ray tree.
-struct Waiting {
+struct PendingRay {
     V3 origin, direction;
     float weight;
     int level;
 };
 
-/// A hit with its normal turned towards the ray.
-struct Met {
-    V3 point, outer, inner, normal, colour;
+/// Geometry and colour of a hit; the normal is turned towards the ray.
+struct ShadingPoint {
+    V3 point, outer, inner, normal, colour;  // outer, inner: origins of reflected and refracted rays
     const PeerSurface* surface;
-    bool leaving;
+    bool leaving;  // the ray leaves the object
 };
 
 class Whitted {
@@ -69,8 +69,9 @@ class Whitted {
     const std::vector<PeerLight>& lights() const { return lights_; }
     V3 background() const { return background_; }
 
-    Met meet(const Waiting& r, const PeerHit& h) const {
-        Met m;
+    /// The hit point of a ray, with its normal, colour and the origins of the next rays.
+    ShadingPoint shading_point(const PendingRay& r, const PeerHit& h) const {
+        ShadingPoint m;
         m.surface = &embree_.surfaces()[static_cast<std::size_t>(h.surface)];
         m.point = r.origin + h.t * r.direction;
         m.leaving = dot(h.geometric, r.direction) > 0;
@@ -82,10 +83,10 @@ class Whitted {
         return m;
     }
 
-    V3 ambient(const Met& m) const { return (ambient_ * m.surface->diffuse) * m.colour; }
+    V3 ambient(const ShadingPoint& m) const { return (ambient_ * m.surface->diffuse) * m.colour; }
 
     /// Contribution of a visible light; `to_light` has length 1.
-    V3 lit(const Waiting& r, const Met& m, const PeerLight& light, V3 to_light) const {
+    V3 lit(const PendingRay& r, const ShadingPoint& m, const PeerLight& light, V3 to_light) const {
         const PeerSurface& s = *m.surface;
         const V3 mirror = r.direction - 2 * dot(m.normal, r.direction) * m.normal;
         const float cosine = dot(mirror, to_light);
@@ -95,7 +96,7 @@ class Whitted {
 
     /// Pushes the reflected and refracted rays on the stack; the last one pushed is traced first.
     template <class Stack>
-    void follow(Stack& stack, const Waiting& r, const Met& m) const {
+    void follow(Stack& stack, const PendingRay& r, const ShadingPoint& m) const {
         if (r.level >= bounces_) return;
         const PeerSurface& s = *m.surface;
         float mirrored = s.specular;
@@ -115,7 +116,7 @@ class Whitted {
     }
 
   private:
-    static V3 square(const Met& m, V3 geometric) {
+    static V3 square(const ShadingPoint& m, V3 geometric) {
         const float x = std::abs(geometric.x), y = std::abs(geometric.y), z = std::abs(geometric.z);
         const float side = m.surface->checker;
         const float u = x >= y && x >= z ? m.point.y : y >= z ? m.point.z : m.point.x;

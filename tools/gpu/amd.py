@@ -9,7 +9,7 @@ import re
 
 from gpu.figures import Core, Fault, Figures, first_line, kernel_name, rounded_up
 
-CORES = {"gfx90a": Core(32, 16, 64 * 1024, 64 * 1024, 512, lone_groups=32)}
+CORES = {"gfx90a": Core(32, 16, 64 * 1024, 64 * 1024, 512, max_single_warp_groups=32)}
 LIBRARY = "amdgcn--amdhsa.bc"
 MUST_NOT = {"double precision": re.compile(r"^\s*v_\w+_f64\b", re.M),
             "does not round to nearest": re.compile(r"\.amdhsa_float_round_mode_32 [^0]"),

@@ -18,8 +18,8 @@ class Budget:
         for row in csv.DictReader(line for line in lines if not line.startswith("#")):
             self.rows[row["kernel"], row["variant"], row["target"]] = row
 
-    def judges(self, target, version):
-        """Returns true if the budget of a target was made with this version of the compilers."""
+    def applies_to(self, target, version):
+        """Returns true if the budget of the target was made with this version of its compilers."""
         return self.versions.get(target) == version
 
     def faults(self, figures):
@@ -31,19 +31,19 @@ class Budget:
         if figures.width < int(row["width"]):
             yield f"threads of {figures.width} work-items, {row['width']} in the budget"
         for what in BOUNDED:
-            figure, most = getattr(figures, what), int(row[what])
-            if figure > 1.05 * most:
-                yield f"{what.replace('_', ' ')}: {figure}, {most} in the budget"
+            figure, budget = getattr(figures, what), int(row[what])
+            if figure > 1.05 * budget:
+                yield f"{what.replace('_', ' ')}: {figure}, {budget} in the budget"
 
     def stale(self, found, targets):
         """Names of the rows for these targets whose kernels no longer exist."""
         return sorted(name for name in set(self.rows) - found if name[2] in targets)
 
     def write(self, all_figures, versions, whole=True):
-        """Writes the file with new figures. Keeps the rows of other targets; if not all kernels were built (whole), also those of other kernels."""
+        """Writes the file with new figures. Keeps the rows of other targets; unless all kernels were built (whole), also those of other kernels."""
         self.versions.update(versions)
-        kept = {name: row for name, row in self.rows.items() if not whole or name[2] not in versions}
-        kept.update({f.name: {key: getattr(f, key) for key in HEAD} for f in all_figures})
+        rows = {name: row for name, row in self.rows.items() if not whole or name[2] not in versions}
+        rows.update({f.name: {key: getattr(f, key) for key in HEAD} for f in all_figures})
         lines = [HEADER, *(f"{VERSION}{target}: {version}\n" for target, version in self.versions.items()), ",".join(HEAD) + "\n"]
-        lines += [",".join(str(row[key]) for key in HEAD) + "\n" for _, row in sorted(kept.items())]
+        lines += [",".join(str(row[key]) for key in HEAD) + "\n" for _, row in sorted(rows.items())]
         self.path.write_text("".join(lines))

@@ -1,7 +1,7 @@
-"""Caches the figures of builds: compilers for GPUs take minutes, and most changes touch few kernels.
+"""Caches the figures of builds, because compilers for GPUs take minutes and most changes affect few kernels.
 
-The key is all that the figures depend on: the preprocessed source, which has no comments and no code of other variants, the options, the
-versions of the compilers, and these modules. A build with a fault is not cached.
+The key is a hash of everything that the figures depend on: the preprocessed source (without comments and code of other variants), the options, the
+versions of the compilers, and the modules of this folder. A build with a fault is not cached.
 """
 import dataclasses, hashlib, json, os
 from pathlib import Path
@@ -13,14 +13,14 @@ CODE = b"".join(path.read_bytes() for path in sorted(Path(__file__).parent.glob(
 
 class Cache:
     def __init__(self, folder, vendors):
-        """A cache in `folder`; without a cache if `folder` is None."""
+        """A cache in `folder`. Without a folder (None) every build is compiled."""
         self.folder, self.hits = folder, []
         self.versions = {vendor: vendor.version() for vendor in vendors}
         if folder:
             folder.mkdir(parents=True, exist_ok=True)
 
     def compile(self, vendor, folder, build, targets):
-        """(figures, faults): those of the cache, or the result of the vendor's compile(). Called from several threads."""
+        """Returns (figures, faults): those of the cache, or the result of the vendor's compile(). Several threads call it."""
         source = self.folder and vendor.compiler_input(folder, build, targets)
         if not source:
             return vendor.compile(folder, build, targets)

@@ -54,13 +54,13 @@ class Core:
     group_local: int  # maximum local memory of one group
     unit: int         # allocation unit of local memory
     reserved: int = 0  # local memory of each group that the driver reserves
-    lone_groups: int = 0  # maximum number of groups of a single warp, if it differs from `groups`
+    max_single_warp_groups: int = 0  # maximum number of groups of a single warp, if it differs from `groups`
 
     def set_occupancy(self, figures, warps_by_registers):
         """Sets warps and local_left of the figures, and returns them."""
         each = rounded_up(figures.group, figures.width) // figures.width
-        most = self.lone_groups if each == 1 and self.lone_groups else self.groups
-        groups = min(min(self.warps, warps_by_registers) // each, most)
+        max_groups = self.max_single_warp_groups if each == 1 and self.max_single_warp_groups else self.groups
+        groups = min(min(self.warps, warps_by_registers) // each, max_groups)
         if figures.local:
             groups = min(groups, self.local // rounded_up(figures.local + self.reserved, self.unit))
         figures.warps = groups * each

@@ -1,7 +1,7 @@
-"""The load laboratory: repeats and extends the papers' experiments, on your scenes.
+"""The load laboratory: reproduces and extends the experiments of the papers, on the papers' or your scenes.
 
-A study is one file. Its docstring has the title, the question and the method. Its function `run(lab, scenes)` renders the scenes and returns a Page.
-Example: docs/my_study.py. The built-in studies are in tools/lab/studies.
+A study is one Python file: its docstring has the title, the question and the method, and its function `run(lab, scenes)` returns a Page.
+Example: docs/my_study.py. The built-in studies are in tools/lab/studies; `raya study NAME` runs them.
 """
 import sys
 from importlib.util import find_spec
@@ -16,8 +16,9 @@ if _MISSING:
     sys.exit(2)
 
 from raya.lab import papers
-from raya.lab.laboratory import Costs, Ensemble, Laboratory, balance_pass, measured, one_of, sampled
-from raya.lab.page import Claim, Comparison, Page, Picture, Plot, Series, Table, series_by, shown, with_paper
-from raya.lab.statistics import (NOT_REPRODUCED, REPRODUCED, UNDECIDED, Estimate, each_of, estimate, fitted_exponent,
-                                 holding_to_the_end, prediction, prediction_text, range_text, verdict, verdict_among)
+from raya.lab.laboratory import Costs, Ensemble, Laboratory, costs_of_pass, first_scene, mean_seconds, time_calls
+from raya.lab.page import Claim, Comparison, Page, Picture, Plot, Series, Table, format_value, series_by, with_paper
+from raya.lab.statistics import (NOT_REPRODUCED, REPRODUCED, UNDECIDED, Estimate, bonferroni_confidence, estimate,
+                                 fitted_exponent, prediction_interval, prediction_text, range_text, tail_where, verdict,
+                                 verdict_by_prediction)
 from raya.lab.study import study

@@ -1,4 +1,11 @@
-"""Runs studies: python3 -m raya.lab NAME|all|FILE.py [SCENE.nff...] -o DIR. `raya study` runs this module."""
+"""Runs studies and writes their results to a folder. `raya study` runs this module.
+
+    python3 -m raya.lab NAME|all|FILE.py [SCENE.nff...] -o DIR     options as for `raya study`: see `raya study --help`
+
+Writes for each study DIR/NAME.json, NAME.md, its tables (.csv), plots (.svg, .png) and pictures (.png); for all studies DIR/index.html, and
+index.md if there are several. Exit codes: 0 done; 2 bad option, scene or study; 3 no usable OpenCL device, or its driver crashed. A signal ends the
+program with that signal's status.
+"""
 import json
 import os
 import signal
@@ -11,7 +18,7 @@ from types import SimpleNamespace
 import raya
 from raya import _engine
 from raya.lab.document import write_document, write_page
-from raya.lab.page import shown
+from raya.lab.page import format_value
 from raya.lab.study import studies, study_of_file
 from raya.lab.worker import Worker, warn_as_raya
 from tqdm import tqdm
@@ -20,7 +27,8 @@ EXIT_USER, EXIT_DEVICE = 2, 3
 
 
 def settings_of(arguments):
-    """The options of `raya study`, as a namespace: the program passes them as JSON; arguments of a direct call are parsed by the program's parser."""
+    """The options of `raya study`, as a namespace. `raya study` passes them as JSON (--settings); raya's own parser parses the arguments of a direct
+    call."""
     if arguments[:1] != ["--settings"]:
         arguments = ["--settings", _engine.study_settings(arguments)]
     options = SimpleNamespace(**json.loads(arguments[1]))
@@ -30,7 +38,7 @@ def settings_of(arguments):
 
 
 def wanted_studies(name):
-    """(list of studies to run, one sentence for each study that is skipped). Raises ValueError if the named study cannot run on this machine."""
+    """Returns (studies to run, one sentence for each skipped study). Raises ValueError if the named study cannot run on this machine."""
     if name.endswith(".py"):
         return [study_of_file(name)], []
     known = studies()
@@ -38,34 +46,34 @@ def wanted_studies(name):
         if known[name].missing():
             raise ValueError(f"study {name}: {known[name].missing()}")
         return [known[name]], []
-    left_out = [f"study {one.name} is left out: {one.missing()}" for one in known.values() if one.missing()]
+    left_out = [f"study {one.name} is skipped: {one.missing()}" for one in known.values() if one.missing()]
     return [one for one in known.values() if not one.missing()], left_out
 
 
 def command_of(study, options):
-    """The command that repeats one study."""
+    """The command line that repeats one study."""
     scenes = options.scenes[:1] if study.one_scene else options.scenes
-    words = ["raya", "study", options.study if options.study.endswith(".py") else study.name, *map(quote, scenes)]
-    words += [f"--size {options.size}"] if options.size else []
-    words += [f"--device {quote(options.device)}"] if options.device else []
-    words += [f"--network {options.network[0] * 1e6:g},{options.network[1] * 1e9:g}"] if options.network else []
-    words += ["--strict"] if options.strict else []
-    words += ["--no-tuned"] if options.no_tuned else []
-    return " ".join(words + ["-o DIR"])
+    arguments = ["raya", "study", options.study if options.study.endswith(".py") else study.name, *map(quote, scenes)]
+    arguments += [f"--size {options.size}"] if options.size else []
+    arguments += [f"--device {quote(options.device)}"] if options.device else []
+    arguments += [f"--network {options.network[0] * 1e6:g},{options.network[1] * 1e9:g}"] if options.network else []
+    arguments += ["--strict"] if options.strict else []
+    arguments += ["--no-tuned"] if options.no_tuned else []
+    return " ".join(arguments + ["-o DIR"])
 
 
 def print_page(page, folder):
     print(page.title)
     for c in page.comparisons:
-        paper = "" if c.paper is None else f" paper {shown(c.paper)}, ratio {c.ours / c.paper:.3f}"
-        print(f"  {c.what:<34} {shown(c.ours):>12} {c.unit:<4}{paper}{f'  ({c.remark})' if c.remark else ''}")
+        paper = "" if c.paper is None else f" paper {format_value(c.paper)}, ratio {c.ours / c.paper:.3f}"
+        print(f"  {c.what:<34} {format_value(c.ours):>12} {c.unit:<4}{paper}{f'  ({c.remark})' if c.remark else ''}")
     for line in page.findings:
         print(f"  {line}")
     print(f"  {folder / (page.name + '.md')}", flush=True)
 
 
 def make_folder(path):
-    """Creates a folder and its missing parents. Returns the created folders, the innermost first."""
+    """Creates a folder and its missing parents. Returns the created folders, the innermost first. Raises ValueError if the folder is not writable."""
     missing = [one for one in [path, *path.parents] if not one.exists()]
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -77,20 +85,22 @@ def make_folder(path):
 
 
 def run_all(options, chosen, left_out, scenes):
+    """Runs the chosen studies and writes their results. Appends a sentence to left_out for each study that fails on the device.
+    Returns the exit code."""
     folder, worker, pages, drawings, code = Path(options.output), Worker(), [], {}, 0
     missing = make_folder(folder)
-    with tempfile.TemporaryDirectory(prefix="raya-lab-") as kept:
+    with tempfile.TemporaryDirectory(prefix="raya-lab-") as cache:
         try:
             bar = tqdm(chosen, disable=options.verbosity < 0 or not sys.stderr.isatty(), unit="study", leave=False)
             for one in bar:
                 bar.set_description(f"study {one.name}")
                 try:
                     name = options.study if options.study.endswith(".py") else one.name
-                    page, device = worker.run(name, scenes, kept, options)
+                    page, device = worker.run(name, scenes, cache, options)
                 except raya.DeviceError as error:
                     if len(chosen) == 1:
                         raise
-                    left_out.append(f"study {one.name} is left out: {error}")
+                    left_out.append(f"study {one.name} is skipped: {error}")
                     print(f"raya: {left_out[-1]}", file=sys.stderr)
                     code = EXIT_DEVICE
                     continue
@@ -126,23 +136,23 @@ def main(arguments):
     return run_all(options, chosen, left_out, scenes)
 
 
-class Ended(BaseException):
+class Terminated(BaseException):
     """A signal that terminates the program."""
 
 
 if __name__ == "__main__":
     def end(number, frame):
-        raise Ended(number)
+        raise Terminated(number)
 
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, end)
     try:
         sys.exit(main(sys.argv[1:]))
-    except Ended as ended:
+    except Terminated as signalled:
         print("raya: interrupted", file=sys.stderr)
-        signal.signal(ended.args[0], signal.SIG_DFL)
-        os.kill(os.getpid(), ended.args[0])  # the signal ends the process, so its parent sees the signal in the exit status
+        signal.signal(signalled.args[0], signal.SIG_DFL)
+        os.kill(os.getpid(), signalled.args[0])  # the signal ends the process, so its parent sees the signal in the exit status
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes stdout at exit
         print("raya: cannot write to stdout: Broken pipe", file=sys.stderr)

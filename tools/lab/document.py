@@ -1,4 +1,4 @@
-"""Writes the output of studies: CSV, JSON, plots and Markdown for each, and one HTML document for all."""
+"""Writes the output of studies: CSV, JSON, plots and Markdown for each study, and one HTML document for all of them."""
 import base64
 import dataclasses
 import json
@@ -13,11 +13,11 @@ import jinja2
 import numpy as np
 from markupsafe import Markup, escape
 from raya.lab import plots
-from raya.lab.page import shown
+from raya.lab.page import format_value
 from raya.lab.papers import REFERENCES
 from raya.lab.statistics import NOT_REPRODUCED, REPRODUCED, UNDECIDED
 
-OPEN_ROWS, MOST_ROWS = 24, 400  # a table of at most OPEN_ROWS rows is unfolded; HTML shows at most MOST_ROWS rows
+OPEN_ROWS, MAX_ROWS = 24, 400  # a table of at most OPEN_ROWS rows is unfolded; HTML shows at most MAX_ROWS rows
 
 # Content security policy: no scripts and no external resources.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
@@ -26,22 +26,22 @@ ABOUT = {
     "question": "Which claims of the papers on two ray-tracing array machines can be reproduced on models of these machines, "
                 "and what do the models show beyond the papers?",
     "method": [
-        "Kohata & Ito 1993 divide the screen: the SPA has 256 processors on a ring and a bus, which share the pixels by a "
-        "cyclic mapping. Yoshitani & Yamazaki, about 1995, divide space: each of 64 transputers on a torus holds one voxel, "
-        "and rays travel between them as packets. Havran & Sixta 1999 count tests and steps in uniform grids; raya's counts "
-        "are compared with theirs.",
-        "Both machines are models that run as OpenCL kernels. The image is the same, bit for bit, on every machine and with "
-        "every mapping. The kernels count loads, packets and tests; times are modelled from these counts unless a page calls "
-        "them measured.",
-        "A claim is a statement of a paper. A rule over the figures next to it decides whether it is reproduced. It cannot be "
-        "told if the paper does not give the facts that decide it, or if our confidence interval contains both answers.",
-        "\"Derived\" marks a figure that follows by arithmetic from figures that the paper prints. \"+-\" is the half width "
-        "of a 95 % confidence interval by Student's t.",
+        "Kohata & Ito 1993 divide the screen: the SPA has 256 processing elements (PEs) on a ring and a bus, and a cyclic mapping "
+        "distributes the pixels over them. Yoshitani & Yamazaki, about 1995, divide space: each of 64 transputers on a torus holds "
+        "one voxel, and rays travel between them as packets. Havran & Sixta 1999 count tests and steps in uniform grids; raya's "
+        "counts are compared with theirs.",
+        "Both machines are models that run as OpenCL kernels. Every machine and every mapping gives the same image, bit for bit. "
+        "The kernels count loads, packets and tests. Times are modelled from these counts unless a page calls them measured.",
+        "A claim is a statement of a paper. Its verdict, reproduced or not reproduced, follows by a stated rule from the figures in "
+        "the column \"reason\". The verdict is undecided if the paper does not give the facts that decide the claim, or if our "
+        "confidence interval contains both answers.",
+        "\"Derived\" marks a figure that follows by arithmetic from figures that the paper prints. \"[D]\" marks such a figure in a "
+        "text. \"+-\" is the half width of a 95 % confidence interval by Student's t.",
     ],
 }
 
 
-def write_whole(path, content):
+def write_atomically(path, content):
     """Writes a file atomically: to a temporary file, which is then renamed."""
     data = content if isinstance(content, bytes) else content.encode()
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".raya-", suffix=".tmp")
@@ -73,11 +73,12 @@ def plain(value):
 
 
 def rows_of(table):
-    """[row][column]: cells of a table. Each cell has the type of its column (a row of a pandas data frame would convert integers to floats)."""
+    """[row][column]: cells of a table. Each cell has the type of its column; iterating over pandas rows would convert integers to floats."""
     return list(table.rows.itertuples(index=False, name=None))
 
 
 def json_of(page):
+    """The page as a JSON value, described by docs/schema/study.json."""
     tables = [{"name": t.name, "title": t.title, "columns": list(t.rows.columns), "rows": rows_of(t)}
               for t in page.tables]
     pictures = [{"name": p.name, "title": p.title, "words": p.words} for p in page.pictures]
@@ -89,18 +90,19 @@ def json_of(page):
 
 
 def ratio(comparison):
+    """Our figure divided by the paper's; nan without a figure of the paper."""
     return comparison.ours / comparison.paper if comparison.paper else math.nan
 
 
 def cells_of_comparisons(page):
-    """[row][column]: table of comparisons, the header first. The paper's columns are omitted if no comparison has a figure of a paper."""
+    """[row][column]: table of comparisons, the header first. Omits the paper's columns if no comparison has a paper's figure, and empty remarks."""
     def ours(c):
-        return f"{shown(c.ours)}{f' +- {c.half_width:.2g}' if c.half_width else ''} {c.unit}".rstrip()
+        return f"{format_value(c.ours)}{f' +- {c.half_width:.2g}' if c.half_width else ''} {c.unit}".rstrip()
 
     def paper(c):
-        return "-" if c.paper is None else f"{shown(c.paper)} {c.unit}".rstrip() + (" (derived)" if c.derived else "")
+        return "-" if c.paper is None else f"{format_value(c.paper)} {c.unit}".rstrip() + (" (derived)" if c.derived else "")
 
-    columns = {"": lambda c: c.what, page.beside or "paper": paper, "ours": ours,
+    columns = {"": lambda c: c.what, page.compared_with or "paper": paper, "ours": ours,
                "ours / theirs": lambda c: f"{ratio(c):.3g}" if c.paper else "-", "remark": lambda c: c.remark}
     if all(c.paper is None for c in page.comparisons):
         columns = {name: columns[name] for name in ("", "ours", "remark")}
@@ -112,11 +114,11 @@ def cells_of_comparisons(page):
 def title_of_comparisons(page):
     if all(c.paper is None for c in page.comparisons):
         return "Main figures"
-    return f"Compared with {page.beside or 'the papers'}"
+    return f"Compared with {page.compared_with or 'the papers'}"
 
 
 def cells_of_claims(pages):
-    return [["paper", "says", "verdict", "why"]] + [
+    return [["paper", "statement", "verdict", "reason"]] + [
         [f"{c.paper}, {c.place}", c.words, c.verdict, c.why] for page in pages for c in page.claims]
 
 
@@ -125,12 +127,12 @@ def cells_of_points(plot):
     rows = [["series", plot.x_label, plot.y_label] + ["+-"] * bars]
     for s in plot.series:
         half = s.half_widths or [math.nan] * len(s.x)
-        rows += [[s.label, shown(x), shown(y)] + [f"{h:.2g}"] * bars for x, y, h in zip(s.x, s.y, half)]
+        rows += [[s.label, format_value(x), format_value(y)] + [f"{h:.2g}"] * bars for x, y, h in zip(s.x, s.y, half)]
     return rows
 
 
 def cells_of_table(table):
-    return [list(table.rows.columns)] + [[shown(cell) for cell in row] for row in rows_of(table)]
+    return [list(table.rows.columns)] + [[format_value(cell) for cell in row] for row in rows_of(table)]
 
 
 def lines_of_run(page):
@@ -140,22 +142,21 @@ def lines_of_run(page):
 
 
 def command_of(pages):
-    """The command that makes all pages: that of the page with the longest command, which has all options and scenes, for `all` studies."""
+    """The command that makes all pages. For several pages: the longest command, because it has all options and scenes, with `all` as the study."""
     command = max((page.run.get("command", "") for page in pages), key=len)
     return command if len(pages) == 1 else re.sub(r"^raya study \S+", "raya study all", command)
 
 
 def verdict_sentences(pages):
-    """Sentences with the number of claims per verdict: one for all claims; if there are several papers, also one for each paper."""
+    """Sentences with the number of claims for each verdict: one for all claims; if there are several papers, also one for each paper."""
     claims = [claim for page in pages for claim in page.claims]
     if not claims:
-        return ["This page judges no claim of a paper."] if len(pages) == 1 else ["No study here judges a claim of a paper."]
+        return ["This study tests no claim of a paper."] if len(pages) == 1 else ["These studies test no claim of a paper."]
 
     def sentence(some, whose):
         count = Counter(claim.verdict for claim in some)
-        is_are = ["is" if count[v] == 1 else "are" for v in (REPRODUCED, NOT_REPRODUCED)]
-        return (f"Of {len(some)} claim{'' if len(some) == 1 else 's'} {whose}, {count[REPRODUCED]} {is_are[0]} "
-                f"reproduced, {count[NOT_REPRODUCED]} {is_are[1]} not, and {count[UNDECIDED]} cannot be told.")
+        return (f"Of {len(some)} claim{'' if len(some) == 1 else 's'} {whose}: {count[REPRODUCED]} reproduced, "
+                f"{count[NOT_REPRODUCED]} not reproduced, {count[UNDECIDED]} undecided.")
 
     papers = list(dict.fromkeys(claim.paper for claim in claims))
     if len(papers) == 1:
@@ -207,7 +208,7 @@ def environment():
     made.globals.update({one.__name__: one for one in (
         cells_of_claims, cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run,
         not_reproduced, title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY),
-        OPEN_ROWS=OPEN_ROWS, MOST_ROWS=MOST_ROWS)
+        OPEN_ROWS=OPEN_ROWS, MAX_ROWS=MAX_ROWS)
     return made
 
 
@@ -225,8 +226,8 @@ def write_page(folder, page):
         drawings[plot.name] = inlined(drawn["svg"].decode())
     files[f"{page.name}.json"] = json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n"
     files[f"{page.name}.md"] = environment().get_template("page.md.j2").render(page=page)
-    for name, content in files.items():  # only after all content has been made, so that an error leaves no partial output
-        write_whole(folder / name, content)
+    for name, content in files.items():  # after all content has been made, so that an error leaves no partial output
+        write_atomically(folder / name, content)
     return drawings
 
 
@@ -235,6 +236,6 @@ def write_document(folder, pages, drawings, left_out=()):
     made = environment()
     body = made.get_template("document.html.j2").render(pages=pages, drawings=drawings, left_out=left_out,
                                                         references=REFERENCES)
-    write_whole(folder / "index.html", body)
+    write_atomically(folder / "index.html", body)
     if len(pages) > 1:
-        write_whole(folder / "index.md", made.get_template("index.md.j2").render(pages=pages, left_out=left_out))
+        write_atomically(folder / "index.md", made.get_template("index.md.j2").render(pages=pages, left_out=left_out))

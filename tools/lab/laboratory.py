@@ -10,21 +10,23 @@ import numpy as np
 import raya
 
 SPA = next(m for m in raya.machines() if m["name"] == "spa")
-VIEWS = 64
+VIEWS = 64  # default number of random views of a scene
 TESTS = tuple(f"{kind}_tests" for kind in ("sphere", "plane", "polygon", "cone"))
 
 
 def rays_of(events):
+    """Number of rays of all kinds in a render's event counts."""
     return sum(events[kind] for kind in ("primary", "reflected", "refracted", "shadow"))
 
 
 def tests_of(events):
+    """Number of intersection tests with objects of all kinds in a render's event counts."""
     return sum(events[kind] for kind in TESTS)
 
 
 @dataclass
 class Costs:
-    """The cost image of one render. The loads of PEs with any mapping and number of PEs can be computed from it."""
+    """Cost images of one render. They give the loads of the PEs for any mapping and number of PEs."""
 
     label: str
     trace: np.ndarray  # uint64 [H, W]: modelled cycles of each pixel in the first pass
@@ -54,7 +56,8 @@ def format_for(scene):
 class Laboratory:
     """Renders scenes. Cost images are cached in `folder`, by scene and settings, so that the studies of one run share them.
 
-    size: pixels per side, if the user has set it; network: (seconds per message, seconds per byte); options: those of every render, and `device`.
+    size: pixels per side; None: each study's default. network: (seconds per message, seconds per byte) or None. options: `device`, and options of
+    every render.
     """
 
     def __init__(self, folder, size=None, network=None, **options):
@@ -69,8 +72,8 @@ class Laboratory:
 
     def render(self, scene, **options):
         """raya.render() on the laboratory's device."""
-        kept = {k: v for k, v in self._options.items() if k != "device"}
-        return raya.render(scene, session=self.session, **kept, **options)
+        common = {k: v for k, v in self._options.items() if k != "device"}
+        return raya.render(scene, session=self.session, **common, **options)
 
     def costs(self, scene, size, antialias="none"):
         """Cost image (`Costs`) of the scene, size x size pixels, on PEs of the SPA without their memory limit."""
@@ -88,24 +91,24 @@ class Laboratory:
         file.write_bytes(pickle.dumps(costs))
         return costs
 
-    def ensemble(self, scene, size, antialias="none", most=VIEWS):
-        """Costs of the scene and of random views (`Ensemble`): `most` views, or fewer if views x pixels x objects exceed 2^27, but at least
-        min(4, most)."""
-        count = max(min(4, most), min(2**27 // (size * size * max(scene.objects, 1)), most))
+    def ensemble(self, scene, size, antialias="none", max_views=VIEWS):
+        """Costs of the scene and of random views (`Ensemble`). There are max_views views, or fewer so that views x pixels x objects is at most 2^27,
+        but at least min(4, max_views)."""
+        count = max(min(4, max_views), min(2**27 // (size * size * max(scene.objects, 1)), max_views))
         views = [self.costs(scene.random_view(seed).renamed(f"{scene.name}, view {seed}"), size, antialias)
                  for seed in range(1, count + 1)]
         return Ensemble(self.costs(scene, size, antialias), views)
 
 
-def one_of(scenes):
-    """The scene of a study that takes one scene: the first one on the command line; by default centre, which resembles the paper's scene."""
+def first_scene(scenes):
+    """The first scene of the command line; by default the example scene centre, which resembles the scene of Kohata & Ito."""
     return scenes[0] if scenes else raya.example("centre")
 
 
-def balance_pass(lab, scenes, first):
-    """Costs of the first pass (`first`) or of supersampling, for one scene with a PE for each column. Returns (settings, cost image of the
-    picture, cost images of the views); cost images are uint64 [H, W]."""
-    scene, size = one_of(scenes), lab.size(256)
+def costs_of_pass(lab, scenes, first):
+    """Cost images of the first pass, or of supersampling if `first` is false, for one scene with a PE for each column. Returns (settings, cost image
+    of the picture, cost images of the views). A cost image is uint64 [H, W]: modelled cycles of each pixel."""
+    scene, size = first_scene(scenes), lab.size(256)
     ensemble = lab.ensemble(scene, size, "none" if first else "supersample")
     picture, *views = (one.trace if first else one.supersample for one in [ensemble.picture, *ensemble.views])
     return {"scene": scene.name, "size": size, "pes": size, "views": len(views), "view_seeds": f"1..{len(views)}",
@@ -113,27 +116,27 @@ def balance_pass(lab, scenes, first):
 
 
 VIEWS_PROSE = """
-- The picture is accompanied by {views} random views of the same scene, seeds {view_seeds}. The camera keeps its distance; its
+- {views} random views of the same scene, seeds {view_seeds}, are rendered in addition to the picture. The camera keeps its distance; its
   direction is uniform on the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above the point that it
   looks at."""  # part of the method of fig7, fig8, fig12 and fig13
 
 
-Measured = namedtuple("Measured", "minimum median maximum runs")  # of seconds; runs: number of samples
+Timing = namedtuple("Timing", "minimum median maximum runs")  # of seconds; runs: number of samples
 
 
-def measured(run, runs, enough_s, warm=True):
-    """Calls run(), which returns seconds, and returns statistics (`Measured`) of at most `runs` calls. Makes no further call when their sum has
-    reached enough_s seconds. warm: makes an additional first call as a warm-up."""
+def time_calls(run, runs, sampling_s, warm=True):
+    """Calls run(), which returns seconds, at most `runs` times, until the sum reaches sampling_s seconds. Returns the minimum, median and maximum
+    (`Timing`). warm: makes an additional first call as a warm-up, which is not counted."""
     if warm:
         run()
     seconds = [run()]
-    while len(seconds) < runs and sum(seconds) < enough_s:
+    while len(seconds) < runs and sum(seconds) < sampling_s:
         seconds.append(run())
-    return Measured(min(seconds), float(np.median(seconds)), max(seconds), len(seconds))
+    return Timing(min(seconds), float(np.median(seconds)), max(seconds), len(seconds))
 
 
-def sampled(run, minimum_s=0.02):
-    """Mean of the seconds that run() returns, over as many calls as take minimum_s: clock and launch overhead distort shorter measurements."""
+def mean_seconds(run, minimum_s=0.02):
+    """Mean of the seconds that run() returns, over as many calls as take minimum_s seconds: clock and launch overhead distort shorter times."""
     total = calls = 0
     while total < minimum_s:
         total += run()

@@ -1,6 +1,7 @@
-"""The grid mapping for a number of PEs, and the lattice of pixels that one PE owns.
+"""The nearest-to-square grid mapping for a number of PEs, and the lattice of the pixels of one PE.
 
-Lattice of the cyclic mapping with a PE for each column: its basis is (p, 1) and (W, 0), in (columns, rows), with offset p and image width W.
+With the cyclic mapping and a PE for each column, the pixels of a PE form a lattice with the basis (p, 1) and (W, 0), in (columns, rows), for an
+offset p and an image of W columns.
 """
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The result of a study as plain data. document.py writes a study's files and its part of the document from it."""
+"""The result of a study as plain data, from which document.py writes the study's files and its part of the document."""
 import numbers
 import re
 from dataclasses import dataclass, field, replace
@@ -69,7 +69,7 @@ class Picture:
 
 @dataclass
 class Comparison:
-    """One of our figures and the corresponding figure of the paper; paper: None if it has none."""
+    """One of our figures (`ours`) and the corresponding figure of the paper (`paper`; None if the paper has none), both in `unit`."""
 
     what: str
     unit: str
@@ -77,7 +77,7 @@ class Comparison:
     ours: float
     remark: str = ""
     derived: bool = False  # the paper's figure follows by arithmetic from printed figures
-    half_width: Optional[float] = None
+    half_width: Optional[float] = None  # of the 95 % confidence interval of `ours`
 
     def __post_init__(self):
         if self.paper is not None and np.isnan(self.paper):
@@ -87,7 +87,7 @@ class Comparison:
 
 
 def with_paper(in_paper, comparisons):
-    """The comparisons; without the paper's figures unless the study uses the paper's scene and size (in_paper)."""
+    """Returns the comparisons, without the paper's figures unless in_paper: the study uses the paper's scene and size."""
     return comparisons if in_paper else [replace(one, paper=None) for one in comparisons]
 
 
@@ -108,7 +108,9 @@ class Claim:
 
 @dataclass
 class Page:
-    settings: dict
+    """The result of a study. A study's run() sets the members up to `compared_with`; describe() and the program set the others."""
+
+    settings: dict  # values of {names} in the prose, written to the JSON report
     findings: list = field(default_factory=list)  # sentences, the most important one first
     comparisons: list = field(default_factory=list)
     claims: list = field(default_factory=list)
@@ -118,7 +120,7 @@ class Page:
     pictures: list = field(default_factory=list)
     clock: str = ""  # how the times on the page are modelled or measured
     placeholders: dict = field(default_factory=dict)  # values of {names} in the prose that are not settings
-    beside: str = ""  # authors of the figures that ours are compared with
+    compared_with: str = ""  # authors and year of the paper whose figures `comparisons` contains; empty for several papers
     name: str = ""
     title: str = ""
     question: str = ""
@@ -144,7 +146,7 @@ class Page:
         return self
 
 
-def shown(value):
+def format_value(value):
     """Text of a number on a page, with five significant digits."""
     if isinstance(value, str):
         return value

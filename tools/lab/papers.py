@@ -1,4 +1,4 @@
-"""Figures of the papers, with table or figure number; [D] marks figures that we derived from printed ones."""
+"""Figures printed in the papers, with the number of the table or figure. [D] marks figures that we derived from printed ones."""
 
 SPA = "Kohata & Ito 1993"
 TP = "Yoshitani & Yamazaki, about 1995"
@@ -16,11 +16,11 @@ TRACE_0_MS, TRACE_16_MS, FILTER_0_MS, FILTER_16_MS = 653, 283, 9, 19
 FILTERED_0_MS, FILTERED_16_MS = TRACE_0_MS + FILTER_0_MS, TRACE_16_MS + FILTER_16_MS
 # Table 4: supersampling, communication and computation, p = 0 and p = 16.
 EXCHANGE_0_MS, EXCHANGE_16_MS, SUPERSAMPLE_0_MS, SUPERSAMPLE_16_MS = 2, 12, 739, 407
-# [D] Times for p = 8, from Table 3: from the time of a rotation, and the time of the filter's arithmetic, which is the same for every p.
+# [D] Times for p = 8, from Table 3: the time of its rotations plus the time of the filter's arithmetic, which is the same for every p.
 FILTER_ARITHMETIC_MS, FILTER_8_MS, EXCHANGE_8_MS = 7, 14, 7
 # [D] Fraction of recomputed pixels, from Table 4, if its computation time is that of supersampling alone.
-RECOMPUTED_LEAST, RECOMPUTED_MOST = 0.16, 0.18
-# [D] From Tables 2 and 3, with the digits that are certain although 653, 283 and 64,800 ms are rounded.
+RECOMPUTED_MIN, RECOMPUTED_MAX = 0.16, 0.18
+# [D] From Tables 2 and 3. Only the digits that remain certain after the rounding of 653, 283 and 64,800 ms are given.
 SPEEDUP_16 = 229  # printed in the abstracts
 SPEEDUP_0 = 99.2
 IMBALANCE_0, IMBALANCE_16 = 1.58, 0.118  # u(0), u(16); Figs 7 and 8 print no u

@@ -11,14 +11,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter, NullLocator
-from raya.lab.page import shown
+from raya.lab.page import format_value
 
 # The colour-blind safe palette of M. Okabe and K. Ito, without yellow, which is faint on white.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
 PAPER_COLOURS = ["#000000", "#8b1a1a", "#1a3a8b", "#1a5e1a"]
 DASHES = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (3, 1.5, 1, 1.5, 1, 1.5))]
 MARKERS = ["o", "s", "^", "v", "P", "X", "d", "<", ">"]
-FEW = 40  # lines with at most FEW points have markers; longer ones have a band for the intervals
+MAX_MARKERS = 40  # lines with at most MAX_MARKERS points have markers; longer ones have a band for the intervals
 HALO = [withStroke(linewidth=3, foreground="white")]
 
 STYLE = {
@@ -36,15 +36,15 @@ def plain(text):
     return str(text).replace("$", r"\$")
 
 
-def look_of(style, number, count):
-    """matplotlib options of the number-th series of its kind, which has `count` points. Colours, dashes and markers repeat with different periods,
-    so that series with the same colour differ in dash or marker."""
+def line_options(style, number, count):
+    """matplotlib's options for series `number`, which has `count` points. Colours, dashes and markers repeat with different periods, so that series
+    with the same colour differ in dash or marker."""
     colour, dash, marker = (some[number % len(some)] for some in (COLOURS, DASHES, MARKERS))
     if style in ("line", "steps"):
-        look = {"color": colour, "linestyle": dash, "linewidth": 1.7 if count <= 100 else 1.3}
+        options = {"color": colour, "linestyle": dash, "linewidth": 1.7 if count <= 100 else 1.3}
         if style == "steps":
-            return {**look, "drawstyle": "steps-mid"}
-        return {**look, "marker": marker if count <= FEW else "", "markersize": 5}
+            return {**options, "drawstyle": "steps-mid"}
+        return {**options, "marker": marker if count <= MAX_MARKERS else "", "markersize": 5}
     if style == "points":
         return {"color": colour, "linestyle": "", "marker": marker, "markersize": 6 if count <= 100 else 3}
     return {"color": PAPER_COLOURS[number % len(PAPER_COLOURS)], "linestyle": "", "marker": "D", "markersize": 11,
@@ -52,12 +52,12 @@ def look_of(style, number, count):
 
 
 def is_shown(plot, x, y):
-    """Returns true for a finite point that is above zero on every logarithmic axis."""
+    """Returns true if the point is finite and above zero on every logarithmic axis."""
     return math.isfinite(x + y) and (x > 0 or "x" not in plot.log) and (y > 0 or "y" not in plot.log)
 
 
 def draw_intervals(axes, plot, series, colour):
-    """Draws error bars; for more than FEW points, a band. On a logarithmic axis, intervals that reach 0 are clipped at half of the lowest
+    """Draws error bars; for more than MAX_MARKERS points, a band. On a logarithmic axis, intervals that reach 0 are clipped at half of the lowest
     positive value."""
     points = [(x, y, h) for x, y, h in zip(series.x, series.y, series.half_widths) if is_shown(plot, x, y)]
     if not points:
@@ -66,7 +66,7 @@ def draw_intervals(axes, plot, series, colour):
     positive = np.concatenate([y, y - half])
     floor = positive[positive > 0].min() / 2 if "y" in plot.log else -math.inf
     low = np.maximum(y - half, floor)
-    if len(x) > FEW:
+    if len(x) > MAX_MARKERS:
         axes.fill_between(x, low, y + half, color=colour, alpha=0.25, linewidth=0)
     else:
         axes.errorbar(x, y, yerr=[y - low, half], fmt="none", ecolor=colour, elinewidth=1.2, capsize=3)
@@ -77,16 +77,16 @@ def draw_series(axes, plot):
     lines, kinds = [], {True: 0, False: 0}
     for series in plot.series:
         paper = series.style == "paper"
-        look = look_of(series.style, kinds[paper], len(series.x))
+        options = line_options(series.style, kinds[paper], len(series.x))
         kinds[paper] += 1
         y = [value if math.isfinite(value) else math.nan for value in series.y]
-        lines += axes.plot(series.x, y, **look)
+        lines += axes.plot(series.x, y, **options)
         if any(series.half_widths):
-            draw_intervals(axes, plot, series, look["color"])
+            draw_intervals(axes, plot, series, options["color"])
     return lines
 
 
-def name_paper_points(axes, plot):
+def label_paper_points(axes, plot):
     """Labels the paper's points with their values, if there are at most eight points."""
     papers = [s for s in plot.series if s.style == "paper"]
     if sum(len(s.x) for s in papers) > 8:
@@ -168,7 +168,7 @@ def draw(plot):
     figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08, rect=(0, 0.035, 1, 0.965) if hidden else (0, 0, 1, 1))
     figure.draw_without_rendering()  # fixes the layout, so that SVG and PNG agree
     figure.set_layout_engine("none")
-    name_paper_points(axes, plot)
+    label_paper_points(axes, plot)
     return figure
 
 
@@ -177,7 +177,7 @@ def range_of(values):
     if not finite:
         return "without a finite value"
     low, high = min(finite), max(finite)
-    return f"at {shown(low)}" if low == high else f"from {shown(low)} to {shown(high)}"
+    return f"at {format_value(low)}" if low == high else f"from {format_value(low)} to {format_value(high)}"
 
 
 def description(plot):
@@ -187,11 +187,11 @@ def description(plot):
 
     series = "; ".join(f"{s.label}: {len(s.y)} point{'' if len(s.y) == 1 else 's'}, {range_of(s.y)}"
                        f"{', with 95 % intervals' if any(s.half_widths) else ''}" for s in plot.series)
-    return (f"Across: {axis(plot.x_label, 'x', [x for s in plot.series for x in s.x])}. "
-            f"Up: {axis(plot.y_label, 'y', [y for s in plot.series for y in s.y])}. Series: {series}.")
+    return (f"Horizontal axis: {axis(plot.x_label, 'x', [x for s in plot.series for x in s.x])}. "
+            f"Vertical axis: {axis(plot.y_label, 'y', [y for s in plot.series for y in s.y])}. Series: {series}.")
 
 
-def described(svg, plot):
+def with_description(svg, plot):
     """The SVG with its title and description, and with ids that are unique on a page."""
     name = f"plot-{plot.name}"
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
@@ -205,9 +205,9 @@ def described(svg, plot):
 
 
 def files_of(plot):
-    """{'svg': bytes, 'png': bytes}"""
+    """Returns {'svg': bytes, 'png': bytes}: the plot as files."""
     with matplotlib.rc_context(STYLE):
         figure, svg, png = draw(plot), io.BytesIO(), io.BytesIO()
         figure.savefig(svg, format="svg", metadata={"Date": None})
         figure.savefig(png, format="png", dpi=160, metadata={"Software": None})
-    return {"svg": described(svg.getvalue().decode(), plot).encode(), "png": png.getvalue()}
+    return {"svg": with_description(svg.getvalue().decode(), plot).encode(), "png": png.getvalue()}

@@ -1,23 +1,24 @@
-"""Predicts render times on MPI ranks from the measured times of one rank, the counts of a render, and a network's times: alpha, seconds per message,
-and beta, seconds per byte."""
+"""Predicts render times on MPI ranks from the measured times of one rank, the counts of a render, and two constants of the network: alpha, seconds
+per message, and beta, seconds per byte."""
 import os
 
 import numpy as np
 import raya
 from raya.lab.laboratory import format_for
-from raya.lab.voxels import NO_LIMIT, even_scene, near_cube, powers, sides_text
+from raya.lab.voxels import UNLIMITED_MEMORY, even_scene, near_cube, powers_of_two, sides_text
 
-MOST = 65_536
-SIDES, QUEUE = (8, 8, 8), 1024
-PARTS = ("compute", "host", "exchange", "collect", "broadcast")
+MAX_RANKS = 65_536
+SIDES, QUEUE = (8, 8, 8), 1024  # of the torus: nodes along each axis; packets that a queue holds
+PARTS = ("compute", "host", "exchange", "collect", "broadcast")  # parts of a render's time
 
 
 def rounds(ranks):
+    """Number of rounds of a broadcast."""
     return (ranks - 1).bit_length()
 
 
-class Ring:
-    """A ring with the 3 x 3 filter. It has as many PEs as image columns or ranks, whichever is larger."""
+class RingModel:
+    """Model of a ring with the 3 x 3 filter. The ring has as many PEs as image columns or ranks, whichever is more."""
 
     name, label = "ring", "trace"
 
@@ -25,7 +26,7 @@ class Ring:
         costs = lab.costs(scene, size)
         self.arguments = [file, "--machine", "grande", "--accel", "none", "--antialias", "filter", "--format",
                           format_for(scene), "--size", str(size)]
-        self.ranks = powers(min(MOST, size * size))
+        self.ranks = powers_of_two(min(MAX_RANKS, size * size))
         self.parts = []
         for ranks in self.ranks:
             pes = max(size, ranks)
@@ -53,8 +54,9 @@ class Ring:
         return parts
 
 
-class Torus:
-    """A torus of 8 x 8 x 8 nodes, whose counts come from one render. For more ranks than nodes, larger tori are extrapolated (cut_further())."""
+class TorusModel:
+    """Model of a torus of 8 x 8 x 8 nodes, whose counts come from one render. extrapolate_counts() gives those of larger tori, for more ranks than
+    nodes."""
 
     name, label = "torus", "trace_voxel"
 
@@ -62,14 +64,14 @@ class Torus:
         sides = sides_text(SIDES)
         self.arguments = [file, "--machine", "torus", "--nodes", sides, "--voxels", sides, "--queue", str(QUEUE),
                           "--size", str(size)]
-        self.ranks = powers(MOST)
+        self.ranks = powers_of_two(MAX_RANKS)
         result = lab.render(scene, machine="torus", size=size, nodes=sides, voxels=sides, queue=QUEUE, packets=True,
-                            pe_memory=NO_LIMIT)
+                            pe_memory=UNLIMITED_MEMORY)
         nodes = int(np.prod(SIDES))
         status, words = 4 * raya.STATUS_WORDS * nodes, 4 * result.copied_words
-        counted = {ranks: {**bricks(result, ranks), "status": status, "scene": words, "host": 1}
-                   for ranks in powers(nodes)}
-        self.parts = [counted[r] if r <= nodes else cut_further(counted[nodes], r // nodes) for r in self.ranks]
+        counted = {ranks: {**count_on_bricks(result, ranks), "status": status, "scene": words, "host": 1}
+                   for ranks in powers_of_two(nodes)}
+        self.parts = [counted[r] if r <= nodes else extrapolate_counts(counted[nodes], r // nodes) for r in self.ranks]
         self.arrays = [f"{sides} nodes" if r <= nodes else f"{sides_text(near_cube(r))} nodes, assumed"
                        for r in self.ranks]
         self.objects = scene.objects
@@ -82,7 +84,7 @@ class Torus:
 
     def predict(self, i, one, network, processors):
         part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
-        busiest = one["trace"] * part["cycles"] / part["all"] + one["rest"] * part["most"] / part["nodes"]
+        busiest = one["trace"] * part["cycles"] / part["total_cycles"] + one["rest"] * part["max_nodes"] / part["nodes"]
         parts = dict.fromkeys(PARTS, 0.0)
         parts.update(compute=busiest * ranks / processors, host=one["host"] * part["host"])
         if ranks > 1:
@@ -93,9 +95,9 @@ class Torus:
         return parts
 
 
-def bricks(result, ranks):
-    """{count: sum over the supersteps of the maximum over the ranks}, of cycles, messages and bytes. A brick is the cuboid of nodes of one rank. In
-    a superstep, all packets from a brick to another rank in one direction form one message."""
+def count_on_bricks(result, ranks):
+    """Counts of a torus render on ranks: cycles, messages and bytes, each the sum over the supersteps of the maximum over the ranks. A rank has a
+    brick, a cuboid of nodes. In a superstep, all packets from a brick to another rank in one direction form one message."""
     rank_of, ends = raya.ranks_of_nodes(SIDES, ranks), raya.link_ends(SIDES)
     cycles, words = result.step_cycles, result.step_link_words
     by_rank = np.stack([cycles[:, rank_of == rank].sum(1) for rank in range(ranks)], 1)
@@ -103,17 +105,17 @@ def bricks(result, ranks):
     node, direction = np.nonzero(source != target)
     face = (source[node, direction].astype(np.int64) * ranks + target[node, direction]) * 6 + direction
     faces, index = np.unique(face, return_inverse=True)
-    sums, most = np.zeros((len(words), len(faces))), {}  # [superstep, face]
+    sums, maxima = np.zeros((len(words), len(faces))), {}  # [superstep, face]
     np.add.at(sums.T, index, 4 * words[:, node, direction].T.astype(float))
     for name, values in (("messages", (sums > 0).astype(float)), ("bytes", sums)):
         sent_received = [np.stack([values[:, end == rank].sum(1) for rank in range(ranks)], 1)
                          for end in (faces // 6 // ranks, faces // 6 % ranks)]
-        most[name] = np.maximum(*sent_received).max(1).sum()
-    return {"nodes": len(rank_of), "most": np.bincount(rank_of).max(), "supersteps": len(cycles),
-            "cycles": float(by_rank.max(1).sum()), "all": float(cycles.sum()), **most}
+        maxima[name] = np.maximum(*sent_received).max(1).sum()
+    return {"nodes": len(rank_of), "max_nodes": np.bincount(rank_of).max(), "supersteps": len(cycles),
+            "cycles": float(by_rank.max(1).sum()), "total_cycles": float(cycles.sum()), **maxima}
 
 
-def cut_further(part, times):
+def extrapolate_counts(part, times):
     """Extrapolates the counts to a torus with `times` as many nodes and one rank per node: every node is divided into `times` smaller nodes."""
     side = times ** (1 / 3)
     change = {"nodes": times, "supersteps": side, "cycles": 1 / times, "messages": side, "bytes": 1 / side**2,

@@ -1,4 +1,4 @@
-"""Modelled times of the SPA, all with the same clock model. CLOCK describes the model and its uncertainty."""
+"""Modelled times of the SPA (Kohata & Ito 1993), all with the same clock model. CLOCK describes the model and its uncertainty."""
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -6,30 +6,30 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import papers
-from raya.lab.laboratory import SPA, format_for, one_of
+from raya.lab.laboratory import SPA, first_scene, format_for
 
 ROUNDING = 0.5  # ms: the tables print whole milliseconds
-FACTORS = list(range(1, 9))
+FACTORS = list(range(1, 9))  # of the clock model: the range for which conclusions are shown
 
 
 def spa_ms(cycles):
-    """Milliseconds that a PE takes for modelled cycles, without the clock model's factor (FACTOR)."""
+    """Milliseconds of a PE for modelled cycles, without the clock model's factor (FACTOR)."""
     return cycles * SPA["cycle_ns"] * 1e-6
 
 
 FILTER_BUDGET_MS = spa_ms(raya.filter_cycles(papers.SIZE))
 # The filter's arithmetic takes 9 - 2 = 19 - 12 = 7 ms (Tables 3 and 4); each of these four times is rounded to 1 ms.
-FACTOR, FACTOR_LEAST, FACTOR_MOST = ((papers.FILTER_ARITHMETIC_MS + off) / FILTER_BUDGET_MS
+FACTOR, FACTOR_MIN, FACTOR_MAX = ((papers.FILTER_ARITHMETIC_MS + off) / FILTER_BUDGET_MS
                                      for off in (0, -2 * ROUNDING, 2 * ROUNDING))
 CLOCK = (f"modelled on one clock. Computing takes the instruction budget's cycles of 100 ns times a factor of {FACTOR:.2f} "
-         f"({FACTOR_LEAST:.2f} .. {FACTOR_MOST:.2f} by rounding): the filter's 7 ms [D] over the time that the budget gives it, "
+         f"({FACTOR_MIN:.2f} .. {FACTOR_MAX:.2f} by rounding): the filter's 7 ms [D] over the time that the budget gives it, "
          "which does not depend on a scene. Rotations, exchanges and transfers take the printed rates. Nothing is fitted to a "
          "scene. We assume that the factor holds for ray tracing too; conclusions are therefore shown for factors of 1 to 8.")
 
 
 def host_model():
-    """{name: (minimum, maximum)}: set-up time of a host call in ms, time of a rotation in ms, and words per second, from the printed times of 2
-    rotations, of 34 rotations and of a transfer of 256 x 256 x 3 words."""
+    """{name: (minimum, maximum)} of the host model: set-up of a call (ms), a rotation (ms), and words per second. Follows from the printed times of 2
+    and 34 rotations (Table 4) and of a transfer of 256 x 256 x 3 words (Table 2), each rounded to 1 ms."""
     few, many = 2, 34
     few_ms, many_ms, image_ms = (np.array([value - ROUNDING, value + ROUNDING]) for value in
                                  (papers.EXCHANGE_0_MS, papers.EXCHANGE_16_MS, papers.IMAGE_MS))
@@ -42,13 +42,13 @@ def host_model():
 
 @dataclass
 class SpaRun:
-    """A render on PEs of the SPA; if the scene does not fit their memory, without the memory limit."""
+    """A render on PEs of the SPA, without their memory limit if the scene does not fit."""
 
     result: raya.Result
     report: dict
 
     def time(self, factor=FACTOR):
-        """The report's modelled_ms, with computing times multiplied by the factor and with the set-up time of exchanges added."""
+        """The report's modelled_ms. Computing times are multiplied by the factor; the set-up time of exchanges is added."""
         t = dict(self.report["modelled_ms"])
         more = (factor - 1) * t["compute"]
         setup = papers.EXCHANGE_SETUP_MS if self.rotations else 0
@@ -62,6 +62,7 @@ class SpaRun:
 
 
 def run_on_spa(lab, scene, size, pes, offset, antialias="none"):
+    """Renders on PEs of the SPA; returns a SpaRun."""
     options = dict(size=size, pes=pes, offset=offset, antialias=antialias, format=format_for(scene), accel="none",
                    cost=True)
     try:
@@ -94,7 +95,7 @@ class SmoothingRuns:
     costs: object
 
     def rows(self, factor=FACTOR):
-        """Data frame with one row per rendered offset; times in ms."""
+        """Data frame with a row for each rendered offset; times in ms."""
         all_rows = []
         for p, run in self.runs.items():
             t, load = run.time(factor), run.report["load"]
@@ -120,15 +121,15 @@ class SmoothingRuns:
 
 
 def smoothing_runs(lab, scenes, antialias):
-    scene, size = one_of(scenes), lab.size(256)
+    scene, size = first_scene(scenes), lab.size(256)
     runs = {p % size: run_on_spa(lab, scene, size, size, p % size, antialias) for p in (0, 8, 16)}
     costs = list(runs.values())[-1].result.costs
     return SmoothingRuns(scene, size, antialias, runs, SimpleNamespace(**{"supersample": costs["trace"], **costs}))
 
 
 def default_size(scene):
-    """Default pixels per side of the study best-offset: the scene's image size if it is square, else 256; halved while pixels x objects exceed
-    2^30, which would take minutes."""
+    """Default pixels per side of the study best-offset: the scene's image size if it is square, else 256. Halves the size while pixels x objects
+    exceed 2^30, because larger renders take minutes."""
     square = scene.width == scene.height and 16 <= scene.width <= 4096
     size = scene.width if square else 256
     while size // 2 >= 64 and size * size * scene.objects > 2**30:

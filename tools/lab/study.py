@@ -1,4 +1,4 @@
-"""Registry of the built-in studies, and loading of a user's study."""
+"""Registry of the built-in studies, and loader of a user's study."""
 import importlib
 import importlib.util
 import pkgutil
@@ -41,7 +41,8 @@ def studies():
 
 
 def study_of_file(path):
-    """Loads a user's study: a Python file with a docstring and a function run(lab, scenes) -> Page. Raises ValueError."""
+    """Loads a user's study: a Python file with a docstring and a function run(lab, scenes) -> Page. Raises ValueError if the file fails or is not a
+    study."""
     path = Path(path)
     spec = importlib.util.spec_from_file_location(path.stem, path)
     module = importlib.util.module_from_spec(spec)

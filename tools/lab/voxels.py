@@ -1,16 +1,16 @@
-"""Common code of the studies of space division: renders on the torus, or with a grid on one PE, and the figures of these renders."""
+"""Common code of the studies of space division: renders on the torus, and with a grid on one PE, and the figures of these renders."""
 import math
 
 import pandas as pd
 import raya
-from raya.lab.laboratory import measured, rays_of, sampled, tests_of
+from raya.lab.laboratory import mean_seconds, rays_of, tests_of, time_calls
 
 CLOCK = ("modelled from counted events on T805 transputers at 25 MHz (data sheet of the IMS T805, SGS-Thomson 1996): 40 ns a "
-         "cycle; links of 1.7 MB/s one way and 2.4 MB/s both ways; a message of w words costs the processor at either end "
-         "2 w + 19 cycles. Overlapped: the time of the busiest processor or link, which nothing else delays. Stepwise: every "
-         "superstep waits for its busiest node, then for its busiest link. A real machine lies between the two. Nothing on "
+         "cycle; links of 1.7 MB/s in one direction and 2.4 MB/s in both together; a message of w words costs the processor at "
+         "either end 2 w + 19 cycles. Overlapped: the time of the busiest processor or link, which nothing else delays. Stepwise: "
+         "every superstep waits for its busiest node, then for its busiest link. A real machine lies between the two. No time on "
          "this page is measured.")
-NO_LIMIT = 1 << 40  # bytes of a node's memory
+UNLIMITED_MEMORY = 1 << 40  # bytes of a node's memory
 BOUNCES = next(m for m in raya.machines() if m["name"] == "torus")["bounces"]
 
 
@@ -19,14 +19,14 @@ def sides_text(sides):
 
 
 def near_cube(count):
-    """Sides of the box of 2^n nodes or voxels nearest to a cube, longer sides first: 1x1x1, 2x1x1, 2x2x1, 2x2x2, ..."""
+    """Sides of the cuboid of 2^n nodes or voxels that is nearest to a cube, longer sides first: 1x1x1, 2x1x1, 2x2x1, 2x2x2, ..."""
     bits = count.bit_length() - 1
     return 1 << (bits + 2) // 3, 1 << (bits + 1) // 3, 1 << bits // 3
 
 
-def powers(most):
-    """[1, 2, 4, ...]: the powers of two up to `most`."""
-    return [1 << k for k in range(most.bit_length())]
+def powers_of_two(maximum):
+    """[1, 2, 4, ...]: the powers of two up to `maximum`."""
+    return [1 << k for k in range(maximum.bit_length())]
 
 
 def even_scene(count):
@@ -49,8 +49,7 @@ MEMBERS = {
 
 
 class Run:
-    """Figures of one render on the torus, with modelled times, or on one PE, with modelled and measured times. time: Measured of a render on one
-    PE; None for the torus."""
+    """Figures of one render: on the torus, with modelled times (time: None), or on one PE, with modelled times and the measured `time` (Timing)."""
 
     def __init__(self, scene, result, voxels, time=None):
         e, report = result.events, result.report
@@ -83,19 +82,19 @@ class Run:
         return {column: getattr(self, MEMBERS.get(column, column)) for column in columns}
 
 
-def swept(cases, run, columns):
-    """Data frame with one row per case, a dict of arguments. run(**case) returns a Run. Columns: the arguments, `columns` of the Run, and the Run
-    itself in column `run`."""
+def run_cases(cases, run, columns):
+    """Calls run(**case), which returns a Run, for each case. Returns a data frame with a row for each case: the arguments, `columns` of the Run, and
+    the Run itself in column `run`."""
     return pd.DataFrame([{**case, **one.row(columns), "run": one} for case in cases for one in [run(**case)]])
 
 
 def run_on_torus(lab, scene, size, nodes, voxels, queue=None, **options):
     """Renders on the torus without a memory limit; returns a Run. If the render deadlocks because queues are too short, repeats it with queues of
-    twice the length, up to the default of 8192 packets. Then, or with the default (`queue` None), raises raya.Deadlock."""
+    twice the length, up to the default of 8192 packets. Raises raya.Deadlock if the render deadlocks with that length (queue None: at once)."""
     while True:
         try:
             result = lab.render(scene, machine="torus", size=size, nodes=sides_text(nodes), voxels=sides_text(voxels),
-                                queue=queue, pe_memory=NO_LIMIT, **options)
+                                queue=queue, pe_memory=UNLIMITED_MEMORY, **options)
             return Run(scene, result, voxels)
         except raya.Deadlock:
             if queue is None or queue >= 8192:
@@ -108,5 +107,5 @@ def run_in_one_pe(lab, scene, size, voxels, bounces=0, sampling="centres", runs=
     options = dict(machine="grande", format="fp32", size=size, pes=1, offset=0, bounces=bounces, sampling=sampling,
                    accel=f"grid:{sides_text(voxels)}")
     counted = lab.render(scene, **options)  # also warms up the timed renders
-    time = measured(lambda: sampled(lambda: lab.render(scene, **options).device_s), runs, 1, warm=False)
+    time = time_calls(lambda: mean_seconds(lambda: lab.render(scene, **options).device_s), runs, 1, warm=False)
     return Run(scene, counted, voxels, time)

@@ -1,4 +1,4 @@
-"""Runs studies in a child process, so that a crashing OpenCL driver ends one study only."""
+"""Runs studies in a child process, so that a crash of the OpenCL driver ends only one study."""
 import os
 import signal
 import sys
@@ -15,7 +15,7 @@ laboratory = None  # the Laboratory of this process; all studies use its device 
 
 
 def warn_as_raya(options):
-    """Makes Python print warnings on stderr in raya's format, and no warnings with -qq."""
+    """Makes Python print warnings to stderr in raya's format; with -qq, no warnings."""
     warnings.showwarning = lambda text, *_: options.verbosity > -2 and print(f"raya: warning: {text}", file=sys.stderr)
 
 
@@ -32,20 +32,20 @@ def run_study(study, scenes, folder, options):
     except (raya.InputError, raya.DeviceError, OSError):
         raise
     except Exception as error:
-        raise ValueError(f"study {one.name}: {place_of(error, one.run)}{type(error).__name__}: {error}") from error
+        raise ValueError(f"study {one.name}: {error_location(error, one.run)}{type(error).__name__}: {error}") from error
     if not isinstance(page, Page):
         raise ValueError(f"study {one.name}: run() returns {type(page).__name__}, not a Page")
     return page.describe(one.name, one.prose), laboratory.session.device
 
 
-def place_of(error, run):
-    """'file.py, line N: ' of the study's innermost frame in the error's traceback."""
+def error_location(error, run):
+    """'FILE.py, line N: ', the study's innermost frame in the error's traceback; empty if there is none."""
     file = run.__code__.co_filename
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
     return f"{os.path.basename(file)}, line {lines[-1]}: " if lines else ""
 
 
-def answer(pipe):
+def serve(pipe):
     """Main loop of the child: receives arguments of run_study() from the pipe, sends (result, error), ends at EOF."""
     for number in (signal.SIGINT, signal.SIGQUIT):  # a terminal sends these signals to both processes; the parent ends this one
         signal.signal(number, signal.SIG_IGN)
@@ -61,17 +61,17 @@ def answer(pipe):
 
 
 class Worker:
-    """A child process that runs studies. Not a concurrent.futures pool, which leaks semaphores on a signal, of which Python warns."""
+    """A child process that runs studies. A concurrent.futures pool would leak semaphores on a signal, and Python would warn of them."""
 
     def __init__(self):
         self._process = None
 
     def run(self, *arguments):
-        """Result of run_study(). Raises DeviceError if the process crashes."""
+        """Runs run_study(*arguments) in the child and returns its result. Raises its error, or DeviceError if the child crashes."""
         if self._process is None:
             context = get_context("spawn")
             self._pipe, theirs = context.Pipe()
-            self._process = context.Process(target=answer, args=(theirs,), daemon=True)
+            self._process = context.Process(target=serve, args=(theirs,), daemon=True)
             self._process.start()
             theirs.close()
         try:

@@ -1,10 +1,11 @@
-// Replays the work of a render on the torus with SimGrid (https://simgrid.org). SimGrid simulates processors
-// and links. The main task, the input threads and the output threads of each node are actors. The code is independent
-// of raya's simulator and implements the same rules (host/torus/async_machine.hpp) with actors, semaphores and messages.
+// Replays the work of a render on the torus with SimGrid (https://simgrid.org), which simulates processors and links.
+// The main task, the input threads and the output threads of each node are actors. The code is independent of raya's
+// simulator and implements the same rules (host/torus/async_machine.hpp) with actors, semaphores and messages.
 //
 //   simgrid_replay PLATFORM.xml REPLAY [--cfg=...]
 //
-// Prints "finish_ms T" and "delivered N". Exit codes: 2 for a file that cannot be read, 4 for a deadlock.
+// Prints "finish_ms T", the simulated time in ms, and "delivered N", the number of messages. --cfg: options of SimGrid.
+// Exit codes: 0 done; 2 bad arguments, or a file that cannot be read; 4 deadlock.
 // REPLAY is text, written by `raya render --machine torus --packets FILE.csv.gz --replay simgrid` (docs/packets.md):
 //   machine NODES BUFFER ENTERING MESSAGE_CYCLES WORD_CYCLES
 //   t NODE CYCLES CAUSE             a task; CAUSE: index of the message whose arrival starts it, from 0, or -
@@ -50,8 +51,8 @@ struct Task {
     std::vector<Message*> sends;
 };
 
-// One direction of a link. For each class of messages: the messages in the output thread, and whether the input thread
-// is occupied.
+// One direction of a link. For each class of messages: `out`, the messages in the output thread; `taken`, true while
+// the input thread has a message.
 struct Port {
     std::size_t from = 0, to = 0;
     int direction = 0;
@@ -74,13 +75,13 @@ struct Machine {
     std::vector<Task> tasks;
     std::deque<Message> messages;
     std::map<std::pair<std::size_t, int>, std::unique_ptr<Port>> ports;
-    std::size_t left = 0, delivered = 0;
+    std::size_t pending = 0, delivered = 0;  // pending: tasks and messages that are not finished
     double finished_s = 0;
     sg::SemaphorePtr done = sg::Semaphore::create(0);
 
     void finish_one() {
         finished_s = sg::Engine::get_clock();
-        if (--left == 0) done->release();
+        if (--pending == 0) done->release();
     }
 };
 
@@ -179,13 +180,14 @@ void input_thread(Port* port, int cls) {
 
 void read_message(std::istringstream& words) {
     Message message;
-    if (machine.tasks.empty() || !(words >> message.words >> message.cls)) fail("a message without a task");
-    if (message.cls != 0 && message.cls != 1) fail("a message's class is not 0 (return) or 1 (ray)");
+    if (machine.tasks.empty() || !(words >> message.words >> message.cls))
+        fail("expected m WORDS CLASS ... after a task");
+    if (message.cls != 0 && message.cls != 1) fail("expected message class 0 (return) or 1 (ray)");
     for (Hop hop; words >> hop.direction;) {
-        if (!(words >> hop.node) || hop.node >= machine.nodes.size()) fail("a hop to an unknown node");
+        if (!(words >> hop.node) || hop.node >= machine.nodes.size()) fail("a hop names an unknown node");
         message.route.push_back(hop);
     }
-    if (!words.eof()) fail("a route that is not a list of DIRECTION NODE");
+    if (!words.eof()) fail("expected a route DIRECTION NODE ...");
     machine.messages.push_back(message);
     machine.tasks.back().sends.push_back(&machine.messages.back());
 }
@@ -193,7 +195,8 @@ void read_message(std::istringstream& words) {
 void read_task(std::istringstream& words) {
     Task task;
     std::string cause;
-    if (!(words >> task.node >> task.cycles >> cause) || task.node >= machine.nodes.size()) fail("expected t NODE CYCLES CAUSE");
+    if (!(words >> task.node >> task.cycles >> cause) || task.node >= machine.nodes.size())
+        fail("expected t NODE CYCLES CAUSE");
     if (cause == "-")
         machine.nodes[task.node].own.push_back(machine.tasks.size());
     else
@@ -222,7 +225,7 @@ void read_replay(const std::string& file) {
             fail("unknown line: " + line);
         }
     }
-    machine.left = machine.tasks.size() + machine.messages.size();
+    machine.pending = machine.tasks.size() + machine.messages.size();
 }
 
 void start(const std::string& name, sg::Host* host, const std::function<void()>& code) {
@@ -256,7 +259,7 @@ void start_actors() {
     }
     for (std::size_t node = 0; node < machine.nodes.size(); ++node)
         start("main " + std::to_string(node), machine.nodes[node].host, [node] { main_task(node); });
-    if (machine.left > 0) sg::Actor::create("end", machine.nodes[0].host, [] { machine.done->acquire(); });
+    if (machine.pending > 0) sg::Actor::create("end", machine.nodes[0].host, [] { machine.done->acquire(); });
 }
 
 }  // namespace
@@ -282,8 +285,8 @@ int main(int argc, char* argv[]) {
         return 2;
     }
     engine.run();
-    if (machine.left > 0) {
-        std::cerr << "simgrid_replay: deadlock: " << machine.left << " tasks and messages are left\n";
+    if (machine.pending > 0) {
+        std::cerr << "simgrid_replay: deadlock: " << machine.pending << " tasks and messages are not finished\n";
         return 4;
     }
     std::cout.precision(12);

@@ -154,15 +154,15 @@ function distancesOf(owners, {width, height}, pes) {
 }
 
 // Minimum number of rotations (circular shifts) that cover all distances: some in one direction, the rest in the other.
-function turnsOf(found) {
+function rotationsOf(found) {
   const pes = found.length, distances = [];
   for (let d = 0; d < pes; ++d)
     if (found[d]) distances.push(d);
   if (distances.length === 0) return 0;
-  let fewest = Infinity;
+  let minimum = Infinity;
   for (let n = 0; n <= distances.length; ++n)
-    fewest = Math.min(fewest, (n ? distances[n - 1] : 0) + (n < distances.length ? pes - distances[n] : 0));
-  return fewest;
+    minimum = Math.min(minimum, (n ? distances[n - 1] : 0) + (n < distances.length ? pes - distances[n] : 0));
+  return minimum;
 }
 
 // Communication for the 3 x 3 filter: rotations of the ring, or transfers or broadcasts over the bus.
@@ -171,7 +171,7 @@ function movesOf(owners, size, pes) {
   for (const found of distancesOf(owners, size, pes)) {
     let distant = 0;
     for (let d = 1; d < pes; ++d) distant += found[d];
-    moves.rotations += turnsOf(found);
+    moves.rotations += rotationsOf(found);
     moves.transfers += distant * pes;
     moves.broadcasts += distant > 0 ? pes : 0;
   }
@@ -182,12 +182,13 @@ function movesOf(owners, size, pes) {
 
 // Returns a shortest vector of the lattice {(a, b): b = a p mod N} as [rows down, columns to the right].
 function shortestVector(offset, side) {
-  let least = [0, side], square = side * side;
+  let shortest = [0, side], square = side * side;
   for (let rows = 1; rows * rows < square; ++rows) {
     const right = rows * offset % side, columns = right <= side - right ? right : right - side;
-    if (rows * rows + columns * columns < square) [least, square] = [[rows, columns], rows * rows + columns * columns];
+    if (rows * rows + columns * columns < square)
+      [shortest, square] = [[rows, columns], rows * rows + columns * columns];
   }
-  return least;
+  return shortest;
 }
 
 // Returns null if the pixels of a PE do not form a lattice.
@@ -205,7 +206,7 @@ function figuresOf(setting, size, costs, rates) {
   const owners = ownersOf(setting, size), loads = loadsOf(owners, costs, setting.pes),
         sizes = new Int32Array(setting.pes);
   for (const pe of owners) ++sizes[pe];
-  const share = sizes.reduce((most, pixels) => Math.max(most, pixels), 0);
+  const share = sizes.reduce((max, pixels) => Math.max(max, pixels), 0);
   const balance = balanceOf(loads), moves = movesOf(owners, size, setting.pes);
   const figures =
     {setting, owners, loads, sizes, share, ...balance, ...moves, vector: vectorOf(setting, size), time: null};

@@ -12,7 +12,7 @@ const RING_PARTS = [
 ];
 const TORUS_PARTS = [
   ["compute", "compute", "the busiest processor: generating and tracing packets", /^(inject|trace_voxel)/],
-  ["messages", "messages", "the busiest processor: handling packets", /^(route|look|accept)/],
+  ["messages", "messages", "the busiest processor: handling packets", /^(route|read status|accept)/],
   ["links", "links", "the busiest link", /^(exchange|return)/]
 ];
 

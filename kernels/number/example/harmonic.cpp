@@ -31,8 +31,7 @@ cl_device_id first_device() {
     return device;
 }
 
-/// Returns the kernel's build options for a format. They tell the number layer whether the device's fma and division
-/// are exact.
+/// Returns the kernel's build options for a format, including whether the device's fma and division are exact.
 std::string build_options(cl_device_id device, const std::string& given, int exponent_bits, int fraction_bits) {
     cl_device_fp_config floats = 0;
     check(clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr), "asking for CL_FP_*");

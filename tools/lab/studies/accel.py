@@ -1,37 +1,42 @@
 """Finding a ray's nearest hit: all objects, a grid, a BVH
 
-From how many objects on does a grid or a BVH pay, which of the two is faster, and how does time grow with the objects?
+From how many objects on is a grid or a BVH faster than testing all objects, which of the two is faster, and how does time grow with the
+number of objects?
 
-- The ring machine `grande` in fp32, global memory, {size} x {size} pixels in tiles of {tile} x {tile}, {bounces} bounces; `--accel`
-  none, grid (default number of voxels) and bvh. The study checks that every method gives the same image, bit for bit.
-- {scenes}
-- Time: a whole render from packed scene to image, without building kernels, grid or BVH. A sample is the mean of as many renders as
-  take 20 ms. The methods take turns, up to {rounds} each; a method stops after {enough} s of samples. Figures: minimum and median.
-- A render without an accelerator is skipped if it would take longer than {bearable} s. The prediction multiplies the scene's rays and
-  objects by the time of a test in the scene before.
-- Counted: tests, of any ray with any object; steps, the voxels or BVH nodes that rays enter; memory, the scene with grid or BVH on a PE.
-  Build is measured: the time to make the grid or BVH on the host.
-- A figure of several scenes that differ in their seed alone is their mean. A ratio of two methods is taken in each scene, then averaged;
-  for a single scene it is taken in each turn. A method counts as faster if the whole interval of the ratio says so; after a single turn,
-  if the ratio does.
-- Growth: the exponent of objects in the time and tests of a ray, fitted for each seed by least squares of logarithms over scenes of
-  {fitted} or more objects.
-- Embree 3: the same rays (tools/embree) on all cores, traced one by one or in packets of sixteen, whichever is faster. Only the loop over
-  the pixels is timed, three renders a turn. No ratio is formed if the numbers of rays differ by more than one in a thousand.
+- Source: none of the papers; the study measures this machine. The scenes balls are SPD's (Haines 1987), the peer is Embree 3 (Wald et al. 2014).
+- Machine: the ring machine `grande` in fp32, scene in global memory, {size} x {size} pixels in tiles of {tile} x {tile}, {bounces} bounces;
+  `--accel` none, grid (default number of voxels) and bvh. The study fails if two methods give different images.
+- Scenes: {scenes}
+- Time of a render (ms): from the packed scene to the image, without building kernels, grid or BVH. A sample is the mean of as many renders as
+  take 20 ms. The methods take turns, up to {rounds} each; a method stops after {sampling_s} s of samples. Figures: minimum and median.
+- A render without an accelerator is skipped if it would take longer than {max_render_s} s. The prediction is the number of rays times the
+  number of objects times the time of a test in the scene before.
+- Counted: tests, of any ray with any object; steps, the voxels or BVH nodes that rays enter; memory (KB), the scene with its grid or BVH on a
+  PE. Build (ms) is measured: the time to make the grid or BVH on the host.
+- The figure of several scenes that differ only in their seed is their mean. The ratio of two methods is computed in each scene and averaged;
+  for a single scene it is computed in each turn. A method counts as faster if the 95 % interval of the ratio excludes 1; with a single
+  ratio, if that ratio differs from 1.
+- Growth: the exponent of the number of objects in the time and in the tests of a ray, fitted for each seed by least squares of logarithms
+  over the scenes of {min_fitted} or more objects.
+- Embree: the same rays (tools/embree) on all cores, traced one by one or in packets of sixteen, whichever is faster. Only the loop over the
+  pixels is timed, three renders a turn. A ratio is formed only if the numbers of rays differ by at most one in a thousand.
+- Output: accel.csv has a row for each group of scenes and method, accel-scenes.csv one for each scene and method (words have 32 bits),
+  accel-growth.csv the exponents. Columns +- are half widths of 95 % intervals.
 """
 import math
 
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Estimate, Page, Plot, Table, estimate, fitted_exponent, sampled, series_by, study
+from raya.lab import Estimate, Page, Plot, Table, estimate, fitted_exponent, mean_seconds, series_by, study
 from raya.lab.laboratory import rays_of, tests_of
-from raya.lab.programs import sibling_program, output_of
+from raya.lab.programs import output_of, sibling_program
 
 NONE, GRID, BVH, EMBREE = "none", "grid", "bvh", "Embree"
-BOUNCES, ROUNDS, BEARABLE_S, ENOUGH_S, PEER_SAMPLES, SEEDS = 4, 5, 30, 10, 3, 5
-FITTED_FROM, SAME_WORK = 100, 1e-3  # minimum number of objects of a fit; relative difference of ray counts up to which they count as equal
-NAMED = "named"
+BOUNCES, ROUNDS, MAX_RENDER_S, SAMPLING_S, PEER_SAMPLES, SEEDS = 4, 5, 30, 10, 3, 5
+MIN_FITTED_OBJECTS = 100  # of the scenes of a fit
+RAYS_TOLERANCE = 1e-3  # maximum relative difference of the numbers of rays of two methods whose times form a ratio
+USER_SCENES = "named"
 # {member of a row: column of the table}; a row has the figures of one scene and one method.
 EACH = {**{name: name for name in ("scene", "seed", "objects", "method", "rays", "tests", "steps")}, "best": "best (ms)",
         "median": "median (ms)", "samples": "samples", "build": "build (ms)", "scene_words": "scene words",
@@ -48,7 +53,7 @@ def own_scenes():
 
 
 class Method:
-    """A prepared render of one scene with one method, and the seconds of its timing samples."""
+    """A prepared render of one scene with one method. `seconds`: its timing samples; `turns`: the best time of each turn (ms)."""
 
     def __init__(self, name, turn, **figures):
         self.name, self.turn, self.figures, self.seconds, self.turns = name, turn, figures, [], []
@@ -60,22 +65,22 @@ def raya_method(lab, scene, size, name):
                    bounces=BOUNCES, accel=name)
     first = lab.render(scene, **options)
     e, words = first.events, first.report["accel"].get("words", 0)
-    method = Method(name, lambda: [sampled(lambda: lab.render(scene, **options).render_s)], rays=rays_of(e), tests=tests_of(e),
+    method = Method(name, lambda: [mean_seconds(lambda: lab.render(scene, **options).render_s)], rays=rays_of(e), tests=tests_of(e),
                     steps=e["steps"], scene_words=first.job_words - words, accel_words=words, build=1e3 * first.accel_s)
     method.hash = first.hash
     return method
 
 
-def ask_embree(program, nff, size):
-    """({method: (number of rays, render seconds)}, seconds of building Embree's BVH)"""
-    words = [program, "/dev/stdin", f"{size}x{size}", str(BOUNCES), "centres", str(PEER_SAMPLES)]
+def run_embree(program, nff, size):
+    """Runs tools/embree. Returns ({method: (number of rays, render seconds)}, seconds of building Embree's BVH)."""
+    command = [program, "/dev/stdin", f"{size}x{size}", str(BOUNCES), "centres", str(PEER_SAMPLES)]
     methods, build = {}, math.nan
-    for line in output_of(words, "embree_peer", input=nff).splitlines():
-        name, *words = line.split()
+    for line in output_of(command, "embree_peer", input=nff).splitlines():
+        name, *numbers = line.split()
         if name == "build":
-            build = float(words[0])
+            build = float(numbers[0])
         elif name != "mean":
-            methods[name] = int(words[0]), [float(word) for word in words[1:]]
+            methods[name] = int(numbers[0]), [float(number) for number in numbers[1:]]
     return methods, build
 
 
@@ -84,36 +89,37 @@ def embree_method(scene, size, failures, group):
     if not program:
         return None
     try:
-        methods, build = ask_embree(program, scene.nff, size)
+        methods, build = run_embree(program, scene.nff, size)
     except ValueError as error:
         failures.append(f"{group}: {error}")
         return None
     fastest = min(methods, key=lambda method: min(methods[method][1]))
     unknown = dict.fromkeys(("tests", "steps", "scene_words", "accel_words"), math.nan)
-    return Method(EMBREE, lambda: ask_embree(program, scene.nff, size)[0][fastest][1], rays=methods[fastest][0],
+    return Method(EMBREE, lambda: run_embree(program, scene.nff, size)[0][fastest][1], rays=methods[fastest][0],
                   build=1e3 * build, **unknown)
 
 
 def measure(lab, size, scenes):
-    """(table with a row per scene and method, names of scenes that are not rendered without an accelerator, error messages of Embree)"""
-    rows, left_out, failures, test_s = [], [], [], 1e-9  # test_s: seconds per object test; a low guess until measured
+    """Measures all methods on all scenes. Returns (table with a row for each scene and method, names of the scenes that are not rendered without an
+    accelerator, error messages of Embree)."""
+    rows, left_out, failures, test_s = [], [], [], 1e-9  # test_s: seconds per object test; a low estimate until the first measurement
     for series, group, seed, make in scenes:
         scene = make()
         methods = [raya_method(lab, scene, size, name) for name in (GRID, BVH)]
         predicted = test_s * methods[0].figures["rays"] * scene.objects
-        if predicted > BEARABLE_S:
+        if predicted > MAX_RENDER_S:
             left_out.append(f"{group} ({scene.objects} objects, about {predicted:.0f} s)")
         else:
             methods.insert(0, raya_method(lab, scene, size, NONE))
         for method in methods[1:]:
             if method.hash != methods[0].hash or method.figures["rays"] != methods[0].figures["rays"]:
-                raise raya.DeviceError(f"{group}: --accel {method.name} and {methods[0].name} give different images: {method.hash} and "
-                                       f"{methods[0].hash}; the device or its compiler is wrong: run `raya verify`")
+                raise raya.DeviceError(f"{group}: --accel {method.name} and {methods[0].name} give different images, {method.hash} and "
+                                       f"{methods[0].hash}: an error of the device or its compiler; run `raya verify`")
         peer = embree_method(scene, size, failures, group)
         methods += [peer] if peer else []
         for turn in range(ROUNDS):
             for method in methods:
-                if turn == 0 or sum(method.seconds) < ENOUGH_S:
+                if turn == 0 or sum(method.seconds) < SAMPLING_S:
                     some = method.turn()
                     method.seconds += some
                     method.turns.append(1e3 * min(some))
@@ -127,11 +133,11 @@ def measure(lab, size, scenes):
 
 
 def pairs(rows, method, other):
-    """Rows of the scenes that were rendered with both methods. Column `same`: the numbers of rays differ by at most SAME_WORK."""
+    """Rows of the scenes that were rendered with both methods. Column `same`: the numbers of rays differ by at most RAYS_TOLERANCE."""
     both = rows[rows["method"] == method].merge(rows[rows["method"] == other], on=["series", "scene", "seed", "objects"],
                                           suffixes=("", " of other"))
     rays = both[["rays", "rays of other"]]
-    return both.assign(same=rays.max(axis=1) - rays.min(axis=1) <= SAME_WORK * rays.min(axis=1))
+    return both.assign(same=rays.max(axis=1) - rays.min(axis=1) <= RAYS_TOLERANCE * rays.min(axis=1))
 
 
 def ratios(rows, method, other):
@@ -157,7 +163,7 @@ def ratios_text(some):
 @study("accel")
 def accel(lab, scenes):
     size = lab.size(256)
-    some = [(NAMED, s.name, 0, lambda s=s: s) for s in scenes] if scenes else own_scenes()
+    some = [(USER_SCENES, s.name, 0, lambda s=s: s) for s in scenes] if scenes else own_scenes()
     runs, left_out, failures = measure(lab, size, some)
     rows, growth = rows_of(runs), growth_of(runs)
     series = [(name, one) for name, one in runs.groupby("series", sort=False)]
@@ -173,8 +179,8 @@ def accel(lab, scenes):
     tables += [Table("accel-growth", "Exponent of objects in the time and the tests of a ray", growth)] if len(growth) else []
     return Page({"size": size, "bounces": BOUNCES, "rounds": ROUNDS, "format": "fp32"}, findings, tables=tables,
                 plots=plots_of(rows), placeholders={
-                    "tile": math.gcd(size, 16), "enough": ENOUGH_S, "bearable": BEARABLE_S, "fitted": FITTED_FROM,
-                    "scenes": "The scenes of the command line." if scenes else "SPD's balls, where each level has nine times the "
+                    "tile": math.gcd(size, 16), "sampling_s": SAMPLING_S, "max_render_s": MAX_RENDER_S, "min_fitted": MIN_FITTED_OBJECTS,
+                    "scenes": "those of the command line." if scenes else "SPD's balls, where each level has nine times the "
                     "spheres of the one before; and spheres at random positions in a cube, some of them mirrors, with several "
                     "seeds for each number."})
 
@@ -196,8 +202,8 @@ def rows_of(runs):
 
 def growth_of(runs):
     rows = []
-    for (series, method), some in runs[runs["objects"] >= FITTED_FROM].groupby(["series", "method"], sort=False):
-        if series == NAMED or some["objects"].nunique() < 2:
+    for (series, method), some in runs[runs["objects"] >= MIN_FITTED_OBJECTS].groupby(["series", "method"], sort=False):
+        if series == USER_SCENES or some["objects"].nunique() < 2:
             continue
         lines = [line for _, line in some.groupby("seed", sort=False)]
         time, tests = (estimate([fitted_exponent(line["objects"], line[what] / line["rays"]) for line in lines])
@@ -209,20 +215,21 @@ def growth_of(runs):
 
 
 def pays_from(some, method):
-    """Part of a sentence: the number of objects from which on a method is faster; groups are in ascending order of objects."""
+    """Part of a sentence: the number of objects from which on a method is faster than testing all objects. some: groups in ascending order of
+    objects."""
     start = len(some)
-    while start > 0 and some[start - 1]["times"].least > 1:
+    while start > 0 and some[start - 1]["times"].low_or_mean > 1:
         start -= 1
     if start == len(some):
-        return f"{method} does not measurably pay at {some[-1]['objects']} objects"
-    return f"{method} pays from {some[start]['objects']} objects on{', the smallest number tried' if start == 0 else ''}"
+        return f"{method} is not measurably faster at {some[-1]['objects']} objects"
+    return f"{method} is faster from {some[start]['objects']} objects on{', the smallest number tried' if start == 0 else ''}"
 
 
 def finding_of_paying(runs, series):
     tree, grid = ratios(runs, NONE, BVH), ratios(runs, NONE, GRID)
     if not tree:
-        return f"{series}: nothing was rendered without an accelerator."
-    if series == NAMED:
+        return f"{series}: no scene was rendered without an accelerator."
+    if series == USER_SCENES:
         return (f"Without an accelerator a render takes {ratios_text(tree)} times as long as with bvh, {ratios_text(grid)} times as "
                 "long as with grid.")
     return (f"{series}: compared with testing all objects, {pays_from(tree, BVH)}, {pays_from(grid, GRID)}. At "
@@ -231,11 +238,11 @@ def finding_of_paying(runs, series):
 
 
 def finding_of_two(runs, method, other):
-    """Sentence on which of two methods is faster, over all groups."""
+    """Sentence on the faster of two methods, over all groups."""
     some = ratios(runs, method, other)
     if not some:
         return f"No scene has a ratio of {method} to {other}."
-    faster, slower = (sum(holds) for holds in zip(*((e.least > 1, e.most < 1) for e in (one["times"] for one in some))))
+    faster, slower = (sum(holds) for holds in zip(*((e.low_or_mean > 1, e.high_or_mean < 1) for e in (one["times"] for one in some))))
     rest = len(some) - faster - slower
     return (f"{other} is faster than {method} in {faster} of {len(some)}, slower in {slower}"
             f"{f', not significantly different in {rest}' if rest else ''}; time of {method} over {other}: {ratios_text(some)}.")
@@ -258,15 +265,15 @@ def finding_of_memory(runs):
     for method, some in made[made["scene"] == group].groupby("method", sort=False):
         count, build = some["objects"].iloc[0], some["build"].mean()
         scene = 4 * some["scene_words"].mean() / count
-        texts.append(f"{method} takes {4 * some['accel_words'].mean() / count:.1f} bytes an object and is built in "
-                     f"{build:.3g} ms, the time of {build / some['best'].mean():.2g} renders")
+        texts.append(f"{method} takes {4 * some['accel_words'].mean() / count:.1f} bytes an object and {build:.3g} ms to build, the time of "
+                     f"{build / some['best'].mean():.2g} renders")
     return f"{group}: {', '.join(texts)}; the scene itself takes {scene:.1f} bytes an object."
 
 
 def findings_of_embree(runs, failures):
     if not sibling_program("embree_peer"):
-        return ["Embree was not measured: there is no program embree_peer next to raya. To build it: `tools/peers --setup`, "
-                "which installs Embree, then CMake's target embree_peer."]
+        return ["Embree was not measured: there is no program embree_peer next to raya. `tools/peers --setup` installs Embree; CMake's target "
+                "embree_peer builds the program."]
     findings = [finding_of_two(runs, EMBREE, BVH)] if (runs["method"] == EMBREE).any() else []
     others = pairs(runs, EMBREE, BVH).query("not same")
     if len(others):
@@ -276,7 +283,7 @@ def findings_of_embree(runs, failures):
 
 
 def plots_of(rows):
-    style = "points" if (rows["series"] == NAMED).any() else "line"
+    style = "points" if (rows["series"] == USER_SCENES).any() else "line"
 
     def plot(name, title, label, some, lines, column):
         return Plot(name, title, "objects", label, series_by(some, lines, "objects", column, style=style), "xy")

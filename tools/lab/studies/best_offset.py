@@ -2,31 +2,35 @@
 
 Which offset of the cyclic mapping renders this image fastest, communication included?
 
-- For every offset: the busiest PE's modelled cycles in the first pass and in supersampling, the arithmetic of the filter or the
+- Source: Kohata & Ito 1993, section on the cyclic mapping: offsets 0..sqrt(P) are enough; on n x n PEs p = n^2 equals p = 0.
+- Time of an offset (modelled ms): the busiest PE's cycles in the first pass and in supersampling, the arithmetic of the filter or the
   comparison, and the rotations that bring the neighbours' pixels by the shortest route, at the SPA's rates. Broadcast and image transfer
-  take the same for every offset and are excluded.
-- A PE for each column, 256 PEs and 64 PEs; cyclic fold; sqrt(P) is rounded. PEs have memory for the shares that circulate on the ring;
-  the SPA's PEs have it for small shares only.
-- A scene is rendered at its own size if that is square, and at a smaller size if it has so many objects that rendering would take
-  minutes; --size overrides. Of equally fast offsets the smallest is named.
-- Results for the scene rather than for one picture of it come from {views} random views, as in Fig. 8 (fewer for many objects). The views
-  of odd seeds choose the offsets; the views of even seeds judge them, compared within the same view. The offsets 0..sqrt(P) are enough
-  if in all cases together the best of them takes at most {rule} % longer than the best of all; they are not enough if it takes longer in
-  one case.
+  are excluded, because they take the same time for every offset.
+- Arrays: a PE for each column, 256 PEs and 64 PEs; cyclic fold; sqrt(P) is rounded. PEs have enough memory for the shares that circulate on
+  the ring; the SPA's PEs have enough only for small shares.
+- Size: that of the scene if it is square, a smaller one if the scene has so many objects that rendering would take minutes; --size overrides
+  it. Of equally fast offsets the study names the smallest.
+- {views} random views, as in Fig. 8 (fewer for many objects), show what holds for the scene and not only for one picture. The views of odd
+  seeds choose the offsets; the views of even seeds judge them, compared within the same view.
+- The offsets 0..sqrt(P) are enough if in all cases together the best of them takes at most {rule} % longer than the best of all offsets.
+  They are not enough if it takes longer in one case.
+- Output: best-offset-views.csv, best-offset.csv and best-offset-all.csv (every offset). Times are in ms, u is (max load - mean load) / mean
+  load, and "takes longer" is in % of the chosen offset's time.
 """
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Claim, Comparison, Page, Plot, Series, Table, each_of, estimate, papers, study, verdict
+from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, bonferroni_confidence, estimate, papers, study,
+                      verdict)
 from raya.lab.laboratory import format_for
-from raya.lab.spa import CLOCK, FACTOR, FACTORS, offset_times, default_size
+from raya.lab.spa import CLOCK, FACTOR, FACTORS, default_size, offset_times
 
-VIEWS, ENOUGH = 40, 1  # ENOUGH: maximum loss in % of an offset that counts as good enough; our choice
+VIEWS, MAX_LOSS = 40, 1  # number of views; our limit: maximum loss in % of an offset that counts as good enough
 METHODS = ("none", "filter", "supersample")
 
 
 class Choice:
-    """The offsets of one scene, one number of PEs and one anti-aliasing method."""
+    """Times of all offsets for one scene, one number of PEs and one anti-aliasing method, and the offsets chosen from them."""
 
     def __init__(self, scene, size, pes, antialias, ensemble):
         self.scene, self.size, self.pes, self.antialias = scene.name, size, pes, antialias
@@ -68,8 +72,8 @@ def best_offset(lab, scenes):
     first = by_scene[0]
     named = [{"scene": choices[0].scene, "size": choices[0].size, "format": format_for(scene), "fold": "cyclic"}
              for choices, scene in zip(by_scene, some)]
-    return Page({"scenes": named, "factor": FACTOR, "views": VIEWS, "rule": ENOUGH},
-                [*map(chief_finding, by_scene), *map(views_finding, every), *map(choice_finding, every)],
+    return Page({"scenes": named, "factor": FACTOR, "views": VIEWS, "rule": MAX_LOSS},
+                [*map(finding_of_best, by_scene), *map(finding_of_views, every), *map(finding_of_choice, every)],
                 [Comparison(f"best p, {c.pes} PEs, {c.antialias}", "", None, int(c.best["offset"]),
                             f"u of the first pass {c.best['imbalance']:.3f}; sqrt(P), Kohata & Ito's, is p = {c.root}")
                  for c in first],
@@ -80,13 +84,13 @@ def best_offset(lab, scenes):
                 clock=CLOCK)
 
 
-def chief_finding(choices):
+def finding_of_best(choices):
     first = choices[0]
     answer = ", ".join(f"--offset {c.best['offset']:.0f} {c.method}" for c in choices if c.pes == first.pes)
     return f"Use {answer}: {first.scene} at {first.size} x {first.size} pixels on {first.pes} PEs."
 
 
-def views_finding(c):
+def finding_of_views(c):
     picture = int(c.best["offset"])
     near, root, zero, own = (c.longer(offset).text(1) for offset in (c.chosen_near, c.root, 0, picture))
     return (f"{c.scene}, {c.pes} PEs, {c.method}: one half of {len(c.chosen_by) + len(c.judged_by)} views chooses p = {c.chosen}, which "
@@ -94,9 +98,9 @@ def views_finding(c):
             f"p = {c.root} {root} %, p = 0 {zero} %, and p = {picture}, the best for the scene's own picture, {own} %.")
 
 
-def choice_finding(c):
+def finding_of_choice(c):
     total, root, zero = c.best["total_ms"], c.times["total_ms"][c.root], c.times["total_ms"][0]
-    near = (f"no offset beyond sqrt(P) = {c.root} is better" if c.best_near["offset"] == c.best["offset"] else
+    near = (f"no offset above sqrt(P) = {c.root} is faster" if c.best_near["offset"] == c.best["offset"] else
             f"the best of 0..sqrt(P) is p = {c.best_near['offset']:.0f}, {c.loss(c.best_near['total_ms']):.1f} % "
             "slower")
     of_root = "" if c.root == c.best["offset"] else f"p = {c.root} takes {c.loss(root):.1f} % longer, "
@@ -107,13 +111,13 @@ def choice_finding(c):
 
 
 def claim_of_enough(choices):
-    near = [c.longer(c.chosen_near, each_of(len(choices))) for c in choices]
-    more, none = sum(e.low > ENOUGH for e in near), sum(e.high <= ENOUGH for e in near)
+    near = [c.longer(c.chosen_near, bonferroni_confidence(len(choices))) for c in choices]
+    more, none = sum(e.low > MAX_LOSS for e in near), sum(e.high <= MAX_LOSS for e in near)
     return Claim(papers.SPA, "section on the cyclic mapping",
                  "Offsets of 0..sqrt(P) are enough, communication with neighbours considered.",
                  verdict(none == len(near), more > 0),
                  f"In {none} of {len(near)} cases (numbers of PEs and anti-aliasing methods) the best of 0..sqrt(P) takes with "
-                 f"certainty at most {ENOUGH} % longer than the best of all, in {more} cases longer than that.")
+                 f"certainty at most {MAX_LOSS} % longer than the best of all, in {more} cases longer than that.")
 
 
 def claim_of_square(choices):

@@ -1,26 +1,30 @@
 """Neighbours over the ring and over the bus
 
-The array of Kohata & Ito (1993) has a ring, and a bus that also carries words from PE to PE and from one PE to all. What does the ring
-gain?
+The array of Kohata & Ito (1993) has a ring, and a bus that carries words from PE to PE and from one PE to all. How much faster is the exchange
+of neighbouring pixels over the ring?
 
-- {scene} at {size} x {size} on 4 to 256 PEs of the SPA, cyclic mapping with p = round(sqrt(P)), filtered and supersampled. Neighbours'
-  pixels come by rotations of the ring, by transfers from PE to PE, or by a broadcast of each PE (`--exchange`). All moves and words are
-  counted in renders.
-- Transfers: each PE receives the share of every PE at a distance at which its neighbours are; with an offset these are 4 P a side.
+- Source: Kohata & Ito 1993, description of the array; times of a rotation from Tables 3 and 4.
+- {scene} at {size} x {size} on 4 to 256 PEs of the SPA, cyclic mapping with p = round(sqrt(P)), filtered and supersampled. The neighbours'
+  pixels come by rotations of the ring, by transfers from PE to PE over the bus, or by a broadcast of each PE (`--exchange`). The renders
+  count all rotations, transfers, broadcasts and words.
+- Transfers: each PE receives the share of every PE at the ring distances of its neighbours; with an offset these are 4 P transfers a side.
   Broadcasts: P a side for the filter, whose sums have a fixed order; P in total for comparisons.
-- PEs have memory for whole shares; on fewer than 256 PEs this is more than the SPA's. The exchange's set-up, which is the same for every
-  method, is excluded.
+- PEs have memory for whole shares, which on fewer than 256 PEs is more than the SPA's. The set-up of the exchange is the same for every
+  method and is excluded.
+- Output: bus.csv has a row for each anti-aliasing method and number of PEs: counts, and modelled times in ms. "words alone" excludes
+  synchronisation.
 """
 import pandas as pd
-from raya.lab import Page, Plot, Series, Table, holding_to_the_end, one_of, study
+from raya.lab import Page, Plot, Series, Table, first_scene, study, tail_where
 from raya.lab.laboratory import SPA, format_for
-from raya.lab.voxels import powers
+from raya.lab.voxels import powers_of_two
 
-METHODS = {"ring": "rotations", "bus": "transfers", "bus-broadcast": "pe_broadcasts"}  # {--exchange: report's count of moves}
+METHODS = {"ring": "rotations", "bus": "transfers", "bus-broadcast": "pe_broadcasts"}  # {--exchange: count in the report}
 
 
 def exchange(lab, scene, size, pes, antialias, method):
-    """(number of moves, modelled ms, ms of the words without set-up times, image hash) of exchanging neighbouring pixels by one method."""
+    """Exchanges neighbouring pixels by one method. Returns (number of rotations, transfers or broadcasts; modelled ms; ms without synchronisation;
+    image hash)."""
     result = lab.render(scene, machine="grande", format=format_for(scene), bounces=SPA["bounces"], size=size, pes=pes,
                         offset=round(pes**0.5) % size, accel="none", antialias=antialias, exchange=method)
     c, ms = result.report["communication"], result.report["modelled_ms"]["communication"]
@@ -30,7 +34,7 @@ def exchange(lab, scene, size, pes, antialias, method):
 
 def rows_of(lab, scene, size, antialias):
     rows = []
-    for pes in powers(min(256, size * size))[2:]:
+    for pes in powers_of_two(min(256, size * size))[2:]:
         ring, bus, cast = (exchange(lab, scene, size, pes, antialias, method) for method in METHODS)
         rows.append({"anti-aliasing": antialias, "P": pes, "p": round(pes**0.5) % size, "rotations": ring[0],
                      "ring (ms)": ring[1], "transfers": bus[0], "bus (ms)": bus[1], "bus, words alone (ms)": bus[2],
@@ -40,21 +44,21 @@ def rows_of(lab, scene, size, antialias):
     return pd.DataFrame(rows)
 
 
-def wins_from(rows, bus):
+def ring_is_faster_from(rows, bus):
     """Part of a sentence: the number of PEs from which on the ring takes less time than the faster of the two bus methods."""
-    pes = holding_to_the_end(rows["P"], rows["ring (ms)"] < bus)
+    pes = tail_where(rows["P"], rows["ring (ms)"] < bus)
     return f"from {pes.iloc[0]} PEs on" if len(pes) else f"for no number of PEs up to {rows['P'].iloc[-1]}"
 
 
 def finding_of_ring(rows):
     best = rows[["bus (ms)", "broadcasts, time (ms)"]].min(1)
-    least = rows[["bus, words alone (ms)", "broadcasts, words alone (ms)"]].min(1)
+    words = rows[["bus, words alone (ms)", "broadcasts, words alone (ms)"]].min(1)
     last = rows.iloc[-1]
-    return (f"{last['anti-aliasing']}: the ring is fastest {wins_from(rows, best)}; {wins_from(rows, least)} if the "
+    return (f"{last['anti-aliasing']}: the ring is fastest {ring_is_faster_from(rows, best)}; {ring_is_faster_from(rows, words)} if the "
             f"bus takes only the time of its words. On {last['P']} PEs the ring takes {last['ring (ms)']:.1f} ms for "
             f"{last['rotations']} rotations, the bus {last['bus (ms)']:.1f} ms for {last['transfers']} transfers or "
             f"{last['broadcasts, time (ms)']:.1f} ms for {last['broadcasts']} broadcasts: at best "
-            f"{best.iloc[-1] / last['ring (ms)']:.1f} times as long, {least.iloc[-1] / last['ring (ms)']:.1f} times by its words alone.")
+            f"{best.iloc[-1] / last['ring (ms)']:.1f} times as long, {words.iloc[-1] / last['ring (ms)']:.1f} times without synchronisation.")
 
 
 def plot_of(rows):
@@ -67,7 +71,7 @@ def plot_of(rows):
 
 @study("bus", one_scene=True)
 def bus(lab, scenes):
-    scene, size = one_of(scenes), lab.size(256)
+    scene, size = first_scene(scenes), lab.size(256)
     by_method = [rows_of(lab, scene, size, method) for method in ("filter", "supersample")]
     rows = pd.concat(by_method, ignore_index=True)
     return Page({"scene": scene.name, "size": size, "pes": by_method[0]["P"].tolist(), "format": format_for(scene)},
@@ -80,7 +84,7 @@ def bus(lab, scenes):
                 plots=[*map(plot_of, by_method)],
                 news=["Kohata & Ito describe ring and bus and measure the ring. This study makes the same exchange by each method, on "
                       "arrays of every size."],
-                clock="modelled. A rotation takes its words at the printed 6 Mword/s and 0.1845 ms of synchronisation, which follows "
-                "from Tables 3 and 4 [D]. No time is printed for a transfer from PE to PE: we assume the same, one transfer after "
-                "another; \"words alone\" is the minimum, without synchronisation. These times contain no computing, so the clock's "
-                "factor does not apply.")
+                clock="modelled. A rotation takes the time of its words at the printed 6 Mword/s plus 0.1845 ms of synchronisation, which follows "
+                "from Tables 3 and 4 [D]. No time is printed for a transfer from PE to PE: we assume the same rate and synchronisation, one "
+                "transfer after another; \"words alone\" is the minimum, without synchronisation. These times contain no computing, so the "
+                "clock's factor does not apply.")

@@ -2,26 +2,29 @@
 
 Into how many voxels should one machine divide space, for a given number of objects?
 
+- Source: Yoshitani & Yamazaki, about 1995, Fig. 3 and conclusion.
 - One PE of grande in fp32, {size} x {size} pixels, primary and shadow rays; every ray traverses the grid.
 - {kind}
-- A ray tests an object again in each voxel that contains it: there is no mailbox.
+- A ray tests an object again in each voxel that contains it: raya has no mailboxing.
+- Output: divisions.csv has a row for each scene and number of divisions. copies: entries in the voxels' object lists, not counting the first
+  entry of each object; steps: voxels that rays enter; modelled time in s, measured time in ms.
 """
 import numpy as np
 import raya
 from raya.lab import Claim, Comparison, Page, Plot, Table, papers, series_by, study, verdict
 from raya.lab.laboratory import TESTS
-from raya.lab.voxels import near_cube, powers, run_in_one_pe, swept
+from raya.lab.voxels import near_cube, powers_of_two, run_cases, run_in_one_pe
 
-DIVISIONS = powers(8192)
+DIVISIONS = powers_of_two(8192)
 COLUMNS = ("scene", "divisions", "A x B x C", "copies", "rays", "tests", "steps", "tests a ray", "steps a ray",
            "modelled (s)", "measured (ms)", "measured, median (ms)", "objects", "voxels of an object")
-NOTICED = 1.02  # ratio above which two figures count as different
+DIFFERENCE_RATIO = 1.02  # ratio above which two figures count as different
 # {subject: (title of the plot, label of its y axis, column of the table, name of its minimum)}
 SUBJECTS = {"modelled": ("Modelled time against divisions", "modelled time of a T805 (s)", "modelled (s)",
-                         "least modelled time"),
-            "tests": ("Intersection tests against divisions", "intersection tests", "tests", "fewest tests"),
+                         "minimum of the modelled time"),
+            "tests": ("Intersection tests against divisions", "intersection tests", "tests", "minimum of the tests"),
             "measured": ("Measured time against divisions", "measured time (ms)", "measured (ms)",
-                         "least measured time")}
+                         "minimum of the measured time")}
 
 
 @study("divisions")
@@ -29,7 +32,7 @@ def divisions(lab, scenes):
     size, from_paper = lab.size(96), not scenes
     even = [raya.generate.uniform(n, near_cube(n)).renamed(f"{n} objects") for n in (64, 256, 512, 1024)]
     cases = [{"scene": scene, "cut": near_cube(count)} for scene in scenes or even for count in DIVISIONS]
-    rows = swept(cases, lambda scene, cut: run_in_one_pe(lab, scene, size, cut, runs=5), COLUMNS)
+    rows = run_cases(cases, lambda scene, cut: run_in_one_pe(lab, scene, size, cut, runs=5), COLUMNS)
     by_scene = [some for _, some in rows.groupby("scene", sort=False)]
     settings = [some[["scene", "objects"]].iloc[0].to_dict() for some in by_scene]
     findings = [finding_of_optimum(name, by_scene) for name in SUBJECTS]
@@ -53,25 +56,25 @@ def divisions(lab, scenes):
                 clock="two kinds, on separate axes. Modelled: the counted events at their cost on a T805 at 25 MHz, 40 ns a cycle "
                 "(data sheet of the IMS T805, SGS-Thomson 1996), with the making of packets, without messages. Measured: tracing on "
                 "this device, minimum and median of five samples after a warm-up; a sample is the mean of as many renders as take "
-                "20 ms.", beside=papers.TP,
+                "20 ms.", compared_with=papers.TP,
                 placeholders={"kind": "64 to 1024 matt spheres, one in each of as many voxels of a cube. Our grid divides the "
                               "bounding box of the spheres, which is a little smaller than that cube, so some spheres straddle its planes."
                               if from_paper else "The scenes of the command line. A x B x C is as near to a cube as powers of two "
                               "allow, whatever the shape of the bounding box."})
 
 
-def least(some, name):
+def row_of_minimum(some, name):
     return some.loc[some[SUBJECTS[name][2]].idxmin()]
 
 
-def at_objects(some):
-    """The row whose number of divisions equals the number of objects; None if there is no such row."""
+def row_at_object_count(some):
+    """The row with as many divisions as objects; None if there is none."""
     found = some[some["divisions"] == some["objects"]]
     return found.iloc[0] if len(found) else None
 
 
-def over_least(some, row, name):
-    return row[SUBJECTS[name][2]] / least(some, name)[SUBJECTS[name][2]]
+def ratio_to_minimum(some, row, name):
+    return row[SUBJECTS[name][2]] / row_of_minimum(some, name)[SUBJECTS[name][2]]
 
 
 def fall_of(some, name):
@@ -90,7 +93,7 @@ def comparisons_of(by_scene, from_paper):
                                               ("tests", papers.TESTS_FALL, "Yoshitani & Yamazaki: \"about 1/5\""))]
     for name, (*_, optimum) in SUBJECTS.items():
         for some in by_scene:
-            best = least(some, name)
+            best = row_of_minimum(some, name)
             paper = best["objects"] if from_paper and name != "measured" else None
             all_of.append(Comparison(f"{optimum}, {best['scene']}", "divisions", paper, best["divisions"],
                                      best["A x B x C"]))
@@ -98,28 +101,28 @@ def comparisons_of(by_scene, from_paper):
 
 
 def finding_of_optimum(name, by_scene):
-    best = [least(some, name) for some in by_scene]
+    best = [row_of_minimum(some, name) for some in by_scene]
     equal = sum(b["divisions"] == b["objects"] for b in best)
     last = sum(b["divisions"] == some["divisions"].iloc[-1] for b, some in zip(best, by_scene))
-    more = f"; for {last} it is the largest number tried, so the optimum may be beyond" if last else ""
+    more = f"; for {last} it is the largest number tried, so the optimum may be higher" if last else ""
     where = ", ".join(f"{b['divisions']} for {b['scene']}" for b in best)
-    return (f"{SUBJECTS[name][3].capitalize()}: at divisions {where}; divisions = objects is the optimum for {equal} of "
-            f"{len(best)}{more}.")
+    return (f"{SUBJECTS[name][3].capitalize()}, number of divisions: {where}. It equals the number of objects for {equal} of "
+            f"{len(best)} scenes{more}.")
 
 
 def finding_of_loss(by_scene):
-    tried = [(some, row) for some in by_scene for row in [at_objects(some)] if row is not None]
+    tried = [(some, row) for some in by_scene for row in [row_at_object_count(some)] if row is not None]
     if not tried:
         return "No scene here was divided into as many voxels as it has objects."
-    times = ", ".join(f"{over_least(some, row, 'modelled'):.2f} ({row['scene']})" for some, row in tried)
-    tests = ", ".join(f"{over_least(some, row, 'tests'):.2f}" for some, row in tried)
+    times = ", ".join(f"{ratio_to_minimum(some, row, 'modelled'):.2f} ({row['scene']})" for some, row in tried)
+    tests = ", ".join(f"{ratio_to_minimum(some, row, 'tests'):.2f}" for some, row in tried)
     voxels = ", ".join(f"{row['voxels of an object']:.2f}" for _, row in tried)
     return (f"With divisions = objects the modelled time is {times} times its minimum and the tests are {tests} times their minimum; an "
             f"object then lies in {voxels} voxels.")
 
 
 def finding_of_rise(by_scene):
-    rises = ", ".join(f"{over_least(some, some.iloc[-1], 'modelled'):.2f} "
+    rises = ", ".join(f"{ratio_to_minimum(some, some.iloc[-1], 'modelled'):.2f} "
                       f"({some['scene'].iloc[0]})" for some in by_scene)
     return f"At {by_scene[0]['divisions'].iloc[-1]} divisions the modelled time is {rises} times its minimum."
 
@@ -144,20 +147,20 @@ def claims_of(by_scene):
     def claim(place, words, seen, why, contrary=None):
         return Claim(papers.TP, place, words, verdict(seen, not seen if contrary is None else contrary), why)
 
-    def least_at_objects(name):
-        rows = [(some, at_objects(some)) for some in by_scene]
-        return all(row is not None and over_least(some, row, name) <= NOTICED for some, row in rows)
+    def is_minimum_at_object_count(name):
+        rows = [(some, row_at_object_count(some)) for some in by_scene]
+        return all(row is not None and ratio_to_minimum(some, row, name) <= DIFFERENCE_RATIO for some, row in rows)
 
     def why_optimum(name):
         return (f"{finding_of_optimum(name, by_scene)} {finding_of_loss(by_scene)} Up to 2 % above the minimum counts as the "
                 "minimum.")
 
-    rises = all(over_least(some, some.iloc[-1], "modelled") > NOTICED for some in by_scene)
-    falls = [over_least(some, some.iloc[0], "modelled") for some in by_scene]
+    rises = all(ratio_to_minimum(some, some.iloc[-1], "modelled") > DIFFERENCE_RATIO for some in by_scene)
+    falls = [ratio_to_minimum(some, some.iloc[0], "modelled") for some in by_scene]
     are_near = [max(fall / paper, paper / fall) <= near for fall in (modelled, measured)]
     texts = ", ".join(f"{fall:.1f} ({some['scene'].iloc[0]})" for fall, some in zip(falls, by_scene))
     return [claim("Fig. 3", "Time falls until there are as many divisions as objects, then it rises.",
-                  least_at_objects("modelled") and rises, f"{why_optimum('modelled')} {finding_of_rise(by_scene)}"),
+                  is_minimum_at_object_count("modelled") and rises, f"{why_optimum('modelled')} {finding_of_rise(by_scene)}"),
             claim("Fig. 3", "The more objects there are, the more the time falls.", bool((np.diff(falls) >= 0).all()),
                   f"From one division to the minimum, the modelled time falls by a factor of {texts}."),
             claim("Fig. 3", "1024 objects take 313 s with 32 divisions and 60 s with 1024, 5.2 times less.",
@@ -166,4 +169,4 @@ def claims_of(by_scene):
             claim("Fig. 3", "The tests fall to about 1/5 from 32 to 1024 divisions, 1024 objects.",
                   fifth[0] <= tests <= fifth[1], f"They fall to 1 / {tests:.1f}; 1/4 to 1/6 is accepted."),
             claim("conclusion", "The tests are fewest where there are as many divisions as objects.",
-                  least_at_objects("tests"), why_optimum("tests"))]
+                  is_minimum_at_object_count("tests"), why_optimum("tests"))]

@@ -1,21 +1,24 @@
 """Tests and steps a ray in uniform grids, compared with Havran & Sixta 1999
 
-Does our grid need as many tests and steps as others' grids on the same scenes?
+Does raya's grid need as many tests and steps as the grid of Havran & Sixta on the same scenes?
 
+- Source: Havran & Sixta 1999, uniform grids with 3D-DDA; scenes balls and lattice of SPD (Haines 1987).
 - One PE of grande in fp32, {size} x {size} rays through pixel corners{spd}, tree depth {depth} with the eye ray as 1, as SPD prescribes.
   The grid divides the bounding box of the whole scene.
-- Rays: every eye, reflected, refracted and shadow ray, whether it meets the box or not. Tests: of any ray with spheres, polygons and
-  cylinders. Steps: voxels that rays enter, including the first one.
-- Possible differences: raya has no mailbox, so a ray tests an object in each voxel that contains it; a shadow ray ends at the first
-  object that is found to hide the light; objects are registered with a margin for rounding. We do not know what Havran & Sixta do in
+- Rays: every eye, reflected, refracted and shadow ray, whether it enters the bounding box or not. Tests: of any ray with spheres, polygons and
+  cylinders. Steps: voxels that rays enter, including the first one. Walks: rays that enter the grid's bounding box.
+- Possible differences: raya has no mailboxing, so a ray tests an object in each voxel that contains it; a shadow ray ends at the first
+  object found that blocks the light; objects are registered with a margin for rounding. We do not know what Havran & Sixta do in
   these cases, nor whether they count the first voxel.
+- Output: havran.csv has a row for each scene and grid: entries of objects beyond their first (copies), counts of rays, tests and steps,
+  and the measured time of a render (ms).
 """
 import math
 
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, papers, series_by, study
-from raya.lab.voxels import run_in_one_pe, swept
+from raya.lab.voxels import run_cases, run_in_one_pe
 
 BOUNCES, SPD_SIZE = 4, 513  # the eye ray is depth 1 of 5
 COLUMNS = ("scene", "A x B x C", "copies", "tests", "steps", "measured (ms)")
@@ -32,7 +35,7 @@ def havran(lab, scenes):
     size = lab.size(257)  # every other one of SPD's 513 pixel corners along a side
     own = [raya.generate.balls(4).renamed("balls"), raya.generate.lattice(12).renamed("lattice")]
     cases = [{"scene": scene, "grid": grid} for scene in scenes or own for grid in grids_for(scene.name)]
-    table = swept(cases, lambda scene, grid: run_in_one_pe(lab, scene, size, grid, BOUNCES, "corners"), COLUMNS)
+    table = run_cases(cases, lambda scene, grid: run_in_one_pe(lab, scene, size, grid, BOUNCES, "corners"), COLUMNS)
     rows = pd.DataFrame([row_of(*some) for some in zip(table["run"], table["grid"])])
     kinds = {"primary": "eye rays", "reflected": "reflected", "refracted": "refracted", "shadow": "shadow rays",
              "walks": "walks"}
@@ -51,7 +54,7 @@ def havran(lab, scenes):
                 tables=[Table("havran", "Counts", table)],
                 plots=[Plot("havran", "Tests against steps a ray", "steps a ray", "tests a ray",
                             series_by(rows, "scene", "steps", "tests", style="points") + published, "xy")],
-                beside=papers.GRID,
+                compared_with=papers.GRID,
                 placeholders={"spd": "" if size == SPD_SIZE else " (SPD: 513 x 513)", "depth": BOUNCES + 1})
 
 

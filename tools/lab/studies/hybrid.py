@@ -1,22 +1,24 @@
 """Screen and space divided together: groups of nodes
 
-In how many groups should the nodes share the screen, and which numbers of groups fit in memory?
+Into how many groups that share the screen should the nodes be divided, and which numbers of groups fit in memory?
 
+- Source: Yoshitani & Yamazaki, about 1995, mention the combination (Harada et al. 1995, their reference [1]) and do not try it.
 - {nodes} nodes in G groups. Each group is a 3-D torus of {nodes} / G nodes, holds the whole scene and renders the pixels p with p mod G =
   g at {size} x {size}, where p counts row by row: as in a cyclic mapping, each row is shifted by {size} mod G relative to the row above.
   fp32. All nodes of a group make primary rays, and are charged for those that they make and discard.
 - Each group divides the scene into the same voxels, laid out cyclically on its nodes, so that the work is the same for every G. G = 1
-  divides space alone; G = {nodes} divides the screen alone.
+  divides only space; G = {nodes} divides only the screen.
 - The machine's time is that of its slowest group. Speed-up is relative to one node that has all pixels and the same voxels. The transfer
   of pixels from the groups' roots to the host is not modelled.
-- Memory of the fullest node: its part of the scene; the same with the shortest queue and mailboxes that a hit can need; the same with
-  those of this study.
+- Memory of the fullest node (bytes): its part of the scene; this part with the shortest queue and mailboxes that a hit can need; this part
+  with the queue and mailboxes of this study.
+- Output: hybrid.csv (modelled times in ms, speed-ups, counts) and hybrid-memory.csv have a row for each scene, grid and number of groups.
 """
 import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, series_by, study
-from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers, run_on_torus, sides_text
+from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers_of_two, run_on_torus, sides_text
 
 NODES, SIDES = 64, (4, 8)  # SIDES: voxels along each axis of the grid of a group: as in the paper, and a finer grid
 MEMORIES = {"32 KB": 32 * 1024, "4 MB": 4 * 1024 * 1024}  # of a node: that of a PE of the SPA; that of a transputer board
@@ -40,8 +42,8 @@ def row_of(lab, scene, size, sides, groups):
 
 
 def rows_of(lab, scene, size, sides):
-    """Figures for 1, 2, 4, ... groups of nodes."""
-    rows = pd.DataFrame([row_of(lab, scene, size, sides, groups) for groups in powers(NODES)])
+    """Table with a row for each number of groups: 1, 2, 4, ..."""
+    rows = pd.DataFrame([row_of(lab, scene, size, sides, groups) for groups in powers_of_two(NODES)])
     # With one node per group, no node sends a message or discards a ray. The sum of their work is the work of a
     # single node that renders all pixels.
     for bound in ("overlapped", "stepwise"):
@@ -76,7 +78,7 @@ def hybrid(lab, scenes):
 
 
 def size_text(size):
-    """'1.6 KB'; rounded up, as it states a requirement."""
+    """'1.6 KB'; rounded up, because it is a requirement."""
     for unit, scale in (("GB", 1 << 30), ("MB", 1 << 20), ("KB", 1 << 10)):
         if size >= scale:
             return f"{np.ceil(10 * size / scale) / 10:.1f} {unit}"

@@ -2,11 +2,14 @@
 
 Is the cyclic mapping good for every image, or only for the one that Kohata & Ito analyse?
 
+- Source: Kohata & Ito 1993, section on the experiments.
 - Each scene on {pes} PEs of the SPA, column split and p = sqrt(P) = {offset}; first pass.
 - If the image is wider than the array, the fold is cyclic: PE i has the slots i, i + P, ...
-- Efficiency = mean load / largest load, of computing alone; it needs no clock. Kohata & Ito had several images of 6 to 30 objects. Their
-  scenes are not known; ours have {fewest} to {most} objects.
+- Efficiency = mean load / largest load of computing, without communication; it needs no clock. Kohata & Ito had several images of 6 to 30
+  objects. Their scenes are not known; ours have {fewest} to {most} objects.
 - Random views and random scenes are added. {more}
+- Output: images.csv has a row for each image, images-groups.csv one for each group of images. u = (max load - mean load) / mean load; columns
+  +- are half widths of 95 % intervals.
 """
 import numpy as np
 import pandas as pd
@@ -14,7 +17,7 @@ import raya
 from raya.lab import Claim, Comparison, Page, Plot, Series, Table, estimate, papers, study, verdict, with_paper
 from raya.lab.laboratory import VIEWS
 
-FEWEST, MOST = 6, 30  # minimum and maximum number of objects of a scene, as in the paper
+MIN_OBJECTS, MAX_OBJECTS = 6, 30  # minimum and maximum number of objects of a scene, as in the paper
 
 
 def paper_like_scenes():
@@ -52,34 +55,34 @@ def images(lab, scenes):
                  Table("images", "Imbalance and efficiency of each image", rows)],
                 plots_of(rows, groups, columns, cyclic, pes, p),
                 ["Kohata & Ito describe their images without figures. This study gives figures for every image, and intervals over "
-                 "many views and random scenes."], beside=papers.SPA,
+                 "many views and random scenes."], compared_with=papers.SPA,
                 placeholders={"fewest": rows["objects"].min(), "most": rows["objects"].max(),
                        "more": " ".join(method for method, _ in more.values())})
 
 
 def groups_of(lab, scenes, size):
-    """{group: (sentence for the method, cost images)}: random views of each scene (by default of centre, the most unbalanced scene), and random
-    scenes with as many objects as the paper's."""
+    """Returns {group: (sentence for the method, cost images)}: random views of each scene (by default of centre, the most unbalanced scene), and
+    random scenes with as many objects as the paper's."""
     groups = {}
     for scene in scenes or [raya.example("centre")]:
         views = lab.ensemble(scene, size).views
         groups[f"views of {scene.name}"] = (f"{len(views)} views of {scene.name}, seeds 1..{len(views)}, as in Fig. 8.", views)
     if not scenes:
-        counts = [(FEWEST + i % (MOST - FEWEST + 1), i + 1) for i in range(VIEWS)]
+        counts = [(MIN_OBJECTS + i % (MAX_OBJECTS - MIN_OBJECTS + 1), i + 1) for i in range(VIEWS)]
         pictures = [lab.costs(raya.generate.random(n, seed).renamed(f"random-{n}, seed {seed}"), size)
                     for n, seed in counts]
-        groups["random scenes"] = (f"{VIEWS} random scenes of {FEWEST} to {MOST} spheres, `raya generate random`, seeds 1..{VIEWS}.",
+        groups["random scenes"] = (f"{VIEWS} random scenes of {MIN_OBJECTS} to {MAX_OBJECTS} spheres, `raya generate random`, seeds 1..{VIEWS}.",
                                    pictures)
     return groups
 
 
 def claim_of_columns(every, columns, cyclic):
-    """The paper gives no figure for "strongly", so the reason of the verdict states our limit."""
+    """Claim on the column split. The paper gives no figure for "strongly", so the reason of the verdict states our limit."""
     strongly = 2
     off = {c: (every[c] - every[c].mean()).abs() for c in (columns, cyclic)}
-    beyond = estimate(off[columns] - strongly * off[cyclic])
+    excess = estimate(off[columns] - strongly * off[cyclic])
     return Claim(papers.SPA, "section on the experiments", "The column split's efficiency varies strongly over the "
-                 "images.", verdict(beyond.low > 0, beyond.high <= 0),
+                 "images.", verdict(excess.low > 0, excess.high <= 0),
                  f"Over all {len(every)} images the mean absolute deviation of the efficiency is {off[columns].mean():.3f} for the column "
                  f"split and {off[cyclic].mean():.3f} for the cyclic mapping; {strongly} times as much or more counts as strongly.")
 
@@ -106,9 +109,9 @@ def findings_of(groups, rows, columns, cyclic, p):
     means = "; ".join(f"{estimate(g[columns]).text()} and {estimate(g[cyclic]).text()} of {len(g)} {label}"
                       for label, g in groups.items())
     worst = rows.loc[rows[cyclic].idxmin()]
-    lost = (rows[columns] > rows[cyclic]).sum()
+    worse = (rows[columns] > rows[cyclic]).sum()
     size = "{0} x {0}".format(worst["side (pixels)"])
-    rest = (f"The column split is better for {lost} of {len(rows)} images." if lost else
+    rest = (f"The column split is better for {worse} of {len(rows)} images." if worse else
             f"The cyclic mapping is at least as good as the column split on all {len(rows)} images.")
     return [f"Mean efficiency of p = 0 and of the cyclic mapping: {means}.",
             f"On the scenes' own pictures the efficiency is {rows[columns].min():.3f} to {rows[columns].max():.3f} with "

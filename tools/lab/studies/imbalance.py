@@ -1,9 +1,9 @@
-"""Figs 8 and 13: the imbalance u of each offset, in one picture and in many views, with the offset's lattice."""
+"""Figs 8 and 13 of Kohata & Ito 1993: the imbalance u of each offset, in one picture and in many views, and the lattice of each offset."""
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, balance_pass, each_of, estimate, papers,
-                      prediction_text, range_text, study, verdict, verdict_among)
+from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, bonferroni_confidence, costs_of_pass, estimate,
+                      papers, prediction_text, range_text, study, verdict, verdict_by_prediction)
 from raya.lab.laboratory import VIEWS_PROSE
 from raya.lab.mappings import shortest_square
 
@@ -15,24 +15,29 @@ PROSE_8 = """Fig. 8: imbalance against the offset
 
 Which offset of the cyclic mapping spreads the load best?
 
+- Source: Kohata & Ito 1993, Fig. 8; u(0) and u(16) are derived from Table 3.
 - {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass.""" + U_AND_VIEWS + """
 - Offsets are compared within the same views. "Best" is reproduced if every other offset of 0..n is worse, all {tests} differences
   together with 95 % (Bonferroni); it is not reproduced if one offset is better with that certainty.
 - A figure of Kohata & Ito for one picture is reproduced if it lies in the 95 % prediction interval of the views. The interval comes from
-  order statistics, for any distribution: 2.5 % of pictures lie below it and 2.5 % above. A figure outside it is not reproduced."""
+  order statistics, for any distribution: 2.5 % of pictures lie below it and 2.5 % above. A figure outside it is not reproduced.
+- Output: fig8.csv has a row for each offset p: u of the picture; mean u of the views, +- the half width of its 95 % interval; least and largest u
+  of the views; shortest vector of the lattice (pixels). fig8-near.csv has the offsets 0..n, n = sqrt(P)."""
 
 PROSE_13 = """Fig. 13: imbalance against the offset in supersampling
 
 Does the offset that suits the first pass suit supersampling as well?
 
-- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; supersampling alone.""" + U_AND_VIEWS + """
-- Offsets are compared within the same views, all {tests} differences together with 95 % (Bonferroni)."""
+- Source: Kohata & Ito 1993, Fig. 13.
+- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; supersampling, without the first pass.""" + U_AND_VIEWS + """
+- Offsets are compared within the same views, all {tests} differences together with 95 % (Bonferroni).
+- Output: fig13.csv and fig13-near.csv, with the columns of fig8.csv."""
 
-GOOD = 0.9  # our limit: a balance is good if its gain over p = 0 is at least this fraction of the gain of the best offset of 0..n
+GOOD_FRACTION = 0.9  # our limit: a balance is good if its gain over p = 0 is at least this fraction of the gain of the best offset of 0..n
 
 
 def page_of(name, lab, scenes, first):
-    settings, picture, views = balance_pass(lab, scenes, first)
+    settings, picture, views = costs_of_pass(lab, scenes, first)
     scene, size = settings["scene"], settings["size"]
     offsets, n = range(size), round(size**0.5)  # n: the offset that the paper calls the best
     u = raya.imbalances(picture, size, offsets)
@@ -52,14 +57,14 @@ def page_of(name, lab, scenes, first):
                  Table(name, "Imbalance for each offset", rows, on_page=False)],
                 plots_of(name, scene, "first pass" if first else "supersampling alone", rows, near, len(views),
                          in_paper),
-                ["Kohata & Ito plot u for one picture. The best offset changes from view to view; means over many views, with "
+                ["Kohata & Ito plot u for one picture. The best offset changes from view to view. Means over many views, with "
                  "intervals, show the effect of the offset itself."],
-                placeholders={"tests": n}, beside=papers.SPA)
+                placeholders={"tests": n}, compared_with=papers.SPA)
 
 
 def claims_of(place, of_views, means, n, first, in_paper):
     gain = estimate(of_views[:, 0] - of_views[:, n])
-    differences = [estimate(of_views[:, p] - of_views[:, n], each_of(n)) for p in range(n)]
+    differences = [estimate(of_views[:, p] - of_views[:, n], bonferroni_confidence(n)) for p in range(n)]
     worse, better = sum(d.low > 0 for d in differences), sum(d.high < 0 for d in differences)
     lowest, best = min(range(n + 1), key=lambda p: means[p].mean), of_views[:, :n + 1].min(1)
     gains, single = of_views[:, 0] - best, of_views[:, n]
@@ -72,11 +77,11 @@ def claims_of(place, of_views, means, n, first, in_paper):
                f"{better} are better with certainty; p = {n} is the best of 0..{n} in {(single <= best).sum()} of "
                f"{len(of_views)} views.")]
     if first:
-        claims.append(("The balance is already good at p = 8, half of n.", verdict(half.low >= GOOD, half.high < GOOD),
-                       f"p = {n // 2} gains {half.text(2)} of what the best of 0..n gains over p = 0; a part of {GOOD} or more counts "
+        claims.append(("The balance is already good at p = 8, half of n.", verdict(half.low >= GOOD_FRACTION, half.high < GOOD_FRACTION),
+                       f"p = {n // 2} gains {half.text(2)} of what the best of 0..n gains over p = 0; a part of {GOOD_FRACTION} or more counts "
                        "as good."))
     if in_paper:
-        claims.append(("u is 0.118 at p = 16 (derived from Table 3).", verdict_among(papers.IMBALANCE_16, single),
+        claims.append(("u is 0.118 at p = 16 (derived from Table 3).", verdict_by_prediction(papers.IMBALANCE_16, single),
                        f"Over {len(single)} views u(16) is {means[n].text()} in the mean and {range_text(single)} in single views; "
                        f"the figure of one more picture lies in {prediction_text(single)} with 95 %."))
     return [Claim(papers.SPA, place, *claim) for claim in claims]

@@ -2,19 +2,22 @@
 
 From how many nodes on is the root the bottleneck?
 
-- {scene} at {size} x {size} on 1 to {nodes} nodes of a 3-D torus, doubling, one voxel a node, fp32. Root: the root makes all primary
-  rays, one after another, and sends each to the node where it enters the bounding box, as in Yoshitani & Yamazaki. All: every node makes
-  the rays that enter at its voxel, and is charged for those that it makes and discards. In both cases ray packets have 16 words, and
-  each term of a ray is a return.
-- The root's time is the larger of its processor's time (computing and messages) and its busiest link's. In both cases the contributions
+- Source: Yoshitani & Yamazaki, about 1995: the root makes and sends all primary rays.
+- {scene} at {size} x {size} on 1 to {nodes} nodes of a 3-D torus, doubling, one voxel a node, fp32.
+- Method root: the root makes all primary rays, one after another, and sends each to the node where it enters the bounding box, as in
+  Yoshitani & Yamazaki. Method all: every node makes the rays that enter at its voxel, and is charged for those that it makes and discards.
+  With both methods ray packets have 16 words, and each term of a ray is a return.
+- The root's time is the larger of its processor's time (computing and messages) and its busiest link's. With both methods the contributions
   to pixels return to the root.
 - A single node has the whole scene in one voxel and is its own root. A speed-up above the number of nodes is therefore due to the grid.
+- Output: inject.csv has a row for each number of nodes and method: supersteps, modelled times (ms), the root's share (%), bytes over the
+  busiest link, and counts.
 """
-from raya.lab import Page, Plot, Series, Table, holding_to_the_end, series_by, study
-from raya.lab.voxels import BOUNCES, CLOCK, even_scene, near_cube, powers, run_on_torus, swept
+from raya.lab import Page, Plot, Series, Table, series_by, study, tail_where
+from raya.lab.voxels import BOUNCES, CLOCK, even_scene, near_cube, powers_of_two, run_cases, run_on_torus
 
-MOST, DIFFERENT = 512, 1.1  # maximum number of nodes; ratio above which the times of the two methods count as different
-CASES = [{"nodes": nodes, "inject": method} for nodes in powers(MOST) for method in ("root", "all")]
+MAX_NODES, DIFFERENCE_RATIO = 512, 1.1  # maximum number of nodes; ratio above which the times of the two methods count as different
+CASES = [{"nodes": nodes, "inject": method} for nodes in powers_of_two(MAX_NODES) for method in ("root", "all")]
 COLUMNS = ("supersteps", "overlapped (ms)", "stepwise (ms)", "the root's processor (ms)",
            "the root's busiest link (ms)", "root / overlapped (%)", "busiest link (bytes)", "packets",
            "rays discarded", "hops a packet", "most packets in a queue", "primary")
@@ -24,10 +27,10 @@ COLUMNS = ("supersteps", "overlapped (ms)", "stepwise (ms)", "the root's process
 def inject(lab, scenes):
     scene, size = scenes[0] if scenes else even_scene(8320), lab.size(64)
 
-    rows = swept(CASES, lambda nodes, inject: run_on_torus(lab, scene, size, near_cube(nodes), near_cube(nodes),
+    rows = run_cases(CASES, lambda nodes, inject: run_on_torus(lab, scene, size, near_cube(nodes), near_cube(nodes),
                                                            inject=inject), COLUMNS)
     root, every = (rows[rows["inject"] == method].reset_index() for method in ("root", "all"))
-    return Page({"scene": scene.name, "size": size, "nodes": MOST, "links": "torus3d", "format": "fp32",
+    return Page({"scene": scene.name, "size": size, "nodes": MAX_NODES, "links": "torus3d", "format": "fp32",
                  "bounces": BOUNCES}, findings_of(root, every),
                 tables=[Table("inject", "Primary rays from the root and from all nodes",
                               rows.drop(columns=["primary", "run"]))],
@@ -44,14 +47,14 @@ def inject(lab, scenes):
 
 def bound_text(rows):
     """Part of a sentence: the number of nodes (at least two) from which on the root is always the bottleneck."""
-    nodes = holding_to_the_end(rows["nodes"][1:], rows["root / overlapped (%)"][1:] >= 100)
-    return f"from {nodes.iloc[0]} nodes on" if len(nodes) else "not even with the most nodes"
+    nodes = tail_where(rows["nodes"][1:], rows["root / overlapped (%)"][1:] >= 100)
+    return f"from {nodes.iloc[0]} nodes on" if len(nodes) else "for no number of nodes"
 
 
 def finding_of_difference(root, every):
     ratio = root["overlapped (ms)"] / every["overlapped (ms)"]
     last = f"with {every['nodes'].iloc[-1]} nodes injection by the root takes {ratio.iloc[-1]:.2f} times as long"
-    different = ratio[ratio > DIFFERENT]
+    different = ratio[ratio > DIFFERENCE_RATIO]
     if not len(different):
         return f"The two methods never differ by more than 10 %: {last}."
     return (f"The two methods first differ by more than 10 % on {every['nodes'][different.index[0]]} nodes, where injection by the root "
@@ -69,7 +72,7 @@ def findings_of(root, every):
             finding_of_difference(root, every),
             f"{all_last['nodes']} nodes that make their own primary rays make "
             f"{1 + all_last['rays discarded'] / all_last['primary']:.1f} for each that they keep, and are charged for all of them: "
-            "the other rays of their pixel windows enter at other voxels.",
+            "the other rays that they make enter at other voxels.",
             f"Stepwise, injection by the root takes {last['stepwise (ms)'] / all_last['stepwise (ms)']:.2f} times as long on "
-            f"{last['nodes']} nodes, in {last['supersteps']} supersteps against {all_last['supersteps']}: at a time the root "
-            "makes no more rays than an eighth of its queue holds."]
+            f"{last['nodes']} nodes, in {last['supersteps']} supersteps instead of {all_last['supersteps']}: at a time the root "
+            "makes at most as many rays as an eighth of its queue holds."]

@@ -1,23 +1,26 @@
-"""Figs 7 and 12: the load of each PE divided by the mean load, in the first pass and in supersampling."""
+"""Figs 7 and 12 of Kohata & Ito 1993: the load of each PE divided by the mean load, in the first pass and in supersampling."""
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, balance_pass, estimate, papers, range_text,
-                      study, verdict, with_paper)
+from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, costs_of_pass, estimate, papers, range_text, study,
+                      verdict, with_paper)
 from raya.lab.laboratory import VIEWS_PROSE
 
 PROSE = """{figure}
 
 {question}
 
+- Source: Kohata & Ito 1993, {source}.
 - {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; {phase}.
 - The load of a PE is the sum of the modelled cycles that the kernels counted for its pixels, divided by the mean load of all PEs. It
-  needs no clock.""" + VIEWS_PROSE
+  needs no clock.""" + VIEWS_PROSE + """
+- Output: {csv} has a row for each PE: its load in the picture (cycles) with p = 0 and p = 16, and its load / mean load, mean of the views, +-
+  the half width of the 95 % interval."""
 
-FLAT = 0.1  # our limit: in a flat distribution, the loads of middle and sides differ by at most this fraction of the mean load
+FLAT_LIMIT = 0.1  # our limit: in a flat distribution, the loads of middle and sides differ by at most this fraction of the mean load
 
 
-def shares(image, offset):
+def relative_loads(image, offset):
     """The load of each PE divided by the mean load; 1 for all PEs if there is no load."""
     loads = raya.loads(image, offset=offset)
     return loads / loads.mean() if loads.any() else np.ones(len(loads))
@@ -31,11 +34,11 @@ def middle_and_sides(loads):
 
 
 def page_of(name, lab, scenes, first):
-    settings, picture, views = balance_pass(lab, scenes, first)
+    settings, picture, views = costs_of_pass(lab, scenes, first)
     scene, size = settings["scene"], settings["size"]
     offsets = (0, 16 % size)
-    own = [shares(picture, p) for p in offsets]
-    of_views = [np.array([shares(view, p) for view in views]) for p in offsets]  # [view, PE]
+    own = [relative_loads(picture, p) for p in offsets]
+    of_views = [np.array([relative_loads(view, p) for view in views]) for p in offsets]  # [view, PE]
     u = np.transpose([raya.imbalances(view, size, offsets) for view in views])  # [offset, view]
     own_u = raya.imbalances(picture, size, offsets)
     rows = pd.DataFrame({"PE": range(size), "p = 0 (cycles)": raya.loads(picture, offset=0),
@@ -49,18 +52,19 @@ def page_of(name, lab, scenes, first):
                 [Table(name, "Load of each PE", rows, on_page=False)],
                 plots_of(name, scene, phase, rows, own, len(views)),
                 ["Kohata & Ito show one image. Many views of a scene separate the effect of the mapping from that of the picture."],
-                beside=papers.SPA,
-                placeholders={"figure": f"{place}: load of each PE{'' if first else ' in supersampling'}", "phase": phase,
+                compared_with=papers.SPA,
+                placeholders={"figure": f"{place}: load of each PE{'' if first else ' in supersampling'}", "phase": phase, "csv": f"{name}.csv",
+                              "source": f"{place}; u(0) and u(16) are derived from Table 3" if first else place,
                               "question": "How is the work of one image spread over the PEs, by columns and by the cyclic mapping?"
                               if first else "Is the extra work of supersampling spread as evenly as the first pass?"})
 
 
 def findings_of(own, own_u, u):
     (middle, sides), mean_u = middle_and_sides(own[0]), [estimate(some) for some in u]
-    return [f"In the picture the PEs of the middle quarter carry {middle:.2f} times the mean load with columns and "
-            f"those of the quarter at the sides {sides:.2f} times; with p = 16 the lightest PE carries "
-            f"{own[1].min():.2f} times and the heaviest {1 + own_u[1]:.2f} times the mean.",
-            f"Over {len(u[0])} views u is {mean_u[0].text()} with columns ({range_text(u[0])}) and {mean_u[1].text()} "
+    return [f"In the picture, with the column split, the PEs of the middle quarter carry {middle:.2f} times the mean load and "
+            f"those of the quarter at the sides {sides:.2f} times. With p = 16 the PE with the least load carries "
+            f"{own[1].min():.2f} times the mean and the PE with the most {1 + own_u[1]:.2f} times.",
+            f"Over {len(u[0])} views u is {mean_u[0].text()} with the column split ({range_text(u[0])}) and {mean_u[1].text()} "
             f"with p = 16 ({range_text(u[1])})."]
 
 
@@ -80,8 +84,8 @@ def claims_of(place, of_views):
                   verdict(columns.low > 0, columns.high <= 0),
                   f"{over}{columns.text(2)} mean loads more than one of the quarter at the sides."),
             Claim(papers.SPA, place, "With p = 16 the load is flat.",
-                  verdict(cyclic.low >= -FLAT and cyclic.high <= FLAT, cyclic.high < -FLAT or cyclic.low > FLAT),
-                  f"{over}{cyclic.text(2)} mean loads more than one of the quarter at the sides; within {FLAT} counts as flat.")]
+                  verdict(cyclic.low >= -FLAT_LIMIT and cyclic.high <= FLAT_LIMIT, cyclic.high < -FLAT_LIMIT or cyclic.low > FLAT_LIMIT),
+                  f"{over}{cyclic.text(2)} mean loads more than one of the quarter at the sides; within {FLAT_LIMIT} counts as flat.")]
 
 
 def plots_of(name, scene, phase, rows, own, views):

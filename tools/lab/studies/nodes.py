@@ -2,31 +2,34 @@
 
 How many transputers pay, and what is their bottleneck?
 
+- Source: Yoshitani & Yamazaki, about 1995, who had 64 nodes and print no speed-up.
 - {size} x {size} pixels on 1, 2, 4, ... nodes, as near to a cube as powers of two allow; fp32. All nodes make primary rays and are
   charged for those that they make and discard; ray packets have 16 words, each term of a ray is a return; queues hold {queue} packets.
 - Two divisions of the scene: one voxel a node, as in Yoshitani & Yamazaki, and {voxels} voxels laid out cyclically on any number of
-  nodes. With the latter all machines do the same work, so the speed-up is due to the nodes alone; with the former it is also due to a
-  finer grid.
-- The processors at both ends of a message spend time on it; u and tests are of computing alone.
+  nodes. With {voxels} voxels all machines do the same work, so the speed-up is due only to the nodes. With one voxel a node it is also due to
+  the finer grid.
+- The processors at both ends of a message spend time on it; u and tests are of computing, without messages.
 - 2-D: slabs of nodes next to each other, four links a node, as a T805 has; 3-D: six links a node.
 - A series ends before supersteps times nodes exceed {launches}: rays that have to visit all voxels, such as those from far away on a
   plane, cause very many supersteps.
+- Output: nodes.csv has a row for each scene, division, kind of torus and number of nodes: modelled times (ms), speed-up, u, counts, and the
+  bottleneck (column "waits for").
 """
 import pandas as pd
 from raya.lab import Comparison, Page, Plot, Series, Table, study
-from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers, run_on_torus, sides_text
+from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers_of_two, run_on_torus, sides_text
 
 QUEUE = 256  # short enough for the memory of 4096 nodes, long enough for the project's scenes
-MOST, SIDES, MOST_LAUNCHES = 4096, 16, 1 << 22
+MAX_NODES, SIDES, MAX_NODE_SUPERSTEPS = 4096, 16, 1 << 22
 VOXELS = sides_text((SIDES,) * 3)
 COLUMNS = ("u", "hops a packet", "supersteps", "busiest link (bytes)", "tests a ray", "steps a ray", "rays discarded")
 
 
 def series_of(lab, scene, size, fixed, links, known):
-    """Table of tori of one kind, with 1, 2, 4, ... nodes. known: {settings: Run}, a cache."""
+    """Table of tori of one kind, with 1, 2, 4, ... nodes. fixed: VOXELS on every machine, else one voxel a node. known: {settings: Run}, a cache."""
     rows, one = [], None
-    for nodes in powers(MOST):
-        if rows and rows[-1]["supersteps"] * nodes > MOST_LAUNCHES:
+    for nodes in powers_of_two(MAX_NODES):
+        if rows and rows[-1]["supersteps"] * nodes > MAX_NODE_SUPERSTEPS:
             break
         sides = near_cube(nodes)
         key = scene.name, sides, (SIDES,) * 3 if fixed else sides, links
@@ -37,11 +40,12 @@ def series_of(lab, scene, size, fixed, links, known):
                      "speed-up, overlapped": one.overlapped_ms / run.overlapped_ms,
                      "speed-up, stepwise": one.stepwise_ms / run.stepwise_ms,
                      "efficiency, overlapped": one.overlapped_ms / run.overlapped_ms / nodes, **run.row(COLUMNS),
-                     "waits for": waits_for(nodes, run), "run": run, "balance": run.balance})
+                     "waits for": bottleneck(nodes, run), "run": run, "balance": run.balance})
     return pd.DataFrame(rows)
 
 
-def waits_for(nodes, run):
+def bottleneck(nodes, run):
+    """Text of the processor or link that determines the overlapped time."""
     if run.root_link_ms >= run.overlapped_ms:
         return "the root's link"
     if run.root_processor_ms >= run.overlapped_ms:
@@ -64,14 +68,14 @@ def nodes(lab, scenes):
                                           best["speed-up, overlapped"], f"modelled, overlapped, {best['nodes']} nodes; "
                                           "Yoshitani & Yamazaki print no speed-up"))
         findings += [*findings_of_speedup(three, fixed), finding_of_links(three, two),
-                     *findings_of_making(three, fixed)]
+                     *findings_of_balance(three, fixed)]
     rows = pd.concat(sum(by_scene, ()), ignore_index=True).drop(columns=["run", "balance"])
-    return Page({"scenes": [scene.name for scene in some], "size": size, "nodes": MOST,
+    return Page({"scenes": [scene.name for scene in some], "size": size, "nodes": MAX_NODES,
                  "voxels": VOXELS, "queue": QUEUE, "format": "fp32", "bounces": BOUNCES}, findings, comparisons,
                 tables=[Table("nodes", "Every machine", rows)], plots=plots_of(by_scene),
                 news=["Yoshitani & Yamazaki had 64 nodes and measured neither speed-up nor balance. This study has both, "
                       "for 1 to 4,096 nodes, on tori with four and with six links a node."], clock=CLOCK,
-                placeholders={"launches": MOST_LAUNCHES})
+                placeholders={"launches": MAX_NODE_SUPERSTEPS})
 
 
 def findings_of_speedup(one, fixed):
@@ -82,7 +86,7 @@ def findings_of_speedup(one, fixed):
             f"{best['speed-up, stepwise']:.1f} times); their bottleneck is {best['waits for']}. The efficiency is at least 50 % up to "
             f"{half} nodes.",
             f"{first['scene']}, one voxel a node: {own['nodes']} nodes are {own['speed-up, overlapped']:.0f} times as fast as one. But "
-            f"that one node has no grid, and makes {first['tests a ray'] / max(1e-9, own['tests a ray']):.1f} times as many tests a ray, "
+            f"a single node has no grid, and makes {first['tests a ray'] / max(1e-9, own['tests a ray']):.1f} times as many tests a ray, "
             f"{first['tests a ray']:.1f} compared with {own['tests a ray']:.1f}. One node with {best['voxels']} voxels is already "
             f"{first['overlapped (ms)'] / fixed['overlapped (ms)'][0]:.0f} times as fast."]
 
@@ -98,7 +102,7 @@ def finding_of_links(three, two):
             f"of nodes {ratios.min():.2f} to {ratios.max():.2f} times.")
 
 
-def findings_of_making(one, fixed):
+def findings_of_balance(one, fixed):
     a, b = ((rows[rows["nodes"] == 64] if (rows["nodes"] == 64).any() else rows).iloc[-1] for rows in (one, fixed))
     last = fixed.iloc[-1]
 
@@ -111,8 +115,8 @@ def findings_of_making(one, fixed):
     return [f"{a['scene']}, balance: u of {a['nodes']} nodes is {a['u']:.2f} with a voxel each and {b['u']:.2f} with "
             f"{b['voxels']} voxels laid out cyclically, {SIDES**3 // b['nodes']} a node; of {last['nodes']} nodes "
             f"{last['u']:.2f}.",
-            f"{a['scene']}: nodes that make their own primary rays make up to {text(one)} for each that they keep, up to "
-            f"{text(fixed)}; discarded rays are charged."]
+            f"{a['scene']}: nodes that make their own primary rays make up to {text(one)} or "
+            f"{text(fixed)} for each that they keep; discarded rays are charged."]
 
 
 def plots_of(by_scene):

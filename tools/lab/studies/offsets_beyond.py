@@ -2,34 +2,38 @@
 
 Is every offset beyond sqrt(P) = {reference} worse, as Kohata & Ito say?
 
+- Source: Kohata & Ito 1993, section on the cyclic mapping.
 - {labels} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass. Views have the seeds 1, 2, ..., as in Fig. 8:
   {pictures} pictures.
 - The pixels of a PE form a lattice. Its shortest vector, the smallest distance between two pixels of one PE, limits how well an offset
-  can spread expensive regions. It is measured in the image; wrapped round at the image's edges it is the same.
-- Offsets are compared with p = {reference}, whose shortest vector has {length} pixels; its mirror, p = {mirror}, is in no group.
+  can spread expensive regions. Distances are measured in the image and do not wrap at its edges; with wrapping the shortest vector is the same.
+- Offsets are compared with p = {reference}, whose shortest vector has {length} pixels. Its mirror, p = {mirror}, is in no group.
   Differences are taken within the same picture.
 - "0..n is enough" is reproduced if no offset beyond n gains 0.02 of the mean load, all together with 95 % (Bonferroni).
+- Output: lattice.csv has a row for each offset p: length of the shortest vector (pixels), mean u = (max load - mean load) / mean load with
+  the half width of its 95 % interval, mean rank. lattice-chosen.csv has the rows of interest.
 """
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Claim, Comparison, Page, Plot, Series, Table, each_of, estimate, papers, study, verdict
+from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, bonferroni_confidence, estimate, papers, study,
+                      verdict)
 from raya.lab.laboratory import VIEWS
 from raya.lab.mappings import shares_blocks, shortest_square
 from raya.lab.studies.images import paper_like_scenes
 from scipy.stats import rankdata, spearmanr
 
-NOTHING = 0.02  # our limit: a gain up to this fraction of the mean load is negligible
-OTHERS = 16  # number of views of each scene, except the first scene, which has the views of Fig. 8
-CORRELATED = -0.5  # the shortest vector counts as a predictor of u if their rank correlation is at most this
-OWN = "centre", "mirrors", "glass", "random-12", "random-30"
+NEGLIGIBLE_GAIN = 0.02  # our limit: a gain up to this fraction of the mean load is negligible
+OTHER_VIEWS = 16  # number of views of each scene, except the first scene, which has the views of Fig. 8
+MAX_CORRELATION = -0.5  # the shortest vector counts as a predictor of u if their rank correlation is at most this
+DEFAULT_SCENES = "centre", "mirrors", "glass", "random-12", "random-30"
 
 
 @study("lattice")
 def lattice(lab, scenes):
     size = lab.size(256)
-    some = scenes or [s for s in paper_like_scenes() if s.name in OWN]
-    views = {s.name: lab.ensemble(s, size, "none", VIEWS if i == 0 else OTHERS).views for i, s in enumerate(some)}
+    some = scenes or [s for s in paper_like_scenes() if s.name in DEFAULT_SCENES]
+    views = {s.name: lab.ensemble(s, size, "none", VIEWS if i == 0 else OTHER_VIEWS).views for i, s in enumerate(some)}
     of_scene = {name: np.array([raya.imbalances(view.trace, size, range(size)) for view in all_of])
                 for name, all_of in views.items()}
     u = np.concatenate(list(of_scene.values()))  # [picture, offset]
@@ -60,9 +64,9 @@ def lattice(lab, scenes):
                 [Table("lattice-chosen", f"p = 0, p = {n}, offsets with as long or longer vectors, and the best of all",
                        table), Table("lattice", "Every offset", rows, on_page=False)],
                 [*plots_of(rows, n, longer, as_long, len(u))],
-                ["Kohata & Ito do not use the lattice of an offset. It finds the offsets beyond sqrt(P) that spread the load as "
-                 "well, and shows why the other ones do not."],
-                placeholders={"labels": labels, "length": f"{squares[n]**0.5:.2f}", "mirror": size - n}, beside=papers.SPA)
+                ["Kohata & Ito do not use the lattice of an offset. The lattice predicts which offsets beyond sqrt(P) spread the load as "
+                 "well as sqrt(P), and why the others do not."],
+                placeholders={"labels": labels, "length": f"{squares[n]**0.5:.2f}", "mirror": size - n}, compared_with=papers.SPA)
 
 
 def claim_of_blocks(rows, n):
@@ -75,18 +79,18 @@ def claim_of_blocks(rows, n):
 
 
 def claim_of_enough(u, means, n):
-    """Compares every offset beyond n with the best of 0..n; a gain up to NOTHING is negligible."""
+    """Compares every offset beyond n with the best of 0..n; a gain up to NEGLIGIBLE_GAIN is negligible."""
     near = int(np.argmin([m.mean for m in means[:n + 1]]))
     beyond = range(n + 1, len(means))
-    gains = [estimate(u[:, p] - u[:, near], each_of(len(beyond))) for p in beyond]
+    gains = [estimate(u[:, p] - u[:, near], bonferroni_confidence(len(beyond))) for p in beyond]
     best = min(beyond, key=lambda p: means[p].mean)
     better = sum(g.high < 0 for g in gains)
     return Claim(papers.SPA, "section on the cyclic mapping",
                  "Offsets beyond n = sqrt(P) only turn the direction of the bias, so 0..n is enough.",
-                 verdict(all(g.low >= -NOTHING for g in gains), any(g.high < -NOTHING for g in gains)),
+                 verdict(all(g.low >= -NEGLIGIBLE_GAIN for g in gains), any(g.high < -NEGLIGIBLE_GAIN for g in gains)),
                  f"Over {len(u)} pictures the best of 0..n is p = {near}, mean u {means[near].text()}; the best beyond "
                  f"is p = {best}, {means[best].text()}. Of {len(beyond)} offsets beyond n {better} are better than the "
-                 f"best of 0..n with certainty; a gain up to {NOTHING} counts as negligible.")
+                 f"best of 0..n with certainty; a gain up to {NEGLIGIBLE_GAIN} counts as negligible.")
 
 
 def findings_of(rows, u, n, longer, as_long, correlations, squares):
@@ -109,8 +113,8 @@ def findings_of(rows, u, n, longer, as_long, correlations, squares):
     best = mean.idxmin()
     rest = [p for p in range(n + 1, size - n) if squares[p] < squares[n]]
     low, high = min(correlations), max(correlations)
-    how = ("in every picture the shortest vector predicts u" if high <= CORRELATED else
-           "in no picture does the shortest vector predict u" if low > CORRELATED else
+    how = ("in every picture the shortest vector predicts u" if high <= MAX_CORRELATION else
+           "in no picture does the shortest vector predict u" if low > MAX_CORRELATION else
            "the shortest vector predicts u in some pictures only")
     half = squares[n]**0.5 / 2
     some = np.sqrt(squares) >= half
@@ -122,7 +126,7 @@ def findings_of(rows, u, n, longer, as_long, correlations, squares):
             f"Of the {len(rest)} offsets from {n + 1} to {size - n - 1} with a shorter vector, "
             f"{(mean[rest] > mean[n]).sum()} are worse than p = {n}.",
             f"Rank correlation of u with the shortest vector over all offsets: {low:.2f} to {high:.2f}; {how} "
-            f"(predicts: {CORRELATED} or below). Over the offsets with a shortest vector of {half:.1f} pixels or more the mean "
+            f"(predicts: {MAX_CORRELATION} or below). Over the offsets with a shortest vector of {half:.1f} pixels or more the mean "
             f"correlation is {of_some:.2f}."]
 
 

@@ -2,6 +2,7 @@
 
 How many MPI ranks pay, and from how many on does communication take more time than tracing?
 
+- Source: none of the papers; the study measures this host and extrapolates by a model.
 - Ring: {scene} at {size} x {size} with the 3 x 3 filter; a PE for each column, or for each rank if there are more ranks than columns;
   p = 16, with more ranks than columns round(sqrt(P)). Torus: {torus_scene} at {torus_size} x {torus_size} on 8 x 8 x 8 nodes, a voxel
   each, queues of 1024 packets.
@@ -9,11 +10,11 @@ How many MPI ranks pay, and from how many on does communication take more time t
   device for tracing, its time for all other kernels, and the rest of the render, which is the host's part of rank 0.
 - Ring on R ranks: tracing / R times (1 + u) of the ranks' segments, by the pixels' modelled cycles; the other kernels / R; each rotation
   takes alpha + beta for the block of one PE; rank 0 receives the pixels and loads of all ranks one after another; the scene is broadcast
-  in log2 R rounds.
-- Torus on R ranks: bricks as in `raya render`. In each superstep tracing takes the time of the rank with the most modelled cycles; the
-  other kernels take time in proportion to the nodes of the largest brick; faces take alpha for each message and beta for each byte that
-  the busiest rank sends or receives, whichever is more; every rank receives the status of all nodes in log2 R rounds. Supersteps, cycles
-  and words of links are counted in one render.
+  in log2 R rounds. alpha is the time of a message (s), beta the time of a byte (s).
+- Torus on R ranks: a rank has a brick, a cuboid of nodes, as in `raya render`. In each superstep tracing takes the time of the rank with the
+  most modelled cycles. The other kernels take time in proportion to the nodes of the largest brick. Faces take alpha for each message and
+  beta for each byte that the busiest rank sends or receives, whichever is more. Every rank receives the status of all nodes in log2 R rounds.
+  Supersteps, cycles and words of links are counted in one render.
 - More than 512 ranks have a torus with a node for each, which is extrapolated: the supersteps grow with its side, a node's cycles in a
   superstep shrink with its voxel and its words with a face of the voxel, and the host of rank 0 processes more nodes.
 - The model excludes the cost of device commands beyond those of one rank, collisions of messages, and waiting for a rank that is late
@@ -24,6 +25,8 @@ How many MPI ranks pay, and from how many on does communication take more time t
 - Scaling is measured the same way. Strong: the same picture on more ranks. Weak: pixels in proportion to ranks on the ring; objects,
   spread evenly, in proportion to ranks on the torus. Efficiency is the work (modelled cycles) of a core in a second, by the minimum,
   relative to one rank.
+- Output: ranks.csv (half and fastest numbers of ranks), ranks-here.csv (predicted and measured, ms), ranks-scaling.csv, ranks-networks.csv
+  (alpha in us, beta in ns a byte), ranks-messages.csv (us), ranks-all.csv (parts of the predicted time, ms).
 """
 import json
 import os
@@ -33,19 +36,20 @@ import tempfile
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Comparison, Page, Plot, Series, Table, one_of, series_by, study
-from raya.lab.programs import missing_mpirun, on_ranks, render_on_ranks
-from raya.lab.rank_model import PARTS, Ring, Torus
-from raya.lab.voxels import even_scene, powers
+from raya.lab import Comparison, Page, Plot, Series, Table, first_scene, series_by, study
+from raya.lab.programs import missing_mpirun, render_on_ranks, run_on_ranks
+from raya.lab.rank_model import PARTS, RingModel, TorusModel
+from raya.lab.voxels import even_scene, powers_of_two
 
-TURNS, ENOUGH_S, WEAK_ENOUGH_S, QUIET = 3, 5, 2, 0.05
+TURNS, SAMPLING_S, WEAK_SAMPLING_S = 3, 5, 2  # maximum number of turns; seconds of a series after which no further turn starts
+MAX_OTHER_LOAD = 0.05  # fraction of the processor time used by other programs, above which measurements count as unreliable
 
 
 def measurable_ranks():
-    """({number of ranks to measure: number of cores that these ranks have together}, result of `raya ping`)"""
+    """Returns ({number of ranks to measure: number of cores that these ranks have together}, result of `raya ping`)."""
     here, ping = {1: 1}, None
-    for ranks in powers(min(max(2 * os.cpu_count(), 4), 16))[1:]:
-        one = json.loads(on_ranks(ranks, ["ping"]))
+    for ranks in powers_of_two(min(max(2 * os.cpu_count(), 4), 16))[1:]:
+        one = json.loads(run_on_ranks(ranks, ["ping"]))
         ping = ping or one
         hosts = {}
         for place in one["ranks"]:
@@ -54,25 +58,25 @@ def measurable_ranks():
     return here, ping
 
 
-def work_of(machine, report):
-    """{part: measured seconds of a render on one rank}: tracing; other kernels and commands; rest of the render."""
+def parts_of(machine, report):
+    """{part: measured seconds} of a render on one rank: tracing; the other kernels and commands; the rest of the render, on the host."""
     commands = report["measured"]["commands"]
     device = 1e-9 * sum(c["total_ns"] for c in commands)
     trace = 1e-9 * sum(c["total_ns"] for c in commands if c["label"] == machine.label)
     return {"trace": trace, "rest": device - trace, "host": max(0.0, report["measured"]["render_s"] - device)}
 
 
-def measure(renders, device, enough_s=ENOUGH_S):
+def measure(renders, device, sampling_s=SAMPLING_S):
     """Renders on ranks. renders: {ranks: arguments of a render}. Returns {ranks: (seconds of each render, report of the fastest render)}. Raises
-    InputError for --device."""
+    InputError if the ranks use another device than `device`."""
     first = render_on_ranks(1, renders[1])  # builds the kernels
     if first["device"]["name"] != device:
-        raise raya.InputError(f"study ranks uses the default device of its ranks, {first['device']['name']}, not {device}: omit --device, "
+        raise raya.InputError(f"study ranks: --device {device}: the ranks use their default device, {first['device']['name']}; omit --device, "
                               "or name the device in RAYA_DEVICE")
     trials = {ranks: ([], None) for ranks in renders}
     for _ in range(TURNS):
         for ranks, (seconds, best) in trials.items():
-            if sum(seconds) < enough_s:
+            if sum(seconds) < sampling_s:
                 report = render_on_ranks(ranks, renders[ranks])
                 s = report["measured"]["render_s"]
                 trials[ranks] = (seconds + [s], report if not seconds or s < min(seconds) else best)
@@ -111,7 +115,7 @@ def processor_time():
 
 @study("ranks", one_scene=True, missing=missing_mpirun)
 def ranks(lab, scenes):
-    on_ring, on_torus = one_of(scenes), scenes[0] if scenes else even_scene(8320)
+    on_ring, on_torus = first_scene(scenes), scenes[0] if scenes else even_scene(8320)
     size = lab.size(512)
     with tempfile.TemporaryDirectory(prefix="raya-study-") as folder:
         files = [os.path.join(folder, name) for name in ("ring.nff", "torus.nff")]
@@ -120,13 +124,13 @@ def ranks(lab, scenes):
         before = processor_time()
         here, ping = measurable_ranks()
         machines = [kind(lab, scene, file, size) for kind, scene, file in
-                    zip((Ring, Torus), (on_ring, on_torus), files)]
+                    zip((RingModel, TorusModel), (on_ring, on_torus), files)]
         device = lab.session.device["name"]
         trials = [measure(dict.fromkeys(here, machine.arguments), device) for machine in machines]
-        weak = [measure({ranks: machine.weak(ranks) for ranks in here}, device, WEAK_ENOUGH_S) for machine in machines]
+        weak = [measure({ranks: machine.weak(ranks) for ranks in here}, device, WEAK_SAMPLING_S) for machine in machines]
         busy, whole, own = (b - a for a, b in zip(before, processor_time()))
     networks = networks_of(ping, lab.network)
-    ones = [work_of(machine, trial[1][1]) for machine, trial in zip(machines, trials)]
+    ones = [parts_of(machine, trial[1][1]) for machine, trial in zip(machines, trials)]
     rows = pd.DataFrame([row for machine, one in zip(machines, ones) for row in rows_of(machine, one, networks)])
     checks = pd.DataFrame([row for some in zip(machines, ones, trials)
                            for row in checks_of(*some, networks["this host"][0], here)])
@@ -136,16 +140,16 @@ def ranks(lab, scenes):
     summary = pd.DataFrame([summary_of(*one) for one in rows.groupby(["machine", "network"], sort=False)])
     others = min(max((busy - own) / whole, 0), 1) if whole > 0 else 0
     return Page({"scene": on_ring.name, "torus_scene": on_torus.name, "size": size, "torus_size": size,
-                 "ranks": int(rows["ranks"].iloc[-1]), "turns": TURNS, "enough": ENOUGH_S, "alpha_s": ping["alpha_s"],
+                 "ranks": int(rows["ranks"].iloc[-1]), "turns": TURNS, "enough": SAMPLING_S, "alpha_s": ping["alpha_s"],
                  "beta_s_per_byte": ping["beta_s_per_byte"]},
                 findings_of_model(summary, checks) + findings_of_measures(scaling, others, ping),
                 [Comparison(f"{c['machine']}, {c['ranks']} ranks: predicted / measured", "", None,
                             c["predicted / measured"], c["remark"])
                  for _, c in checks[checks["ranks"] > 1].iterrows()],
                 tables=tables_of(rows, checks, scaling, summary, networks, ping), plots=[*plots_of(rows, checks)],
-                news=["The papers have one machine. This study divides its array over any number of hosts, with the same image."],
-                clock="measured on this host where stated; all others are predicted from the measured seconds of one rank. The time of "
-                "a render starts when its kernels are built and the scene has been broadcast; the total includes the broadcast.")
+                news=["Each paper has one machine. This study divides its array over any number of hosts, which give the same image."],
+                clock="measured on this host where stated; all other times are predicted from the measured seconds of one rank. The measured time "
+                "of a render starts when its kernels are built and the scene has been broadcast; the predicted total includes the broadcast.")
 
 
 def networks_of(ping, given):
@@ -214,7 +218,7 @@ def findings_of_measures(scaling, share, ping):
     kinds = [f"{machine}, {name}: " + ", ".join(f"{r['measured efficiency']:.2f} on {r['ranks']}"
                                                 for _, r in some[some["ranks"] > 1].iterrows())
              for (machine, name), some in scaling.groupby(["machine", "scaling"], sort=False)]
-    others = (f"During the measurements other programs used {100 * share:.1f} % of this host's processor time." if share <= QUIET else
+    others = (f"During the measurements other programs used {100 * share:.1f} % of this host's processor time." if share <= MAX_OTHER_LOAD else
               f"During the measurements other programs used {100 * share:.0f} % of this host's processor time: ranks waited for each "
               "other, and times of several ranks are unreliable. Repeat this study when the host is idle.")
     first, last = ping["messages"][0], ping["messages"][-1]

@@ -2,25 +2,28 @@
 
 Up to how many PEs do static mappings scale, and is a two-dimensional mapping necessary beyond a PE for each column?
 
+- Source: Kohata & Ito 1993, conclusions.
 - {scene} at {size} x {size} on {fewest} to {most} PEs of the SPA, doubling; first pass.
 - If there are more PEs than columns, several PEs share a slot: they take its rows in turn (cyclic fold) or in runs (block fold).
-- p = sqrt(P) or W / sqrt(P): the former up to a PE for each column, the latter beyond, where the rows of a PE lie P / W apart and a
-  smaller offset gives the same square spacing. All offsets are rounded.
+- p = sqrt(P) or W / sqrt(P), for an image of W columns: sqrt(P) up to a PE for each column, W / sqrt(P) beyond, where the rows of a PE are P / W
+  apart and a smaller offset gives the same square spacing. All offsets are rounded.
 - Upper bound: all cycles / max(mean load, largest pixel). A mapping "keeps up" if it has at least {close} % of the 2-D mapping's
   efficiency.
+- Output: scale.csv and scale-views.csv have a row for each number of PEs P and a column with the efficiency (mean load / largest load) of each
+  mapping; scale-half.csv has the largest P with an efficiency of at least 50 %.
 """
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Claim, Comparison, Page, Plot, Series, Table, estimate, one_of, papers, study, verdict
+from raya.lab import Claim, Comparison, Page, Plot, Series, Table, estimate, first_scene, papers, study, verdict
 from raya.lab.mappings import squarest_grid
 
-HALF, CLOSE, VIEWS = 0.5, 0.9, 8
+HALF_EFFICIENCY, KEEPS_UP, VIEWS = 0.5, 0.9, 8  # KEEPS_UP: our limit, minimum fraction of the 2-D mapping's efficiency
 GRID = "2-D, A x B PEs"
-FIXED, ROOT, LIKE = "p = 16", "p = sqrt(P)", "p = sqrt(P) or W / sqrt(P)"
+FIXED, ROOT, ADAPTED = "p = 16", "p = sqrt(P)", "p = sqrt(P) or W / sqrt(P)"
 # Offsets, rounded to integers. If P > W, consecutive rows of a PE are P / W rows apart. With p = W / sqrt(P), a PE's next pixel is
 # sqrt(W W / P) pixels to the side.
-OFFSETS = {FIXED: lambda w, p: 16, ROOT: lambda w, p: round(p**0.5), LIKE: lambda w, p: round(min(p**0.5, w / p**0.5)),
+OFFSETS = {FIXED: lambda w, p: 16, ROOT: lambda w, p: round(p**0.5), ADAPTED: lambda w, p: round(min(p**0.5, w / p**0.5)),
            "column split": lambda w, p: 0}
 PLAIN = [*OFFSETS, GRID, "random"]  # mappings with the cyclic fold, and those without a fold
 FOLDED = [f"{name}, block fold" for name in OFFSETS]
@@ -48,7 +51,7 @@ def efficiencies(image):
 
 @study("scale", one_scene=True)
 def scale(lab, scenes):
-    scene, side = one_of(scenes), lab.size(1024)
+    scene, side = first_scene(scenes), lab.size(1024)
     ensemble = lab.ensemble(scene, side, "none", VIEWS)
     image = ensemble.picture.trace
     rows = efficiencies(image)
@@ -74,13 +77,13 @@ def scale(lab, scenes):
                 plots_of(rows, means, len(of_views)),
                 ["Kohata & Ito stop at a PE for each column. This study extends the arrays to a PE for each pixel, and shows the "
                  "upper bound of any distribution of whole pixels."],
-                placeholders={"fewest": rows["P"].min(), "most": rows["P"].max(), "close": f"{100 * CLOSE:.0f}"},
-                beside=papers.SPA)
+                placeholders={"fewest": rows["P"].min(), "most": rows["P"].max(), "close": f"{100 * KEEPS_UP:.0f}"},
+                compared_with=papers.SPA)
 
 
 def half_of(name, rows):
     """(largest P up to which the efficiency is at least 50 %, speed-up for this P); 0 if there is no such P."""
-    some = rows[(rows[name] >= HALF).cummin()]
+    some = rows[(rows[name] >= HALF_EFFICIENCY).cummin()]
     pes, efficiency = some[["P", name]].iloc[-1] if len(some) else (0, 0.0)
     return {"mapping": name, "50 % or more up to P": int(pes), "speed-up there": efficiency * pes}
 
@@ -94,11 +97,11 @@ def means_of(of_views):
 
 
 def finding_of_2d(between):
-    kept = {name: between["P"][between[name] >= CLOSE * between[GRID]].tolist()
-            for name in (FIXED, ROOT, LIKE, "column split", "random")}
-    best = max((FIXED, ROOT, LIKE), key=lambda name: len(kept[name]))
+    kept = {name: between["P"][between[name] >= KEEPS_UP * between[GRID]].tolist()
+            for name in (FIXED, ROOT, ADAPTED, "column split", "random")}
+    best = max((FIXED, ROOT, ADAPTED), key=lambda name: len(kept[name]))
     if len(kept[best]) == len(between):
-        need = f"So 2-D is not necessary, but \"the like\" is: {best}, with shared rows, is enough."
+        need = f"So 2-D is not necessary: a mapping \"or the like\" is enough, {best}, with shared rows."
     elif not kept[best]:
         need = "So 2-D is necessary, as Kohata & Ito say."
     else:
@@ -109,31 +112,31 @@ def finding_of_2d(between):
 
 
 def finding_of_resonance(between, side):
-    """Offsets that have no effect. The next row of a PE is s = P / W rows further on, where the offset shifts the PE's pixel by s p columns:
-    if s p is a multiple of W, it does not shift it at all."""
+    """Sentence on offsets that have no effect. The next row of a PE is s = P / W rows further on, where the offset shifts the PE's pixel by s p
+    columns. If s p is a multiple of W, the pixel stays in its column."""
     lost = {name: [str(p) for p in between["P"] if p % side == 0 and p // side * OFFSETS[name](side, p) % side == 0]
-            for name in (FIXED, ROOT, LIKE)}
-    words = [f"{name} for P = {', '.join(pes)}" for name, pes in lost.items() if pes]
-    if not words:
+            for name in (FIXED, ROOT, ADAPTED)}
+    texts = [f"{name} for P = {', '.join(pes)}" for name, pes in lost.items() if pes]
+    if not texts:
         return "No offset here has the load of the column split where PEs share the rows of a slot."
     return ("Where PEs share the rows of a slot, an offset can cancel out: if the shift after P / W rows is a multiple of W, the load "
-            f"is that of the column split. This happens with {'; '.join(words)}.")
+            f"is that of the column split. This happens with {'; '.join(texts)}.")
 
 
 def claim_of_2d(between, of_views):
     """Verdict on the claim that a 2-D mapping is necessary, for arrays with more PEs than columns: reproduced if a cyclic mapping is about as
     fast as 2-D on none of them, not reproduced if one is on all of them."""
     over = {name: [estimate([v[name][i] / v[GRID][i] for v in of_views]) for i in between.index]
-            for name in (FIXED, ROOT, LIKE)}
-    none = all(e.high < CLOSE for estimates in over.values() for e in estimates)
+            for name in (FIXED, ROOT, ADAPTED)}
+    none = all(e.high < KEEPS_UP for estimates in over.values() for e in estimates)
     lows = {name: min(e.low for e in estimates) for name, estimates in over.items()}
     best = max(lows, key=lows.get) if max(lows.values()) > 0 else FIXED
     worst = min(range(len(between)), key=lambda i: over[best][i].mean)
     return Claim(papers.SPA, "conclusions", "More PEs than pixels a side need 2-D or the like.",
-                 verdict(none, lows[best] >= CLOSE),
+                 verdict(none, lows[best] >= KEEPS_UP),
                  f"Over {len(of_views)} pictures, on {len(between)} arrays with more PEs than columns, the best of the "
                  f"cyclic mappings is {best}, with shared rows. It has at least {over[best][worst].text(2)} of the 2-D "
-                 f"mapping's efficiency (on {between.iloc[worst]} PEs); {CLOSE} or more counts as keeping up.")
+                 f"mapping's efficiency (on {between.iloc[worst]} PEs); {KEEPS_UP} or more counts as keeping up.")
 
 
 def comparisons_of(rows, side, most):
@@ -146,7 +149,7 @@ def plots_of(rows, means, pictures):
     def lines(names, times=1):
         return [Series(name, rows["P"], rows[name] * times) for name in names]
 
-    both = [name + fold for name in (FIXED, LIKE, "column split") for fold in ("", ", block fold")]
+    both = [name + fold for name in (FIXED, ADAPTED, "column split") for fold in ("", ", block fold")]
     return [Plot("scale", "Efficiency against the number of PEs, cyclic fold", "PEs", "efficiency",
                  lines(["upper bound", *PLAIN]), "x"),
             Plot("scale-folds", "Efficiency against the number of PEs, both folds", "PEs", "efficiency", lines(both),

@@ -2,6 +2,7 @@
 
 Do raya's simulator and SimGrid give the same time for the same work on the same machine?
 
+- Source: SimGrid (Casanova et al. 2014), with the protocol of Yoshitani & Yamazaki, about 1995 (Table 1: ray packets of 22 words).
 - The work: the cost of each packet of a render on its node, and the messages that it causes ({scene}, {size} x {size} pixels, {nodes}
   nodes, primary rays made by the root or by all nodes, ray packets of 22 words, one return a ray). It does not depend on the order in
   time, so two simulators can replay it.
@@ -12,8 +13,11 @@ Do raya's simulator and SimGrid give the same time for the same work on the same
 - The platform has explicit links and routes between neighbours. A hop has two links: one for its direction, and the wire that both
   directions share. SimGrid's own torus is not used: there a message occupies all links of its route at once, while transputers store it
   in every node.
-- Effects are enabled one after another, each in addition to those before: computing alone, where messages take no time; the processors'
+- Effects are enabled one after another, each in addition to those before: only computing, where messages take no time; the processors'
   part of messages; links of 1.7 MB/s each way; both directions sharing 2.4 MB/s; finite buffers. The plot numbers them from 0.
+- The times agree if they differ by at most {goal} % on every machine.
+- Output: simgrid.csv has a row for each torus, method of injection and machine: messages, modelled times of both simulators and of the effect
+  (ms), and the difference (%).
 """
 import os
 import tempfile
@@ -21,7 +25,7 @@ import tempfile
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, papers, study
-from raya.lab.programs import sibling_program, output_of
+from raya.lab.programs import output_of, sibling_program
 from raya.lab.voxels import even_scene, run_on_torus
 
 GOAL, BUFFER = 10, 4  # accepted difference in %; number of messages of a class that a port buffers
@@ -34,22 +38,22 @@ EFFECTS = {"computing alone": {"message_cycles": 0, "word_cycles": 0, **NO_LINKS
 
 
 def missing():
-    """Error message if simgrid_replay was not built, else an empty string."""
+    """Returns an error message with a remedy if simgrid_replay was not built, else an empty string."""
     return "" if sibling_program("simgrid_replay") else (
         "there is no program simgrid_replay next to raya; remedy: `tools/setup --studies`, which installs SimGrid (Debian: "
         "libsimgrid-dev), then build again")
 
 
-def ask_simgrid(result, changes):
-    """(number of messages, finish time in ms) of a simulation by SimGrid."""
+def simulate_by_simgrid(result, changes):
+    """Replays a render by SimGrid. Returns (number of messages, finish time in ms)."""
     with tempfile.TemporaryDirectory(prefix="raya-simgrid-") as folder:
         platform, replay = os.path.join(folder, "platform.xml"), os.path.join(folder, "replay.txt")
         messages = result.write_replay(platform, replay, **changes)
-        words = output_of([sibling_program("simgrid_replay"), platform, replay, "--log=root.thres:error"],
-                          "simgrid_replay").split()
-    if words[0::2] != ["finish_ms", "delivered"] or int(words[3]) != messages:
-        raise raya.InputError(f"simgrid_replay: expected {messages} delivered messages, found the output '{' '.join(words)}'")
-    return messages, float(words[1])
+        output = output_of([sibling_program("simgrid_replay"), platform, replay, "--log=root.thres:error"],
+                           "simgrid_replay").split()
+    if output[0::2] != ["finish_ms", "delivered"] or int(output[3]) != messages:
+        raise raya.InputError(f"simgrid_replay: expected {messages} delivered messages, found the output '{' '.join(output)}'")
+    return messages, float(output[1])
 
 
 def rows_of(lab, scene, size, links, inject):
@@ -57,7 +61,7 @@ def rows_of(lab, scene, size, links, inject):
                        packet_words=papers.RAY_WORDS)
     rows, before = [], (0, 0)
     for name, changes in EFFECTS.items():
-        messages, theirs = ask_simgrid(run.result, changes)
+        messages, theirs = simulate_by_simgrid(run.result, changes)
         ours = run.result.simulate(**changes)
         rows.append({"torus": "4 x 4 x 4" if links == "torus3d" else "8 x 8", "inject": inject, "machine": name,
                      "messages": messages, "raya (ms)": ours, "SimGrid (ms)": theirs,
@@ -89,7 +93,7 @@ def simgrid(lab, scenes):
                               rows.drop(columns=["overlapped", "stepwise"]))],
                 plots=[Plot("simgrid", "Time of the machine, one effect after another", "effects", "modelled ms",
                             series)],
-                news=["The asynchronous torus is compared with an independent simulator. Neither paper was."],
+                news=["This study compares the asynchronous torus with an independent simulator. The papers compare with none."],
                 clock="Modelled on T805s from counted cycles, 40 ns each; both simulators have the same rates.")
 
 

@@ -2,6 +2,7 @@
 
 Are static strategies inadequate from 128 PEs on, and static plus dynamic ones nearly optimal, as Heirich and Arvo (1998) found?
 
+- Source: Heirich & Arvo 1998, conclusions.
 - Images of {size} x {size} on 128 and more PEs of the SPA; efficiency = the pixels' modelled cycles / (P x the time at which the last PE
   has finished).
 - Static: column split, cyclic mapping with p = 16 and p = sqrt(P), blocks of contiguous scan lines, tiles of 8 x 8 pixels in turn, the
@@ -11,7 +12,11 @@ Are static strategies inadequate from 128 PEs on, and static plus dynamic ones n
 - A request costs its PE {request_cycles} budget cycles: one word to the root and two words back at 6 Mword/s, each with the 0.18 ms that
   a rotation takes to synchronise all PEs. This is the maximum for the request of one PE; "free requests" shows the minimum. The SPA had
   no dynamic distribution. Requests do not wait for each other.
-- Lower bound of the makespan: the larger of the mean load and the largest pixel.
+- Lower bound of the makespan, the time at which the last PE has finished: the larger of the mean load and the largest pixel.
+- A strategy is near the optimum if its makespan is at most 1.1 times the lower bound. A claim is reproduced if it holds in all cases (scene
+  and number of PEs), for three factors of the clock from 1 to 8; it is not reproduced if it holds in none.
+- Output: static-vs-dynamic.csv has a row for each scene, strategy and P: makespan (budget cycles), efficiency, makespan / lower bound,
+  requests. static-vs-dynamic-limits.csv has the first P with an efficiency below 90 % and 50 %, static-vs-dynamic-factors.csv the cases.
 """
 import math
 
@@ -22,9 +27,10 @@ from raya.lab import Claim, Page, Plot, Series, Table, papers, study, verdict
 from raya.lab.laboratory import SPA
 from raya.lab.mappings import squarest_grid
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, spa_ms
-from raya.lab.voxels import powers
+from raya.lab.voxels import powers_of_two
 
-NAME, NEAR, FEWEST, MOST = "static-vs-dynamic", 1.1, 128, 16_384
+NAME, MIN_PES, MAX_PES = "static-vs-dynamic", 128, 16_384
+NEAR_OPTIMAL = 1.1  # our limit: maximum makespan / lower bound of a nearly optimal strategy
 ROOT = "cyclic, p = sqrt(P)"
 
 
@@ -44,7 +50,7 @@ def static_mappings(size, pes):
 
 
 def plans(overhead):
-    """[(name, kind, True if requests take time, plan for raya.schedule())] of the strategies. A hybrid starts with the grid mapping."""
+    """Yields (name, kind, True if requests take time, plan for raya.schedule()) of each strategy. A hybrid starts with the grid mapping."""
     for chunk, share in ((1, 0), (16, 0), (64, 0), (16, 0.5), (16, 0.9), (1, 0.9)):
         kind = "hybrid" if share else "dynamic"
         name = f"{kind}:{chunk}" + (f", share {share}" if share else "")
@@ -82,11 +88,11 @@ def best_of(rows, kind):
 
 
 def counts_of(scenes):
-    """{name: number of cases}; a case is a scene with a number of PEs: all cases; no static strategy is near the bound; a hybrid is near the
-    bound; a hybrid beats all static strategies."""
+    """{name: number of cases}, where a case is a scene with a number of PEs: all cases; cases in which no static strategy is near the bound, in which
+    a hybrid is near the bound, and in which a hybrid is faster than all static strategies."""
     fixed, hybrid = (pd.concat([best_of(rows, kind) for rows in scenes]) for kind in ("static", "hybrid"))
-    return {"cases": len(fixed), "no static one near the bound": (fixed["makespan / lower bound"] > NEAR).sum(),
-            "hybrid near the bound": (hybrid["makespan / lower bound"] <= NEAR).sum(),
+    return {"cases": len(fixed), "no static one near the bound": (fixed["makespan / lower bound"] > NEAR_OPTIMAL).sum(),
+            "hybrid near the bound": (hybrid["makespan / lower bound"] <= NEAR_OPTIMAL).sum(),
             "hybrid beats all static ones": (hybrid["makespan (cycles)"].values <
                                              fixed["makespan (cycles)"].values).sum()}
 
@@ -96,7 +102,7 @@ def static_vs_dynamic(lab, scenes):
     size = lab.size(512)
     own = [raya.example("centre"), raya.generate.random(200, 200).renamed("random-200"),
            raya.generate.balls(3).renamed("balls-3")]
-    sizes = [p for p in powers(min(MOST, size * size)) if p >= FEWEST]
+    sizes = [p for p in powers_of_two(min(MAX_PES, size * size)) if p >= MIN_PES]
     images = {scene.name: lab.costs(scene, size).trace for scene in scenes or own}
     by_factor = {f: [outcomes_of(name, image, sizes, request_cycles(f)) for name, image in images.items()]
                  for f in (FACTORS[0], FACTOR, FACTORS[-1])}
@@ -125,7 +131,7 @@ def static_vs_dynamic(lab, scenes):
                                        factors)],
                 plots=plots, news=["Heirich & Arvo measured on other machines and scenes. This study compares static, dynamic and "
                                    "hybrid distribution on the same cost images, and with the upper bound of any distribution."],
-                clock=CLOCK, beside=papers.DYNAMIC)
+                clock=CLOCK, compared_with=papers.DYNAMIC)
 
 
 def first_below(rows, limit):
@@ -163,7 +169,7 @@ def findings_of(scenes, counts, overhead, size):
     for rows in scenes:
         findings += [static_finding(rows), hybrid_finding(rows)]
     collapse = collapse_finding(scenes[0], size)
-    queues = "; ".join(f"{rows['scene'][0]} ({queue_of(rows, overhead)})" for rows in scenes)
+    queues = "; ".join(f"{rows['scene'][0]} ({requests_limit_text(rows, overhead)})" for rows in scenes)
     return findings + ([collapse] if collapse else []) + [
         f"A request takes {overhead} budget cycles ({FACTOR * spa_ms(overhead):.2f} ms). If the root answered one request at a time, "
         f"as over a single bus, the requests alone would take longer than the modelled makespan: {queues}."]
@@ -187,7 +193,7 @@ def static_finding(rows):
 def hybrid_finding(rows):
     paid = best_of(rows, "hybrid")["makespan / lower bound"]
     free = rows[(rows["kind"] == "hybrid") & ~rows["pays"]]["makespan / lower bound"].groupby(rows["P"]).min()
-    near, sizes = int((paid <= NEAR).cummin().sum()), sorted(rows["P"].unique())
+    near, sizes = int((paid <= NEAR_OPTIMAL).cummin().sum()), sorted(rows["P"].unique())
     up_to = (f"at P = {sizes[0]}" if near == 0 else "for every P" if near == len(sizes) else
              f"up to P = {sizes[near - 1]}")
     return (f"{rows['scene'][0]}, static plus dynamic: {'' if near else 'not '}within 10 % of the lower bound {up_to}; "
@@ -195,16 +201,18 @@ def hybrid_finding(rows):
             "free requests.")
 
 
-def queue_of(rows, overhead):
-    words = []
+def requests_limit_text(rows, overhead):
+    """For each strategy, the number of PEs from which on its requests, answered one at a time, take longer than its makespan."""
+    texts = []
     for name, some in rows[rows["pays"]].groupby("strategy", sort=False):
         late = some["P"][some["requests"] * overhead > some["makespan (cycles)"]]
-        words.append(f"{name} {from_text(late.iloc[0] if len(late) else 0)}")
-    return ", ".join(words)
+        texts.append(f"{name} {from_text(late.iloc[0] if len(late) else 0)}")
+    return ", ".join(texts)
 
 
 def collapse_finding(rows, size):
-    """Cyclic mappings that give every PE pixels of one column only, because the shift by the offset repeats with the period of the shared rows."""
+    """Sentence on cyclic mappings that give every PE pixels of a single column, because the offset's shift repeats with the period of the shared
+    rows."""
     texts = []
     for name in ("cyclic, p = 16", ROOT):
         for pes in sorted(rows["P"].unique()):

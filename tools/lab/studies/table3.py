@@ -1,14 +1,17 @@
 """Table 3: ray tracing with the 3 x 3 filter
 
-What does the filter cost, as a larger offset balances better but puts neighbours farther apart?
+What does the filter cost, as a larger offset balances better but increases the distance between neighbours on the ring?
 
+- Source: Kohata & Ito 1993, Tables 3 and 4, sections on the cyclic mapping and on anti-aliasing.
 - {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; rendered and filtered over the ring for three offsets.
-  Rotations and their words are counted.
+  The renders count rotations and their words.
 - The time of filtering has three parts: its arithmetic; the rotations, each with its words at the links' rate and a synchronisation
   (0.3125 ms together, from Tables 3 and 4); and the exchange's set-up of 1.375 ms, which follows from Table 4 [D]. All three are derived
   from the printed times of p = 0 and 16, so filtering at these offsets does not test the clock; p = 8 is a prediction.
 - Our scene is not that of Kohata & Ito (see Table 2): only ratios and the filter's times can be compared.
-- The plots' other offsets follow from the cost image and the shortest routes, which the three renders confirm.
+- The times of all other offsets follow from the cost image and the shortest routes. The three renders confirm the routes.
+- Output: table3.csv has a row for each rendered offset, table3-offsets.csv one for every offset p: rotations, modelled times (ms).
+  table3-factors.csv has the conclusions for each factor of the clock.
 """
 import pandas as pd
 from raya.lab import Claim, Comparison, Page, Plot, Series, Table, papers, study, verdict, with_paper
@@ -46,7 +49,7 @@ def table3(lab, scenes):
                  Table("table3-offsets", "Every offset", offsets, on_page=False)],
                 [plot_of(runs, False, in_paper), plot_of(runs, True, in_paper)],
                 ["Kohata & Ito have two offsets. This study has every offset, and the effect of the clock's uncertainty on each "
-                 "conclusion."], clock=CLOCK, beside=papers.SPA)
+                 "conclusion."], clock=CLOCK, compared_with=papers.SPA)
 
 
 def comparisons_of(rows):

@@ -2,14 +2,17 @@
 
 Does the balance of one picture hold while the camera turns, and does the best offset of the first frame stay good?
 
+- Source: Kohata & Ito 1993, Fig. 8, which shows one picture.
 - {frames} frames, {step_degrees} degrees apart, about the axis through the point that the camera looks at, as in `raya render --frames
   1:{frames} --turn 360`; a PE for each column, first pass.
 - u = (max load - mean load) / mean load of every offset, from one cost image of each frame. It needs no clock.
-- An offset is chosen in two ways, by frame 1 alone and by the mean of the odd frames. Both are judged in the even frames and compared
+- An offset is chosen by two methods: by frame 1, and by the mean of the odd frames. Both are judged in the even frames and compared
   with p = sqrt(P), and with each frame's own best offset, a bound that no choice in advance can beat.
 - Frames of one turn resemble each other, so intervals are over turns that start from random views of the scene: the camera at the same
   distance, between {lowest_view_degrees} and {highest_view_degrees} degrees above the point that it looks at.
 - "p = n balances better than p = 0" is reproduced if it holds in every frame of every turn.
+- Output: turn.csv has u of each frame for the chosen offsets; turn-starts.csv has a row for each turn, with the chosen offsets and their mean u
+  in the even frames. Further scenes have turn-2.csv, turn-3.csv, ...
 """
 import numpy as np
 import pandas as pd
@@ -17,7 +20,7 @@ import raya
 from raya.lab import Claim, Page, Plot, Series, Table, estimate, papers, range_text, study, verdict
 from raya.lab.laboratory import format_for
 
-FRAMES, MOST_STARTS = 24, 8
+FRAMES, MAX_TURNS = 24, 8
 DEGREES = [360 * i / FRAMES for i in range(FRAMES)]
 
 
@@ -42,7 +45,7 @@ def turn(lab, scenes):
     root = round(size**0.5) % size
     settings, findings, claims, tables, plots = [], [], [], [], []
     for number, scene in enumerate(scenes or [raya.example("centre"), raya.example("spheres")], 1):
-        starts = min(max(2**28 // (size * size * FRAMES * max(scene.objects, 1)), 2), MOST_STARTS)
+        starts = min(max(2**28 // (size * size * FRAMES * max(scene.objects, 1)), 2), MAX_TURNS)
         own = turn_of(lab, scene, size)
         others = [turn_of(lab, scene.random_view(seed), size) for seed in range(1, starts + 1)]
         rows = pd.DataFrame([{"start": f"view {i}", **choices_of(u, root)} for i, u in enumerate(others, 1)])

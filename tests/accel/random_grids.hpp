@@ -71,7 +71,7 @@ inline Vec3 axis_direction(SplitMix& random) {
 
 /// Returns a normalised direction. Before normalisation, at least one component is +-1; the others are +-1, +-0 or
 /// tiny.
-inline Vec3 awkward_direction(SplitMix& random) {
+inline Vec3 special_direction(SplitMix& random) {
     static constexpr std::array<double, 9> kSizes = {0, -0.0, 1, 1, 1e-4, 1e-10, 1e-19, 1e-21, 1e-30};
     Vec3 d = axis_direction(random);
     for (int axis = 0; axis < 3; ++axis)
@@ -81,7 +81,7 @@ inline Vec3 awkward_direction(SplitMix& random) {
 
 /// Returns a random ray of one of these kinds: from inside, from outside or from far away; parallel to an axis; along
 /// edges or faces of voxels; through corners of voxels.
-inline reference::Ray random_walk_ray(SplitMix& random, const raya_grid& grid) {
+inline reference::Ray random_grid_ray(SplitMix& random, const raya_grid& grid) {
     const Vec3 inside = random_place(random, grid), corner = random_corner(random, grid);
     const Vec3 other = below(random, 2) == 0 ? random_place(random, grid) : random_corner(random, grid);
     const double size = std::sqrt(3.0) * (grid_point(grid, Vec3(0)) - inside).length() + grid.cell[0];
@@ -106,7 +106,7 @@ inline reference::Ray random_walk_ray(SplitMix& random, const raya_grid& grid) {
             return {fp32(corner - random.uniform(0, 2) * size * d), d};
         }
         case 7: {
-            const Vec3 d = fp32(awkward_direction(random));
+            const Vec3 d = fp32(special_direction(random));
             return {fp32((below(random, 2) == 0 ? corner : inside) - random.uniform(0, 2) * size * d), d};
         }
         default: {  // nearly parallel to faces of voxels
@@ -119,6 +119,6 @@ inline reference::Ray random_walk_ray(SplitMix& random, const raya_grid& grid) {
 }
 
 /// Returns an upper bound of the number of voxels on a ray.
-inline std::uint32_t most_voxels(const raya_grid& g) { return g.divisions[0] + g.divisions[1] + g.divisions[2] + 1; }
+inline std::uint32_t max_voxels(const raya_grid& g) { return g.divisions[0] + g.divisions[1] + g.divisions[2] + 1; }
 
 }  // namespace raya

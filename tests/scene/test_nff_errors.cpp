@@ -22,7 +22,7 @@ struct Row {
 };
 
 /// The error message of parse_nff() for a text; "accepted" if it throws no error.
-std::string refusal(const std::string& text) {
+std::string error_message_of(const std::string& text) {
     try {
         parse_nff(text, "folder/t.nff");
     } catch (const UserError& error) {
@@ -34,7 +34,7 @@ std::string refusal(const std::string& text) {
 void check(const std::vector<Row>& rows) {
     for (const Row& row : rows) {
         CAPTURE(row.text);
-        CHECK_THAT(refusal(row.text), Catch::StartsWith(std::string("folder/t.nff:") + row.message));
+        CHECK_THAT(error_message_of(row.text), Catch::StartsWith(std::string("folder/t.nff:") + row.message));
     }
 }
 
@@ -119,15 +119,15 @@ TEST_CASE("refused: invalid views", "[nff]") {
            {view_with("up 0 0 1", "up 0 -1 1e-9"), "1: 'up' is zero or parallel to the viewing direction"},
            {view_with("up 0 0 1", "up 0 0 0"), "1: 'up' is zero or parallel to the viewing direction"}});
     for (const char* size : {"0 200", "-1 200", "16385 200", "1.5 200"}) {
-        const std::string message = refusal(view_with("320 200", size));
+        const std::string message = error_message_of(view_with("320 200", size));
         CHECK_THAT(message, Catch::StartsWith("folder/t.nff:7: the width of 'v' is ") && Catch::EndsWith(side));
     }
     for (const char* size : {"320 0", "320 1e9", "320 0.5"}) {
-        const std::string message = refusal(view_with("320 200", size));
+        const std::string message = error_message_of(view_with("320 200", size));
         CHECK_THAT(message, Catch::StartsWith("folder/t.nff:7: the height of 'v' is ") && Catch::EndsWith(side));
     }
-    CHECK(refusal(view_with("320 200", "16384 1")) == "accepted");
-    CHECK(refusal(view_with("hither 0.5", "hither -1")) == "accepted");
+    CHECK(error_message_of(view_with("320 200", "16384 1")) == "accepted");
+    CHECK(error_message_of(view_with("hither 0.5", "hither -1")) == "accepted");
 }
 
 TEST_CASE("refused: invalid colours and surfaces", "[nff]") {
@@ -135,7 +135,7 @@ TEST_CASE("refused: invalid colours and surfaces", "[nff]") {
                     {"b 0 0 0\nb 0 0 0", "10: a second 'b'"},
                     {"l 0 0 0 1 1 -1", "9: the light's colour is negative"},
                     {"f -1 1 1 1 0 0 0 1", "9: the colour is negative"},
-                    {"f 1 1 1 -0.5 0 0 0 1", "9: Kd is -0.5: must lie in 0..100"},
+                    {"f 1 1 1 -0.5 0 0 0 1", "9: Kd is -0.5: must be 0..100"},
                     {"f 1 1 1 101 0 0 0 1", "9: Kd is 101"},
                     {"f 1 1 1 1 -1 0 0 1", "9: Ks is -1"},
                     {"f 1 1 1 1 1e6 0 0 1", "9: Ks is 1000000"},
@@ -144,7 +144,7 @@ TEST_CASE("refused: invalid colours and surfaces", "[nff]") {
                     {"f 1 1 1 1 0 -1 0 1", "9: Shine is -1: must not be negative"},
                     {"f 1 1 1 1 0 0 0.5 0", "9: the index of refraction is 0: must be positive where T > 0"},
                     {"f 1 1 1 1 0 0 0.5 -1.5", "9: the index of refraction is -1.5"}});
-    CHECK(refusal(kShortView + "f 2 2 2 1 0 0 0 -1\n" + kOneSphere) == "accepted");
+    CHECK(error_message_of(kShortView + "f 2 2 2 1 0 0 0 -1\n" + kOneSphere) == "accepted");
 }
 
 TEST_CASE("refused: invalid spheres and cones", "[nff]") {
@@ -155,7 +155,7 @@ TEST_CASE("refused: invalid spheres and cones", "[nff]") {
                     {"c 0 0 0 -1 0 0 1 0.5", "9: one radius of the cone is negative"},
                     {"c 1 2 3 1\n1 2 3 2", "9: the height of the cone is zero"}});
     for (const char* cone : {"c 0 0 0 0 0 0 1 1", "c 0 0 0 -1 0 0 1 0", "c 0 0 0 0 0 0 1 -1"})
-        CHECK(refusal(kShortView + cone) == "accepted");
+        CHECK(error_message_of(kShortView + cone) == "accepted");
 }
 
 TEST_CASE("refused: invalid polygons", "[nff]") {

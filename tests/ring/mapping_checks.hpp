@@ -14,7 +14,7 @@ namespace raya {
 /// in a run of pixels (raya_pixel_run). A pixel of the image is wrong if no share lists it. Appends the size of each
 /// share to `sizes`.
 template <class Defined>
-std::uint32_t strays(const raya_mapping& m, const Defined& defined, std::vector<std::uint32_t>& sizes) {
+std::uint32_t count_wrong_owners(const raya_mapping& m, const Defined& defined, std::vector<std::uint32_t>& sizes) {
     std::vector<bool> seen(std::size_t{m.width} * m.height);
     std::uint32_t wrong = 0;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {

@@ -1,5 +1,6 @@
-// _dl_find_object() for C libraries before glibc 2.35: gcc's unwinder finds the unwind tables of an exception with it.
-// It is the only function of that version that a statically linked unwinder needs. Hidden from other libraries.
+// _dl_find_object() for C libraries before glibc 2.35. gcc's unwinder calls it to find unwind tables when an exception
+// is thrown. It is the only function of glibc 2.35 that a statically linked unwinder needs. Hidden from other
+// libraries.
 #include <dlfcn.h>
 #include <link.h>
 

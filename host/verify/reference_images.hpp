@@ -1,5 +1,5 @@
-// Reference images, called pictures: settings, hashes and pixels. tests/verify/make_pictures.cpp generates
-// pictures.txt.
+// Reference images: settings, hashes, pixels and counts. tests/verify/make_reference_images.cpp generates
+// reference_images.txt.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -18,9 +18,9 @@
 
 namespace raya {
 
-/// Settings that determine the pixels. Settings that must not change the pixels, such as machine, mapping, lanes and
-/// group size, are in Rendering (images.cpp).
-struct Picture {
+/// Settings that determine the pixels of a reference image. Rendering (images.cpp) has the settings that must not
+/// change the pixels, such as machine, mapping, lanes and group size.
+struct ReferenceImage {
     std::string name;   // "glass fp32 filter"
     std::string scene;  // file name without extension: in scenes/, or "ties" for host/verify/ties.nff
     std::string format;
@@ -29,34 +29,34 @@ struct Picture {
     Sampling sampling = Sampling::kCentres;
 };
 
-inline constexpr std::uint32_t kPictureSide = 20;  // pixels; pictures are square
-inline constexpr std::uint32_t kPictureBounces = 4;
+inline constexpr std::uint32_t kReferenceSide = 20;  // pixels; the images are square
+inline constexpr std::uint32_t kReferenceBounces = 4;
 
-const std::vector<Picture>& pictures();
+const std::vector<ReferenceImage>& reference_images();
 /// Throws std::logic_error for an unknown name.
-const Picture& picture_named(const std::string& name);
-Scene scene_of(const Picture& picture);
+const ReferenceImage& reference_image_named(const std::string& name);
+Scene scene_of(const ReferenceImage& image);
 
 /// Returns the reference settings: a ring with one PE, one lane, work-groups of one work-item, no accelerator, no fp32
 /// pre-test of objects.
-RingSettings reference_settings(const Picture& picture);
+RingSettings reference_settings(const ReferenceImage& image);
 
-struct KnownPicture {
+/// The stored hash, pixels and counts of a reference image.
+struct StoredImage {
     std::string name, hash;
     Image image;
     std::map<std::string, std::string> counts;  // variant ("ring", "bvh", ...) -> "COUNTER NUMBER ..."
 };
 
-/// Parses pictures.txt. A line "NAME: HASH" starts a picture. Lines "counts VARIANT: COUNTER NUMBER ..." follow, then
-/// one line for each row of pixels. A pixel is RED/GREEN/BLUE, fp32 bits in hexadecimal without trailing zeros; "."
-/// repeats the pixel to the left, "=" the pixel at the same position in the previous picture. Throws std::logic_error
+/// Parses reference_images.txt. A line "NAME: HASH" starts an image. Lines "counts VARIANT: COUNTER NUMBER ..." follow,
+/// then one line for each row of pixels. A pixel is RED/GREEN/BLUE, fp32 bits in hexadecimal without trailing zeros;
+/// "." repeats the pixel to the left, "=" the pixel at the same position in the previous image. Throws std::logic_error
 /// for a syntax error.
-std::vector<KnownPicture> parse_pictures(const std::string& text);
-std::string pictures_text(const std::vector<KnownPicture>& all);
+std::vector<StoredImage> parse_reference_images(const std::string& text);
+std::string reference_images_text(const std::vector<StoredImage>& all);
 
-/// Returns the hash, pixels and counts of `picture` that are embedded in the program. Throws std::logic_error if they
-/// are missing.
-const KnownPicture& known_picture(const Picture& picture);
+/// Returns the stored result of `image`, which is embedded in the program. Throws std::logic_error if it is missing.
+const StoredImage& stored_image(const ReferenceImage& image);
 
 /// Returns "COUNTER NUMBER ...": the counted events in the order of kernels/shared/events.h, then `more`.
 std::string counts_text(const EventCounts& events, const std::vector<std::pair<const char*, std::uint64_t>>& more);
@@ -66,8 +66,8 @@ std::string counts_text(const EventCounts& events, const std::vector<std::pair<c
 Verdict check_counts(const std::string& known, const std::string& counted, const std::string& result,
                      const std::string& options);
 
-/// Renders the picture with each variant that `raya verify` renders, and returns its counts: variant -> counts_text().
+/// Renders the image with each variant that `raya verify` renders, and returns the counts: variant -> counts_text().
 /// They do not depend on lanes, group size, PEs or launches.
-std::map<std::string, std::string> counts_by_variant(Session& session, const Picture& picture);
+std::map<std::string, std::string> counts_by_variant(Session& session, const ReferenceImage& image);
 
 }  // namespace raya

@@ -1,26 +1,26 @@
-// Compares the grid traversal (walk.clh) with a reference that uses bisection: voxels are visited in order, none is
-// missed, and none is far from the ray.
+// Compares the grid traversal (traversal.clh) with a reference that uses bisection: voxels are visited in order, none
+// is missed, and none is far from the ray.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
 #include "host/scene/packer.hpp"
-#include "tests/accel/random_walks.hpp"
-#include "tests/accel/reference_walk.hpp"
+#include "tests/accel/random_grids.hpp"
+#include "tests/accel/reference_traversal.hpp"
 #include "tests/kernels/kernel_runner.hpp"
 #include "tests/kernels/probe.hpp"
 
 namespace raya {
 namespace {
 
-constexpr std::size_t kWalkedGrids = 50, kWalkedRays = 2048;  // rays per grid
+constexpr std::size_t kTraversedGrids = 50, kTraversedRays = 2048;  // rays per grid
 
-struct VoxelWalks {
-    std::vector<std::uint32_t> wide, voxels;  // [ray]; [ray][most]
-    std::vector<float> leaves;                // [ray][most]: t at which the ray leaves each voxel
-    std::vector<float> resumed_leaves;        // [ray][most]: as `leaves`, if the traversal is resumed in the voxel
-    std::vector<std::uint32_t> resumed_nexts;
+struct Traversals {
+    std::vector<std::uint32_t> wide, voxels;  // [ray]; [ray][max_count]
+    std::vector<float> leaves;                // [ray][max_count]: t at which the ray leaves each voxel
+    std::vector<float> resumed_leaves;        // [ray][max_count]: as `leaves`, if the traversal is resumed in the voxel
+    std::vector<std::uint32_t> next_voxels;
 };
 
 std::vector<std::uint32_t> grid_words(const raya_grid& grid) {
@@ -29,23 +29,23 @@ std::vector<std::uint32_t> grid_words(const raya_grid& grid) {
     return words;
 }
 
-VoxelWalks walk(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
+Traversals traverse(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
     const std::size_t count = rays.size() / 7;
-    const std::uint32_t most = most_voxels(grid);
+    const std::uint32_t max_count = max_voxels(grid);
     const auto grid_buffer = runner.filled("grid", grid_words(grid));
     const auto ray_buffer = runner.filled("rays", rays);
     auto wide = runner.constant<std::uint32_t>("wide", count, 0);
-    auto voxels = runner.constant<std::uint32_t>("voxels", count * most, RAYA_NO_VOXEL);
-    auto leaves = runner.constant<float>("leaves", count * most, 0);
+    auto voxels = runner.constant<std::uint32_t>("voxels", count * max_count, RAYA_NO_VOXEL);
+    auto leaves = runner.constant<float>("leaves", count * max_count, 0);
     runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&,
-                    Buffer<std::uint32_t>&, Buffer<float>&>("walks", count, grid_buffer, ray_buffer, most, wide, voxels,
-                                                            leaves);
-    auto again = runner.constant<float>("again", count * most, 0);
-    auto nexts = runner.constant<std::uint32_t>("nexts", count * most, RAYA_NO_VOXEL);
+                    Buffer<std::uint32_t>&, Buffer<float>&>("traverse", count, grid_buffer, ray_buffer, max_count, wide,
+                                                            voxels, leaves);
+    auto resumed = runner.constant<float>("resumed", count * max_count, 0);
+    auto nexts = runner.constant<std::uint32_t>("nexts", count * max_count, RAYA_NO_VOXEL);
     runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, const Buffer<std::uint32_t>&,
-                    Buffer<float>&, Buffer<std::uint32_t>&>("resumes", count, grid_buffer, ray_buffer, most, voxels,
-                                                            again, nexts);
-    return {runner.read(wide), runner.read(voxels), runner.read(leaves), runner.read(again), runner.read(nexts)};
+                    Buffer<float>&, Buffer<std::uint32_t>&>("resumes", count, grid_buffer, ray_buffer, max_count,
+                                                            voxels, resumed, nexts);
+    return {runner.read(wide), runner.read(voxels), runner.read(leaves), runner.read(resumed), runner.read(nexts)};
 }
 
 /// The voxels that a ray visits, in order, and t at which it leaves them.
@@ -54,18 +54,18 @@ struct Path {
     std::vector<float> leaves;
 };
 
-Path path_of(const VoxelWalks& walks, std::size_t ray, std::uint32_t most) {
+Path path_of(const Traversals& traversals, std::size_t ray, std::uint32_t max_count) {
     Path path;
-    for (std::size_t i = ray * most; i < (ray + 1) * most && walks.voxels[i] != RAYA_NO_VOXEL; ++i) {
-        path.voxels.push_back(walks.voxels[i]);
-        path.leaves.push_back(walks.leaves[i]);
+    for (std::size_t i = ray * max_count; i < (ray + 1) * max_count && traversals.voxels[i] != RAYA_NO_VOXEL; ++i) {
+        path.voxels.push_back(traversals.voxels[i]);
+        path.leaves.push_back(traversals.leaves[i]);
     }
     return path;
 }
 
 /// Returns the maximum allowed distance of a ray from its voxel: a quarter of the error that host/accel/partition.cpp
 /// allows for.
-double walk_error(const raya_grid& grid, const reference::Ray& ray) {
+double traversal_error(const raya_grid& grid, const reference::Ray& ray) {
     double box = 0, origin = 0;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         for (const std::uint32_t k : {0u, grid.divisions[axis]})
@@ -91,7 +91,7 @@ bool steps_forward(const raya_grid& grid, const reference::Ray& ray, const Path&
 }
 
 /// Returns true if the ray is within `error` of the traversal's current voxel at all t.
-bool keeps_near(const raya_grid& grid, const reference::Ray& ray, const Path& path, double error) {
+bool stays_near_ray(const raya_grid& grid, const reference::Ray& ray, const Path& path, double error) {
     const Passage box = passage(grid, all_voxels(grid), ray, -error);
     for (std::size_t i = 0; i < path.voxels.size(); ++i) {
         const Passage near = passage(grid, one_voxel(grid, path.voxels[i]), ray, error);
@@ -129,12 +129,12 @@ double random_limit(SplitMix& random, const raya_grid& grid, const reference::Ra
 }
 
 /// A random grid, random rays, and the limits of the rays.
-struct WalkCase {
-    explicit WalkCase(std::uint64_t seed) {
+struct TraversalCase {
+    explicit TraversalCase(std::uint64_t seed) {
         SplitMix random(seed);
         grid = random_grid(random);
-        for (std::size_t i = 0; i < kWalkedRays; ++i) {
-            rays.push_back(random_walk_ray(random, grid));
+        for (std::size_t i = 0; i < kTraversedRays; ++i) {
+            rays.push_back(random_grid_ray(random, grid));
             limits.push_back(random_limit(random, grid, rays.back()));
         }
     }
@@ -149,78 +149,79 @@ struct WalkCase {
     std::vector<double> limits;
 };
 
-void check_grid_walk(const raya_grid& grid, const reference::Ray& ray, double limit, const Path& path) {
-    const double error = walk_error(grid, ray);
+void check_grid_traversal(const raya_grid& grid, const reference::Ray& ray, double limit, const Path& path) {
+    const double error = traversal_error(grid, ray);
     const Entry expected = entry(grid, ray, limit, error);
     CAPTURE(ray.origin, ray.direction, limit, path.voxels, path.leaves, error);
     if (expected == Entry::kMust) REQUIRE(!path.voxels.empty());
     if (expected == Entry::kMustNot) REQUIRE(path.voxels.empty());
     REQUIRE(steps_forward(grid, ray, path));
-    REQUIRE(keeps_near(grid, ray, path, error));
+    REQUIRE(stays_near_ray(grid, ray, path, error));
     if (!path.voxels.empty()) REQUIRE(misses_none(grid, ray, path, error));
 }
 
 }  // namespace
 
-TEST_CASE("a walk visits the voxels that the ray crosses, in order") {
-    KernelRunner runner("tests/accel/walk_probe.cl", {1, true, {}});
+TEST_CASE("a traversal visits the voxels that the ray crosses, in order") {
+    KernelRunner runner("tests/accel/traversal_probe.cl", {1, true, {}});
     std::size_t visits = 0, empty = 0;
-    for (std::size_t seed = 0; seed < kWalkedGrids; ++seed) {
-        const WalkCase c(seed);
-        const VoxelWalks walks = walk(runner, c.grid, c.words());
+    for (std::size_t seed = 0; seed < kTraversedGrids; ++seed) {
+        const TraversalCase c(seed);
+        const Traversals traversals = traverse(runner, c.grid, c.words());
         CAPTURE(seed, c.grid.divisions, c.grid.low, c.grid.cell);
-        for (std::size_t i = 0; i < kWalkedRays; ++i) {
-            const Path path = path_of(walks, i, most_voxels(c.grid));
-            check_grid_walk(c.grid, c.rays[i], c.limits[i], path);
+        for (std::size_t i = 0; i < kTraversedRays; ++i) {
+            const Path path = path_of(traversals, i, max_voxels(c.grid));
+            check_grid_traversal(c.grid, c.rays[i], c.limits[i], path);
             visits += path.voxels.size();
             empty += path.voxels.empty();
         }
     }
-    CHECK(empty > kWalkedGrids * kWalkedRays / 10);
-    CHECK(visits > kWalkedGrids * kWalkedRays * 10);
+    CHECK(empty > kTraversedGrids * kTraversedRays / 10);
+    CHECK(visits > kTraversedGrids * kTraversedRays * 10);
 }
 
-TEST_CASE("a walk that is resumed in any of its voxels continues in the same way") {
-    KernelRunner runner("tests/accel/walk_probe.cl", {16, true, {}});
-    for (std::size_t seed = 0; seed < kWalkedGrids / 2; ++seed) {
-        const WalkCase c(seed);
-        const VoxelWalks walks = walk(runner, c.grid, c.words());
+TEST_CASE("a traversal that is resumed in any of its voxels continues in the same way") {
+    KernelRunner runner("tests/accel/traversal_probe.cl", {16, true, {}});
+    for (std::size_t seed = 0; seed < kTraversedGrids / 2; ++seed) {
+        const TraversalCase c(seed);
+        const Traversals traversals = traverse(runner, c.grid, c.words());
         CAPTURE(seed);
-        REQUIRE(bits(walks.resumed_leaves) == bits(walks.leaves));
-        std::vector<std::uint32_t> nexts(walks.voxels.size(), RAYA_NO_VOXEL);
+        REQUIRE(bits(traversals.resumed_leaves) == bits(traversals.leaves));
+        std::vector<std::uint32_t> nexts(traversals.voxels.size(), RAYA_NO_VOXEL);
         for (std::size_t i = 0; i + 1 < nexts.size(); ++i)
-            if (walks.voxels[i] != RAYA_NO_VOXEL) nexts[i] = walks.voxels[i + 1];
-        REQUIRE(walks.resumed_nexts == nexts);
+            if (traversals.voxels[i] != RAYA_NO_VOXEL) nexts[i] = traversals.voxels[i + 1];
+        REQUIRE(traversals.next_voxels == nexts);
     }
 }
 
-TEST_CASE("walks have the same bits for all numbers of lanes") {
-    std::vector<VoxelWalks> first;
+TEST_CASE("traversals have the same bits for all numbers of lanes") {
+    std::vector<Traversals> first;
     for (const Variant& variant : variants()) {
         CAPTURE(variant.name());
-        KernelRunner runner("tests/accel/walk_probe.cl", variant);
+        KernelRunner runner("tests/accel/traversal_probe.cl", variant);
         constexpr std::size_t kFewGrids = 8;
         for (std::size_t seed = 0; seed < kFewGrids; ++seed) {
-            const WalkCase c(seed);
-            const VoxelWalks walks = walk(runner, c.grid, c.words());
-            if (first.size() < kFewGrids) first.push_back(walks);
+            const TraversalCase c(seed);
+            const Traversals traversals = traverse(runner, c.grid, c.words());
+            if (first.size() < kFewGrids) first.push_back(traversals);
             CAPTURE(seed);
-            REQUIRE(walks.voxels == first[seed].voxels);
-            REQUIRE(bits(walks.leaves) == bits(first[seed].leaves));
-            REQUIRE(walks.wide == first[seed].wide);
+            REQUIRE(traversals.voxels == first[seed].voxels);
+            REQUIRE(bits(traversals.leaves) == bits(first[seed].leaves));
+            REQUIRE(traversals.wide == first[seed].wide);
         }
     }
 }
 
 TEST_CASE("a ray is wide only if it starts beyond the reach or its direction is not of length 1") {
-    KernelRunner runner("tests/accel/walk_probe.cl", {16, true, {}});
-    constexpr float kBeyond = 0x1.000002p3F, kLong = 1 + 0x1.8p-20F, kTooLong = 1 + 0x1.4p-19F,
+    KernelRunner runner("tests/accel/traversal_probe.cl", {16, true, {}});
+    constexpr float kAboveReach = 0x1.000002p3F, kLong = 1 + 0x1.8p-20F, kTooLong = 1 + 0x1.4p-19F,
                     kTooShort = 1 - 0x1.4p-19F;
     raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
     const std::vector<std::array<float, 6>> near = {
         {0, 0, 0, 1, 0, 0}, {8, -8, 8, 0, 0.6F, 0.8F}, {0, 0, 0, 0, 0, kLong}};
     const std::vector<std::array<float, 6>> wide = {
-        {kBeyond, 0, 0, 1, 0, 0},    {0, -kBeyond, 0, 1, 0, 0}, {0, 0, kBeyond, 1, 0, 0}, {0, 0, 0, kTooLong, 0, 0},
+        {kAboveReach, 0, 0, 1, 0, 0}, {0, -kAboveReach, 0, 1, 0, 0}, {0, 0, kAboveReach, 1, 0, 0},
+        {0, 0, 0, kTooLong, 0, 0},
         {0, 0, 0, 0, 0, -kTooShort}, {0, 0, 0, 0, NAN, 1},      {0, 0, 0, 0, 0, 0}};
     std::vector<float> words;
     for (const auto* rays : {&near, &wide})
@@ -230,7 +231,7 @@ TEST_CASE("a ray is wide only if it starts beyond the reach or its direction is 
         }
     const std::size_t rays = words.size() / 7;
     words.resize(kMaxLanes * 7, 0);
-    const std::vector<std::uint32_t> found = walk(runner, grid, words).wide;
+    const std::vector<std::uint32_t> found = traverse(runner, grid, words).wide;
     for (std::size_t i = 0; i < rays; ++i) {
         CAPTURE(i);
         CHECK(found[i] == (i < near.size() ? 0 : 1));
@@ -242,7 +243,7 @@ TEST_CASE("rays of normalised directions are never wide, those reflected once ha
     const raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
     constexpr std::size_t kCount = 1 << 16;
     for (const char* format : {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10t"}) {
-        KernelRunner runner("tests/accel/walk_probe.cl", {4, true, parse_format(format)});
+        KernelRunner runner("tests/accel/traversal_probe.cl", {4, true, parse_format(format)});
         SplitMix random(1);
         std::vector<float> arms;
         for (std::size_t i = 0; i < kCount * 2; ++i) {

@@ -1,4 +1,4 @@
-#include "host/verify/pictures.hpp"
+#include "host/verify/reference_images.hpp"
 
 #include <fmt/core.h>
 
@@ -15,18 +15,19 @@
 namespace raya {
 namespace {
 
-constexpr const char* kPicturesHeading =
-    "# Hashes, counts and pixels of pictures, made by tests/verify/make_pictures.cpp: do not edit.\n"
+constexpr const char* kReferenceHeading =
+    "# Hashes, counts and pixels of the reference images, made by tests/verify/make_reference_images.cpp: do not "
+    "edit.\n"
     "# \"NAME: HASH\"; \"counts VARIANT: COUNTER NUMBER ...\"; then a line for each row: RED/GREEN/BLUE, bits of "
     "fp32\n"
-    "# numbers in hexadecimal without trailing zeros; .: as on the left, =: as in the previous picture.\n";
+    "# numbers in hexadecimal without trailing zeros; .: as on the left, =: as in the previous image.\n";
 
 // Parses "3f8/3f8/0". Throws std::logic_error unless it has three numbers.
 std::vector<float> colour_of(const std::string& text) {
     std::vector<float> rgb;
     std::istringstream in(text);
     for (std::string digits; std::getline(in, digits, '/');) rgb.push_back(std::bit_cast<float>(word_of(digits)));
-    if (rgb.size() != 3) throw std::logic_error("known pictures: '" + text + "' is not a colour");
+    if (rgb.size() != 3) throw std::logic_error("reference images: '" + text + "' is not a colour");
     return rgb;
 }
 
@@ -35,15 +36,15 @@ std::string colour_text(const float* rgb) {
     return digits(0) + '/' + digits(1) + '/' + digits(2);
 }
 
-void read_row(const std::string& line, const Image& before, Image& image) {
+void read_row(const std::string& line, const Image& previous, Image& image) {
     std::istringstream in(line);
     for (std::string pixel; in >> pixel;) {
         const std::size_t at = image.rgb.size();
         std::vector<float> rgb;
         if (pixel == "." && at >= 3)
             rgb.assign(image.rgb.end() - 3, image.rgb.end());
-        else if (pixel == "=" && at + 3 <= before.rgb.size())
-            rgb = {before.rgb[at], before.rgb[at + 1], before.rgb[at + 2]};
+        else if (pixel == "=" && at + 3 <= previous.rgb.size())
+            rgb = {previous.rgb[at], previous.rgb[at + 1], previous.rgb[at + 2]};
         else
             rgb = colour_of(pixel);
         image.rgb.insert(image.rgb.end(), rgb.begin(), rgb.end());
@@ -54,9 +55,9 @@ void read_row(const std::string& line, const Image& before, Image& image) {
 
 }  // namespace
 
-const std::vector<Picture>& pictures() {
+const std::vector<ReferenceImage>& reference_images() {
     constexpr auto kFilter = AntialiasMethod::kFilter, kSupersample = AntialiasMethod::kSupersample;
-    static const std::vector<Picture> all = {
+    static const std::vector<ReferenceImage> all = {
         {"glass fp32", "glass", "fp32"},
         {"glass fp32 axes", "glass", "fp32", kSupersample},
         {"glass fp32 diagonals", "glass", "fp32", kSupersample, RAYA_POINTS_DIAGONALS},
@@ -75,33 +76,33 @@ const std::vector<Picture>& pictures() {
     return all;
 }
 
-const Picture& picture_named(const std::string& name) {
-    for (const Picture& picture : pictures())
-        if (picture.name == name) return picture;
-    throw std::logic_error("no picture '" + name + "'");
+const ReferenceImage& reference_image_named(const std::string& name) {
+    for (const ReferenceImage& image : reference_images())
+        if (image.name == name) return image;
+    throw std::logic_error("no reference image '" + name + "'");
 }
 
-Scene scene_of(const Picture& picture) {
-    const char* folder = picture.scene == "ties" ? "host/verify/" : "scenes/";
-    const std::string file = folder + picture.scene + ".nff";
+Scene scene_of(const ReferenceImage& image) {
+    const char* folder = image.scene == "ties" ? "host/verify/" : "scenes/";
+    const std::string file = folder + image.scene + ".nff";
     return parse_nff(embedded_files().at(file), file);
 }
 
-RingSettings reference_settings(const Picture& picture) {
+RingSettings reference_settings(const ReferenceImage& image) {
     RingSettings settings;
     settings.machine = machine_named("grande");
-    settings.mapping = make_mapping(column_mapping(), {kPictureSide, kPictureSide}, 1);
-    settings.bounces = kPictureBounces;
-    settings.format = parse_format(picture.format);
-    settings.sampling = picture.sampling;
-    settings.antialias.method = picture.antialias;
-    settings.antialias.points = picture.points;
+    settings.mapping = make_mapping(column_mapping(), {kReferenceSide, kReferenceSide}, 1);
+    settings.bounces = kReferenceBounces;
+    settings.format = parse_format(image.format);
+    settings.sampling = image.sampling;
+    settings.antialias.method = image.antialias;
+    settings.antialias.points = image.points;
     settings.kernels = {.lanes = 1, .group_size = 1, .filter = false};
     return settings;
 }
 
-std::vector<KnownPicture> parse_pictures(const std::string& text) {
-    std::vector<KnownPicture> all;
+std::vector<StoredImage> parse_reference_images(const std::string& text) {
+    std::vector<StoredImage> all;
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
         if (line.empty() || line[0] == '#') continue;
@@ -113,36 +114,37 @@ std::vector<KnownPicture> parse_pictures(const std::string& text) {
         else if (!all.empty())
             read_row(line, all.size() > 1 ? all[all.size() - 2].image : Image{}, all.back().image);
         else
-            throw std::logic_error("known pictures: a row before the first picture");
+            throw std::logic_error("reference images: a row before the first image");
     }
-    for (const KnownPicture& picture : all)
-        if (pixel_hash(picture.image) != picture.hash)
-            throw std::logic_error("known pictures: '" + picture.name + "': pixels do not match the hash");
+    for (const StoredImage& stored : all)
+        if (pixel_hash(stored.image) != stored.hash)
+            throw std::logic_error("reference images: '" + stored.name + "': pixels do not match the hash");
     return all;
 }
 
-std::string pictures_text(const std::vector<KnownPicture>& all) {
-    std::string text = kPicturesHeading;
-    std::vector<std::string> before(kPictureSide * kPictureSide);
-    for (const KnownPicture& picture : all) {
-        text += fmt::format("{}: {}\n", picture.name, picture.hash);
-        for (const auto& [variant, counts] : picture.counts) text += fmt::format("counts {}: {}\n", variant, counts);
+std::string reference_images_text(const std::vector<StoredImage>& all) {
+    std::string text = kReferenceHeading;
+    std::vector<std::string> previous(kReferenceSide * kReferenceSide);
+    for (const StoredImage& stored : all) {
+        text += fmt::format("{}: {}\n", stored.name, stored.hash);
+        for (const auto& [variant, counts] : stored.counts) text += fmt::format("counts {}: {}\n", variant, counts);
         std::string left;
-        for (std::size_t i = 0; i < before.size(); ++i) {
-            const std::string own = colour_text(&picture.image.rgb.at(3 * i));
-            const bool first = i % kPictureSide == 0, last = (i + 1) % kPictureSide == 0;
-            text += (own == left && !first ? "." : own == before[i] ? "=" : own) + (last ? "\n" : " ");
-            left = before[i] = own;
+        for (std::size_t i = 0; i < previous.size(); ++i) {
+            const std::string own = colour_text(&stored.image.rgb.at(3 * i));
+            const bool first = i % kReferenceSide == 0, last = (i + 1) % kReferenceSide == 0;
+            text += (own == left && !first ? "." : own == previous[i] ? "=" : own) + (last ? "\n" : " ");
+            left = previous[i] = own;
         }
     }
     return text;
 }
 
-const KnownPicture& known_picture(const Picture& picture) {
-    static const std::vector<KnownPicture> all = parse_pictures(embedded_files().at("host/verify/pictures.txt"));
+const StoredImage& stored_image(const ReferenceImage& image) {
+    static const std::vector<StoredImage> all =
+        parse_reference_images(embedded_files().at("host/verify/reference_images.txt"));
     const auto found =
-        std::find_if(all.begin(), all.end(), [&](const KnownPicture& known) { return known.name == picture.name; });
-    if (found == all.end()) throw std::logic_error("known pictures: no '" + picture.name + "'");
+        std::find_if(all.begin(), all.end(), [&](const StoredImage& stored) { return stored.name == image.name; });
+    if (found == all.end()) throw std::logic_error("reference images: no '" + image.name + "'");
     return *found;
 }
 

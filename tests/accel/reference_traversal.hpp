@@ -1,5 +1,5 @@
-// The oracle of kernels/grid/walk.clh: finds the voxels that a ray crosses, in double precision, by recursive bisection
-// of the box.
+// The reference for kernels/grid/traversal.clh: finds the voxels that a ray crosses, in double precision, by recursive
+// bisection of the box.
 #pragma once
 #include <algorithm>
 #include <array>

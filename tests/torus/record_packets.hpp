@@ -6,13 +6,13 @@
 
 namespace raya {
 
-struct Recorded {
+struct RecordedRender {
     TorusResult result;
     std::vector<PacketRecord> records;
 };
 
-inline Recorded record(Session& session, const Scene& scene, const TorusCase& c) {
-    Recorded r;
+inline RecordedRender render_and_record(Session& session, const Scene& scene, const TorusCase& c) {
+    RecordedRender r;
     r.result = render_torus(session, scene, c, [&](const PacketRecord& p) { r.records.push_back(p); });
     return r;
 }

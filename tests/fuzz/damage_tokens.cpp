@@ -11,7 +11,7 @@ struct Piece {
 
 bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
-std::vector<Piece> words_of(const std::string& text) {
+std::vector<Piece> tokens_of(const std::string& text) {
     std::vector<Piece> pieces;
     for (std::size_t at = 0; at < text.size();) {
         if (is_blank(text[at])) {
@@ -63,26 +63,26 @@ const char* const kNumbers[] = {"0",          "-0",
                                 "179.999999", "90",
                                 "360"};
 
-std::string word_for(const std::vector<std::string>& words, Random& random) {
+std::string random_token(const std::vector<std::string>& keywords, Random& random) {
     if (random.one_in(2)) return random.pick(kNumbers);
     if (random.one_in(2)) return std::to_string(static_cast<int>(random.below(2001)) - 1000);
-    return random.pick(words);
+    return random.pick(keywords);
 }
 
-void damage_word(std::string& text, const std::vector<std::string>& words, Random& random) {
-    const std::vector<Piece> pieces = words_of(text);
+void damage_token(std::string& text, const std::vector<std::string>& keywords, Random& random) {
+    const std::vector<Piece> pieces = tokens_of(text);
     if (pieces.empty()) {
-        text += random.pick(words);
+        text += random.pick(keywords);
         return;
     }
     const Piece piece = random.pick(pieces), other = random.pick(pieces);
-    const std::string word = text.substr(piece.start, piece.size);
+    const std::string token = text.substr(piece.start, piece.size);
     switch (random.below(6)) {
         case 0:
             text.erase(piece.start, piece.size);
             break;
         case 1:
-            text.insert(piece.start, word_for(words, random) + " ");
+            text.insert(piece.start, random_token(keywords, random) + " ");
             break;
         case 2:
             text.replace(piece.start, piece.size, text.substr(other.start, other.size));
@@ -91,7 +91,7 @@ void damage_word(std::string& text, const std::vector<std::string>& words, Rando
             text.insert(piece.start + piece.size, random.one_in(2) ? "\n" : "#");
             break;
         default:
-            text.replace(piece.start, piece.size, word_for(words, random));
+            text.replace(piece.start, piece.size, random_token(keywords, random));
     }
 }
 
@@ -120,14 +120,14 @@ void damage_line_ends(std::string& text, Random& random) {
 
 }  // namespace
 
-void damage_words(std::string& text, const std::vector<std::string>& words, Random& random) {
+void damage_tokens(std::string& text, const std::vector<std::string>& keywords, Random& random) {
     if (random.one_in(50)) return damage_line_ends(text, random);
     if (random.one_in(50)) {
         text.insert(0, "\xEF\xBB\xBF");  // a byte order mark
         return;
     }
     if (random.one_in(4)) return damage_line(text, random);
-    damage_word(text, words, random);
+    damage_token(text, keywords, random);
 }
 
 }  // namespace raya::fuzz

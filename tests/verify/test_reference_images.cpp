@@ -1,0 +1,63 @@
+// The stored reference images (reference_images.txt), compared with new renders on the default device and with the
+// double-precision reference renderer.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <stdexcept>
+
+#include "host/embedded.hpp"
+#include "host/verify/verify.hpp"
+#include "tests/reference/reference.hpp"
+#include "tests/verify/make_reference_images.hpp"
+
+namespace raya {
+
+// The test tools.verify runs raya verify --quick, which compares the other images.
+TEST_CASE("reference images not in verify --quick: equal new renders on the default device", "[verify][slow]") {
+    const std::vector<std::string> quick = check_names(choose_device(""), {.only = "image "});
+    std::size_t made = 0;
+    for (const ReferenceImage& image : reference_images()) {
+        CAPTURE(image.name);
+        const std::string beginning = "image " + image.name + ": ";
+        if (std::any_of(quick.begin(), quick.end(), [&](const auto& name) { return name.starts_with(beginning); }))
+            continue;
+        CHECK(pixel_hash(render_reference(image)) == stored_image(image).hash);
+        Session session(choose_device(""));
+        CHECK(counts_by_variant(session, image) == stored_image(image).counts);
+        ++made;
+    }
+    CHECK(made == 6);
+}
+
+TEST_CASE("reference images in fp32: equal the reference renderer within its tolerance", "[verify]") {
+    for (const ReferenceImage& image : reference_images()) {
+        if (image.format != "fp32" || image.antialias != AntialiasMethod::kNone) continue;
+        CAPTURE(image.name);
+        const Scene scene = scene_of(image);
+        const reference::Options options{.width = kReferenceSide,
+                                         .height = kReferenceSide,
+                                         .bounces = kReferenceBounces,
+                                         .corners = image.sampling == Sampling::kCorners};
+        const reference::Difference d =
+            reference::compare(reference::render(scene, options), stored_image(image).image.rgb, scene, options);
+        CHECK(d.psnr_db >= 50);
+        CHECK(d.above_limit == d.excused);
+    }
+}
+
+TEST_CASE("parse_reference_images: inverts reference_images_text", "[verify]") {
+    const std::string text = embedded_files().at("host/verify/reference_images.txt");
+    const std::vector<StoredImage> all = parse_reference_images(text);
+    CHECK(all.size() == reference_images().size());
+    CHECK(reference_images_text(all) == text);
+}
+
+TEST_CASE("parse_reference_images: refuses pixels that do not match the hash", "[verify]") {
+    const StoredImage& stored = stored_image(reference_images().front());
+    std::string text = reference_images_text({stored});
+    CHECK_NOTHROW(parse_reference_images(text));
+    text.replace(text.find(stored.hash), 1, stored.hash[0] == '0' ? "1" : "0");
+    CHECK_THROWS_AS(parse_reference_images(text), std::logic_error);
+    CHECK_THROWS_AS(parse_reference_images("3f8/0/0\n"), std::logic_error);
+}
+
+}  // namespace raya
