@@ -1,12 +1,13 @@
-// Files embedded in the program.
+// Files embedded in raya's executable.
 #pragma once
 #include <map>
 #include <string>
 
 namespace raya {
 
-/// Texts by path relative to the project's root: kernels/, the default scenes of `bench` and `study`, the list of
-/// studies, styles and scripts of pages. The build generates the definition.
+/// Returns the content of each embedded file by its path relative to the project's root: the files of kernels/, the
+/// default scenes of `bench` and `study`, the list of studies, and the styles and scripts of HTML pages. The build
+/// generates the definition of this function.
 const std::map<std::string, std::string>& embedded_files();
 
 }  // namespace raya

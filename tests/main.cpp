@@ -12,7 +12,7 @@
 int main(int argc, char** argv) {
     setenv("RAYA_TUNED", "off", 0);
     setenv("RAYA_BINARIES", "off", 0);
-    raya::set_own_file(RAYA_PROGRAM);
+    raya::set_program_file(RAYA_PROGRAM);
     const raya::KernelCache cache;
     return Catch::Session().run(argc, argv);
 }

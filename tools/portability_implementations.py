@@ -22,25 +22,25 @@ class Implementation:
         """Runs a command. Returns (exit code, None after `limit` seconds; stdout and stderr; stdout; text of the faults that the implementation
         reported)."""
         # Ignores OpenCL variables in the caller's environment, such as a CI job's choice of an implementation.
-        chosen = ("RAYA_", "POCL_", "OCL_ICD_", "OCLGRIND_", "RUSTICL_", "CL_CONFIG_")
-        inherited = {k: v for k, v in os.environ.items() if not k.startswith(chosen)}
+        prefixes = ("RAYA_", "POCL_", "OCL_ICD_", "OCLGRIND_", "RUSTICL_", "CL_CONFIG_")
+        inherited = {k: v for k, v in os.environ.items() if not k.startswith(prefixes)}
         caches = {"POCL_CACHE_DIR": str(scratch), "MESA_SHADER_CACHE_DIR": str(scratch)}
         variables = {**inherited, **caches, **self.variables, **(more or {})}
         try:
             done = subprocess.run(self.prefix + command, env=variables, capture_output=True, text=True, timeout=limit,
                                   errors="replace", stdin=subprocess.DEVNULL)
-        except subprocess.TimeoutExpired as late:
-            return None, f"not done after {limit} s", "", self.reported_faults((late.stderr or b"").decode(errors="replace"))
+        except subprocess.TimeoutExpired as timeout_error:
+            return None, f"not done after {limit} s", "", self.reported_faults((timeout_error.stderr or b"").decode(errors="replace"))
         return done.returncode, done.stdout + done.stderr, done.stdout, self.reported_faults(done.stderr)
 
     def reported_faults(self, stderr):
-        """The first line of stderr and the number of further lines; empty if the implementation does not report faults."""
+        """Returns the first line of stderr and the number of further lines; empty if the implementation does not report faults."""
         lines = [line.strip() for line in stderr.splitlines() if line.strip()] if self.reports_faults else []
         return "" if not lines else lines[0] + (f" (and {len(lines) - 1} more lines)" if len(lines) > 1 else "")
 
 
 def processor_seconds():
-    """Processor seconds of all programs run so far, including their children. Unlike wall time, independent of other load on the machine."""
+    """Returns the processor seconds of all programs run so far, including their children. They do not depend on other load, as wall time does."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -50,12 +50,12 @@ def icd(name):
 
 
 def variants_of(name, driver, unavailable, variants):
-    """Implementations of one driver. `driver`: its .icd file; `variants`: [(suffix of the name, environment variables)]."""
-    return [Implementation(name + more, {"OCL_ICD_VENDORS": str(driver), **variables}, unavailable=unavailable) for more, variables in variants]
+    """Returns the implementations of one driver. `driver`: its .icd file; `variants`: [(suffix of the name, environment variables)]."""
+    return [Implementation(name + suffix, {"OCL_ICD_VENDORS": str(driver), **variables}, unavailable=unavailable) for suffix, variables in variants]
 
 
 def known_implementations(build):
-    """All known implementations, the fast ones first; `build`: the build folder."""
+    """Returns all known implementations, the fast ones first; `build`: the build folder."""
     unoptimised = (" -cl-opt-disable", {"RAYA_BUILD_OPTIONS": "-cl-opt-disable"})
     no_pocl = None if icd("pocl").exists() else "not installed (Debian: pocl-opencl-icd)"
     found = variants_of("PoCL", icd("pocl"), no_pocl, [
@@ -71,9 +71,9 @@ def known_implementations(build):
     rusticl = {"OCL_ICD_VENDORS": str(icd("rusticl")), "RUSTICL_ENABLE": "llvmpipe", "RAYA_NUMBER_LANES": "1"}
     found.append(Implementation("rusticl llvmpipe", rusticl, slow=True, budget=300,
                                 unavailable=None if icd("rusticl").exists() else "not installed (Debian: mesa-opencl-icd)"))
-    others = sorted(p for p in VENDORS.glob("*.icd") if p.stem not in ("pocl", "rusticl", "mesa"))
-    found += [Implementation(p.stem, {"OCL_ICD_VENDORS": str(p)}, needs_device=True) for p in others]
-    if not any(word in p.stem.lower() for p in others for word in ("nvidia", "amd", "rocm", "intel", "gpu")):
+    other_drivers = sorted(p for p in VENDORS.glob("*.icd") if p.stem not in ("pocl", "rusticl", "mesa"))
+    found += [Implementation(p.stem, {"OCL_ICD_VENDORS": str(p)}, needs_device=True) for p in other_drivers]
+    if not any(word in p.stem.lower() for p in other_drivers for word in ("nvidia", "amd", "rocm", "intel", "gpu")):
         found.append(Implementation("GPU", unavailable="no GPU's driver is installed"))
     return found
 

@@ -1,8 +1,8 @@
 """`tools/portability --setup`: fetches OpenCL implementations that Debian does not have from PyPI into the build folder.
 
-Each is a file in tests/portability/packages/ with packages, versions and hashes in pip's format. Its wheels are unpacked to
-build/implementations/NAME; build/implementations/NAME.icd, which OpenCL loaders read, names the driver. There are no files outside that folder:
-to uninstall everything, remove it.
+Each implementation has a file in tests/portability/packages/ with packages, versions and hashes in pip's format. Its wheels are unpacked to
+build/implementations/NAME; build/implementations/NAME.icd, which OpenCL loaders read, names the driver. Other folders are unchanged:
+to uninstall everything, remove build/implementations.
 """
 import os, re, shutil, subprocess, sys, tempfile, zipfile
 from pathlib import Path
@@ -40,26 +40,26 @@ def unpack(wheel, folder):
             if member.is_dir():
                 continue
             path.parent.mkdir(parents=True, exist_ok=True)
-            same = seen.setdefault((member.CRC, member.file_size), path)
-            if same != path and not path.exists():
-                os.link(same, path)
-            elif same == path:
+            original = seen.setdefault((member.CRC, member.file_size), path)
+            if original != path and not path.exists():
+                os.link(original, path)
+            elif original == path:
                 with members.open(member) as packed, open(path, "wb") as file:
                     shutil.copyfileobj(packed, file)
                 path.chmod(0o755 if ".so" in path.name else 0o644)
 
 
 def llvm_14_substitute(cpuinfo):
-    """LLVM 14's name of a CPU with the same features, for a CPU that LLVM 14 does not know; None for a CPU that LLVM 14 knows.
+    """Returns LLVM 14's name of a CPU with the same features, for a CPU that LLVM 14 does not know; None for a CPU that LLVM 14 knows.
 
     LLVM 14 calls AMD CPUs after family 25 "generic", a name that its own compiler rejects. It takes Zen 4 for Zen 3, which is family 25 too
     but has no AVX-512, and aborts on vectors of 16 floats ("Cannot emit physreg copy instruction")."""
     def value(key):
         return (re.search(rf"^{key}\s*: (.*)$", cpuinfo, re.MULTILINE) or ["", ""])[1]
-    family, wide = int(value("cpu family") or 0), "avx512vl" in value("flags").split()
-    if value("vendor_id") != "AuthenticAMD" or family < 25 or (family == 25 and not wide):
+    family, has_avx512 = int(value("cpu family") or 0), "avx512vl" in value("flags").split()
+    if value("vendor_id") != "AuthenticAMD" or family < 25 or (family == 25 and not has_avx512):
         return None
-    return "skylake-avx512" if wide else "haswell"
+    return "skylake-avx512" if has_avx512 else "haswell"
 
 
 def patch_cpu_name(library, cpu):
@@ -67,11 +67,12 @@ def patch_cpu_name(library, cpu):
     pocl_get_llvm_cpu_name(), and the check of its result, by a constant. Addresses of code and constants are file offsets."""
     content = bytearray(library.read_bytes())
     calls = [match.start(1) for match in re.finditer(rb"\x55\x53\x48\x83\xec\x08(\xe8....\x48\x85\xd2\x74\x30)\x48\x89\xc5", content, re.DOTALL)]
-    text = content.find(b"\0" + cpu.encode() + b"\0") + 1
-    if len(calls) != 1 or text == 0:
+    name_position = content.find(b"\0" + cpu.encode() + b"\0") + 1
+    if len(calls) != 1 or name_position == 0:
         raise SetupError(f"{library.name}: cannot patch the name of this CPU, which its LLVM does not know: the library differs from PyPI's PoCL 3.0")
-    lea, after = calls[0], calls[0] + 7
-    content[lea:lea + 10] = b"\x48\x8d\x05" + (text - after).to_bytes(4, "little", signed=True) + bytes([0x6a, len(cpu), 0x5a])  # lea rax; push, pop rdx
+    lea, lea_end = calls[0], calls[0] + 7
+    distance = (name_position - lea_end).to_bytes(4, "little", signed=True)
+    content[lea:lea + 10] = b"\x48\x8d\x05" + distance + bytes([0x6a, len(cpu), 0x5a])  # lea rax; push, pop rdx
     library.write_bytes(content)
 
 
@@ -80,15 +81,15 @@ def size_text(folder):
     return f"{sum(size for _, size in files) / 1e6:.0f} MB"
 
 
-def set_up_one(packages, target, cpuinfo):
+def set_up_implementation(packages, target, cpuinfo):
     """Sets up one implementation in the folder `target`. The .icd file is written last, so that an interrupted setup is not used."""
     name, driver_file = packages.stem, target.with_name(packages.stem + ".icd")
-    asked = packages.read_text()
+    requested = packages.read_text()
     stamp = target / "packages.txt"
-    if driver_file.exists() and stamp.exists() and stamp.read_text() == asked:
+    if driver_file.exists() and stamp.exists() and stamp.read_text() == requested:
         print(f"{name}: already set up, {size_text(target)} in {target}")
         return
-    pins = re.findall(r"^([^#\s]\S*)", asked, re.MULTILINE)
+    pins = re.findall(r"^([^#\s]\S*)", requested, re.MULTILINE)
     print(f"{name}: fetching {', '.join(pins)}", flush=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         wheels = fetch(packages, Path(scratch))
@@ -101,7 +102,7 @@ def set_up_one(packages, target, cpuinfo):
         cpu = llvm_14_substitute(cpuinfo) if name == "pocl-3.0" else None
         if cpu:
             patch_cpu_name(drivers[0], cpu)
-        (unpacked / "packages.txt").write_text(asked)
+        (unpacked / "packages.txt").write_text(requested)
         driver_file.unlink(missing_ok=True)
         shutil.rmtree(target, ignore_errors=True)
         fetched = sum(wheel.stat().st_size for wheel in wheels) / 1e6
@@ -109,8 +110,8 @@ def set_up_one(packages, target, cpuinfo):
         unpacked.rename(target)
         target.chmod(0o755)
     driver_file.write_text(f"{driver}\n")
-    named = f"; its LLVM 14 does not know this CPU and uses the settings of {cpu}" if cpu else ""
-    print(f"{name}: {fetched:.0f} MB fetched, {size_text(target)} in {target}{named}")
+    cpu_note = f"; its LLVM 14 does not know this CPU and uses the settings of {cpu}" if cpu else ""
+    print(f"{name}: {fetched:.0f} MB fetched, {size_text(target)} in {target}{cpu_note}")
 
 
 def set_up(build, folder):
@@ -121,7 +122,7 @@ def set_up(build, folder):
     code = 0
     for packages in sorted(folder.glob("*.txt")):
         try:
-            set_up_one(packages, target / packages.stem, cpuinfo)
+            set_up_implementation(packages, target / packages.stem, cpuinfo)
         except SetupError as error:
             print(f"tools/portability --setup: {error}", file=sys.stderr)
             code = 3

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Converts an NFF file (host/scene/nff.hpp) to a POV-Ray 3.7 scene with the same picture.
+"""Converts an NFF file (host/scene/nff.hpp) to a POV-Ray 3.7 scene with the same image.
 
-    tools/povray_scene.py SCENE.nff BOUNCES WxH     writes the scene to stdout, for a picture of W x H pixels
+    tools/povray_scene.py SCENE.nff BOUNCES WxH     writes the scene to stdout, for an image of W x H pixels
 
 Differences between POV-Ray and the shading of kernels/README.md, and how the scene works around them:
 
-- A surface with transmittance T keeps only 1 - T of its own colour, so Kd is divided by that (at T = 1 all colour is lost).
+- A surface with transmittance T keeps only 1 - T of its own colour, so Kd is divided by 1 - T (at T = 1 all colour is lost).
 - Light passes through transmitting objects. Their shadow comes from an opaque twin that only shadow rays see.
 - Which side of a surface is glass depends on the objects that the ray has entered, not on normals.
-- Objects are visible from both sides. One of negative radius is clear outside; a ray that passes there loses a level.
+- Objects are visible from both sides. An object of negative radius is clear outside; a ray that passes through its outside loses a level.
 - Polygons become triangles, and the triangles of one surface a mesh, which POV-Ray intersects fastest.
 - Checkers are cubes. They are stretched along the axis that the checker ignores.
 
@@ -72,7 +72,7 @@ def normalized(a):
 
 
 def newell_normal(vertices):
-    """Newell's normal of a polygon; its length is twice the area."""
+    """Returns Newell's normal of a polygon; its length is twice the area."""
     total = (0.0, 0.0, 0.0)
     for a, b in zip(vertices, vertices[1:] + vertices[:1]):
         total = tuple(t + c for t, c in zip(total, cross(a, b)))
@@ -80,7 +80,7 @@ def newell_normal(vertices):
 
 
 def largest_axis(normal):
-    """Axis of the component with the largest magnitude; the first of equal ones."""
+    """Returns the axis of the component with the largest magnitude; of equal ones, the first."""
     return max(range(3), key=lambda axis: abs(normal[axis]))
 
 
@@ -88,23 +88,23 @@ class Tokens:
     """The tokens of a file, without comments, each with its line."""
 
     def __init__(self, text, name):
-        self.name, self.at, self.tokens = name, 0, []
+        self.name, self.position, self.tokens = name, 0, []
         for number, line in enumerate(text.splitlines(), 1):
-            plain = line if line.split()[:1] == ["#raya"] else line.partition("#")[0]
-            self.tokens += [(token, number) for token in plain.split()]
+            kept = line if line.split()[:1] == ["#raya"] else line.partition("#")[0]
+            self.tokens += [(token, number) for token in kept.split()]
 
     def refuse(self, reason):
-        line = self.tokens[max(0, self.at - 1)][1] if self.tokens else 1
+        line = self.tokens[max(0, self.position - 1)][1] if self.tokens else 1
         raise SceneError(f"{self.name}:{line}: {reason}")
 
-    def left(self):
-        return self.at < len(self.tokens)
+    def has_more(self):
+        return self.position < len(self.tokens)
 
     def take(self):
-        if not self.left():
+        if not self.has_more():
             self.refuse("the file ends within an entity")
-        self.at += 1
-        return self.tokens[self.at - 1][0]
+        self.position += 1
+        return self.tokens[self.position - 1][0]
 
     def number(self):
         token = self.take()
@@ -117,7 +117,7 @@ class Tokens:
         return tuple(self.number() for _ in range(count))
 
     def number_follows(self):
-        return self.left() and self.tokens[self.at][0].lstrip("+-").lstrip(".")[:1].isdigit()
+        return self.has_more() and self.tokens[self.position][0].lstrip("+-").lstrip(".")[:1].isdigit()
 
 
 def take_view(tokens):
@@ -132,23 +132,23 @@ def take_view(tokens):
 
 
 def take_polygon(tokens, patch):
-    """(vertices, normals or None)"""
+    """Reads the vertices of a polygon or patch. Returns (vertices, normals or None)."""
     corners = [tokens.numbers(6 if patch else 3) for _ in range(int(tokens.number()))]
     normals = [normalized(corner[3:]) for corner in corners] if patch else None
     return [corner[:3] for corner in corners], normals
 
 
 def parse_nff(text, name="scene"):
-    """Scene of an NFF file. Raises SceneError."""
+    """Returns the scene of an NFF file. Raises SceneError."""
     tokens, scene, surface, checker = Tokens(text, name), Scene(), Surface(), None
 
     def flat_surface(normal):
-        """Surface of a plane or polygon, with the checker that precedes it, if any."""
+        """Returns the surface of a plane or polygon, with the checker that precedes it, if any."""
         nonlocal checker
         squares, checker = checker, None
         return replace(surface, checker=squares, axis=largest_axis(normal)) if squares else surface
 
-    while tokens.left():
+    while tokens.has_more():
         entity = tokens.take()
         entity += " " + tokens.take() if entity == "#raya" else ""
         if entity == "v":
@@ -164,9 +164,9 @@ def parse_nff(text, name="scene"):
         elif entity in ("p", "pp"):
             vertices, normals = take_polygon(tokens, entity == "pp")
             normal = newell_normal(vertices)
-            own = flat_surface(normal)
+            polygon_surface = flat_surface(normal)
             if any(normal):  # a polygon without area is invisible
-                scene.polygons.append((vertices, normals, own))
+                scene.polygons.append((vertices, normals, polygon_surface))
         elif entity == "c":
             scene.cones.append((tokens.numbers(3), tokens.number(), tokens.numbers(3), tokens.number(), surface))
         elif entity == "#raya plane":
@@ -186,23 +186,23 @@ def triangles(vertices):
     normal = newell_normal(vertices)
     axis = largest_axis(normal)
     turn = math.copysign(1, normal[axis])
-    flat = [(v[(axis + 1) % 3], turn * v[(axis + 2) % 3]) for v in vertices]  # counter-clockwise
+    projected = [(v[(axis + 1) % 3], turn * v[(axis + 2) % 3]) for v in vertices]  # counter-clockwise
 
     def area(a, b, c):
         return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
-    def is_ear(corner, rest):
-        a, b, c = (flat[i] for i in corner)
-        others = (flat[i] for i in rest if flat[i] not in (a, b, c))
-        return area(a, b, c) > 0 and not any(min(area(a, b, p), area(b, c, p), area(c, a, p)) >= 0 for p in others)
+    def is_ear(corner, remaining):
+        a, b, c = (projected[i] for i in corner)
+        other_points = (projected[i] for i in remaining if projected[i] not in (a, b, c))
+        return area(a, b, c) > 0 and not any(min(area(a, b, p), area(b, c, p), area(c, a, p)) >= 0 for p in other_points)
 
-    rest, found = list(range(len(vertices))), []
-    while len(rest) > 3:
-        corners = [(rest[i - 1], rest[i], rest[(i + 1) % len(rest)]) for i in range(len(rest))]
-        ear = next((corner for corner in corners if is_ear(corner, rest)), corners[1])  # a self-intersecting polygon may have no ear
+    remaining, found = list(range(len(vertices))), []
+    while len(remaining) > 3:
+        corners = [(remaining[i - 1], remaining[i], remaining[(i + 1) % len(remaining)]) for i in range(len(remaining))]
+        ear = next((corner for corner in corners if is_ear(corner, remaining)), corners[1])  # a self-intersecting polygon may have no ear
         found.append(ear)
-        rest.remove(ear[1])
-    return found + [tuple(rest)]
+        remaining.remove(ear[1])
+    return found + [tuple(remaining)]
 
 
 def vector(v):
@@ -249,16 +249,17 @@ class Surfaces:
 
 
 def camera(view, width, height):
-    """POV-Ray's camera: right and up span the picture at distance 1 along the gaze, in NFF's handedness."""
+    """Returns POV-Ray's camera: right and up span the image at distance 1 along the gaze, in NFF's handedness."""
     gaze = normalized(minus(view["at"], view["from"]))
     right = normalized(cross(gaze, view["up"]))
-    tall = 2 * math.tan(math.radians(view["angle"][0]) / 2)
-    parts = {"location": view["from"], "direction": gaze, "right": times(tall * width / height, right), "up": times(tall, cross(right, gaze))}
+    image_height = 2 * math.tan(math.radians(view["angle"][0]) / 2)
+    parts = {"location": view["from"], "direction": gaze, "right": times(image_height * width / height, right),
+             "up": times(image_height, cross(right, gaze))}
     return "camera { perspective " + " ".join(f"{name} {vector(value)}" for name, value in parts.items()) + " }"
 
 
 def meshes(polygons, surfaces):
-    """One mesh for each surface."""
+    """Yields one mesh for each surface."""
     by_surface = {}
     for vertices, normals, surface in polygons:
         faces = by_surface.setdefault(surface, [])
@@ -285,7 +286,7 @@ def objects(scene, surfaces):
 
 
 def povray_scene(scene, bounces, width, height):
-    """Text of the POV-Ray scene."""
+    """Returns the text of the POV-Ray scene."""
     count = len(scene.lights)
     intensity = math.sqrt(count) / (2 * count) if count else 1.0  # SPD's default for lights and ambient light
     surfaces = Surfaces(intensity)

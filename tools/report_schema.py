@@ -14,8 +14,8 @@ class Node:
     def __getitem__(self, key):
         return Node(self.schemas, self.file, self.value[key], f"{self.pointer}/{key}")
 
-    def get(self, key, other=None):
-        return self.value[key] if self.has(key) else other
+    def get(self, key, default=None):
+        return self.value[key] if self.has(key) else default
 
     def has(self, key):
         return isinstance(self.value, dict) and key in self.value

@@ -7,14 +7,15 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kBins = 32;           // number of bins along each axis
-constexpr std::uint32_t kMedianDepth = 24;  // from this depth on, parts are split into halves, which bounds the depth
+constexpr std::size_t kBins = 32;  // number of bins along each axis
+// From this depth on, parts are split into equal halves, which bounds the depth of the tree.
+constexpr std::uint32_t kMedianDepth = 24;
 
 // Twice the centre of an item's box along an axis.
-float middle(const BvhItem& item, std::size_t axis) { return item.box.low[axis] + item.box.high[axis]; }
+float doubled_centre(const BvhItem& item, std::size_t axis) { return item.box.low[axis] + item.box.high[axis]; }
 
-// Returns the number of leaves that `items` items need: their cost in the surface area heuristic.
-float leaves(std::size_t items) { return static_cast<float>((items + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH); }
+// Returns the number of leaves that `items` items need, which is their cost in the surface area heuristic.
+float leaf_count(std::size_t items) { return static_cast<float>((items + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH); }
 
 // Items that will become one child of a node, and their bounding box.
 struct Part {
@@ -38,87 +39,92 @@ struct Bin {
     std::size_t items = 0;
 };
 
-// The range of the items' centres (doubled, see middle()) along an axis, and its division into kBins equal bins.
+// The range of the items' centres (doubled, see doubled_centre()) along an axis, and its division into kBins equal
+// bins.
 struct Scale {
     float low = kInfinity, high = -kInfinity;
     float bins_per_unit = 0;
 
-    std::size_t bin(float middle) const {
-        return std::min(kBins - 1, static_cast<std::size_t>((middle - low) * bins_per_unit));
+    std::size_t bin(float doubled_centre) const {
+        return std::min(kBins - 1, static_cast<std::size_t>((doubled_centre - low) * bins_per_unit));
     }
 };
 
-using Bins = std::array<Bin, kBins>;  // along an axis
+using Bins = std::array<Bin, kBins>;  // all bins along one axis
 
 std::array<Scale, 3> scales_of(std::span<const BvhItem> items) {
     std::array<Scale, 3> scales;
     for (const BvhItem& item : items)
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            scales[axis].low = std::min(scales[axis].low, middle(item, axis));
-            scales[axis].high = std::max(scales[axis].high, middle(item, axis));
+            scales[axis].low = std::min(scales[axis].low, doubled_centre(item, axis));
+            scales[axis].high = std::max(scales[axis].high, doubled_centre(item, axis));
         }
     for (Scale& scale : scales) {
-        const float wide = scale.high - scale.low;
-        const float bins_per_unit = static_cast<float>(kBins) / wide;
-        scale.bins_per_unit = wide > 0 && bins_per_unit < kInfinity ? bins_per_unit : 0;
+        const float range = scale.high - scale.low;
+        const float bins_per_unit = static_cast<float>(kBins) / range;
+        scale.bins_per_unit = range > 0 && bins_per_unit < kInfinity ? bins_per_unit : 0;
     }
     return scales;
 }
 
-// A split plane between two bins: items in the bins up to `last` along the axis are on one side.
+// A split plane perpendicular to `axis`, between the bins `last_bin` and `last_bin` + 1.
 struct Cut {
     float cost = kInfinity;
-    std::size_t axis = 0, last = 0;
+    std::size_t axis = 0, last_bin = 0;
 };
 
+// Replaces `best` by the cheapest cut along `axis` if that is cheaper.
 void find_cut(Cut& best, std::size_t axis, const Bins& bins) {
-    std::array<float, kBins> above{};  // above[b]: cost of all bins above bin b
+    std::array<float, kBins> cost_above{};  // cost_above[b]: cost of all bins above bin b
     Bin sum;
     for (std::size_t b = kBins - 1; b > 0; --b) {
         extend(sum.box, bins[b].box);
         sum.items += bins[b].items;
-        above[b - 1] = area(sum.box) * leaves(sum.items);
+        cost_above[b - 1] = area(sum.box) * leaf_count(sum.items);
     }
-    const std::size_t all = sum.items + bins[0].items;
+    const std::size_t total_items = sum.items + bins[0].items;
     sum = {};
     for (std::size_t b = 0; b + 1 < kBins; ++b) {
         extend(sum.box, bins[b].box);
         sum.items += bins[b].items;
-        const float cost = area(sum.box) * leaves(sum.items) + above[b];
-        if (sum.items > 0 && sum.items < all && cost < best.cost) best = {cost, axis, b};
+        const float cost = area(sum.box) * leaf_count(sum.items) + cost_above[b];
+        if (sum.items > 0 && sum.items < total_items && cost < best.cost) best = {cost, axis, b};
     }
 }
 
 using Parts = std::array<Part, 2>;
 
-Parts halves_at(const Part& part, std::size_t items) {
+// Splits a part after its first `items` items.
+Parts split_after(const Part& part, std::size_t items) {
     return {part_of(part.items.first(items)), part_of(part.items.subspan(items))};
 }
 
-// Splits the items into two equal halves by object number: used if no bin boundary separates the items, or if the tree
+// Splits the items into two equal halves by object number. Used if no bin boundary separates the items, or if the tree
 // would become too deep.
 Parts even_halves(const Part& part) {
     std::sort(part.items.begin(), part.items.end(),
               [](const BvhItem& a, const BvhItem& b) { return a.number < b.number; });
-    return halves_at(part, part.items.size() / 2);
+    return split_after(part, part.items.size() / 2);
 }
 
+// Splits the items into those of the lowest kind and the others.
 Parts cut_by_kind(const Part& part) {
-    std::uint32_t kind = RAYA_LINK_OBJECT;  // lowest kind of the items
+    std::uint32_t kind = RAYA_LINK_OBJECT;  // lowest kind
     for (const BvhItem& item : part.items) kind = std::min(kind, item.kind);
     const auto others =
         std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) { return item.kind == kind; });
-    return halves_at(part, static_cast<std::size_t>(others - part.items.begin()));
+    return split_after(part, static_cast<std::size_t>(others - part.items.begin()));
 }
 
-// Splits the items into those in the bins up to `last` and the others. The boxes are the unions of the bins' boxes.
-Parts cut_at(const Part& part, const Cut& at, const Bins& bins, const Scale& scale) {
+// Splits the items into those in the bins up to Cut::last_bin and the others. The boxes of the parts are the unions of
+// the bins' boxes.
+Parts cut_at(const Part& part, const Cut& plane, const Bins& bins, const Scale& scale) {
     const auto others = std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) {
-        return scale.bin(middle(item, at.axis)) <= at.last;
+        return scale.bin(doubled_centre(item, plane.axis)) <= plane.last_bin;
     });
     const auto items = static_cast<std::size_t>(others - part.items.begin());
     Parts parts{{{part.items.first(items), kEmptyBounds}, {part.items.subspan(items), kEmptyBounds}}};
-    for (std::size_t b = 0; b < kBins; ++b) extend(parts[b <= at.last ? 0 : 1].box, bins[b].box);
+    for (std::size_t b = 0; b < kBins; ++b) extend(parts[b <= plane.last_bin ? 0 : 1].box, bins[b].box);
     return parts;
 }
 
@@ -129,7 +135,7 @@ Parts cut(const Part& part, std::uint32_t depth) {
     std::array<Bins, 3> bins;
     for (const BvhItem& item : part.items)
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            Bin& bin = bins[axis][scales[axis].bin(middle(item, axis))];
+            Bin& bin = bins[axis][scales[axis].bin(doubled_centre(item, axis))];
             extend(bin.box, item.box);
             ++bin.items;
         }
@@ -141,19 +147,19 @@ Parts cut(const Part& part, std::uint32_t depth) {
 
 class BvhBuilder {
   public:
-    explicit BvhBuilder(Bvh& tree) : tree_(tree), first_(tree.items.data()) {}
+    explicit BvhBuilder(Bvh& tree) : tree_(tree), first_item_(tree.items.data()) {}
 
-    BvhChild child(const Part& part, std::uint32_t depth) {
-        if (!part.is_leaf()) return {part.box, RAYA_LINK_NODE, node(part, depth), 0};
+    BvhChild make_child(const Part& part, std::uint32_t depth) {
+        if (!part.is_leaf()) return {part.box, RAYA_LINK_NODE, add_node(part, depth), 0};
         std::sort(part.items.begin(), part.items.end(),
                   [](const BvhItem& a, const BvhItem& b) { return a.number < b.number; });
-        return {part.box, part.items[0].kind, static_cast<std::uint32_t>(part.items.data() - first_),
+        return {part.box, part.items[0].kind, static_cast<std::uint32_t>(part.items.data() - first_item_),
                 static_cast<std::uint32_t>(part.items.size())};
     }
 
   private:
-    // Returns the children of a node: starts with the node's part and repeatedly splits the part with the largest
-    // surface area that is not a leaf, until there are RAYA_BVH_WIDTH parts or only leaves.
+    // Returns the children of the node made from `part`. Repeatedly splits the part with the largest surface area that
+    // is not a leaf, until there are RAYA_BVH_WIDTH parts or only leaves.
     std::vector<Part> children_of(const Part& part, std::uint32_t depth) const {
         std::vector<Part> parts = {part};
         while (parts.size() < RAYA_BVH_WIDTH) {
@@ -161,34 +167,34 @@ class BvhBuilder {
             for (Part& p : parts)
                 if (!p.is_leaf() && (!largest || area(p.box) > area(largest->box))) largest = &p;
             if (!largest) break;
-            const Parts halves = cut(*largest, depth);
-            *largest = halves[0];
-            parts.push_back(halves[1]);
+            const Parts pieces = cut(*largest, depth);
+            *largest = pieces[0];
+            parts.push_back(pieces[1]);
         }
         return parts;
     }
 
-    std::uint32_t node(const Part& part, std::uint32_t depth) {
+    std::uint32_t add_node(const Part& part, std::uint32_t depth) {
         const auto number = static_cast<std::uint32_t>(tree_.nodes.size());
         tree_.nodes.emplace_back();
         tree_.depth = std::max(tree_.depth, depth + 1);
         const std::vector<Part> parts = children_of(part, depth);
-        BvhNode made{};
-        for (const Part& p : parts) made.children[made.count++] = child(p, depth + 1);
-        tree_.nodes[number] = made;
+        BvhNode new_node{};
+        for (const Part& p : parts) new_node.children[new_node.count++] = make_child(p, depth + 1);
+        tree_.nodes[number] = new_node;
         return number;
     }
 
     Bvh& tree_;
-    const BvhItem* first_;
+    const BvhItem* first_item_;
 };
 
 }  // namespace
 
-void extend(Bounds& box, const Bounds& by) {
+void extend(Bounds& box, const Bounds& added) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.low[axis] = std::min(box.low[axis], by.low[axis]);
-        box.high[axis] = std::max(box.high[axis], by.high[axis]);
+        box.low[axis] = std::min(box.low[axis], added.low[axis]);
+        box.high[axis] = std::max(box.high[axis], added.high[axis]);
     }
 }
 
@@ -205,7 +211,7 @@ std::uint32_t max_leaf_items(std::uint32_t kind) {
 Bvh build_bvh(std::vector<BvhItem> items) {
     Bvh tree;
     tree.items = std::move(items);
-    if (!tree.items.empty()) tree.root = BvhBuilder(tree).child(part_of(tree.items), 0);
+    if (!tree.items.empty()) tree.root = BvhBuilder(tree).make_child(part_of(tree.items), 0);
     return tree;
 }
 

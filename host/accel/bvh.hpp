@@ -21,22 +21,24 @@ struct Bounds {
 };
 constexpr Bounds kEmptyBounds = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
-/// Extends `box` so that it contains `by`.
-void extend(Bounds& box, const Bounds& by);
-/// Returns half the surface area; 0 for kEmptyBounds.
+/// Extends `box` so that it contains `added`.
+void extend(Bounds& box, const Bounds& added);
+/// Returns half the surface area of a box; 0 for kEmptyBounds.
 float area(const Bounds& box);
 
 /// An object in a BVH.
 struct BvhItem {
     Bounds box;
     std::uint32_t number;  // object number
-    std::uint32_t kind;    // RAYA_LINK_SPHERES, _FACES, _POLYGON, _CONES or _OBJECT: equal within a leaf
+    // RAYA_LINK_SPHERES, _FACES, _POLYGON, _CONES or _OBJECT; all items of a leaf have the same kind.
+    std::uint32_t kind;
 };
 
+/// A child of a node: a leaf or another node.
 struct BvhChild {
     Bounds box;
     std::uint32_t kind;   // RAYA_LINK_*
-    std::uint32_t first;  // index in Bvh::nodes, or for a leaf, index of its first item in Bvh::items
+    std::uint32_t first;  // of a node: its index in Bvh::nodes; of a leaf: index of its first item in Bvh::items
     std::uint32_t items;  // number of items of a leaf, 1..max_leaf_items(kind); 0 for a node
 };
 
@@ -60,8 +62,8 @@ Bvh build_bvh(std::vector<BvhItem> items);
 
 /// Builds a BVH over the finite objects of a job, appends it to the job's words in the layout of kernels/shared/bvh.h,
 /// and sets accel_at in the job's header. The box of an object contains every point at which a kernel can compute a hit
-/// of it (hit_regions.hpp), with a margin for rounding errors of the traversal. Throws UserError if the BVH has more
-/// rows than its links can address.
+/// of the object (hit_regions.hpp), with a margin for rounding errors of the traversal. Throws UserError if the BVH has
+/// more rows than its links can address.
 AccelSummary append_bvh(PackedJob& job, const NumberFormat& format);
 
 /// Returns true if rendering this scene with a BVH is expected to be faster than testing every ray against all objects.

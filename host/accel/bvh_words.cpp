@@ -21,6 +21,7 @@ constexpr std::uint32_t kWidth = RAYA_BVH_WIDTH;
 // results, so t has an error of at most 4 2^-24 (|side| + |O|) / |D|. The bound has a margin of a factor of 2.
 double traversal_error(double side, double reach) { return 8 * 0x1p-24 * (std::abs(side) + reach); }
 
+// below() and above() return x rounded to a float that is at most, or at least, x.
 float below(double x) {
     const auto nearest = static_cast<float>(x);
     return nearest > x ? std::nextafter(nearest, -kInfinity) : nearest;
@@ -39,9 +40,9 @@ Bounds bounds_of(const Box& box, double reach) {
 
 // Chooses the reach: the maximum coordinate of ray origins for which the boxes are valid, in multiples of the scene's
 // extent. Reflected rays can start anywhere on an infinite plane, so a scene with planes gets a larger reach: it is
-// doubled up to kMax as long as regions stay bounded and grow by at most kShareOfBox of their mean longest side.
+// doubled up to kMax as long as regions stay bounded and grow by at most kFractionOfBox of their mean longest side.
 double reach_for(const PackedJob& job, const NumberFormat& format) {
-    constexpr double kMin = 2, kMax = 1024, kShareOfBox = 1.0 / 64;
+    constexpr double kMin = 2, kMax = 1024, kFractionOfBox = 1.0 / 64;
     const HitRegions regions(job, format, kMin);
     if (!regions.known() || regions.size() == 0 || job.header().objects.planes == 0) return kMin;
     double sides = 0;
@@ -51,7 +52,7 @@ double reach_for(const PackedJob& job, const NumberFormat& format) {
     }
     const double mean_side = sides / static_cast<double>(regions.size());
     double reach = kMin;
-    while (reach < kMax && regions.slack(2 * reach) <= kShareOfBox * mean_side &&
+    while (reach < kMax && regions.slack(2 * reach) <= kFractionOfBox * mean_side &&
            HitRegions(job, format, 2 * reach).known())
         reach *= 2;
     return reach;
@@ -127,7 +128,7 @@ class BvhWriter {
         return raya_link(RAYA_LINK_NODE, 1, row);
     }
 
-    // Calls put(column, object number) for each column; unused columns repeat the first item.
+    // Calls put(column, object number) for each column of a leaf. Unused columns repeat the first item.
     template <class Put>
     static void for_columns(std::span<const BvhItem> items, const Put& put) {
         for (std::uint32_t column = 0; column < kWidth; ++column)
@@ -142,8 +143,8 @@ class BvhWriter {
     std::uint32_t put_spheres(std::span<const BvhItem> items) {
         const std::uint32_t row = take_rows(RAYA_BVH_SPHERES);
         for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
-            const std::size_t sphere = job_.header().objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
-            put_column(row, column, job_.words().data() + sphere, RAYA_BVH_NUMBERS);
+            const std::size_t sphere_at = job_.header().objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
+            put_column(row, column, job_.words().data() + sphere_at, RAYA_BVH_NUMBERS);
             word(row + RAYA_BVH_NUMBERS, column) = number;
         });
         return raya_link(RAYA_LINK_SPHERES, static_cast<std::uint32_t>(items.size()), row);
@@ -177,10 +178,10 @@ class BvhWriter {
         for (std::uint32_t axis = 0; axis < 3; ++axis) {
             float low = kInfinity, high = -kInfinity;
             for (std::uint32_t i = 0; i < rows * kWidth; ++i) {
-                const std::uint32_t place = corner(polygon, i < corners ? i : 0)[axis];
-                low = std::min(low, std::bit_cast<float>(place));
-                high = std::max(high, std::bit_cast<float>(place));
-                word(row + 1 + axis * rows, i) = place;
+                const std::uint32_t coordinate = corner(polygon, i < corners ? i : 0)[axis];
+                low = std::min(low, std::bit_cast<float>(coordinate));
+                high = std::max(high, std::bit_cast<float>(coordinate));
+                word(row + 1 + axis * rows, i) = coordinate;
             }
             word(row, RAYA_BVH_OUTLINE_LOW + axis) = std::bit_cast<std::uint32_t>(low);
             word(row, RAYA_BVH_OUTLINE_HIGH + axis) = std::bit_cast<std::uint32_t>(high);
@@ -191,10 +192,10 @@ class BvhWriter {
     std::uint32_t put_cones(std::span<const BvhItem> items) {
         const std::uint32_t row = take_rows(RAYA_BVH_CONES);
         const raya_objects& objects = job_.header().objects;
-        const std::uint32_t first = objects.spheres + objects.planes + objects.polygons;
+        const std::uint32_t first_cone = objects.spheres + objects.planes + objects.polygons;
         for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
-            const std::size_t at = objects.cones_at + std::size_t{number - first} * RAYA_CONE_WORDS;
-            const std::uint32_t* cone = job_.words().data() + at;
+            const std::size_t cone_at = objects.cones_at + std::size_t{number - first_cone} * RAYA_CONE_WORDS;
+            const std::uint32_t* cone = job_.words().data() + cone_at;
             put_column(row + RAYA_BVH_BASE, column, cone + RAYA_CONE_BASE, 3);
             word(row + RAYA_BVH_RADIUS, column) = cone[RAYA_CONE_RADIUS];
             put_column(row + RAYA_BVH_AXIS, column, cone + RAYA_CONE_AXIS, 3);
@@ -216,77 +217,80 @@ class BvhWriter {
     std::uint64_t leaves_ = 0;
 };
 
+// The objects of a job, for a BVH.
 struct BvhItems {
     std::vector<BvhItem> items;           // empty if the hit regions are unbounded
-    std::vector<std::uint32_t> separate;  // large objects, listed separately, ascending
-    double reach = -1;                    // the boxes are valid for ray origins with coordinates up to this; -1: none
+    std::vector<std::uint32_t> separate;  // numbers of the separate objects, ascending
+    double reach = -1;  // maximum coordinate of ray origins for which the boxes are valid; -1: no boxes
 };
 
-// Objects that nearly every ray reaches (the ground below a scene, walls around it) are listed separately: testing such
-// an object for V rays at once costs a ray less than visiting a leaf. If there are more than kMaxSeparate such objects,
-// none is listed separately.
+// Large objects (the ground below a scene, walls around it) are listed separately. Nearly every ray reaches them, and
+// testing such an object for V rays at once takes less time per ray than visiting a leaf. If there are more than
+// kMaxSeparate large objects, none is listed separately.
 constexpr std::size_t kMaxSeparate = 8;
-constexpr float kLargeArea = 1.0F / 8;  // an object is large if its box has a larger fraction of the whole box's area
+// An object is large if the area of its box is more than this fraction of the area of the whole scene's box.
+constexpr float kLargeArea = 1.0F / 8;
 
-void separate_large_items(BvhItems& all) {
+void separate_large_items(BvhItems& objects) {
     Bounds whole = kEmptyBounds;
-    for (const BvhItem& item : all.items) extend(whole, item.box);
+    for (const BvhItem& item : objects.items) extend(whole, item.box);
     const auto is_large = [&](const BvhItem& item) { return area(item.box) > kLargeArea * area(whole); };
-    const auto large = static_cast<std::size_t>(std::count_if(all.items.begin(), all.items.end(), is_large));
+    const auto large = static_cast<std::size_t>(std::count_if(objects.items.begin(), objects.items.end(), is_large));
     if (large > kMaxSeparate) return;
-    for (const BvhItem& item : all.items)
-        if (is_large(item)) all.separate.push_back(item.number);
-    std::erase_if(all.items, is_large);
+    for (const BvhItem& item : objects.items)
+        if (is_large(item)) objects.separate.push_back(item.number);
+    std::erase_if(objects.items, is_large);
 }
 
 BvhItems bvh_items(const PackedJob& job, const NumberFormat& format) {
-    BvhItems all;
+    BvhItems objects;
     const HitRegions regions(job, format, reach_for(job, format));
-    if (!regions.known()) return all;
-    all.reach = regions.reach();
-    all.items.reserve(regions.size());
+    if (!regions.known()) return objects;
+    objects.reach = regions.reach();
+    objects.items.reserve(regions.size());
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const std::uint32_t number = regions.number(i);
-        all.items.push_back({bounds_of(regions.region(i).box, all.reach), number, kind_of(job, format, number)});
+        objects.items.push_back(
+            {bounds_of(regions.region(i).box, objects.reach), number, kind_of(job, format, number)});
     }
-    separate_large_items(all);
-    return all;
+    separate_large_items(objects);
+    return objects;
 }
 
 }  // namespace
 
 bool bvh_pays(const Scene& scene, const NumberFormat& format) {
-    constexpr double kFew = 160;
+    constexpr double kMinCost = 160;  // cost of testing a ray against all objects, in sphere tests
     double corners = 0;
     for (const Polygon& polygon : scene.polygons) corners += static_cast<double>(polygon.vertices.size());
     const auto spheres = static_cast<double>(scene.spheres.size()), cones = static_cast<double>(scene.cones.size());
-    return kFew < (format.is_fp32() ? spheres + 1.25 * corners + 8 * cones : spheres + 3 * corners + 32 * cones);
+    return kMinCost < (format.is_fp32() ? spheres + 1.25 * corners + 8 * cones : spheres + 3 * corners + 32 * cones);
 }
 
 AccelSummary append_bvh(PackedJob& job, const NumberFormat& format) {
-    BvhItems all = bvh_items(job, format);
-    const Bvh tree = build_bvh(std::move(all.items));
+    BvhItems objects = bvh_items(job, format);
+    const Bvh tree = build_bvh(std::move(objects.items));
     BvhWriter writer(tree, job);
     raya_bvh header{};
-    header.reach = static_cast<float>(all.reach);
+    header.reach = static_cast<float>(objects.reach);
     header.root = tree.items.empty() ? RAYA_NO_TREE : writer.put(tree.root);
-    const std::size_t at = job.words().size(), end = at + kWordsOf<raya_bvh> + all.separate.size();
+    const std::size_t bvh_at = job.words().size(), end = bvh_at + kWordsOf<raya_bvh> + objects.separate.size();
     const std::size_t rows_at = (end + kWidth - 1) / kWidth * kWidth;
     if (writer.words().size() / kWidth > RAYA_LINK_ROW)
         throw UserError(fmt::format(
             "--accel bvh: the BVH needs {} rows of 64 bytes, more than its links can address; use fewer objects",
             writer.words().size() / kWidth));
-    header.separate = static_cast<std::uint32_t>(all.separate.size());
-    header.separate_at = static_cast<std::uint32_t>(at + kWordsOf<raya_bvh>);
+    header.separate = static_cast<std::uint32_t>(objects.separate.size());
+    header.separate_at = static_cast<std::uint32_t>(bvh_at + kWordsOf<raya_bvh>);
     header.rows_at = static_cast<std::uint32_t>(rows_at);
-    std::vector<std::uint32_t> words(rows_at - at);
+    std::vector<std::uint32_t> words(rows_at - bvh_at);
     put_record(words, 0, header);
-    std::copy(all.separate.begin(), all.separate.end(), words.begin() + kWordsOf<raya_bvh>);
+    std::copy(objects.separate.begin(), objects.separate.end(), words.begin() + kWordsOf<raya_bvh>);
     words.insert(words.end(), writer.words().begin(), writer.words().end());
     job.append(words);
-    raya_job with_tree = job.header();
-    with_tree.accel_at = static_cast<std::uint32_t>(at);
-    job.set_header(with_tree);
+    raya_job new_header = job.header();
+    new_header.accel_at = static_cast<std::uint32_t>(bvh_at);
+    job.set_header(new_header);
     return {.kind = AccelKind::kBvh,
             .words = words.size(),
             .separate = header.separate,

@@ -12,13 +12,15 @@
 namespace raya {
 namespace {
 
-// Measured on SPD's balls, lattice and tetra and on 8,320 uniform spheres (fp32, 16 lanes): 2, 4 and 8 voxels per
-// object are about equally fast. 1 takes up to 1.5 times as long; 16 takes up to 1.4 times as long and twice the
-// memory.
+// Measured on SPD's balls, lattice and tetra and on 8,320 uniform spheres (fp32, 16 lanes): grids of 2, 4 and 8 voxels
+// per object are about equally fast. A grid of 1 voxel per object takes up to 1.5 times as long; a grid of 16 takes up
+// to 1.4 times as long and twice the memory.
 constexpr double kVoxelsPerObject = 4;
 
-constexpr double kMinReach = 2;        // reach for choosing objects and voxels, in multiples of the scene's extent
-constexpr double kLargeSide = 0.75;    // large: longest side over this fraction of that of the whole box
+// Reach for which large objects and divisions are chosen, in multiples of the scene's extent.
+constexpr double kMinReach = 2;
+// An object is large if its longest side exceeds this fraction of the whole box's longest side.
+constexpr double kLargeSide = 0.75;
 constexpr std::size_t kMaxLarge = 16;  // maximum number of large objects; see large_objects()
 
 double longest_side(const Box& box) {
@@ -26,7 +28,7 @@ double longest_side(const Box& box) {
     return std::max({sides.x, sides.y, sides.z});
 }
 
-std::uint32_t word_number(std::size_t at) { return static_cast<std::uint32_t>(at); }
+std::uint32_t as_word(std::size_t number) { return static_cast<std::uint32_t>(number); }
 
 // The sections of a grid's words after its header.
 struct GridLists {
@@ -40,7 +42,7 @@ void put_sphere(GridLists& lists, const std::vector<std::uint32_t>& words, const
     lists.numbers.push_back(number);
 }
 
-// Appends a link row (kernels/shared/grid.h). `next`: voxel word of the rest of the list; `number`: the row's object.
+// Appends a link row (kernels/shared/grid.h). `next`: voxel word of the remaining list; `number`: object of the row.
 void put_link(GridLists& lists, std::uint32_t next, std::uint32_t number) {
     lists.rows.insert(lists.rows.end(), {next, 0, 0, 0});
     lists.numbers.push_back(number);
@@ -48,7 +50,7 @@ void put_link(GridLists& lists, std::uint32_t next, std::uint32_t number) {
 
 // Returns the voxel word of a list that starts at `row`: `spheres` rows of spheres, followed by a link row if `linked`.
 std::uint32_t voxel_word(std::size_t row, std::size_t spheres, bool linked) {
-    return word_number(row) | word_number(spheres) * RAYA_ONE_ROW | (linked ? RAYA_LINKED : 0);
+    return as_word(row) | as_word(spheres) * RAYA_ONE_ROW | (linked ? RAYA_LINKED : 0);
 }
 
 // Appends a non-empty list and returns its voxel word. Spheres come first because their numbers are the lowest.
@@ -56,14 +58,13 @@ std::uint32_t put_list(GridLists& lists, const std::vector<std::uint32_t>& words
                        std::span<const std::uint32_t> list) {
     const auto end_of_spheres = std::lower_bound(list.begin(), list.end(), objects.spheres);
     const auto spheres = static_cast<std::size_t>(end_of_spheres - list.begin());
-    const auto in_word = [&](std::size_t from) { return std::min<std::size_t>(spheres - from, RAYA_MAX_ROWS); };
-    const auto word_from = [&](std::size_t from, std::size_t row) {
-        return voxel_word(row, in_word(from), from + in_word(from) < list.size());
+    const auto spheres_in_word = [&](std::size_t i) { return std::min<std::size_t>(spheres - i, RAYA_MAX_ROWS); };
+    const auto word_at = [&](std::size_t i, std::size_t row) {  // word of the list from its object i on
+        return voxel_word(row, spheres_in_word(i), i + spheres_in_word(i) < list.size());
     };
-    const std::uint32_t word = word_from(0, lists.numbers.size());
+    const std::uint32_t word = word_at(0, lists.numbers.size());
     for (std::size_t i = 0; i < spheres; ++i) {
-        if (i > 0 && i % RAYA_MAX_ROWS == 0)
-            put_link(lists, word_from(i, lists.numbers.size() + 1), RAYA_NO_OBJECT_HERE);
+        if (i > 0 && i % RAYA_MAX_ROWS == 0) put_link(lists, word_at(i, lists.numbers.size() + 1), RAYA_NO_OBJECT_HERE);
         put_sphere(lists, words, objects, list[i]);
     }
     for (std::size_t i = spheres; i < list.size(); ++i)
@@ -107,41 +108,41 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
 Partition accel_partition(const PackedJob& job, const NumberFormat& format, const Accel& accel) {
     if (accel.divisions) return partition(job, format, *accel.divisions);
     const std::vector<std::uint32_t> separate = large_objects(job, format);
-    const HitRegions rest(job, format, kMinReach, separate);
-    // If the hit regions are unbounded, every object is in every list, so one voxel is enough.
-    const double voxels = rest.known() ? std::max(1.0, kVoxelsPerObject * static_cast<double>(rest.size())) : 1;
+    const HitRegions regions(job, format, kMinReach, separate);
+    // If the hit regions are unbounded, every list has all objects, so one voxel is enough.
+    const double voxels = regions.known() ? std::max(1.0, kVoxelsPerObject * static_cast<double>(regions.size())) : 1;
     return partition(job, format, divisions_for(job, format, static_cast<std::uint64_t>(voxels), separate), separate);
 }
 
 AccelSummary append_grid(PackedJob& job, const Partition& p) {
     const GridLists lists = grid_lists(job.words(), job.header().objects, p);
-    const std::size_t end = job.words().size(), at = padded_to_rows(end);
+    const std::size_t end = job.words().size(), grid_at = padded_to_rows(end);
     raya_grid_words header{};
-    std::size_t next = at + kWordsOf<raya_grid_words>;
-    const auto place = [&](std::size_t count) { return word_number(std::exchange(next, next + count)); };
+    std::size_t next = grid_at + kWordsOf<raya_grid_words>;
+    const auto reserve_words = [&](std::size_t count) { return as_word(std::exchange(next, next + count)); };
     header.grid = p.grid;
-    header.separate = word_number(p.separate.size());
-    header.separate_at = place(p.separate.size());
-    header.voxels_at = place(lists.voxels.size());
+    header.separate = as_word(p.separate.size());
+    header.separate_at = reserve_words(p.separate.size());
+    header.voxels_at = reserve_words(lists.voxels.size());
     next = padded_to_rows(next);  // a row of four words is one aligned memory access
-    header.rows_at = place(lists.rows.size());
-    header.numbers_at = place(lists.numbers.size());
+    header.rows_at = reserve_words(lists.rows.size());
+    header.numbers_at = reserve_words(lists.numbers.size());
     if (next > kMaxWords || lists.numbers.size() > RAYA_ROW_NUMBER)
         throw UserError(fmt::format(
             "--accel grid: the grid needs {} words, more than 32-bit indices can address; use fewer voxels", next));
     std::vector<std::uint32_t> words(next - end);
-    put_record(words, at - end, header);
-    const auto put = [&](const std::vector<std::uint32_t>& from, std::uint32_t to) {
-        std::copy(from.begin(), from.end(), words.begin() + static_cast<std::ptrdiff_t>(to - end));
+    put_record(words, grid_at - end, header);
+    const auto put = [&](const std::vector<std::uint32_t>& list, std::uint32_t list_at) {
+        std::copy(list.begin(), list.end(), words.begin() + static_cast<std::ptrdiff_t>(list_at - end));
     };
     put(p.separate, header.separate_at);
     put(lists.voxels, header.voxels_at);
     put(lists.rows, header.rows_at);
     put(lists.numbers, header.numbers_at);
     job.append(words);
-    raya_job with_grid = job.header();
-    with_grid.accel_at = word_number(at);
-    job.set_header(with_grid);
+    raya_job new_header = job.header();
+    new_header.accel_at = as_word(grid_at);
+    job.set_header(new_header);
     return {.kind = AccelKind::kGrid,
             .words = words.size(),
             .divisions = {p.grid.divisions[0], p.grid.divisions[1], p.grid.divisions[2]},

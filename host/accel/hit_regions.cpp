@@ -3,7 +3,7 @@
 // higher orders for Y >= 10.
 //
 //   u  relative rounding error of one operation      f  flush-to-zero threshold: smaller results become 0
-//   s  maximum of | |D|^2 - 1 |                      n  maximum distance from a ray's origin O to the object
+//   s  maximum of | |D|^2 - 1 |, D: the direction     n  maximum distance from a ray's origin O to the object
 //   a' computed value of a                           "a = b up to e" means |a - b| <= e
 //
 // The region of an object contains the exact point X = O + t'D for every computed hit distance t'.
@@ -13,13 +13,13 @@
 // l'.D = b (1 - |D|^2) up to 6un. Hence |X - C|^2 = r^2 up to 2r (s + 6u) n + r^2 (s + 5u) + 3f.
 //
 // Polygon in the plane N.x = d. The sheared coordinates of a corner (kernels/geometry/polygon.clh) have an error of 4un
-// along each of the two axes, and an edge one of un more, so the distance of the ray from some point Q of the polygon
-// is at most 8un. The kernel compares O + t'D with the bounding box of the corners, widened by a margin. If the point
-// is inside, the region contains it, because the region's box has that margin and the rounding errors of both.
-// Otherwise t' is the distance at which the ray enters or leaves the box; that point lies between Q and the point at
-// the plane's t. The numerator and the denominator of the plane's t have errors of 3u (|d| + |O|) and 3u, so the point
-// at that t is off the plane by at most 4u (|d| + |O|) + 4ut, and O + t'D is off the plane by no more than this point
-// or Q.
+// along each of the two axes, and an edge has an additional error of un, so the distance of the ray from some point Q
+// of the polygon is at most 8un. The kernel compares O + t'D with the bounding box of the corners, widened by a margin.
+// If the point is inside, the region contains it, because the region's box has that margin and the rounding errors of
+// both. Otherwise t' is the distance at which the ray enters or leaves the box; that point lies between Q and the point
+// at the plane's t. The numerator and the denominator of the plane's t have errors of 3u (|d| + |O|) and 3u, so the
+// point at that t is off the plane by at most 4u (|d| + |O|) + 4ut. O + t'D is no farther from the plane than this
+// point or than Q.
 //
 // Cone, p = O - base. The ray's point closest to the base, p' + m'D, has an error of 3un along the ray and of 2un
 // across it; these errors shift X. All later quantities have at most the size S = |start| + |t|. Errors of the
@@ -40,9 +40,9 @@ namespace {
 
 Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
 
-void widen(Box& box, double by) {
-    box.min -= Vec3(by);
-    box.max += Vec3(by);
+void widen(Box& box, double margin) {
+    box.min -= Vec3(margin);
+    box.max += Vec3(margin);
 }
 
 // Squared distances from a point to the nearest and the farthest point of a box.
@@ -58,23 +58,28 @@ double farthest_square(const Vec3& p, const Box& box) {
     return distance.length2();
 }
 
-double segment_distance(const Vec3& p, const Vec3& from, const Vec3& along) {
-    const double square = along.length2();
-    const double share = square > 0 ? std::clamp((p - from).dot(along) / square, 0.0, 1.0) : 0;
-    return (p - from - share * along).length();
+// Distance from the point p to a segment.
+double segment_distance(const Vec3& p, const Vec3& start, const Vec3& segment) {
+    const double square = segment.length2();
+    const double fraction = square > 0 ? std::clamp((p - start).dot(segment) / square, 0.0, 1.0) : 0;
+    return (p - start - fraction * segment).length();
 }
 
 constexpr int kMinFractionBits = 10;  // minimum Y for which the constants cover the higher orders
 
 }  // namespace
 
-bool HitRegion::touches(const Box& part) const {
-    if (!box.intersects(part)) return false;
-    if (ball < kAll && (nearest_square(centre, part) > ball * ball || farthest_square(centre, part) < inner * inner))
+bool HitRegion::touches(const Box& other_box) const {
+    if (!box.intersects(other_box)) return false;
+    if (outer_radius < kUnbounded && (nearest_square(centre, other_box) > outer_radius * outer_radius ||
+                                      farthest_square(centre, other_box) < inner_radius * inner_radius))
         return false;
-    const Vec3 middle_of_part = 0.5 * (part.min + part.max), arm = 0.5 * (part.max - part.min);
-    if (half < kAll && std::abs(normal.dot(middle_of_part) - middle) > half + absolute(normal).dot(arm)) return false;
-    return around == kAll || segment_distance(middle_of_part, centre, along) <= around + arm.length();
+    const Vec3 box_centre = 0.5 * (other_box.min + other_box.max), half_sides = 0.5 * (other_box.max - other_box.min);
+    if (half_thickness < kUnbounded &&
+        std::abs(normal.dot(box_centre) - plane_distance) > half_thickness + absolute(normal).dot(half_sides))
+        return false;
+    return capsule_radius == kUnbounded ||
+           segment_distance(box_centre, centre, segment) <= capsule_radius + half_sides.length();
 }
 
 HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double reach,
@@ -105,7 +110,7 @@ double HitRegions::slack(double reach) const {
 double HitRegions::real(std::size_t at) const { return std::bit_cast<float>((*words_)[at]); }
 Vec3 HitRegions::vector(std::size_t at) const { return {real(at), real(at + 1), real(at + 2)}; }
 
-double HitRegions::farthest(const Vec3& place) const { return std::sqrt(3.0) * reach_ + place.length(); }
+double HitRegions::max_distance(const Vec3& point) const { return std::sqrt(3.0) * reach_ + point.length(); }
 
 HitRegion HitRegions::region(std::size_t i) const {
     const std::size_t number = numbers_[i], first_polygon = std::size_t{objects_.spheres} + objects_.planes;
@@ -119,31 +124,33 @@ HitRegion HitRegions::sphere(std::size_t at) const {
     HitRegion region;
     region.centre = vector(at + RAYA_SPHERE_CENTRE);
     const double radius = std::sqrt(std::abs(real(at + RAYA_SPHERE_SQUARE)));
-    const double slack = (24 * unit_ + 1.5 * stretch_) * (farthest(region.centre) + radius) + 4 * std::sqrt(smallest_);
-    region.ball = radius + slack;
-    region.inner = std::max(0.0, radius - slack);
+    const double slack =
+        (24 * unit_ + 1.5 * stretch_) * (max_distance(region.centre) + radius) + 4 * std::sqrt(smallest_);
+    region.outer_radius = radius + slack;
+    region.inner_radius = std::max(0.0, radius - slack);
     region.box = Box(region.centre, region.centre);
-    widen(region.box, region.ball);
+    widen(region.box, region.outer_radius);
     return region;
 }
 
 HitRegion HitRegions::polygon(std::size_t at) const {
     HitRegion region;
     region.normal = vector(at + RAYA_PLANE_NORMAL);
-    region.middle = real(at + RAYA_PLANE_DISTANCE);
-    double off_plane = 0, max_distance = 0;  // maximum distance of a corner: from the plane; from a ray's origin
+    region.plane_distance = real(at + RAYA_PLANE_DISTANCE);
+    double off_plane = 0, farthest_corner = 0;  // maximum distance of a corner: from the plane; from a ray's origin
     std::size_t corner = (*words_)[at + RAYA_POLYGON_CORNERS_AT];
     for (std::size_t i = (*words_)[at + RAYA_POLYGON_CORNERS]; i > 0; --i, corner += RAYA_CORNER_WORDS) {
-        const Vec3 place = vector(corner);
-        region.box.extendBy(place);
-        off_plane = std::max(off_plane, std::abs(region.normal.dot(place) - region.middle));
-        max_distance = std::max(max_distance, farthest(place));
+        const Vec3 position = vector(corner);
+        region.box.extendBy(position);
+        off_plane = std::max(off_plane, std::abs(region.normal.dot(position) - region.plane_distance));
+        farthest_corner = std::max(farthest_corner, max_distance(position));
     }
-    const double margin = 32 * unit_ * max_distance;  // covers the kernel's margin: RAYA_MARGIN is 16 or 8 times u
-    const double aside = 16 * unit_ * max_distance + 8 * std::sqrt(smallest_);
-    const double to_plane = std::abs(region.middle) + std::sqrt(3.0) * reach_;
-    widen(region.box, margin + aside);
-    region.half = 5 * unit_ * (to_plane + 2 * max_distance) + 4 * smallest_ * (1 + max_distance) + aside + off_plane;
+    const double margin = 32 * unit_ * farthest_corner;  // covers the kernel's margin: RAYA_MARGIN is 16 or 8 times u
+    const double in_plane = 16 * unit_ * farthest_corner + 8 * std::sqrt(smallest_);
+    const double plane_and_origin = std::abs(region.plane_distance) + std::sqrt(3.0) * reach_;
+    widen(region.box, margin + in_plane);
+    region.half_thickness = 5 * unit_ * (plane_and_origin + 2 * farthest_corner) +
+                            4 * smallest_ * (1 + farthest_corner) + in_plane + off_plane;
     return region;
 }
 
@@ -159,16 +166,16 @@ double HitRegions::cone_error(std::size_t at, double size) const {
 double HitRegions::cone_size(std::size_t at) const {
     const double r0 = real(at + RAYA_CONE_RADIUS), height = real(at + RAYA_CONE_HEIGHT);
     const double slope = real(at + RAYA_CONE_SLOPE), r1 = std::abs(r0 + slope * height);
-    const double within = height * height + std::max(r0, r1) * std::max(r0, r1);
-    const double skew = 2 * (6 * unit_ + stretch_) * farthest(vector(at + RAYA_CONE_BASE));
+    const double exact_square = height * height + std::max(r0, r1) * std::max(r0, r1);
+    const double skew = 2 * (6 * unit_ + stretch_) * max_distance(vector(at + RAYA_CONE_BASE));
     double size = 0;
     constexpr int kMaxIterations = 60;
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-        const double next = std::sqrt(2.1 * (within + cone_error(at, size))) + skew;
+        const double next = std::sqrt(2.1 * (exact_square + cone_error(at, size))) + skew;
         if (next <= size * 1.001) return next * 1.01;
         size = next;
     }
-    return HitRegion::kAll;
+    return HitRegion::kUnbounded;
 }
 
 bool HitRegions::cones_known() const {
@@ -176,8 +183,9 @@ bool HitRegions::cones_known() const {
         const std::size_t at = objects_.cones_at + i * RAYA_CONE_WORDS;
         const double steep = 1 + std::abs(real(at + RAYA_CONE_SLOPE));
         // No square in the kernel may saturate.
-        const double largest = (farthest(vector(at + RAYA_CONE_BASE)) * steep + real(at + RAYA_CONE_RADIUS)) * steep;
-        if (largest > square_limit_ || cone_size(at) == HitRegion::kAll) return false;
+        const double largest =
+            (max_distance(vector(at + RAYA_CONE_BASE)) * steep + real(at + RAYA_CONE_RADIUS)) * steep;
+        if (largest > square_limit_ || cone_size(at) == HitRegion::kUnbounded) return false;
     }
     return true;
 }
@@ -188,25 +196,25 @@ HitRegion HitRegions::cone(std::size_t at) const {
     const double r0 = real(at + RAYA_CONE_RADIUS), r1 = std::abs(r0 + slope * height);
     const double size = cone_size(at), error = cone_error(at, size);
     const double z_error = 8 * unit_ * size;  // error of the position z along the axis, at z = 0 and z = h
-    const double shift = 6 * unit_ * farthest(vector(at + RAYA_CONE_BASE)) + 12 * unit_ * size + 8 * smallest_;
+    const double shift = 6 * unit_ * max_distance(vector(at + RAYA_CONE_BASE)) + 12 * unit_ * size + 8 * smallest_;
     const Vec3 axis = vector(at + RAYA_CONE_AXIS).normalized();
     region.centre = vector(at + RAYA_CONE_BASE);
-    region.along = height * axis;
+    region.segment = height * axis;
     double widest = 0;
     for (const auto& [z, radius] : {std::pair{-z_error, r0}, std::pair{height + z_error, r1}}) {
-        const double inner = radius + std::abs(slope) * z_error;
-        const double outer = std::sqrt(inner * inner + error);
-        widest = std::max(widest, outer);
+        const double end_radius = radius + std::abs(slope) * z_error;
+        const double outer_end_radius = std::sqrt(end_radius * end_radius + error);
+        widest = std::max(widest, outer_end_radius);
         Vec3 arm;
-        for (int i = 0; i < 3; ++i) arm[i] = outer * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
+        for (int i = 0; i < 3; ++i) arm[i] = outer_end_radius * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
         region.box.extendBy(region.centre + z * axis - arm);
         region.box.extendBy(region.centre + z * axis + arm);
     }
     widen(region.box, shift);
-    region.around = widest + z_error + shift;
+    region.capsule_radius = widest + z_error + shift;
     region.normal = axis;
-    region.middle = axis.dot(region.centre) + 0.5 * height;
-    region.half = 0.5 * height + z_error + shift;
+    region.plane_distance = axis.dot(region.centre) + 0.5 * height;
+    region.half_thickness = 0.5 * height + z_error + shift;
     return region;
 }
 

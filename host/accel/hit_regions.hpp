@@ -1,5 +1,5 @@
-// Hit regions: for each finite object of a job, bounds of all points at which a kernel can compute a hit of the object,
-// including the rounding errors of the number format. Lengths are in the job's units.
+// Hit regions: for each finite object of a job, a region that contains all points at which a kernel can compute a hit
+// of the object, in spite of the rounding errors of the number format. Lengths are in the job's units.
 #pragma once
 #include <Imath/ImathBox.h>
 
@@ -17,21 +17,21 @@ using Box = Imath::Box3d;
 
 /// The intersection of a box, a spherical shell, a slab between two planes and a capsule around a segment.
 struct HitRegion {
-    static constexpr double kAll = std::numeric_limits<double>::infinity();
+    static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
     Box box;
-    Vec3 centre{0};                 // centre of the shell; start of the segment
-    double ball = kAll, inner = 0;  // outer (`ball`) and inner radius of the shell
-    Vec3 normal{0};                 // of the slab: points p with |dot(normal, p) - middle| <= half
-    double middle = 0, half = kAll;
-    Vec3 along{0};         // vector from the segment's start to its end
-    double around = kAll;  // radius of the capsule
+    Vec3 centre{0};                                          // centre of the shell; start of the segment
+    double outer_radius = kUnbounded, inner_radius = 0;      // of the shell
+    Vec3 normal{0};                                          // of the slab: the points p with
+    double plane_distance = 0, half_thickness = kUnbounded;  // |dot(normal, p) - plane_distance| <= half_thickness
+    Vec3 segment{0};                                         // vector from the segment's start to its end
+    double capsule_radius = kUnbounded;
 
-    /// Conservative intersection test: returns false only if the box `part` contains no point of the region.
-    bool touches(const Box& part) const;
+    /// Conservative intersection test: returns false only if `other_box` contains no point of the region.
+    bool touches(const Box& other_box) const;
 };
 
-/// One region per finite object of a job, without the separate objects, in the order of object numbers.
-/// Computed from the job's words, and so from the same numbers that the kernels use. The job must outlive this object.
+/// The hit regions of a job's finite objects without the separate objects, in the order of object numbers. They are
+/// computed from the job's words, which are the numbers that the kernels use. The job must outlive this object.
 class HitRegions {
   public:
     /// `reach`: maximum magnitude of the coordinates of ray origins, in multiples of the scene's extent
@@ -45,24 +45,25 @@ class HitRegions {
     /// Maximum magnitude of the coordinates of ray origins. The regions are valid for rays from such origins whose
     /// direction has length 1 up to rounding (rays for which is_wide() in kernels/grid/traversal.clh is false).
     double reach() const { return reach_; }
-    /// Radius margin: how much a sphere's region exceeds its radius at most, for ray origins with coordinates up to
-    /// `reach` extents. Does not include the error of results flushed to 0.
+    /// Maximum length by which a sphere's region exceeds the sphere's radius, for ray origins with coordinates up to
+    /// `reach` times the scene's extent. Does not include the error of results flushed to 0.
     double slack(double reach) const;
     /// Maximum distance of a hit: RAYA_FAR of the format.
     double far() const { return far_; }
 
+    /// Number of regions.
     std::size_t size() const { return numbers_.size(); }
-    /// The number in the job of the object of region i.
+    /// Object number of region i.
     std::uint32_t number(std::size_t i) const { return numbers_[i]; }
     /// Region i. Requires known().
     HitRegion region(std::size_t i) const;
 
   private:
-    // `at`: index of a word in the job; of an object's first word in sphere(), polygon() and cone...().
+    // `at`: index of a word in the job; in sphere(), polygon() and cone...() the index of the object's first word.
     double real(std::size_t at) const;
     Vec3 vector(std::size_t at) const;
-    // Upper bound of the distance from `place` to the origin of a ray within reach.
-    double farthest(const Vec3& place) const;
+    // Upper bound of the distance from `point` to the origin of a ray within reach.
+    double max_distance(const Vec3& point) const;
     HitRegion sphere(std::size_t at) const;
     HitRegion polygon(std::size_t at) const;
     HitRegion cone(std::size_t at) const;

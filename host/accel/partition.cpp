@@ -12,8 +12,9 @@
 namespace raya {
 namespace {
 
-constexpr double kMaxMeanEntries = 16;  // maximum mean length of lists, per object or voxel, with default divisions
-constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 30;  // entries of all lists: 4 GB
+// With default divisions, lists have on average at most this many entries per object or per voxel.
+constexpr double kMaxMeanEntries = 16;
+constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 30;  // maximum number of entries of all lists together: 4 GB
 
 double largest_coordinate(const Box& box) {
     double largest = 0;
@@ -38,7 +39,7 @@ Box box_around(const HitRegions& regions) {
     return Box(box.min - margin, box.max + margin);
 }
 
-// Returns a grid whose outer planes enclose the box, even with the kernels' rounding of the planes.
+// Returns a grid whose outer planes enclose the box although the kernels round the positions of the planes.
 raya_grid grid_over(const Box& box, const Divisions& divisions, double reach) {
     constexpr float kUp = std::numeric_limits<float>::infinity();
     raya_grid grid{};
@@ -75,18 +76,18 @@ class Voxels {
         for (std::uint32_t k = z.first; k <= z.last; ++k)
             for (std::uint32_t j = y.first; j <= y.last; ++j)
                 for (std::uint32_t i = x.first; i <= x.last; ++i)
-                    if (region.touches(around(i, j, k))) visit(raya_voxel(grid_, i, j, k));
+                    if (region.touches(enlarged_voxel(i, j, k))) visit(raya_voxel(grid_, i, j, k));
     }
 
   private:
     VoxelRange range(const Box& box, int axis) const {
         const std::vector<float>& planes = planes_[static_cast<std::size_t>(axis)];
-        const auto below = std::lower_bound(planes.begin() + 1, planes.end() - 1, box.min[axis] - slack_);
-        const auto above = std::upper_bound(below, planes.end() - 1, box.max[axis] + slack_);
-        return {static_cast<std::uint32_t>(below - planes.begin() - 1),
-                static_cast<std::uint32_t>(above - planes.begin() - 1)};
+        const auto first_plane = std::lower_bound(planes.begin() + 1, planes.end() - 1, box.min[axis] - slack_);
+        const auto last_plane = std::upper_bound(first_plane, planes.end() - 1, box.max[axis] + slack_);
+        return {static_cast<std::uint32_t>(first_plane - planes.begin() - 1),
+                static_cast<std::uint32_t>(last_plane - planes.begin() - 1)};
     }
-    Box around(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+    Box enlarged_voxel(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
         return Box(Vec3(planes_[0][i] - slack_, planes_[1][j] - slack_, planes_[2][k] - slack_),
                    Vec3(planes_[0][i + 1] + slack_, planes_[1][j + 1] + slack_, planes_[2][k + 1] + slack_));
     }
@@ -120,8 +121,8 @@ void fill_lists(Partition& p, const HitRegions& regions, const Voxels& voxels, c
     }
 }
 
-// Registers every object in every voxel.
-void register_everywhere(Partition& p, const HitRegions& regions, const Divisions& divisions) {
+// Adds every object to the list of every voxel.
+void list_all_objects(Partition& p, const HitRegions& regions, const Divisions& divisions) {
     const std::size_t voxels = p.starts.size() - 1;
     if (voxels * regions.size() > kMaxEntries) refuse_entries(divisions);
     for (std::size_t v = 0; v < voxels; ++v) {
@@ -131,8 +132,8 @@ void register_everywhere(Partition& p, const HitRegions& regions, const Division
 }
 
 void check_divisions(const Divisions& d) {
-    for (const std::uint64_t along : d)
-        if (along == 0 || along > kMaxPartitionVoxels || std::uint64_t{d[0]} * d[1] > kMaxPartitionVoxels ||
+    for (const std::uint64_t division : d)
+        if (division == 0 || division > kMaxPartitionVoxels || std::uint64_t{d[0]} * d[1] > kMaxPartitionVoxels ||
             std::uint64_t{d[0]} * d[1] * d[2] > kMaxPartitionVoxels)
             throw UserError(fmt::format("{}x{}x{} voxels: each number must be at least 1, their product at most {}",
                                         d[0], d[1], d[2], kMaxPartitionVoxels));
@@ -140,11 +141,11 @@ void check_divisions(const Divisions& d) {
 
 // Chooses the reach: the maximum coordinate of ray origins for which the lists are valid, in multiples of the scene's
 // extent. Reflected rays can start anywhere on an infinite plane, so a scene with planes gets a larger reach: it is
-// doubled up to kMax as long as regions stay bounded and grow by at most kShareOfVoxel of a voxel's shortest side. A
+// doubled up to kMax as long as regions stay bounded and grow by at most kFractionOfVoxel of a voxel's shortest side. A
 // ray from farther away is tested against all objects.
 double reach_for(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
                  const std::vector<std::uint32_t>& separate) {
-    constexpr double kMin = 2, kMax = 1024, kShareOfVoxel = 1.0 / 16;
+    constexpr double kMin = 2, kMax = 1024, kFractionOfVoxel = 1.0 / 16;
     const HitRegions regions(job, format, kMin, separate);
     if (!regions.known() || job.header().objects.planes == 0) return kMin;
     const Box box = box_around(regions);
@@ -152,7 +153,7 @@ double reach_for(const PackedJob& job, const NumberFormat& format, const Divisio
     for (int axis = 0; axis < 3; ++axis)
         side = std::min(side, (box.max[axis] - box.min[axis]) / divisions[static_cast<std::size_t>(axis)]);
     double reach = kMin;
-    while (reach < kMax && regions.slack(2 * reach) <= kShareOfVoxel * side &&
+    while (reach < kMax && regions.slack(2 * reach) <= kFractionOfVoxel * side &&
            HitRegions(job, format, 2 * reach, separate).known())
         reach *= 2;
     return reach;
@@ -183,27 +184,28 @@ class RegionSizes {
     // Returns the product of factor(axis) over the axes whose bits are set in `axes`.
     template <class Factor>
     static double product(std::size_t axes, const Factor& factor) {
-        double all = 1;
+        double result = 1;
         for (int a = 0; a < 3; ++a)
-            if (axes >> a & 1) all *= factor(a);
-        return all;
+            if (axes >> a & 1) result *= factor(a);
+        return result;
     }
-    std::array<double, 8> sums_{};  // [set of axes]: sum over all boxes of the product of their sides
+    // [set of axes, one bit per axis]: sum over all boxes of the product of their sides along these axes.
+    std::array<double, 8> sums_{};
 };
 
 // Divides a box with the given sides into about `voxels` voxels that are nearly cubes. Starts with the shortest side:
-// if it is shorter than a voxel's ideal side, it is not divided, and the other two axes get all divisions.
-Divisions cubes(const Vec3& sides, double voxels) {
+// if this side is shorter than that of an ideal voxel, it is not divided, and the other two sides get all divisions.
+Divisions cubic_divisions(const Vec3& sides, double voxels) {
     std::array<int, 3> axes = {0, 1, 2};
     std::sort(axes.begin(), axes.end(), [&](int a, int b) { return sides[a] < sides[b]; });
     double volume = sides.x * sides.y * sides.z;
     Divisions divisions{};
     for (std::size_t i = 0; i < axes.size(); ++i) {
-        const double cube = std::pow(volume / voxels, 1.0 / static_cast<double>(axes.size() - i));
-        const double along = std::max(1.0, i == 2 ? std::floor(voxels) : std::round(sides[axes[i]] / cube));
-        divisions[static_cast<std::size_t>(axes[i])] = static_cast<std::uint32_t>(along);
+        const double ideal_side = std::pow(volume / voxels, 1.0 / static_cast<double>(axes.size() - i));
+        const double axis_voxels = std::max(1.0, i == 2 ? std::floor(voxels) : std::round(sides[axes[i]] / ideal_side));
+        divisions[static_cast<std::size_t>(axes[i])] = static_cast<std::uint32_t>(axis_voxels);
         volume /= sides[axes[i]];
-        voxels /= along;
+        voxels /= axis_voxels;
     }
     return divisions;
 }
@@ -223,7 +225,7 @@ Partition partition(const PackedJob& job, const NumberFormat& format, const Divi
     if (regions.known())
         fill_lists(p, regions, Voxels(p.grid, traversal_error(box, regions.reach())), divisions);
     else
-        register_everywhere(p, regions, divisions);
+        list_all_objects(p, regions, divisions);
     return p;
 }
 
@@ -233,10 +235,11 @@ Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::u
     if (!regions.known()) return {1, 1, 1};
     const Box box = box_around(regions);
     const RegionSizes sizes(regions);
-    auto wanted = static_cast<double>(std::clamp<std::uint64_t>(voxels, 1, kMaxPartitionVoxels));
-    for (;; wanted /= 2) {
-        const Divisions divisions = cubes(box.max - box.min, wanted);
-        if (wanted <= 1 || sizes.entries(box, divisions) <= kMaxMeanEntries * std::max(wanted, sizes.objects()))
+    auto wanted_voxels = static_cast<double>(std::clamp<std::uint64_t>(voxels, 1, kMaxPartitionVoxels));
+    for (;; wanted_voxels /= 2) {
+        const Divisions divisions = cubic_divisions(box.max - box.min, wanted_voxels);
+        if (wanted_voxels <= 1 ||
+            sizes.entries(box, divisions) <= kMaxMeanEntries * std::max(wanted_voxels, sizes.objects()))
             return divisions;
     }
 }

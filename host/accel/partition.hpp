@@ -1,5 +1,5 @@
-// Voxel partition: divides a scene's bounding box into voxels, and registers each object in every voxel in which a
-// kernel can compute a hit of it.
+// Voxel partition: divides a scene's bounding box into voxels. Each voxel has a list of the objects of which a kernel
+// can compute a hit in the voxel.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -26,9 +26,9 @@ struct Partition {
     raya_grid grid{};
     std::vector<std::uint32_t> starts;    // [voxels + 1]: voxel v lists objects[starts[v] .. starts[v + 1] - 1]
     std::vector<std::uint32_t> objects;   // concatenated lists, each ascending
-    std::vector<std::uint32_t> separate;  // separate objects: finite, in no list, ascending; tested for every ray
-    std::uint64_t distinct = 0;           // number of objects in the lists: all finite ones except `separate`
-    /// Number of list entries beyond the first one of each object.
+    std::vector<std::uint32_t> separate;  // numbers of the separate objects, ascending
+    std::uint64_t distinct = 0;           // number of objects in the lists: the finite objects except `separate`
+    /// Number of list entries beyond one for each object.
     std::uint64_t copies() const { return objects.size() - distinct; }
 };
 
@@ -36,7 +36,7 @@ struct Partition {
 /// voxels. If there are no such objects, the box is the unit cube around the origin. Uses the rounded numbers in the
 /// job's words, as the kernels do.
 ///
-/// Registration is conservative, so that hits do not depend on the voxels through which the traversal passes. Consider
+/// The lists are conservative, so that hits do not depend on the voxels through which the traversal passes. Consider
 /// a ray whose origin O has coordinates up to `grid.reach` in magnitude and whose direction D has length 1 up to
 /// rounding, so that is_wide() in kernels/grid/traversal.clh is false. If a kernel with that format computes a hit of
 /// an object at distance t, then the voxel in which the traversal is at distance t lists the object, in spite of the
@@ -49,25 +49,25 @@ struct Partition {
 Partition partition(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
                     const std::vector<std::uint32_t>& separate = {});
 
-/// Returns divisions of an acceleration grid into about `voxels` (1..2^24) voxels that are nearly cubes. Returns fewer
-/// voxels if the lists would otherwise have more than 16 entries per voxel and more than 16 per object on average, and
-/// 1x1x1 if the hit regions are unbounded.
+/// Returns the divisions of an acceleration grid along each axis, for about `voxels` (1..2^24) voxels that are nearly
+/// cubes. Returns fewer if the lists would otherwise have more than 16 entries per voxel and more than 16 per object on
+/// average, and 1x1x1 if the hit regions are unbounded.
 Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::uint64_t voxels,
                         const std::vector<std::uint32_t>& separate = {});
 
-/// The partition of `--accel grid`. With given divisions it covers the whole scene. Otherwise large_objects() are
-/// listed separately, and the box of the other objects is divided into kVoxelsPerObject voxels per object: a ground
-/// plane or the walls of a room would enlarge the box so much that all other objects lie in few voxels.
+/// Returns the partition of `--accel grid`. If the option gives the divisions, the partition covers all finite objects.
+/// Otherwise large_objects() are listed separately, and the box of the other objects is divided into kVoxelsPerObject
+/// voxels per object. Without this, the ground or the walls of a room would enlarge the box so much that all other
+/// objects would lie in few voxels.
 Partition accel_partition(const PackedJob& job, const NumberFormat& format, const Accel& accel);
 
 /// Returns the numbers of the large objects, ascending. In each pass, an object is large if its longest side exceeds
 /// kLargeSide times the longest side of the box around all remaining objects; the pass removes the large objects. The
-/// passes end when none is large or when more than kMaxLarge objects would be removed in total; the objects of that
-/// last pass are not returned.
+/// passes end when no object is large, or before a pass that would bring the number of removed objects above kMaxLarge.
 std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberFormat& format);
 
 /// Appends the partition to the job's words in the layout of kernels/shared/grid.h, and sets accel_at in the job's
-/// header. Throws UserError if 32-bit indices cannot address it.
+/// header. Throws UserError if 32-bit indices cannot address all words.
 AccelSummary append_grid(PackedJob& job, const Partition& partition);
 
 }  // namespace raya

@@ -27,9 +27,9 @@ std::runtime_error system_error(const char* what) {
     return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
-// Turns the forked child into the program. It runs between fork and exec, so it calls only functions that take no
-// locks.
-[[noreturn]] void become(char* const* arguments, int pipe, pid_t parent) {
+// Runs raya's executable in the forked child. This code runs between fork and exec, so it calls only functions that
+// take no locks.
+[[noreturn]] void exec_worker(char* const* arguments, int pipe, pid_t parent) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // inherited through exec
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() == parent) {
@@ -50,13 +50,13 @@ std::string ending_text(int status) {
 ChildProcess::ChildProcess(const char* task, const Json& settings) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw system_error("cannot create a pipe to a child process");
-    const Json order = {
+    const Json request = {
         {"task", task}, {"lines", ends[1]}, {"verbosity", verbosity() - kErrorsOnly}, {"settings", settings}};
-    std::array<std::string, 3> arguments = {"raya", kWorker, order.dump()};
+    std::array<std::string, 3> arguments = {"raya", kWorker, request.dump()};
     const std::array<char*, 4> argv = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
     const pid_t parent = ::getpid();
     child_ = ::fork();
-    if (child_ == 0) become(argv.data(), ends[1], parent);
+    if (child_ == 0) exec_worker(argv.data(), ends[1], parent);
     ::close(ends[1]);
     pipe_ = ends[0];
     if (child_ > 0) return;
@@ -71,29 +71,29 @@ ChildProcess::~ChildProcess() {
     wait();
 }
 
-bool ChildProcess::has_line(std::string& line) {
-    const std::size_t end = text_.find('\n');
+bool ChildProcess::take_line(std::string& line) {
+    const std::size_t end = unread_text_.find('\n');
     if (end == std::string::npos) return false;
-    line = text_.substr(0, end);
-    text_.erase(0, end + 1);
+    line = unread_text_.substr(0, end);
+    unread_text_.erase(0, end + 1);
     return true;
 }
 
-bool ChildProcess::has_ended() {
+bool ChildProcess::check_ended() {
     if (!ended_) ended_ = ::waitpid(child_, &status_, WNOHANG) == child_;
     return ended_;
 }
 
 ChildProcess::Read ChildProcess::read(std::string& line, std::chrono::milliseconds wait) {
-    while (!has_line(line)) {
+    while (!take_line(line)) {
         pollfd in{pipe_, POLLIN, 0};
         const int ready = ::poll(&in, 1, static_cast<int>(wait.count()));
         // The child may have ended without an end of file: a process that its driver started may hold the pipe open.
-        if (ready == 0) return has_ended() ? Read::kEnd : Read::kNothing;
+        if (ready == 0) return check_ended() ? Read::kEnd : Read::kNothing;
         std::array<char, 4096> block{};
         const ssize_t count = ready > 0 ? ::read(pipe_, block.data(), block.size()) : -1;
         if (count > 0)
-            text_.append(block.data(), static_cast<std::size_t>(count));
+            unread_text_.append(block.data(), static_cast<std::size_t>(count));
         else if (count == 0 || errno != EINTR)
             return Read::kEnd;
     }
@@ -105,21 +105,21 @@ int ChildProcess::wait() {
     return status_;
 }
 
-std::optional<WorkerOrder> worker_order(int argc, const char* const* argv) {
+std::optional<WorkerRequest> worker_request(int argc, const char* const* argv) {
     if (argc != 3 || std::string_view(argv[1]) != kWorker) return {};
-    WorkerOrder order = read_json(argv[2], {kWorker}, [](const Json& json) {
+    WorkerRequest request = read_json(argv[2], {kWorker}, [](const Json& json) {
         set_verbosity(kErrorsOnly + static_cast<int>(json.at("verbosity").integer(kDetailed - kErrorsOnly)));
-        return WorkerOrder{json.at("task").text(), static_cast<int>(json.at("lines").integer(INT_MAX)),
-                           json.at("settings")};
+        return WorkerRequest{json.at("task").text(), static_cast<int>(json.at("lines").integer(INT_MAX)),
+                             json.at("settings")};
     });
-    ::fcntl(order.lines, F_SETFD, FD_CLOEXEC);
-    return order;
+    ::fcntl(request.pipe, F_SETFD, FD_CLOEXEC);
+    return request;
 }
 
-void send_line(int lines, const Json& object) {
+void send_line(int pipe, const Json& object) {
     const std::string text = object.dump() + "\n";
     for (std::size_t sent = 0; sent < text.size();) {
-        const ssize_t count = ::write(lines, text.data() + sent, text.size() - sent);
+        const ssize_t count = ::write(pipe, text.data() + sent, text.size() - sent);
         if (count < 0 && errno != EINTR) return;
         if (count > 0) sent += static_cast<std::size_t>(count);
     }

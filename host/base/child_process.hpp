@@ -1,4 +1,4 @@
-// A worker: a child process that runs this program for one task and reports to its parent through a pipe.
+// Worker: a child process that runs raya's executable for one task and reports to its parent through a pipe.
 #pragma once
 #include <sys/types.h>
 
@@ -13,7 +13,7 @@ namespace raya {
 /// Exit code of a child process in which exec failed.
 inline constexpr int kNotStarted = 127;
 
-/// A child process that runs this program for one task and writes JSON objects, one per line, into a pipe to its
+/// A child process that runs raya's executable for one task and writes JSON objects, one per line, into a pipe to its
 /// parent. The destructor kills the child. If the parent ends for any reason, the system kills the child. The child
 /// ignores SIGINT, SIGTERM, SIGHUP and SIGQUIT, which the parent handles. Command line of the child:
 ///
@@ -37,32 +37,36 @@ class ChildProcess {
     int wait();
 
   private:
-    bool has_line(std::string& line);
-    bool has_ended();
+    /// Moves the first whole line of unread_text_ to `line`. Returns false if unread_text_ has none.
+    bool take_line(std::string& line);
+    /// Returns true if the child has ended. Does not wait.
+    bool check_ended();
 
     pid_t child_ = -1;
     int pipe_ = -1;
     int status_ = 0;
-    bool ended_ = false;  // waitpid() has returned status_
-    std::string text_;    // read from the pipe, not yet returned by read()
+    bool ended_ = false;       // waitpid() has returned status_
+    std::string unread_text_;  // text from the pipe that read() has not returned yet
 };
 
 /// "signal 11 (SIGSEGV)" or "exit code 1" for a waitpid() status.
 std::string ending_text(int status);
 
 /// The task of a child process, parsed from its command line.
-struct WorkerOrder {
+struct WorkerRequest {
     std::string task;
-    int lines = -1;  // descriptor of the pipe to the parent
+    int pipe = -1;  // descriptor of the pipe to the parent
     Json settings;
 };
 
-/// Call it at the start of the program. In a child process: returns the task, sets the verbosity that the parent
-/// passed, and marks the pipe close-on-exec, so that programs that the child starts, such as a driver's compiler, do
-/// not inherit it. Returns nothing in any other process. Throws UserError for an invalid command line.
-std::optional<WorkerOrder> worker_order(int argc, const char* const* argv);
+/// Call this function at the start of main(). In a child process it returns the task, sets the verbosity that the
+/// parent passed, and marks the pipe close-on-exec, so that programs that the child starts, such as a driver's
+/// compiler, do not inherit the pipe. In any other process it returns nothing. Throws UserError for an invalid command
+/// line.
+std::optional<WorkerRequest> worker_request(int argc, const char* const* argv);
 
-/// In the child: writes `object` as one line into the pipe `lines`. Writes nothing if the parent has closed its end.
-void send_line(int lines, const Json& object);
+/// In the child: writes `object` as one line into `pipe`, the descriptor in WorkerRequest. Writes nothing if the parent
+/// has closed its end.
+void send_line(int pipe, const Json& object);
 
 }  // namespace raya

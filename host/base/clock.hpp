@@ -1,4 +1,4 @@
-// Wall-clock time as text, and elapsed time.
+// Elapsed time, and the current date and time as text.
 #pragma once
 #include <chrono>
 #include <ctime>
@@ -12,7 +12,7 @@ inline double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The current time in UTC, formatted by std::strftime(`format`); empty if that gives more than 63 characters.
+/// The current time in UTC, formatted by std::strftime(`format`); empty if the text would have more than 63 characters.
 inline std::string utc_text(const char* format) {
     const std::time_t now = std::time(nullptr);
     std::tm parts{};

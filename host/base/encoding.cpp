@@ -12,15 +12,16 @@
 namespace raya {
 namespace {
 
-constexpr int kLevel = 4;              // for packet traces half the time and 8 % more bytes than zlib's default, 6
+// Compression level. For packet traces it takes half the time of zlib's default level, 6, and gives 8 % more bytes.
+constexpr int kLevel = 4;
 constexpr int kGzip = 16 + MAX_WBITS;  // windowBits: the maximum; 16 selects gzip's header and trailer
 constexpr int kMemory = 8;             // memLevel: zlib's default
 
 }  // namespace
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-        text.replace(at, what.size(), by);
+std::string replaced(std::string text, const std::string& old_part, const std::string& new_part) {
+    for (std::size_t at = text.find(old_part); at != std::string::npos; at = text.find(old_part, at + new_part.size()))
+        text.replace(at, old_part.size(), new_part);
     return text;
 }
 
@@ -29,11 +30,11 @@ std::string base64(std::string_view bytes) {
     std::string text;
     text.reserve((bytes.size() + 2) / 3 * 4);
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::string_view three = bytes.substr(i, 3);
+        const std::string_view group = bytes.substr(i, 3);
         std::uint32_t bits = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            bits = bits << 8 | (k < three.size() ? static_cast<unsigned char>(three[k]) : 0u);
-        for (std::size_t k = 0; k < 4; ++k) text += k <= three.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
+            bits = bits << 8 | (k < group.size() ? static_cast<unsigned char>(group[k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k) text += k <= group.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
     }
     return text;
 }

@@ -7,15 +7,16 @@
 
 namespace raya {
 
-/// Returns `text` with every occurrence of `what` replaced by `by`.
-std::string replaced(std::string text, const std::string& what, const std::string& by);
+/// Returns `text` with every occurrence of `old_part` replaced by `new_part`.
+std::string replaced(std::string text, const std::string& old_part, const std::string& new_part);
 
+/// Returns the base64 encoding (RFC 4648) of `bytes`, with padding.
 std::string base64(std::string_view bytes);
 
-/// The bytes as lower-case hexadecimal digits, two per byte.
+/// Returns `bytes` as lower-case hexadecimal digits, two per byte.
 std::string hex_digits(std::span<const unsigned char> bytes);
 
-/// The 128-bit XXH3 hash of `bytes` as 32 lower-case hexadecimal digits.
+/// Returns the 128-bit XXH3 hash of `bytes` as 32 lower-case hexadecimal digits.
 std::string bytes_hash(std::string_view bytes);
 
 /// Incremental gzip compression. The same text always gives the same bytes: the gzip header contains no date and no

@@ -10,14 +10,14 @@ void remove_files_in_progress();
 /// Installs handlers of SIGINT, SIGTERM, SIGHUP and SIGQUIT. They delete the files in progress, print
 /// "raya: interrupted" on stderr and end the process by the same signal, which a shell reports as exit code 130, 143,
 /// 129 or 131. Ignored signals (nohup) stay ignored. Libraries cannot replace these handlers. If a library has tried
-/// to install its own handler, that one is called before the process ends.
+/// to install its own handler, the library's handler is called before the process ends.
 void install_interrupt_handlers();
 
 /// Prevents libraries from replacing the installed handler of `signal`, or allows it again (`on` = false).
 void protect_handler(int signal, bool on = true);
 
-/// From now on an interruption prints no message, because another process prints it or this process has already printed
-/// why it ends.
+/// Suppresses the message of later interruptions. Call it if another process prints the message, or if this process has
+/// already printed why it ends.
 void suppress_interrupt_message();
 
 /// Registers an unfinished file: while this object exists, an interruption deletes the file. The destructor does not

@@ -8,7 +8,7 @@
 
 namespace raya {
 
-using Library = nlohmann::ordered_json;
+using NlohmannJson = nlohmann::ordered_json;
 
 // SAX handler that builds a Json document while nlohmann's parser reads, so that only one document is in memory. It is
 // also the stream buffer from which the parser reads the text: the library does not report the positions of values, but
@@ -21,31 +21,31 @@ class JsonText : public std::streambuf {
         // The library treats a zero byte as the end of the text.
         if (const auto zero = text.find('\0'); zero != text.npos) refuse_byte(zero + 1);
         std::istream stream(this);
-        Library::sax_parse(stream, this);
+        NlohmannJson::sax_parse(stream, this);
     }
 
-    bool null() { return place({}); }
-    bool boolean(bool truth) { return place(truth); }
-    bool number_integer(std::int64_t whole) { return place(whole); }
-    bool number_unsigned(std::uint64_t whole) { return place(whole); }
-    bool number_float(double number, const std::string&) { return place(number); }
-    bool string(std::string& text) { return place(std::move(text)); }
-    bool binary(const Library::binary_t&) { return false; }
-    bool start_array(std::size_t) { return open(Json::array()); }
-    bool start_object(std::size_t) { return open(Json::object()); }
-    bool end_array() { return close(); }
-    bool end_object() { return close(); }
+    bool null() { return add_value({}); }
+    bool boolean(bool truth) { return add_value(truth); }
+    bool number_integer(std::int64_t whole) { return add_value(whole); }
+    bool number_unsigned(std::uint64_t whole) { return add_value(whole); }
+    bool number_float(double number, const std::string&) { return add_value(number); }
+    bool string(std::string& text) { return add_value(std::move(text)); }
+    bool binary(const NlohmannJson::binary_t&) { return false; }
+    bool start_array(std::size_t) { return open_tree(Json::array()); }
+    bool start_object(std::size_t) { return open_tree(Json::object()); }
+    bool end_array() { return close_tree(); }
+    bool end_object() { return close_tree(); }
     bool key(std::string& name) {
-        open_.back()->keys.push_back(std::move(name));
+        open_trees_.back()->keys.push_back(std::move(name));
         return true;
     }
-    bool parse_error(std::size_t byte, const std::string& token, const Library::exception& error) {
-        if (dynamic_cast<const Library::out_of_range*>(&error) == nullptr) refuse_byte(byte);
-        place({});
+    bool parse_error(std::size_t byte, const std::string& token, const NlohmannJson::exception& error) {
+        if (dynamic_cast<const NlohmannJson::out_of_range*>(&error) == nullptr) refuse_byte(byte);
+        add_value({});
         throw JsonError(fmt::format("{:.40} is outside the range of double precision", token), position());
     }
 
-    static Library library_of(const Json& json);
+    static NlohmannJson nlohmann_json_of(const Json& json);
     static std::string path_of(const Json* json, std::uint32_t position);
 
   private:
@@ -55,58 +55,60 @@ class JsonText : public std::streambuf {
     [[noreturn]] static void refuse_byte(std::size_t byte) {
         throw JsonError(fmt::format("not valid JSON (byte {})", byte), static_cast<std::uint32_t>(byte));
     }
-    Json& added(Json value) {
+    Json& append(Json value) {
         value.position_ = position();
-        if (open_.empty()) return root_ = std::move(value);
-        return open_.back()->elements.emplace_back(std::move(value));
+        if (open_trees_.empty()) return root_ = std::move(value);
+        return open_trees_.back()->elements.emplace_back(std::move(value));
     }
-    bool place(Json value) {
-        added(std::move(value));
+    bool add_value(Json value) {
+        append(std::move(value));
         return true;
     }
-    bool open(Json value) {
-        if (open_.size() == kMaxDepth)
+    bool open_tree(Json value) {
+        if (open_trees_.size() == kMaxDepth)
             throw JsonError(fmt::format("nested more than {} levels deep", kMaxDepth), position());
-        open_.push_back(&*std::get<Json::Box<Json::Tree>>(added(std::move(value)).value_));
+        open_trees_.push_back(&*std::get<Json::Box<Json::Tree>>(append(std::move(value)).value_));
         return true;
     }
-    bool close() {
+    bool close_tree() {
         std::vector<std::pair<std::string_view, std::uint32_t>> keys;
-        for (std::size_t i = 0; i < open_.back()->keys.size(); ++i)
-            keys.emplace_back(open_.back()->keys[i], open_.back()->elements[i].position_);
+        for (std::size_t i = 0; i < open_trees_.back()->keys.size(); ++i)
+            keys.emplace_back(open_trees_.back()->keys[i], open_trees_.back()->elements[i].position_);
         std::ranges::sort(keys);
-        const auto twice = std::ranges::adjacent_find(keys, {}, &std::pair<std::string_view, std::uint32_t>::first);
-        if (twice != keys.end()) throw JsonError("the object has this member twice", std::next(twice)->second);
-        open_.pop_back();
+        const auto duplicate = std::ranges::adjacent_find(keys, {}, &std::pair<std::string_view, std::uint32_t>::first);
+        if (duplicate != keys.end())
+            throw JsonError(fmt::format("member '{:.40}' occurs twice in this JSON object", duplicate->first),
+                            std::next(duplicate)->second);
+        open_trees_.pop_back();
         return true;
     }
 
     Json& root_;
-    std::vector<Json::Tree*> open_;
+    std::vector<Json::Tree*> open_trees_;
 };
 
-Library JsonText::library_of(const Json& json) {
-    const auto each = [](const auto& value) -> Library {
+NlohmannJson JsonText::nlohmann_json_of(const Json& json) {
+    const auto to_nlohmann = [](const auto& value) -> NlohmannJson {
         using Value = std::decay_t<decltype(value)>;
         if constexpr (std::is_same_v<Value, std::monostate>) return nullptr;
         if constexpr (std::is_same_v<Value, Json::Box<std::string>>) return *value;
         if constexpr (std::is_arithmetic_v<Value>) return value;
         if constexpr (std::is_same_v<Value, Json::Box<Json::Tree>>) {
             const Json::Tree& tree = *value;
-            Library all = tree.is_object ? Library::object() : Library::array();
+            NlohmannJson result = tree.is_object ? NlohmannJson::object() : NlohmannJson::array();
             for (std::size_t i = 0; i < tree.elements.size(); ++i) {
                 if (tree.is_object)
-                    all[tree.keys[i]] = library_of(tree.elements[i]);
+                    result[tree.keys[i]] = nlohmann_json_of(tree.elements[i]);
                 else
-                    all.push_back(library_of(tree.elements[i]));
+                    result.push_back(nlohmann_json_of(tree.elements[i]));
             }
-            return all;
+            return result;
         }
     };
-    return std::visit(each, json.value_);
+    return std::visit(to_nlohmann, json.value_);
 }
 
-// Returns the path of the value at that position, such as "rows[3].ms: "; empty if there is none. Relies on
+// Returns the path of the value at `position`, such as "rows[3].ms: "; empty if no value is there. Relies on
 // the positions of values ascending in the order of the text.
 std::string JsonText::path_of(const Json* json, std::uint32_t position) {
     std::string path;
@@ -151,25 +153,25 @@ Json::Tree* Json::tree(bool object) const {
 }
 
 void Json::refuse(const std::string& reason) const {
-    constexpr std::size_t kShown = 40;
-    const auto replace = Library::error_handler_t::replace;
+    constexpr std::size_t kMaxShown = 40;  // characters of the value
+    const auto replace = NlohmannJson::error_handler_t::replace;
     std::string shown = tree(false)  ? "an array"
                         : tree(true) ? "an object"
-                                     : JsonText::library_of(*this).dump(-1, ' ', true, replace);
-    if (shown.size() > kShown) shown = shown.substr(0, kShown) + "...";
+                                     : JsonText::nlohmann_json_of(*this).dump(-1, ' ', true, replace);
+    if (shown.size() > kMaxShown) shown = shown.substr(0, kMaxShown) + "...";
     throw JsonError(shown + reason, position_);
 }
 
 Json& Json::operator[](std::string_view key) {
     if (is_null()) *this = object();
-    Tree* const all = tree(true);
-    if (all == nullptr) refuse(" is not an object");
-    const auto at = static_cast<std::size_t>(std::ranges::find(all->keys, key) - all->keys.begin());
-    if (at == all->keys.size()) {
-        all->keys.emplace_back(key);
-        all->elements.emplace_back();
+    Tree* const members = tree(true);
+    if (members == nullptr) refuse(" is not an object");
+    const auto at = static_cast<std::size_t>(std::ranges::find(members->keys, key) - members->keys.begin());
+    if (at == members->keys.size()) {
+        members->keys.emplace_back(key);
+        members->elements.emplace_back();
     }
-    return all->elements[at];
+    return members->elements[at];
 }
 
 void Json::push_back(Json element) {
@@ -191,8 +193,8 @@ const Json& Json::at(std::string_view key) const {
 }
 
 const std::vector<std::string>& Json::keys() const {
-    static const std::vector<std::string> none;
-    return tree(true) ? tree(true)->keys : none;
+    static const std::vector<std::string> no_keys;
+    return tree(true) ? tree(true)->keys : no_keys;
 }
 
 const std::string& Json::text() const {
@@ -208,11 +210,11 @@ double Json::number() const {
 }
 
 std::uint64_t Json::integer(std::uint64_t max) const {
-    const auto* const given = std::get_if<std::int64_t>(&value_);
-    if (given != nullptr && *given < 0) refuse(" is negative");
-    const auto* const whole = std::get_if<std::uint64_t>(&value_);
-    if (given == nullptr && whole == nullptr) refuse(" is not a whole number");
-    const std::uint64_t value = whole != nullptr ? *whole : static_cast<std::uint64_t>(*given);
+    const auto* const signed_value = std::get_if<std::int64_t>(&value_);
+    if (signed_value != nullptr && *signed_value < 0) refuse(" is negative");
+    const auto* const unsigned_value = std::get_if<std::uint64_t>(&value_);
+    if (signed_value == nullptr && unsigned_value == nullptr) refuse(" is not a whole number");
+    const std::uint64_t value = unsigned_value != nullptr ? *unsigned_value : static_cast<std::uint64_t>(*signed_value);
     if (value > max) refuse(fmt::format(" is more than {}", max));
     return value;
 }
@@ -229,24 +231,24 @@ std::vector<std::string> Json::strings() const {
 }
 
 std::string Json::dump(int indent) const {
-    return JsonText::library_of(*this).dump(indent, ' ', false, Library::error_handler_t::replace);
+    return JsonText::nlohmann_json_of(*this).dump(indent, ' ', false, NlohmannJson::error_handler_t::replace);
 }
 
-Json Json::parse(const std::string& text, const JsonSource& from) {
+Json Json::parse(const std::string& text, const JsonSource& source) {
     Json json;
     try {
         JsonText(text, json);
     } catch (const JsonError& error) {
-        from.refuse(error, json, text);
+        source.refuse(error, json, text);
     }
     return json;
 }
 
-std::string json_text(const std::filesystem::path& file, const JsonSource& from, Pipes pipes,
+std::string json_text(const std::filesystem::path& file, const JsonSource& source, Pipes pipes,
                       std::uint64_t max_bytes) try {
     return read_file(file, pipes, max_bytes);
 } catch (const UnreadableFile& error) {
-    from.refuse(fmt::format("cannot be read: {}", error.what()));
+    source.refuse(fmt::format("cannot be read: {}", error.what()));
 }
 
 }  // namespace raya

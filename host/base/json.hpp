@@ -22,7 +22,8 @@
 
 namespace raya {
 
-/// A member is missing or has another type than requested. read_json() adds the file, the line and the member's path.
+/// Thrown if a member is missing or has another type than requested. read_json() adds the file, the line and the
+/// member's path to the message.
 struct JsonError : UserError {
     explicit JsonError(const std::string& reason, std::uint32_t at = 0) : UserError(reason), position(at) {}
     std::uint32_t position;  // byte offset, in the text, of the end of the value's first token; 0: unknown
@@ -30,7 +31,7 @@ struct JsonError : UserError {
 
 class Json;
 
-/// The source of a document, for messages; `remedy` may be empty.
+/// The source of a document (a file or stdin), for messages; `remedy` may be empty.
 struct JsonSource {
     std::string name, remedy{};
 
@@ -41,7 +42,8 @@ struct JsonSource {
     [[noreturn]] void refuse(const JsonError& error, const Json& json, const std::string& text) const;
 };
 
-/// Null, a Boolean, a number, a string, an array or an object. Members keep the order in which they were added.
+/// A JSON value: null, a Boolean, a number, a string, an array or an object. Members keep the order in which they were
+/// added.
 class Json {
   public:
     struct Member;
@@ -72,38 +74,38 @@ class Json {
     bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
     bool is_text() const { return std::holds_alternative<Box<std::string>>(value_); }
 
-    /// The member `key` of an object, added if it is missing. A null value becomes an object first. Throws JsonError
-    /// for other types.
+    /// Returns the member `key` of an object, and adds it first if it is missing. A null value becomes an object first.
+    /// Throws JsonError for other types.
     Json& operator[](std::string_view key);
     Json& operator[](int) = delete;  // 0 would convert to a null pointer
     /// Appends to an array. A null value becomes an array first. Throws JsonError for other types.
     void push_back(Json element);
-    /// The last element of an array, which must not be empty.
+    /// Returns the last element of an array, which must not be empty.
     Json& back();
 
-    /// The member of that name; a null pointer if it is missing or this is not an object.
+    /// Returns the member `key`; a null pointer if it is missing or this value is not an object.
     const Json* find(std::string_view key) const;
-    /// The member of that name. Throws JsonError if it is missing.
+    /// Returns the member `key`. Throws JsonError if it is missing.
     const Json& at(std::string_view key) const;
 
-    /// The value as the given type. Throw JsonError if it has another type; integer() also if it is not an integer in
-    /// 0..`max`.
+    /// Return the value as the given type. Throw JsonError if the value has another type; integer() also throws it if
+    /// the value is not an integer in 0..`max`.
     const std::string& text() const;
     double number() const;
     std::uint64_t integer(std::uint64_t max = UINT64_MAX) const;
     const std::vector<Json>& elements() const;
-    /// The names of an object's members in the order in which they were added; empty for other types.
+    /// Returns the names of an object's members in the order in which they were added; empty for other types.
     const std::vector<std::string>& keys() const;
-    /// The elements of an array of strings. Throws JsonError for other values.
+    /// Returns the elements of an array of strings. Throws JsonError for other values.
     std::vector<std::string> strings() const;
 
     /// Serialises the value, in one line or with `indent` blanks per level. Bytes that are not UTF-8, as a path or a
     /// driver's name may contain, become U+FFFD.
     std::string dump(int indent = -1) const;
 
-    /// Parses `text`. Throws UserError, as `from` formats it, for invalid JSON, a number outside double precision, a
+    /// Parses `text`. Throws UserError, as `source` formats it, for invalid JSON, a number outside double precision, a
     /// duplicate member in an object or more than 100 levels of nesting.
-    static Json parse(const std::string& text, const JsonSource& from);
+    static Json parse(const std::string& text, const JsonSource& source);
 
   private:
     friend class JsonText;
@@ -147,21 +149,22 @@ struct Json::Member {
 /// Parses `text` and returns `read`(document). Parse errors and every JsonError or UserError of `read` become a
 /// UserError that names the source and, if known, the line and the member.
 template <class Read>
-auto read_json(const std::string& text, const JsonSource& from, Read&& read) {
-    const Json json = Json::parse(text, from);
+auto read_json(const std::string& text, const JsonSource& source, Read&& read) {
+    const Json json = Json::parse(text, source);
     try {
         return read(json);
     } catch (const JsonError& error) {
-        from.refuse(error, json, text);
+        source.refuse(error, json, text);
     } catch (const UserError& error) {
-        from.refuse(error.what());
+        source.refuse(error.what());
     }
 }
 
-inline constexpr std::uint64_t kMaxJsonBytes = 64'000'000;  // bytes of a file
+inline constexpr std::uint64_t kMaxJsonBytes = 64'000'000;  // default maximum size of a JSON file
 
-/// Reads a JSON file into a string for read_json(). Throws UserError, as `from` formats it, if the file cannot be read.
-std::string json_text(const std::filesystem::path& file, const JsonSource& from, Pipes pipes = Pipes::kRefused,
+/// Reads a JSON file into a string for read_json(). Throws UserError, as `source` formats it, if the file cannot be
+/// read or has more than `max_bytes` bytes.
+std::string json_text(const std::filesystem::path& file, const JsonSource& source, Pipes pipes = Pipes::kRefused,
                       std::uint64_t max_bytes = kMaxJsonBytes);
 
 }  // namespace raya

@@ -26,17 +26,17 @@ std::atomic<int> current_level = kDefaultVerbosity;
 }  // namespace
 
 std::string printable(std::string_view text) {
-    std::string all;
+    std::string escaped;
     for (std::size_t at = 0; at < text.size(); ++at) {
         const auto c = static_cast<unsigned char>(text[at]);
         // The control characters U+0080..U+009F, which some terminals interpret too, are C2 80..C2 9F in UTF-8.
         const bool c1_control = c == 0xC2 && at + 1 < text.size() && static_cast<unsigned char>(text[at + 1]) < 0xA0;
         if ((c < ' ' && c != '\n' && c != '\t') || c == 0x7F || c1_control)
-            all += fmt::format("\\x{:02x}", c1_control ? static_cast<unsigned char>(text[++at]) : c);
+            escaped += fmt::format("\\x{:02x}", c1_control ? static_cast<unsigned char>(text[++at]) : c);
         else
-            all += text[at];
+            escaped += text[at];
     }
-    return all;
+    return escaped;
 }
 
 void print_log(std::string_view text) {

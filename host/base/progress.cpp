@@ -10,16 +10,17 @@
 
 namespace raya {
 
-std::string progress_line(const std::string& what, const std::optional<Done>& done, double seconds) {
-    constexpr int kWidth = 40;
+std::string progress_line(const std::string& stage, const std::optional<StageProgress>& done, double seconds) {
+    constexpr int kWidth = 40;              // characters of the bar
     constexpr double kMinFraction = 0.001;  // minimum completed fraction for an estimate of the remaining time
-    const double share = done ? done->share : 0;
-    if (share < kMinFraction) return fmt::format("{} ... {:.0f} s", what, seconds);
-    const int filled = static_cast<int>(share * kWidth);
-    const double left = done->seconds / share - seconds;
-    return fmt::format("[{}{}] {:3.0f} %  {}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
-                       std::min(99.0, std::floor(100 * share)),
-                       left > 0 ? fmt::format("{:.0f} s left", left) : fmt::format("{:.0f} s so far", seconds));
+    const double fraction = done ? done->fraction : 0;
+    if (fraction < kMinFraction) return fmt::format("{} ... {:.0f} s", stage, seconds);
+    const int filled = static_cast<int>(fraction * kWidth);
+    const double remaining_s = done->seconds / fraction - seconds;
+    return fmt::format(
+        "[{}{}] {:3.0f} %  {}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
+        std::min(99.0, std::floor(100 * fraction)),
+        remaining_s > 0 ? fmt::format("{:.0f} s left", remaining_s) : fmt::format("{:.0f} s so far", seconds));
 }
 
 std::jthread announce_compiling(const std::string& device, std::chrono::milliseconds patience) {
@@ -45,7 +46,7 @@ std::jthread announce_compiling(const std::string& device, std::chrono::millisec
     });
 }
 
-ProgressBar::ProgressBar(bool wanted, const std::string& what) : what_(what) {
+ProgressBar::ProgressBar(bool wanted, const std::string& name) : stage_name_(name) {
     if (wanted && shows_progress()) drawer_ = std::thread([this] { draw_until_ended(); });
 }
 
@@ -59,17 +60,17 @@ ProgressBar::~ProgressBar() {
     drawer_.join();
 }
 
-void ProgressBar::stage(const std::string& what) {
+void ProgressBar::stage(const std::string& name) {
     const std::lock_guard lock(mutex_);
-    what_ = what;
+    stage_name_ = name;
     stage_began_ = Clock::now();
     done_.reset();
 }
 
-void ProgressBar::update(double done) {
+void ProgressBar::update(double fraction) {
     const std::lock_guard lock(mutex_);
-    const double share = std::clamp(done, 0.0, 1.0);
-    if (!done_ || share > done_->share) done_ = {share, stage_seconds()};
+    fraction = std::clamp(fraction, 0.0, 1.0);
+    if (!done_ || fraction > done_->fraction) done_ = {fraction, stage_seconds()};
 }
 
 double ProgressBar::stage_seconds() const { return seconds_since(stage_began_); }
@@ -78,7 +79,7 @@ void ProgressBar::draw_until_ended() {
     using namespace std::chrono_literals;
     std::unique_lock lock(mutex_);
     for (auto pause = 700ms; !end_.wait_for(lock, pause, [this] { return ended_; }); pause = 200ms)
-        show_status(progress_line(what_, done_, stage_seconds()));
+        show_status(progress_line(stage_name_, done_, stage_seconds()));
     clear_status();
 }
 

@@ -14,28 +14,28 @@ namespace raya {
 /// Called repeatedly with the completed fraction of the work, 0..1.
 using ProgressCallback = std::function<void(double)>;
 
-/// The completed fraction of a stage's work, 0..1, and the seconds that this fraction took.
-struct Done {
-    double share = 0, seconds = 0;
+/// The completed fraction of a stage's work, 0..1, and the time in seconds that this fraction took.
+struct StageProgress {
+    double fraction = 0, seconds = 0;
 };
 
-/// The progress line of the stage `what`, which began `seconds` ago. Shows a bar and an estimate of the remaining time
-/// if `done` is known and its fraction is at least 0.1 %.
-std::string progress_line(const std::string& what, const std::optional<Done>& done, double seconds);
+/// Returns the progress line of a stage, which began `seconds` ago. The line contains a bar and an estimate of the
+/// remaining time if `done` is known and its fraction is at least 0.1 %.
+std::string progress_line(const std::string& stage, const std::optional<StageProgress>& done, double seconds);
 
 /// Starts a thread that prints messages about the compilation of kernels on stderr, unless --quiet is given. After 1 s,
-/// longer than loading cached kernels takes, it prints that kernels are being compiled for the device; `patience` later
-/// it prints remedies. When the returned thread is destroyed, it prints the time that compilation took, if that was
-/// more than 1 s.
+/// which is longer than loading cached kernels takes, it prints that kernels are being compiled for the device;
+/// `patience` later it prints remedies. When the returned thread is destroyed, it prints the time that compilation
+/// took, if that time was more than 1 s.
 [[nodiscard]] std::jthread announce_compiling(const std::string& device,
                                               std::chrono::milliseconds patience = std::chrono::seconds(59));
 
 /// A thread that draws progress_line() of the current stage as the status line (log.hpp), if stderr is a terminal and
-/// --quiet is not given: first after 0.7 s, then five times a second. The destructor erases the line.
+/// --quiet is not given. It draws first after 0.7 s, then five times a second. The destructor erases the line.
 class ProgressBar {
   public:
-    /// Starts the first stage, `what`. Draws nothing if `wanted` is false.
-    ProgressBar(bool wanted, const std::string& what);
+    /// Starts the first stage, `name`. Draws nothing if `wanted` is false.
+    ProgressBar(bool wanted, const std::string& name);
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
@@ -44,10 +44,10 @@ class ProgressBar {
     bool active() const { return drawer_.joinable(); }
 
     /// Starts the next stage. Its completed fraction is unknown until update() is called.
-    void stage(const std::string& what);
+    void stage(const std::string& name);
 
     /// Sets the completed fraction of the stage, 0..1. Ignores values that are smaller than a previous one.
-    void update(double done);
+    void update(double fraction);
 
   private:
     void draw_until_ended();
@@ -56,9 +56,9 @@ class ProgressBar {
     std::mutex mutex_;  // guards all members below
     std::condition_variable end_;
     bool ended_ = false;
-    std::string what_;
+    std::string stage_name_;
     Clock::time_point stage_began_ = Clock::now();
-    std::optional<Done> done_;
+    std::optional<StageProgress> done_;
     std::thread drawer_;
 };
 

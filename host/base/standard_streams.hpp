@@ -6,15 +6,15 @@
 
 namespace raya {
 
-/// Returns true for "-", which means stdin for an input file and stdout for an output file. The path of a file with the
-/// name - is "./-".
+/// Returns true for "-", which means stdin for an input file and stdout for an output file. The path of a file that is
+/// itself named - is "./-".
 bool is_standard_stream(const std::filesystem::path& path);
 
-/// The name in messages and reports: "stdin" or "stdout" for "-", else the path.
+/// Return the name of a file in messages and reports: "stdin" or "stdout" for "-", else the path.
 std::string input_name(const std::filesystem::path& path);
 std::string output_name(const std::filesystem::path& path);
 
-/// Returns the descriptor of stdin. Prints a hint if it is a terminal. A second call throws UnreadableFile
+/// Returns the descriptor of stdin. Prints a hint if stdin is a terminal. A second call throws UnreadableFile
 /// (whole_file.hpp), because the input has been consumed.
 int take_stdin();
 

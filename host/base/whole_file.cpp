@@ -43,16 +43,16 @@ std::string read_all(int descriptor, std::uint64_t expected_bytes, std::uint64_t
     for (std::size_t end = 0;;) {
         if (end > max_bytes) throw UnreadableFile(fmt::format("larger than {} bytes", max_bytes));
         if (end == bytes.size()) bytes.resize(end + std::max(end, kBlock));
-        const ssize_t got = ::read(descriptor, bytes.data() + end, bytes.size() - end);
-        if (got < 0 && errno != EINTR) refuse(errno);
-        end += static_cast<std::size_t>(std::max<ssize_t>(got, 0));
-        if (got != 0) continue;
+        const ssize_t read_bytes = ::read(descriptor, bytes.data() + end, bytes.size() - end);
+        if (read_bytes < 0 && errno != EINTR) refuse(errno);
+        end += static_cast<std::size_t>(std::max<ssize_t>(read_bytes, 0));
+        if (read_bytes != 0) continue;
         bytes.resize(end);
         return bytes;
     }
 }
 
-constexpr mode_t kFileMode = 0666;  // of a new file, before the user's umask applies
+constexpr mode_t kFileMode = 0666;  // mode of a new file, before the user's umask applies
 
 [[noreturn]] void refuse(const fs::path& path, std::string_view reason, std::string_view remedy) {
     throw UserError(fmt::format("cannot write '{}': {}; {}", output_name(path), reason, remedy));
@@ -78,7 +78,7 @@ std::string_view remedy_for(int error) {
     refuse(path, std::generic_category().message(error), remedy_for(error));
 }
 
-bool may(const fs::path& path, int mode) { return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0; }
+bool has_access(const fs::path& path, int mode) { return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0; }
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
@@ -91,7 +91,7 @@ void check_folder(const fs::path& path, const fs::path& folder) {
     if (error) refuse(path, error.value());
     if (!fs::is_directory(status))
         refuse(path, fmt::format("'{}' is not a folder", folder.string()), "name another file");
-    if (!may(folder, W_OK | X_OK))
+    if (!has_access(folder, W_OK | X_OK))
         refuse(path, fmt::format("the folder '{}' is not writable", folder.string()),
                "change its permissions or name a file in another folder");
 }
@@ -103,7 +103,7 @@ struct Target {
 };
 
 /// Follows `path` as long as it is a symbolic link; the last target need not exist.
-fs::path followed(const fs::path& path) {
+fs::path resolve_links(const fs::path& path) {
     constexpr int kMaxLinks = 40;  // Linux's own limit
     fs::path file = path;
     std::error_code error;
@@ -124,20 +124,20 @@ Target checked_target(const fs::path& path) {
     if (fs::is_directory(status) || !path.has_filename()) refuse(path, "it is a folder", "name a file in it");
     if (error && status.type() != fs::file_type::not_found) refuse(path, error.value());
     const bool exists = fs::exists(status);
-    if (exists && !may(path, W_OK))
+    if (exists && !has_access(path, W_OK))
         refuse(path, "the file exists and is not writable", "change its permissions or name another file");
     if (exists && !fs::is_regular_file(status)) return {path, true};
-    const fs::path file = followed(path);
+    const fs::path file = resolve_links(path);
     check_folder(path, folder_of(file));
     const fs::path folder = fs::canonical(folder_of(file), error);
     if (error) refuse(path, error.value());
     return {folder / file.filename(), false};
 }
 
-using Next = std::function<std::string_view()>;
+using NextPiece = std::function<std::string_view()>;
 
 /// Writes all pieces to the descriptor and closes it. Returns 0 or the errno of the failed call.
-int write_and_close(int descriptor, const Next& next) {
+int write_and_close(int descriptor, const NextPiece& next) {
     int error = 0;
     for (std::string_view bytes = next(); !bytes.empty() && error == 0;) {
         const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
@@ -169,17 +169,17 @@ struct TemporaryFile {
     }
 };
 
-std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::path& shown) {
+std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::path& named_path) {
     static std::atomic<unsigned> counter{0};
     while (true) {
         auto file =
             std::make_unique<TemporaryFile>(folder_of(target) / fmt::format(".raya-{}-{}.tmp", ::getpid(), counter++));
         if (file->descriptor >= 0) return file;
-        if (errno != EEXIST && errno != EINTR) refuse(shown, errno);
+        if (errno != EEXIST && errno != EINTR) refuse(named_path, errno);
     }
 }
 
-void write_direct(const fs::path& path, const Next& next) {
+void write_direct(const fs::path& path, const NextPiece& next) {
     const int descriptor = is_standard_stream(path) ? take_stdout() : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0 && errno == EINTR) return write_direct(path, next);  // open() waits for a pipe's reader
     if (descriptor < 0) refuse(path, errno);
@@ -207,7 +207,7 @@ std::string file_identity(const fs::path& path) {
     struct stat status {};
     const auto inode = [&] { return fmt::format("{}:{}", status.st_dev, status.st_ino); };
     if (::stat(path.c_str(), &status) == 0) return S_ISREG(status.st_mode) ? inode() : "";
-    const fs::path file = followed(path);
+    const fs::path file = resolve_links(path);
     if (::stat(folder_of(file).c_str(), &status) == 0) return inode() + '/' + file.filename().string();
     return fs::absolute(file).lexically_normal().string();
 }

@@ -9,11 +9,12 @@
 
 namespace raya {
 
-/// A file cannot be read. The message is the reason only; the caller adds the file's name.
+/// Thrown if a file cannot be read. The message contains only the reason; the caller adds the file's name.
 struct UnreadableFile : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// Whether read_file() reads a named pipe or refuses it.
 enum class Pipes { kRefused, kRead };
 
 /// Returns all bytes of a regular file, of stdin if the name is "-" (standard_streams.hpp), or, with Pipes::kRead, of a
@@ -27,9 +28,9 @@ std::string read_file(const std::filesystem::path& path, Pipes pipes = Pipes::kR
 /// long work, so that they fail early. For "-", reserves stdout for the file (standard_streams.hpp).
 void check_writable(const std::filesystem::path& path);
 
-/// Returns a text that is the same for all paths of a file: its device and inode; if the file does not exist, device
-/// and inode of the folder in which it would be created, and its name. Empty for a device, a pipe or a folder. Throws
-/// UserError for a loop of symbolic links.
+/// Returns a text that is the same for all paths of a file: the file's device and inode. For a file that does not
+/// exist, the text contains device and inode of the folder in which the file would be created, and the file's name.
+/// Empty for a device, a pipe or a folder. Throws UserError for a loop of symbolic links.
 std::string file_identity(const std::filesystem::path& path);
 
 /// Writes `bytes` to a temporary file in the folder of `path` and renames it, so that no reader sees a partial file and
@@ -38,7 +39,7 @@ std::string file_identity(const std::filesystem::path& path);
 /// and remedy. Failures and interruptions (interruption.hpp) leave no temporary file.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// As above, but writes the file in pieces, so that it need not be in memory as a whole. `next` returns one piece per
+/// As above, but writes the file in pieces, so that the whole file need not be in memory. `next` returns one piece per
 /// call, valid until the following call, and an empty piece at the end.
 void write_whole_file(const std::filesystem::path& path, const std::function<std::string_view()>& next);
 

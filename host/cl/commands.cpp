@@ -21,14 +21,14 @@ HostMemory::Kind memory_kind(bool pinned) { return pinned ? HostMemory::Kind::kP
 /// are destroyed.
 struct SharedContext {
     cl::Context context;
-    std::mutex building;
+    std::mutex build_mutex;
     std::map<std::pair<std::vector<std::string>, std::string>, Program> programs;  // by (options, source)
 };
 
 SharedContext& shared_context(const cl::Device& device) {
-    static std::mutex adding;
+    static std::mutex mutex;
     static auto* const contexts = new std::map<cl_device_id, SharedContext>;
-    const std::scoped_lock lock(adding);
+    const std::scoped_lock lock(mutex);
     const auto [shared, is_new] = contexts->try_emplace(device());
     try {
         if (is_new) shared->second.context = cl::Context(device);
@@ -47,9 +47,9 @@ Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
         context_ = shared_context(device_).context;
         queue_ =
             std::make_unique<cl::CommandQueue>(context_, device_, profile_.timed() ? CL_QUEUE_PROFILING_ENABLE : 0);
-        pinned_ = transfers == Transfers::kStaged || (transfers == Transfers::kAutomatic && info_.own_memory);
-        staging_ =
-            std::make_unique<Staging>(context_, *queue_, memory_kind(pinned_), pinned_ ? kPinnedHalf : kPlainHalf);
+        pinned_ = transfers == Transfers::kStaged || (transfers == Transfers::kAutomatic && info_.separate_memory);
+        staging_ = std::make_unique<Staging>(context_, *queue_, memory_kind(pinned_),
+                                             pinned_ ? kPinnedHalfBytes : kPlainHalfBytes);
     });
 }
 
@@ -69,25 +69,26 @@ Session::~Session() {
 
 Program Session::build(const std::string& name, const std::string& source,
                        const std::vector<std::string>& options) const {
-    std::vector<std::string> all = options;
-    if (recorded_launches_ > 0) all.emplace_back("-cl-kernel-arg-info");  // for argument_name()
-    if (const std::string more = user_build_options(); !more.empty()) all.push_back(more);
+    std::vector<std::string> all_options = options;
+    if (recorded_launches_ > 0) all_options.emplace_back("-cl-kernel-arg-info");  // for argument_name()
+    if (const std::string user_options = user_build_options(); !user_options.empty())
+        all_options.push_back(user_options);
     SharedContext& shared = shared_context(device_);
-    const std::scoped_lock lock(shared.building);
-    const auto known = shared.programs.find({all, source});
-    if (known != shared.programs.end()) return known->second;
+    const std::scoped_lock lock(shared.build_mutex);
+    const auto built = shared.programs.find({all_options, source});
+    if (built != shared.programs.end()) return built->second;
     const SpanLog::Span building = span("build " + name);
     const Clock::time_point start = Clock::now();
-    Program program(context_, device_, name, source, all);
+    Program program(context_, device_, name, source, all_options);
     if (logs_builds_) log_kernel_build("build", name, program.options(), start);
     if (builds_ != nullptr) builds_->push_back({program.handle(), name, program.options(), seconds_since(start)});
     log_message(kDetailed, fmt::format("build {}: options {}", name, program.options()));
     log_message(kDetailed, program.log());
-    return shared.programs.emplace(std::pair(all, source), program).first->second;
+    return shared.programs.emplace(std::pair(all_options, source), program).first->second;
 }
 
 void Session::save_binaries() const {
-    for (const auto& [what, program] : shared_context(device_).programs) program.save_binary();
+    for (const auto& [key, program] : shared_context(device_).programs) program.save_binary();
 }
 
 std::jthread Session::compile_notice() const {
@@ -115,8 +116,8 @@ std::unique_ptr<HostMemory> Session::host_memory(const std::string& name, std::s
 void Session::check_range(const std::string& label, const std::string& buffer, std::size_t size, std::size_t offset,
                           std::size_t count) {
     if (offset > size || count > size - offset) {
-        throw std::out_of_range(fmt::format("'{}': {} elements from element {} on exceed buffer '{}' of {}", label,
-                                            count, offset, buffer, size));
+        throw std::out_of_range(fmt::format("'{}': {} elements from element {} on exceed buffer '{}' of {} elements",
+                                            label, count, offset, buffer, size));
     }
 }
 
@@ -124,15 +125,16 @@ void Session::check_blocks(const std::string& label, const std::string& buffer, 
                            std::size_t count, std::size_t blocks) {
     check_range(label, buffer, at.pitch, at.offset, count);
     if (at.first > size || (at.pitch > 0 && blocks > (size - at.first) / at.pitch)) {
-        throw std::out_of_range(fmt::format("'{}': {} blocks of {} elements from {} on exceed buffer '{}' of {}", label,
-                                            blocks, at.pitch, at.first, buffer, size));
+        throw std::out_of_range(
+            fmt::format("'{}': {} blocks of {} elements from element {} on exceed buffer '{}' of {} elements", label,
+                        blocks, at.pitch, at.first, buffer, size));
     }
 }
 
 void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes) {
     const std::size_t groups = record.groups, group_size = record.group_size;
     const std::string what = fmt::format("'{}': launching kernel '{}' ({} groups of {} work-items)", record.label,
-                                         record.object, groups, group_size);
+                                         record.target_name, groups, group_size);
     if (groups == 0 || group_size == 0) throw std::invalid_argument(what + ": no work-items");
     if (local_bytes > info_.local_memory_bytes) {
         throw DeviceError(
@@ -147,15 +149,15 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
             fmt::format("{}: {} allows groups of 1..{} for this kernel; remedy: --group {}, or fewer lanes (--lanes)",
                         what, info_.name, max_size, max_size));
     }
-    const bool timed = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
-    const std::string name = timed ? fmt::format("{}, groups of {}", record.object, group_size) : "";
-    if (timed) finish();
+    const bool records_build = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
+    const std::string name = records_build ? fmt::format("{}, groups of {}", record.target_name, group_size) : "";
+    if (records_build) finish();
     const Clock::time_point start = Clock::now();
     submit(what, std::move(record), [&](cl::Event* event) {
         queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                      nullptr, event);
     });
-    if (!timed) return;
+    if (!records_build) return;
     finish();
     const cl::Program program = kernel.getInfo<CL_KERNEL_PROGRAM>();
     if (logs_builds_) log_kernel_build("launch", name, program.getBuildInfo<CL_PROGRAM_BUILD_OPTIONS>(device_), start);
@@ -164,7 +166,7 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
         if (build.program() == program()) build.launch_s += seconds_since(start);
 }
 
-CommandRecord Session::finished(const Pending& pending) const {
+CommandRecord Session::finished(const PendingCommand& pending) const {
     CommandRecord record = pending.record;
     guarded(fmt::format("'{}' ({})", record.label, record.kind), [&] {
         const cl_int status = pending.event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
@@ -183,9 +185,9 @@ void Session::flush() {
 }
 
 void Session::finish() {
-    const std::vector<Pending> done = std::exchange(pending_, {});  // cleared even if a command failed
+    const std::vector<PendingCommand> done = std::exchange(pending_, {});  // cleared even if a command failed
     guarded("waiting for the device", [this] { queue_->finish(); });
-    for (const Pending& command : done) profile_.add(finished(command));
+    for (const PendingCommand& command : done) profile_.add(finished(command));
 }
 
 const Profile& Session::profile() {

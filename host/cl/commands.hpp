@@ -22,7 +22,7 @@
 
 namespace raya {
 
-/// kOn: the device records the times of commands, if it supports that. kOff: it does not.
+/// kOn: the device records the times of commands, if it supports profiling. kOff: it records no times.
 enum class Timing { kOn, kOff };
 
 /// Transfers between host and device. kStaged: all go through a pinned staging buffer (host/cl/memory.hpp). kDirect:
@@ -49,8 +49,8 @@ class Session {
     /// Total bytes of all buffers allocated so far, including those that were freed.
     std::uint64_t bytes_taken() const { return bytes_taken_; }
 
-    /// Allocates `count` > 0 elements; `name` is for messages. Throws DeviceError if they exceed the device's maximum
-    /// buffer size, or if the allocation fails.
+    /// Allocates `count` > 0 elements; `name` is for messages. Throws DeviceError if the elements exceed the device's
+    /// maximum buffer size, or if the allocation fails.
     template <class T>
     Buffer<T> buffer(const std::string& name, std::size_t count) const {
         return Buffer<T>(allocate(name, count, sizeof(T)), name, count);
@@ -61,7 +61,8 @@ class Session {
     Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
 
     /// The maximum amount of work of a launch with this label, in units that the kernel defines (see LaunchGuard,
-    /// kernels.hpp). UINT32_MAX, no limit, until the device has ended loops of such a launch early.
+    /// kernels.hpp). The value is UINT32_MAX, which means no limit, until the device has ended loops of such a launch
+    /// early.
     std::uint32_t& launch_limit(const std::string& label) {
         return launch_limits_.try_emplace(label, UINT32_MAX).first->second;
     }
@@ -72,19 +73,19 @@ class Session {
                 std::type_identity_t<Params>... args) {
         kernel.set_arguments(args...);
         const std::size_t local_bytes = (local_bytes_of(args) + ... + 0);
-        const bool texts = recorded_launches_ > 0;
-        recorded_launches_ -= texts;
+        const bool records_arguments = recorded_launches_ > 0;
+        recorded_launches_ -= records_arguments;
         launch_kernel({.label = label,
                        .kind = "kernel",
-                       .object = kernel.name(),
+                       .target_name = kernel.name(),
                        .groups = groups,
                        .group_size = group_size,
-                       .arguments = texts ? kernel.argument_texts(args...) : std::vector<ArgumentText>{}},
+                       .arguments = records_arguments ? kernel.argument_texts(args...) : std::vector<ArgumentText>{}},
                       kernel.handle(), local_bytes);
     }
 
-    /// Host to device: writes `from` into `to` from element `offset` on. The caller may change `from` afterwards: the
-    /// call either waits or copies the bytes into staging memory.
+    /// Host to device: writes `from` into `to` from element `offset` on. The caller may change `from` afterwards,
+    /// because the call either waits or copies the bytes into staging memory.
     template <class T>
     void write(const std::string& label, Buffer<T>& to, std::span<const std::type_identity_t<T>> from,
                std::size_t offset = 0) {
@@ -117,7 +118,7 @@ class Session {
                    to_offset * sizeof(T));
     }
 
-    /// Waits for all reads into `readback`. Throws DeviceError, with the label, if one failed.
+    /// Waits for all reads into `readback`. Throws DeviceError, with the label, if a read failed.
     template <class T>
     void wait(const std::string& label, Readback<T>& readback) {
         wait_for(label, readback.memory());
@@ -133,21 +134,22 @@ class Session {
                    {to.memory(), to.name(), to_offset * sizeof(T)}, count * sizeof(T));
     }
 
-    /// Equidistant blocks of a buffer: the first starts at element `first`, the next ones every `pitch` elements. A
-    /// copied range starts at element `offset` of each block.
+    /// Equidistant blocks of a buffer: the first block starts at element `first`, and each further block `pitch`
+    /// elements after the previous one. The range to copy starts at element `offset` of each block.
     struct Blocks {
         std::size_t offset = 0, pitch = 0, first = 0;
     };
 
     /// Device to device, between different buffers: copies `count` elements of each of `blocks` blocks. Does not wait.
     template <class T>
-    void copy_blocks(const std::string& label, const Buffer<T>& from, Blocks from_at, Buffer<T>& to, Blocks to_at,
-                     std::size_t count, std::size_t blocks) {
-        check_blocks(label, from.name(), from.size(), from_at, count, blocks);
-        check_blocks(label, to.name(), to.size(), to_at, count, blocks);
-        copy_rows(label, {from.memory(), from.name(), (from_at.first + from_at.offset) * sizeof(T)},
-                  from_at.pitch * sizeof(T), {to.memory(), to.name(), (to_at.first + to_at.offset) * sizeof(T)},
-                  to_at.pitch * sizeof(T), count * sizeof(T), blocks);
+    void copy_blocks(const std::string& label, const Buffer<T>& from, Blocks from_blocks, Buffer<T>& to,
+                     Blocks to_blocks, std::size_t count, std::size_t blocks) {
+        check_blocks(label, from.name(), from.size(), from_blocks, count, blocks);
+        check_blocks(label, to.name(), to.size(), to_blocks, count, blocks);
+        copy_rows(label, {from.memory(), from.name(), (from_blocks.first + from_blocks.offset) * sizeof(T)},
+                  from_blocks.pitch * sizeof(T),
+                  {to.memory(), to.name(), (to_blocks.first + to_blocks.offset) * sizeof(T)},
+                  to_blocks.pitch * sizeof(T), count * sizeof(T), blocks);
     }
 
     /// Sets every element of `to` to `value`. Does not wait.
@@ -176,14 +178,14 @@ class Session {
     /// Saves the binaries of all programs that were built for the device, see Program::save_binary().
     void save_binaries() const;
 
-    /// Returns the thread of announce_compiling() (base/progress.hpp), or an empty one if messages are not enabled.
+    /// Returns the thread of announce_compiling() (base/progress.hpp), or an empty thread if messages are not enabled.
     /// Keep it while kernels are compiled and launched for the first time.
     [[nodiscard]] std::jthread compile_notice() const;
 
     /// Starts a host span, which ends when the returned object is destroyed. Records it in the SpanLog of observe().
     [[nodiscard]] SpanLog::Span span(const std::string& name) const { return SpanLog::Span(spans_, name); }
 
-    /// Submits all enqueued commands to the device (clFlush): until then a driver may defer them. Does not wait.
+    /// Submits all enqueued commands to the device (clFlush). Until this call a driver may defer them. Does not wait.
     void flush();
 
     /// Waits for all commands. Throws DeviceError, with the label, if a command failed on the device.
@@ -196,12 +198,12 @@ class Session {
     void clear_profile();
 
   private:
-    struct Place {  // one end of a copy
+    struct CopyEnd {  // source or destination of a copy
         const cl::Buffer& memory;
         const std::string& name;
         std::size_t offset;  // bytes
     };
-    struct Pending {  // a command whose times have not been read yet
+    struct PendingCommand {  // a command whose times have not been read yet
         CommandRecord record;
         cl::Event event;
     };
@@ -224,9 +226,9 @@ class Session {
                       std::size_t bytes, const std::byte* from);
     void read_staged(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                      std::size_t bytes, std::byte* to);
-    void copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes);
+    void copy_bytes(const std::string& label, const CopyEnd& from, const CopyEnd& to, std::size_t bytes);
     /// Copies `rows` rows of `bytes` bytes. Pitches are in bytes too.
-    void copy_rows(const std::string& label, const Place& from, std::size_t from_pitch, const Place& to,
+    void copy_rows(const std::string& label, const CopyEnd& from, std::size_t from_pitch, const CopyEnd& to,
                    std::size_t to_pitch, std::size_t bytes, std::size_t rows);
     void fill_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t bytes,
                     const void* value, std::size_t value_bytes);
@@ -234,11 +236,11 @@ class Session {
     /// Enqueues one command by `enqueue(cl::Event*)` and records it; `what` is for error messages.
     template <class Enqueue>
     void submit(const std::string& what, CommandRecord record, Enqueue&& enqueue);
-    CommandRecord finished(const Pending& pending) const;
+    CommandRecord finished(const PendingCommand& pending) const;
 
-    // Events occupy memory of the driver until their times are read, so a session waits for the device and reads the
-    // times when this many commands are pending.
-    static constexpr std::size_t kMaxPending = 4096;
+    // Number of pending commands at which a session waits for the device and reads the commands' times. Until then
+    // their events occupy memory of the driver.
+    static constexpr std::size_t kMaxPendingCommands = 4096;
 
     cl::Device device_;
     DeviceInfo info_;
@@ -247,12 +249,13 @@ class Session {
     std::unique_ptr<cl::CommandQueue> queue_;  // its address is stable when the session moves
     bool pinned_ = false;                      // Transfers::kStaged is in effect, else kDirect
     std::unique_ptr<Staging> staging_;
-    std::vector<Pending> pending_;
+    std::vector<PendingCommand> pending_;
     Profile profile_;
     std::map<std::string, std::uint32_t> launch_limits_;
     bool logs_builds_ = logs_kernel_builds();
     std::vector<KernelBuild>* builds_ = nullptr;
-    std::set<std::pair<cl_kernel, std::size_t>> launched_;  // kernel, group size; if builds are recorded or logged
+    // (kernel, group size) of all launches; only if builds are recorded or logged.
+    std::set<std::pair<cl_kernel, std::size_t>> launched_;
     bool announces_compiling_ = false;
     SpanLog* spans_ = nullptr;
     std::size_t recorded_launches_ = 0;  // number of further launches whose arguments are recorded
@@ -260,7 +263,7 @@ class Session {
 
 template <class Enqueue>
 void Session::submit(const std::string& what, CommandRecord record, Enqueue&& enqueue) {
-    if (pending_.size() >= kMaxPending) finish();
+    if (pending_.size() >= kMaxPendingCommands) finish();
     cl::Event event;
     guarded(what, [&] { enqueue(&event); });
     pending_.push_back({std::move(record), std::move(event)});

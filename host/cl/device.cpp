@@ -27,10 +27,10 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-/// DeviceInfo::max_loop_iterations for a device of this name. Mesa's llvmpipe has a limit
-/// (tests/portability/nested_loops.cl), which no query reports. On other devices the kernels detect loops that ended
-/// early (kernels/shared/loop_canary.clh).
-std::uint32_t loop_iterations_of(const std::string& device_name) {
+/// DeviceInfo::max_loop_iterations for a device of this name. Mesa's llvmpipe has a limit that no query reports
+/// (tests/portability/nested_loops.cl). On other devices the kernels detect loops that ended early
+/// (kernels/shared/loop_canary.clh).
+std::uint32_t max_loop_iterations_of(const std::string& device_name) {
     constexpr std::uint32_t kLlvmpipe = 65535;
     return device_name.find("llvmpipe") != std::string::npos ? kLlvmpipe : 0;
 }
@@ -39,7 +39,7 @@ std::string full_name(const DeviceInfo& device) { return device.platform + " " +
 
 bool is_usable(const DeviceInfo& device) { return device.available && device.compiler_available; }
 
-std::string list_of(const std::vector<DeviceInfo>& devices) {
+std::string device_list(const std::vector<DeviceInfo>& devices) {
     std::string list;
     for (std::size_t i = 0; i < devices.size(); ++i) {
         list += fmt::format("\n  {}: {} ({}{})", i, full_name(devices[i]), devices[i].type,
@@ -48,16 +48,16 @@ std::string list_of(const std::vector<DeviceInfo>& devices) {
     return list;
 }
 
-/// Parses `text` as a decimal number; empty if it is not one.
-std::optional<std::size_t> as_index(const std::string& text) {
+/// Returns the value of the decimal number `text`; empty if `text` is not a decimal number.
+std::optional<std::size_t> parsed_number(const std::string& text) {
     std::size_t value = 0;
     const char* end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data(), end, value);
     return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 
-/// The indices of the usable devices of a type, in order.
-std::vector<std::size_t> usable_of(const std::string& type, const std::vector<DeviceInfo>& devices) {
+/// Returns the indices, ascending, of the usable devices of a type.
+std::vector<std::size_t> usable_devices(const std::string& type, const std::vector<DeviceInfo>& devices) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < devices.size(); ++i)
         if (devices[i].type == type && is_usable(devices[i])) found.push_back(i);
@@ -66,14 +66,14 @@ std::vector<std::size_t> usable_of(const std::string& type, const std::vector<De
 
 std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t ordinal) {
     for (const char* type : {"gpu", "cpu", "other"}) {
-        const std::vector<std::size_t> found = usable_of(type, devices);
+        const std::vector<std::size_t> found = usable_devices(type, devices);
         if (!found.empty()) return found[ordinal % found.size()];
     }
-    throw DeviceError("no available OpenCL device has a compiler; see clinfo; devices:" + list_of(devices));
+    throw DeviceError("no available OpenCL device has a compiler; see clinfo; devices:" + device_list(devices));
 }
 
 /// Returns entry `ordinal` modulo the number of entries of a comma-separated list.
-std::string entry_of(const std::string& list, std::size_t ordinal) {
+std::string list_entry(const std::string& list, std::size_t ordinal) {
     const auto entries = static_cast<std::size_t>(1 + std::count(list.begin(), list.end(), ','));
     std::size_t begin = 0;
     for (std::size_t i = ordinal % entries; i > 0; --i) begin = list.find(',', begin) + 1;
@@ -83,11 +83,11 @@ std::string entry_of(const std::string& list, std::size_t ordinal) {
 /// Interprets `wanted` as a device number, else as a type, else as part of a platform, name, version or driver. Returns
 /// the index of the first device that matches (for a type: the first usable one), or devices.size() if none matches.
 std::size_t named_index(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
-    const std::optional<std::size_t> number = as_index(wanted);
+    const std::optional<std::size_t> number = parsed_number(wanted);
     if (number && *number < devices.size()) return *number;
     const std::string part = lower_case(wanted);
-    const std::vector<std::size_t> of_type = usable_of(part, devices);
-    if (!of_type.empty()) return of_type.front();
+    const std::vector<std::size_t> usable = usable_devices(part, devices);
+    if (!usable.empty()) return usable.front();
     const auto found = std::find_if(devices.begin(), devices.end(), [&part](const DeviceInfo& device) {
         const std::string all = fmt::format("{} {} {} {}", device.platform, device.name, device.version, device.driver);
         return lower_case(all).find(part) != std::string::npos;
@@ -125,7 +125,7 @@ std::vector<cl::Device> all_devices() {
     std::vector<cl::Device> all;
     for (const cl::Platform& platform : all_platforms()) {
         for (const cl::Device& device : devices_of(platform))  // a driver with two ICD files reports its devices twice
-            if (std::none_of(all.begin(), all.end(), [&](const cl::Device& other) { return other() == device(); }))
+            if (std::none_of(all.begin(), all.end(), [&](const cl::Device& known) { return known() == device(); }))
                 all.push_back(device);
     }
     return all;
@@ -144,10 +144,10 @@ DeviceInfo device_info(const cl::Device& device) {
         info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
         info.local_memory_is_dedicated = device.getInfo<CL_DEVICE_LOCAL_MEM_TYPE>() == CL_LOCAL;
         info.global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
-        info.own_memory = info.type != "cpu" && device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_FALSE;
+        info.separate_memory = info.type != "cpu" && device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_FALSE;
         info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
         info.max_group_size = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
-        info.max_loop_iterations = loop_iterations_of(info.name);
+        info.max_loop_iterations = max_loop_iterations_of(info.name);
         info.native_float_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
         info.preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>();
         info.correctly_rounded_divide_sqrt = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
@@ -170,18 +170,18 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
             "environment variable OCL_ICD_VENDORS, which may hide it, and the output of clinfo",
             limit.empty() ? "" : fmt::format("raise {}, which may be too low for a driver, ", limit)));
     }
-    const std::string one = entry_of(wanted, ordinal);
-    if (one.empty()) return default_index(devices, ordinal);
-    const std::size_t found = named_index(one, devices);
+    const std::string entry = list_entry(wanted, ordinal);
+    if (entry.empty()) return default_index(devices, ordinal);
+    const std::size_t found = named_index(entry, devices);
     if (found == devices.size()) {
         throw DeviceError(fmt::format(
-            "no OpenCL device matches '{}'; remedy: a number, a type or a part of a name or version from:{}", one,
-            list_of(devices)));
+            "no OpenCL device matches '{}'; remedy: a number, a type or a part of a name or version from:{}", entry,
+            device_list(devices)));
     }
     if (!is_usable(devices[found])) {
         throw DeviceError(
-            fmt::format("OpenCL device {} is {}; remedy: choose another from:{}", full_name(devices[found]),
-                        devices[found].available ? "without a compiler" : "not available", list_of(devices)));
+            fmt::format("OpenCL device {} is {}; remedy: choose another device from:{}", full_name(devices[found]),
+                        devices[found].available ? "without a compiler" : "not available", device_list(devices)));
     }
     return found;
 }

@@ -1,4 +1,4 @@
-// Properties of a device, as a struct.
+// Properties of an OpenCL device.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,17 +11,18 @@ struct DeviceInfo {
     std::string name, platform, version, driver;
     std::string type;  // "cpu", "gpu" or "other"
     std::uint32_t compute_units = 0;
-    std::uint64_t local_memory_bytes = 0;    // of one work-group
+    std::uint64_t local_memory_bytes = 0;    // available to one work-group
     bool local_memory_is_dedicated = false;  // false: part of global memory, as on CPUs
     std::uint64_t global_memory_bytes = 0;
-    bool own_memory = false;                 // global memory is separate from the host's memory
-    std::uint64_t max_allocation_bytes = 0;  // of one buffer
-    std::size_t max_group_size = 0;          // work-items
-    // Total loop iterations of a work-item after which the device silently ends its loops; 0: no known limit.
+    bool separate_memory = false;            // global memory is separate from the host's memory
+    std::uint64_t max_allocation_bytes = 0;  // maximum size of one buffer
+    std::size_t max_group_size = 0;          // work-items of a work-group
+    // Number of loop iterations of a work-item, summed over its loops, after which the device ends the loops without an
+    // error; 0: no known limit.
     std::uint32_t max_loop_iterations = 0;
     std::uint32_t native_float_width = 0, preferred_float_width = 0;
     bool correctly_rounded_divide_sqrt = false;  // supports -cl-fp32-correctly-rounded-divide-sqrt
-    bool fused_multiply_add = false;             // CL_FP_FMA; kernels see by the macro FP_FAST_FMAF if it is fast
+    bool fused_multiply_add = false;             // CL_FP_FMA; the macro FP_FAST_FMAF shows the kernels if it is fast
     bool denormals = false, round_to_nearest = false, inf_nan = false;
     bool profiling = false;
     bool available = false, compiler_available = false;

@@ -31,7 +31,7 @@ namespace raya {
 namespace fs = std::filesystem;
 namespace {
 
-std::atomic<const char*> current_call{nullptr};
+std::atomic<const char*> current_operation{nullptr};
 std::atomic<bool> enlarges_stacks{false};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
@@ -40,10 +40,11 @@ unsigned int crash_delay_us = 0;
 
 // Bytes of a thread's stack: more than the largest stack frame measured for a work-group, 88 MB (1,024 work-items of 16
 // lanes with a grid and 31 bounces).
-constexpr std::size_t kStack = std::size_t{128} << 20;
-using AlternateStack = std::array<std::byte, 80 << 10>;  // LLVM replaces a smaller one
+constexpr std::size_t kStackBytes = std::size_t{128} << 20;
+// Stack of signal handlers. LLVM would replace a smaller stack by its own.
+using AlternateStack = std::array<std::byte, 80 << 10>;
 
-constexpr std::array<int, 5> kCrashes = {SIGABRT, SIGSEGV, SIGBUS, SIGILL, SIGFPE};
+constexpr std::array<int, 5> kCrashSignals = {SIGABRT, SIGSEGV, SIGBUS, SIGILL, SIGFPE};
 
 /// Writes `text` to stderr. Async-signal-safe.
 void write_message(const char* text) {
@@ -57,9 +58,9 @@ extern "C" void report_driver_crash(int signal) {
     if (!crashed.compare_exchange_strong(first, thread) && first != thread)
         for (;;) ::pause();  // another thread crashed first: it ends the process
     remove_files_in_progress();
-    const char* what = current_call.load();
-    if (what == nullptr && thread != ::getpid()) what = "running a kernel";  // other threads are the driver's
-    if (what == nullptr || first != 0) {
+    const char* operation = current_operation.load();
+    if (operation == nullptr && thread != ::getpid()) operation = "running a kernel";  // other threads are the driver's
+    if (operation == nullptr || first != 0) {
         std::signal(signal, SIG_DFL);
         ::raise(signal);
         return;
@@ -70,7 +71,7 @@ extern "C" void report_driver_crash(int signal) {
     write_message("the OpenCL driver crashed (SIG");
     write_message(::sigabbrev_np(signal));
     write_message(") while ");
-    write_message(what);
+    write_message(operation);
     write_message(
         "; remedy: smaller work-groups (--group) or fewer lanes (--lanes), an empty folder as POCL_CACHE_DIR in case "
         "the cache is damaged, more memory (ulimit -v), a mounted /sys, or another driver (raya devices); raya verify "
@@ -80,68 +81,69 @@ extern "C" void report_driver_crash(int signal) {
 
 /// Runs at exit(), which LLVM, used by PoCL, calls if the disk with the kernel cache is full.
 void report_driver_exit() {
-    const char* const what = current_call.load();
-    if (what == nullptr) return;
+    const char* const operation = current_operation.load();
+    if (operation == nullptr) return;
     remove_files_in_progress();
     for (const char* text :
-         {"\nraya: ", static_cast<const char*>(crash_prefix.data()), "the OpenCL driver ended the program while ", what,
-          "; remedy: free some space for PoCL's kernels, or name another folder in POCL_CACHE_DIR\n"})
+         {"\nraya: ", static_cast<const char*>(crash_prefix.data()), "the OpenCL driver ended the program while ",
+          operation, "; remedy: free some space for PoCL's kernels, or name another folder in POCL_CACHE_DIR\n"})
         write_message(text);
     ::_exit(kExitDeviceError);
 }
 
-void set_handler(int signal, void (*from)(int), void (*to)(int)) {
+/// Replaces the signal's handler, if it is `old_handler`, by `new_handler`.
+void set_handler(int signal, void (*old_handler)(int), void (*new_handler)(int)) {
     struct sigaction action {};
-    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != from) return;
-    action.sa_handler = to;
+    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != old_handler) return;
+    action.sa_handler = new_handler;
     action.sa_flags = SA_NODEFER | SA_ONSTACK;
     ::sigaction(signal, &action, nullptr);
 }
 
-/// Bytes of the stack of a new thread; the guard has the same size. It is kStack, or less if RLIMIT_AS limits the
-/// address space: then the stacks and guards of one thread per core take an eighth of the limit, with at least kStack /
-/// 16 each.
+/// Returns the size, in bytes, of the stack and of the guard of a new thread. It is kStackBytes, or less if RLIMIT_AS
+/// limits the address space. Then the stacks and guards of one thread per core take an eighth of the limit, but each
+/// takes at least kStackBytes / 16.
 std::size_t thread_stack() {
     rlimit memory{RLIM_INFINITY, RLIM_INFINITY};
     ::getrlimit(RLIMIT_AS, &memory);
     const rlim_t cores = std::max(1u, std::thread::hardware_concurrency());
-    return std::clamp<rlim_t>(memory.rlim_cur / 16 / cores, kStack / 16, kStack);
+    return std::clamp<rlim_t>(memory.rlim_cur / 16 / cores, kStackBytes / 16, kStackBytes);
 }
 
-using Start = std::pair<void* (*)(void*), void*>;  // a thread's routine and its argument
+using ThreadStart = std::pair<void* (*)(void*), void*>;  // a thread's routine and its argument
 
-void* run_thread(void* given) {
-    const auto [routine, argument] = *std::unique_ptr<Start>(static_cast<Start*>(given));
+void* run_thread(void* start) {
+    const auto [routine, argument] = *std::unique_ptr<ThreadStart>(static_cast<ThreadStart*>(start));
     AlternateStack memory;
-    const stack_t own{memory.data(), 0, memory.size()};
-    stack_t before{};
-    ::sigaltstack(&own, &before);
+    const stack_t alternate{memory.data(), 0, memory.size()};
+    stack_t previous{};
+    ::sigaltstack(&alternate, &previous);
     void* const result = routine(argument);
-    ::sigaltstack(&before, nullptr);
+    ::sigaltstack(&previous, nullptr);
     return result;
 }
 
-constexpr const char* kVariable = "POCL_CACHE_DIR";
+constexpr const char* kCacheVariable = "POCL_CACHE_DIR";
 
-std::string variable(const char* name) {
+std::string environment_value(const char* name) {
     const char* value = std::getenv(name);
     return value != nullptr ? value : "";
 }
 
-/// The folder that PoCL uses unless POCL_CACHE_DIR names another one.
+/// Returns the folder that PoCL uses unless POCL_CACHE_DIR names another folder.
 fs::path default_cache_folder() {
-    const std::string home = variable("HOME"), cache = variable("XDG_CACHE_HOME");
+    const std::string home = environment_value("HOME"), cache = environment_value("XDG_CACHE_HOME");
     if (!cache.empty()) return fs::path(cache) / "pocl/kcache";
     return home.empty() ? "/tmp/pocl/kcache" : fs::path(home) / ".cache/pocl/kcache";
 }
 
-/// Returns the reason why the folder, or if it does not exist the nearest existing folder above it, is not safe for
-/// PoCL's cache: it is not writable, or other users may change it. Empty if it is safe.
+/// Returns the reason why a folder is not safe for PoCL's cache: the folder is not writable, or other users may change
+/// it. Empty if it is safe. Checks the nearest existing folder above if the folder does not exist.
 std::string unsafe_reason(fs::path folder) {
     std::error_code error;
     while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
     if (::access(folder.c_str(), W_OK | X_OK) != 0) return fmt::format("'{}' is not writable", folder.string());
-    return other_writers(folder, {::geteuid()}, Sticky::kRefused);
+    return unsafe_path_reason(folder, {::geteuid()}, Sticky::kRefused);
 }
 
 /// Creates a folder that only this user may access. Returns true if the folder then belongs to this user and has these
@@ -153,18 +155,18 @@ bool make_private_folder(const fs::path& folder) {
            (is.st_mode & ACCESSPERMS) == S_IRWXU;
 }
 
-fs::path private_cache_folder(const std::string& why) {
+fs::path private_cache_folder(const std::string& reason) {
     std::error_code error;
     fs::path temporary = fs::canonical(fs::temp_directory_path(error), error);
     if (error) temporary = "/tmp";
-    const std::string first = temporary / fmt::format("raya-pocl-cache-{}", ::geteuid());
-    if (other_writers(temporary, {::geteuid()}, Sticky::kAllowed).empty())
+    const std::string base_path = temporary / fmt::format("raya-pocl-cache-{}", ::geteuid());
+    if (unsafe_path_reason(temporary, {::geteuid()}, Sticky::kAllowed).empty())
         for (const char* end : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
-            if (make_private_folder(first + end)) return first + end;
+            if (make_private_folder(base_path + end)) return base_path + end;
     throw DeviceError(
         fmt::format("no safe folder for PoCL's kernels: {}; neither '{}' nor one of '{}-1' to '-9' belongs to this "
                     "user alone; name another folder in POCL_CACHE_DIR",
-                    why, first, first));
+                    reason, base_path, base_path));
 }
 
 }  // namespace
@@ -177,7 +179,7 @@ extern "C" __attribute__((visibility("default"))) int pthread_create(pthread_t* 
                                                                      void* (*routine)(void*), void* argument) noexcept {
     static auto* const next = reinterpret_cast<decltype(&::pthread_create)>(::dlsym(RTLD_NEXT, "pthread_create"));
     if (attributes != nullptr || !enlarges_stacks) return next(thread, attributes, routine, argument);
-    auto start = std::make_unique<Start>(routine, argument);
+    auto start = std::make_unique<ThreadStart>(routine, argument);
     pthread_attr_t large;
     ::pthread_attr_init(&large);
     ::pthread_attr_setstacksize(&large, thread_stack());
@@ -189,8 +191,8 @@ extern "C" __attribute__((visibility("default"))) int pthread_create(pthread_t* 
     return error;
 }
 
-DriverCall::DriverCall(const char* what) : before_(current_call.exchange(what)) {}
-DriverCall::~DriverCall() { current_call.store(before_); }
+DriverCall::DriverCall(const char* operation) : outer_operation_(current_operation.exchange(operation)) {}
+DriverCall::~DriverCall() { current_operation.store(outer_operation_); }
 
 void set_crash_prefix(const std::string& prefix, double delay_s) {
     crash_prefix = {};
@@ -200,14 +202,14 @@ void set_crash_prefix(const std::string& prefix, double delay_s) {
 
 void install_crash_handlers() {
     std::atexit(report_driver_exit);
-    for (const int signal : kCrashes) {
+    for (const int signal : kCrashSignals) {
         set_handler(signal, SIG_DFL, report_driver_crash);
         if (signal != SIGFPE) protect_handler(signal);  // PoCL's SIGFPE handler continues after a division by 0
     }
     static AlternateStack memory;
-    const stack_t own{memory.data(), 0, memory.size()};
-    ::sigaltstack(&own, nullptr);
-    rlimit stack{};  // of this thread, in which PoCL's basic device runs kernels
+    const stack_t alternate{memory.data(), 0, memory.size()};
+    ::sigaltstack(&alternate, nullptr);
+    rlimit stack{};  // limit of this thread's stack, on which PoCL's basic device runs kernels
     ::getrlimit(RLIMIT_STACK, &stack);
     stack.rlim_cur = std::min<rlim_t>(stack.rlim_max, thread_stack());
     ::setrlimit(RLIMIT_STACK, &stack);
@@ -215,29 +217,29 @@ void install_crash_handlers() {
 }
 
 void restore_crash_signals() {
-    for (const int signal : kCrashes) {
+    for (const int signal : kCrashSignals) {
         protect_handler(signal, false);
         set_handler(signal, report_driver_crash, SIG_DFL);
     }
 }
 
 void set_driver_cache_folder() {
-    if (!variable(kVariable).empty()) return;
+    if (!environment_value(kCacheVariable).empty()) return;
     std::error_code error;
     const fs::path preferred = fs::weakly_canonical(fs::absolute(default_cache_folder(), error), error);
-    const std::string why =
+    const std::string reason =
         error ? fmt::format("'{}': {}", default_cache_folder().string(), error.message()) : unsafe_reason(preferred);
     // PoCL gets the resolved path that was checked, because a symbolic link could be changed after the check.
-    const fs::path chosen = why.empty() ? preferred : private_cache_folder(why);
-    ::setenv(kVariable, chosen.c_str(), 1);
-    if (!why.empty())
-        warn(fmt::format("warning: {}: PoCL keeps its kernels in {}; set POCL_CACHE_DIR to use another folder", why,
+    const fs::path chosen = reason.empty() ? preferred : private_cache_folder(reason);
+    ::setenv(kCacheVariable, chosen.c_str(), 1);
+    if (!reason.empty())
+        warn(fmt::format("warning: {}: PoCL keeps its kernels in {}; set POCL_CACHE_DIR to use another folder", reason,
                          chosen.string()));
 }
 
 std::string driver_cache_problem() {
-    constexpr std::size_t kProbeBytes = 1 << 20;  // bytes; more than a compiled kernel takes
-    const fs::path folder = variable(kVariable), probe = folder / fmt::format("raya-{}", ::getpid());
+    constexpr std::size_t kProbeBytes = 1 << 20;  // more than a compiled kernel takes
+    const fs::path folder = environment_value(kCacheVariable), probe = folder / fmt::format("raya-{}", ::getpid());
     try {
         std::error_code error;
         fs::create_directories(folder, error);

@@ -4,35 +4,36 @@
 
 namespace raya {
 
-/// Marks a driver call as in progress while this object exists. If any thread crashes meanwhile, raya attributes the
-/// crash to the driver or a kernel and prints `what`, which must outlive this object.
+/// Marks a driver call as in progress while this object exists. If any thread crashes during that time, raya attributes
+/// the crash to the driver or a kernel and prints `operation`, a text that must outlive this object.
 class DriverCall {
   public:
-    explicit DriverCall(const char* what);
+    explicit DriverCall(const char* operation);
     ~DriverCall();
     DriverCall(const DriverCall&) = delete;
     DriverCall& operator=(const DriverCall&) = delete;
 
   private:
-    const char* before_;
+    const char* outer_operation_;  // of the enclosing DriverCall; null: none
 };
 
 /// Installs handlers of crash signals and of exit(). If a driver then aborts, crashes (also by a stack overflow) or
-/// calls exit() in any thread, raya prints the driver call and remedies on stderr, deletes files in progress and exits
+/// calls exit() in any thread, raya prints the operation and remedies on stderr, deletes files in progress and exits
 /// with the code of a DeviceError. A crash outside of drivers ends the program by its signal. A signal that has another
 /// handler, such as a sanitizer's, keeps it. Threads created later with default attributes get stacks that suffice for
 /// the largest work-groups.
 void install_crash_handlers();
 
 /// For a rank of an MPI job: sets the prefix of its crash messages ("rank 1 on node7: ") and a delay in seconds before
-/// it prints one. The first rank that prints ends the others, so with different delays only one prints if all crash.
+/// it prints one. The first rank that prints ends the other ranks. With different delays, only one rank prints if all
+/// crash.
 void set_crash_prefix(const std::string& prefix, double delay_s);
 
 /// Removes the crash handlers, so that crashes end the program by their signal and the parent process sees the signal.
 void restore_crash_signals();
 
 /// Sets POCL_CACHE_DIR, unless it is set, to a folder that only this user and root may write: PoCL's default folder if
-/// it is safe, else, with a warning, one in the folder for temporary files. The folder matters because PoCL executes
+/// it is safe, else, with a warning, a folder among the temporary files. The folder matters because PoCL executes
 /// the binaries in it, and offers no device if it cannot write to it. Call this before any OpenCL function. Throws
 /// DeviceError if there is no safe folder.
 void set_driver_cache_folder();

@@ -112,11 +112,11 @@ std::string error_remedy(cl_int code) {
         case -6:
             return "the host has too little memory: raise its limit (ulimit -v), or render fewer pixels";
         case -8:
-            return "copy between two buffers, or between parts of one that do not overlap";
+            return "copy between two buffers, or between parts of one buffer that do not overlap";
         case -11:
             return "read the build log";
         case -14:
-            return "an earlier command failed: run under oclgrind to see which";
+            return "an earlier command failed: run under oclgrind to see which command";
         case -43:
             return "the driver does not know one of the build options";
         case -46:
@@ -137,9 +137,9 @@ std::string error_remedy(cl_int code) {
     }
 }
 
-DeviceError device_error(const std::string& call, cl_int code, const std::string& what) {
+DeviceError device_error(const std::string& call, cl_int code, const std::string& operation) {
     const std::string remedy = error_remedy(code);
-    return DeviceError(fmt::format("{}: {} failed with {} ({}){}{}", what, call, error_name(code), code,
+    return DeviceError(fmt::format("{}: {} failed with {} ({}){}{}", operation, call, error_name(code), code,
                                    remedy.empty() ? "" : "; remedy: ", remedy));
 }
 

@@ -1,4 +1,5 @@
-// Names and remedies of OpenCL error codes; conversion of cl::Error to DeviceError, the only error type of this layer.
+// Names and remedies of OpenCL error codes; conversion of cl::Error to DeviceError, the only type of exception for
+// OpenCL errors outside host/cl.
 #pragma once
 #include <string>
 
@@ -8,26 +9,26 @@
 
 namespace raya {
 
-/// The name of an OpenCL error code as in the headers, e.g. "CL_INVALID_KERNEL_ARGS", or "unknown OpenCL error -4711".
-/// Source of the codes: cl.h, cl_ext.h, and -9999 of NVIDIA's driver.
+/// Returns the name of an OpenCL error code as in the headers, e.g. "CL_INVALID_KERNEL_ARGS", or "unknown OpenCL error
+/// -4711". Sources of the codes: cl.h, cl_ext.h, and NVIDIA's driver for -9999.
 std::string error_name(cl_int code);
 
-/// The remedy for an error code, one line; empty if the code has no common remedy.
+/// Returns the remedy for an error code, one line; empty if the code has no common remedy.
 std::string error_remedy(cl_int code);
 
 /// Makes the DeviceError for an OpenCL `call` ("clEnqueueCopyBuffer") that failed with `code` during the operation
-/// `what` ("'rotate': copying ...").
-DeviceError device_error(const std::string& call, cl_int code, const std::string& what);
+/// `operation` ("'rotate': copying ...").
+DeviceError device_error(const std::string& call, cl_int code, const std::string& operation);
 
-/// Runs `action` and returns its result. Converts a cl::Error into a DeviceError; `what` names the operation in its
-/// message.
+/// Runs `action` and returns its result. Converts a cl::Error into a DeviceError; `operation` names the operation in
+/// its message.
 template <class Action>
-decltype(auto) guarded(const std::string& what, Action&& action) {
-    const DriverCall call(what.c_str());
+decltype(auto) guarded(const std::string& operation, Action&& action) {
+    const DriverCall call(operation.c_str());
     try {
         return action();
     } catch (const cl::Error& error) {
-        throw device_error(error.what(), error.err(), what);
+        throw device_error(error.what(), error.err(), operation);
     }
 }
 

@@ -13,12 +13,12 @@ namespace raya {
 namespace fs = std::filesystem;
 namespace {
 
-bool switched_off() {
+bool binaries_are_off() {
     const char* const set = std::getenv("RAYA_BINARIES");
-    const std::string wanted = set == nullptr ? "" : set;
-    if (!wanted.empty() && wanted != "off")
-        throw UserError(fmt::format("RAYA_BINARIES={}: must be off, or not set", wanted));
-    return wanted == "off";
+    const std::string value = set == nullptr ? "" : set;
+    if (!value.empty() && value != "off")
+        throw UserError(fmt::format("RAYA_BINARIES={}: must be off, or not set", value));
+    return value == "off";
 }
 
 }  // namespace
@@ -41,8 +41,8 @@ fs::path kernel_binary_file(const cl::Device& device, const std::string& source,
 }
 
 std::optional<KernelBinary> read_kernel_binary(const fs::path& file) {
-    std::error_code none;
-    if (switched_off() || !fs::exists(file, none) || !other_writers_reason(file).empty()) return {};
+    std::error_code ignored;
+    if (binaries_are_off() || !fs::exists(file, ignored) || !unsafe_code_file_reason(file).empty()) return {};
     try {
         const std::string bytes = read_file(file);
         return KernelBinary(bytes.begin(), bytes.end());

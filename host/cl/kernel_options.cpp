@@ -16,15 +16,15 @@ constexpr std::array<std::uint32_t, 4> kLanes = {1, 4, 8, 16};
 constexpr std::uint32_t kMaxGroup = 1024;
 constexpr std::uint32_t kMaxBounces = 31;  // the kernels store the pending rays of a tree as bits of one word
 
-void check_tuning(const KernelTuning& more) {
-    const auto check = [](const char* what, std::uint32_t value, std::uint32_t min, std::uint32_t max) {
+void check_tuning(const KernelTuning& values) {
+    const auto check = [](const char* name, std::uint32_t value, std::uint32_t min, std::uint32_t max) {
         if (value != 0 && (value < min || value > max))
-            throw UserError(fmt::format("{} {}: must be {}..{}", what, value, min, max));
+            throw UserError(fmt::format("{} {}: must be {}..{}", name, value, min, max));
     };
-    check("sphere batch", more.sphere_batch, 1, 32);
-    check("trees", more.trees, 1, 8);
-    check("beams", more.beams, 1, 8);
-    check("registers", more.registers, 16, 255);
+    check("sphere batch", values.sphere_batch, 1, 32);
+    check("trees", values.trees, 1, 8);
+    check("beams", values.beams, 1, 8);
+    check("registers", values.registers, 16, 255);
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ void check_kernel_options(const KernelOptions& options, const DeviceInfo& device
             fmt::format("--group {}: must be 1..{} work-items on {}", options.group_size, max_size, device.name));
     if (options.bounces > kMaxBounces)
         throw UserError(fmt::format("--bounces {}: must be 0..{}", options.bounces, kMaxBounces));
-    check_tuning(options.more);
+    check_tuning(options.tuning);
 }
 
 std::uint32_t max_group_size_of(const DeviceInfo& device) {
@@ -48,8 +48,8 @@ std::uint32_t max_group_size_of(const DeviceInfo& device) {
 bool supports_register_limit(const DeviceInfo& device) { return device.platform.find("NVIDIA") != std::string::npos; }
 
 std::uint32_t trees_of(const KernelOptions& options) {
-    const bool tuned = options.more.trees && options.accel == RAYA_ACCEL_GRID;
-    return tuned ? options.more.trees : RAYA_DEFAULT_TREES(options.accel, options.lanes);
+    const bool tuned = options.tuning.trees && options.accel == RAYA_ACCEL_GRID;
+    return tuned ? options.tuning.trees : RAYA_DEFAULT_TREES(options.accel, options.lanes);
 }
 
 std::uint32_t default_lanes(const DeviceInfo& device) {
@@ -61,10 +61,10 @@ std::uint32_t default_lanes(const DeviceInfo& device) {
 }
 
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus) {
-    constexpr std::size_t kOfGpu = 128, kOfVector = 8;
+    constexpr std::size_t kGpuGroup = 128, kVectorGroup = 8;
     const bool cpu = device.type == "cpu";
     if (cpu && (torus || device.max_loop_iterations == 0)) return 1;
-    return static_cast<std::uint32_t>(std::min(cpu ? kOfVector : kOfGpu, device.max_group_size));
+    return static_cast<std::uint32_t>(std::min(cpu ? kVectorGroup : kGpuGroup, device.max_group_size));
 }
 
 bool filters_are_valid(const NumberFormat& format, double extent) {
@@ -101,11 +101,11 @@ std::vector<std::string> build_options(const KernelOptions& options, const Devic
     if (options.accel == RAYA_ACCEL_BVH) define("BVH_STACK", options.stack);
     if (options.filter) define("FILTER", 1);
     if (options.costs) define("COSTS", 1);
-    if (options.more.sphere_batch) define("SPHERE_BATCH", options.more.sphere_batch);
-    if (options.more.trees && options.accel == RAYA_ACCEL_GRID) define("TREES", options.more.trees);
-    if (options.more.beams && options.accel == RAYA_ACCEL_GRID) define("BEAMS", options.more.beams);
-    if (options.more.registers && supports_register_limit(device))
-        all.push_back(fmt::format("-cl-nv-maxrregcount={}", options.more.registers));
+    if (options.tuning.sphere_batch) define("SPHERE_BATCH", options.tuning.sphere_batch);
+    if (options.tuning.trees && options.accel == RAYA_ACCEL_GRID) define("TREES", options.tuning.trees);
+    if (options.tuning.beams && options.accel == RAYA_ACCEL_GRID) define("BEAMS", options.tuning.beams);
+    if (options.tuning.registers && supports_register_limit(device))
+        all.push_back(fmt::format("-cl-nv-maxrregcount={}", options.tuning.registers));
     return all;
 }
 

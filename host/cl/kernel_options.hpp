@@ -1,4 +1,4 @@
-// Build options of the kernels for a device. build_options() makes all -D options of the kernels.
+// Build options of the kernels for a device. build_options() makes all -D options.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,19 +11,20 @@
 
 namespace raya {
 
-/// Kernel parameters that, like lanes and group size, change only the time of a render. 0: the default of the kernels
-/// or of the compiler.
+/// Kernel parameters that, like lanes and group size, change only the time of a render. A value of 0 selects the
+/// default of the kernels or of the compiler.
 struct KernelTuning {
     std::uint32_t sphere_batch = 0;  // RAYA_SPHERE_BATCH: spheres tested before their hits are examined, 1..32
     std::uint32_t trees = 0;         // RAYA_TREES: ray trees that a lane traces concurrently, 1..8; only with a grid
     std::uint32_t beams = 0;         // RAYA_BEAMS: shadow rays of a hit traced concurrently, 1..8; only with a grid
-    std::uint32_t registers = 0;     // register limit per work-item for NVIDIA's compiler, 16..255; others ignore it
+    std::uint32_t registers = 0;     // register limit per work-item for NVIDIA's compiler, 16..255; other
+                                     // compilers ignore the limit
     bool operator==(const KernelTuning&) const = default;
 };
 
 /// The parameters of kernels/ (each RAYA_* macro is documented where the kernels define its default).
 struct KernelOptions {
-    std::uint32_t lanes = 1;       // V: vector width of a work-item
+    std::uint32_t lanes = 1;       // V: number of lanes of a work-item
     std::uint32_t group_size = 1;  // L: work-items per work-group
     std::uint32_t bounces = 8;
     NumberFormat format{};
@@ -35,11 +36,11 @@ struct KernelOptions {
     bool filter = false;  // filter spheres and polygons in fp32 before the exact test, see filters_are_valid()
     bool polygons = true, patches = true, cones = true;
     bool costs = false;  // torus nodes record the cost of each packet
-    KernelTuning more{};
+    KernelTuning tuning{};
 };
 
 /// The method that moves packets over the links of a torus. kCopies: copies between buffers. kKernel: a kernel.
-/// kAutomatic: the kernel on a CPU, else the method that is faster in a measurement. The result is the same.
+/// kAutomatic: the kernel on a CPU, else the method that a measurement finds faster. All methods give the same result.
 enum class LinkMove : std::uint32_t { kAutomatic, kCopies, kKernel };
 
 /// Kernel settings that the user, a check or tuning chooses for a device.
@@ -47,24 +48,25 @@ struct KernelChoice {
     std::uint32_t lanes = 0;       // V: 1, 4, 8 or 16; 0: chosen from the device
     std::uint32_t group_size = 0;  // L: 1..1024 work-items; 0: chosen from the device
     bool filter = true;            // use the fp32 filters if filters_are_valid(); they do not change the hits
-    // If false, the kernels do not use the feature, so that their alternative code can be tested on any device.
+    // If one of the next two members is false, the kernels do not use that feature, so that the code that replaces it
+    // can be tested on any device.
     bool local_words = true;       // the job's words in local memory if they fit
     bool exact_arithmetic = true;  // the device's division, square root and fused multiply-add if correctly rounded
     KernelSources sources{};
-    KernelTuning more{};
+    KernelTuning tuning{};
     LinkMove link_move = LinkMove::kAutomatic;
-    std::string origin{};       // source of lanes, group size and tuning for reports, see chosen() in tuned.hpp
-    std::string link_origin{};  // source of link_move for reports
+    std::string origin{};       // for reports: source of lanes, group size and tuning, see chosen() in tuned.hpp
+    std::string link_origin{};  // for reports: source of link_move
 };
 
-/// The default V: the width of the device's float vectors on a CPU, at least 4; 1 elsewhere and on llvmpipe, which
-/// vectorises over work-items itself and takes minutes and gigabytes to compile wider kernels.
+/// Returns the default V: the width of the device's float vectors on a CPU, at least 4; 1 elsewhere and on llvmpipe,
+/// which vectorises over work-items itself and takes minutes and gigabytes to compile wider kernels.
 std::uint32_t default_lanes(const DeviceInfo& device);
 
-/// The default L: 1 on a CPU, where the lanes of a work-item fill the vectors; 8 on llvmpipe, which vectorises over the
-/// work-items of a group and has 256-bit vectors; else 128: with the 150 registers per work-item of the kernel `trace`,
-/// a GPU with 132 multiprocessors runs about 256 PEs of four warps at once (docs/gpu_resources.md). For a torus it is 1
-/// on every CPU: a node of one work-item keeps packets in order (docs/packets.md).
+/// Returns the default L: 1 on a CPU, where the lanes of a work-item fill the vectors; 8 on llvmpipe, which vectorises
+/// over the work-items of a group and has 256-bit vectors; else 128: with the 150 registers per work-item of the kernel
+/// `trace`, a GPU with 132 multiprocessors runs about 256 PEs of four warps at once (docs/gpu_resources.md). For a
+/// torus it is 1 on every CPU: a node of one work-item keeps packets in order (docs/packets.md).
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false);
 
 /// Returns true if the error bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh are valid: `format` is
@@ -72,21 +74,21 @@ std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false);
 /// not overflow. The filters change the time of a render, not its result.
 bool filters_are_valid(const NumberFormat& format, double extent);
 
-/// The maximum group size of the kernels on this device.
+/// Returns the maximum group size of the kernels on this device.
 std::uint32_t max_group_size_of(const DeviceInfo& device);
 
 /// Returns true if the device's compiler has an option that limits registers (NVIDIA).
 bool supports_register_limit(const DeviceInfo& device);
 
-/// The value of RAYA_TREES in kernels built with these options.
+/// Returns the value of RAYA_TREES in kernels built with these options.
 std::uint32_t trees_of(const KernelOptions& options);
 
 /// Throws UserError for lanes other than 1, 4, 8, 16, a group size outside 1..max_group_size_of(), more than 31
 /// bounces, or tuning parameters outside their ranges.
 void check_kernel_options(const KernelOptions& options, const DeviceInfo& device);
 
-/// The build options of all kernels, including -cl-fp32-correctly-rounded-divide-sqrt if it is wanted and the device
-/// supports it. Throws as check_kernel_options().
+/// Returns the build options of all kernels, including -cl-fp32-correctly-rounded-divide-sqrt if it is wanted and the
+/// device supports it. Throws as check_kernel_options().
 std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device);
 
 }  // namespace raya

@@ -17,7 +17,8 @@ namespace {
 std::string read_kernel_file(const std::string& file, const std::filesystem::path& folder) {
     if (folder.empty()) {
         const auto found = embedded_files().find("kernels/" + file);
-        if (found == embedded_files().end()) throw UserError(fmt::format("no kernel file '{}' in this program", file));
+        if (found == embedded_files().end())
+            throw UserError(fmt::format("raya has no built-in kernel file '{}'", file));
         return found->second;
     }
     try {
@@ -39,8 +40,8 @@ std::string included_file(const std::string& line, const std::string& file) {
     return name.find('/') == std::string::npos ? (std::filesystem::path(file).parent_path() / name).string() : name;
 }
 
-void append(std::string& source, const std::string& text, const std::string& name, const KernelSources& sources,
-            std::set<std::string>& seen) {
+void append_expanded(std::string& source, const std::string& text, const std::string& name,
+                     const KernelSources& sources, std::set<std::string>& included_files) {
     source += fmt::format("#line 1 \"{}\"\n", name);
     std::istringstream lines(text);
     int number = 0;
@@ -50,7 +51,8 @@ void append(std::string& source, const std::string& text, const std::string& nam
         if (included.empty()) {
             source += line + '\n';
         } else {
-            if (seen.insert(included).second) append(source, kernel_file(included, sources), included, sources, seen);
+            if (included_files.insert(included).second)
+                append_expanded(source, kernel_file(included, sources), included, sources, included_files);
             source += fmt::format("#line {} \"{}\"\n", number + 1, name);
         }
     }
@@ -81,8 +83,8 @@ std::string kernel_source(const std::string& file, const KernelSources& sources)
 
 std::string expand_kernel_source(const std::string& text, const std::string& name, const KernelSources& sources) {
     std::string source;
-    std::set<std::string> seen = {name};
-    append(source, text, name, sources, seen);
+    std::set<std::string> included_files = {name};
+    append_expanded(source, text, name, sources, included_files);
     return source;
 }
 

@@ -28,7 +28,8 @@ struct DescribedKernel : Kernel<Params...> {
 /// The kernels for one device with one set of build options. Each requested file is built as one program.
 class Kernels {
   public:
-    /// Kernels for the device of `session`, which must outlive this object. UserError as in build_options().
+    /// Makes kernels for the device of `session`, which must outlive this object. Throws UserError as build_options()
+    /// does.
     Kernels(Session& session, const KernelOptions& options, const KernelSources& sources = {});
 
     /// Returns the kernel `K`, a DescribedKernel. Builds its file when the first of the file's kernels is requested.
@@ -38,7 +39,7 @@ class Kernels {
         return K(program(K::kFile));
     }
 
-    /// The program built from a file below kernels/. Throws as get().
+    /// Returns the program built from a file below kernels/. Throws as get().
     const Program& program(const std::string& file);
 
     /// Builds the source `text`, which is not a file of kernels/ but may include such files; `name` is for messages.
@@ -55,8 +56,8 @@ class Kernels {
     std::map<std::string, Program> programs_;
 };
 
-/// The error for a launch whose loops the device has ended early. `label`: of the launch; `remedy`: how to shorten the
-/// loops.
+/// Returns the error for a launch whose loops the device has ended early. `label`: label of the launch; `remedy`: a
+/// change that shortens the loops.
 inline DeviceError truncated_loops_error(const std::string& label, const std::string& device,
                                          const std::string& remedy) {
     return DeviceError("'" + label + "': " + device +
@@ -64,10 +65,10 @@ inline DeviceError truncated_loops_error(const std::string& label, const std::st
                        ", or another device");
 }
 
-/// For devices that end a kernel's loops early (kernels/shared/loop_canary.clh). After a launch whose loops were
-/// truncated, it restores the buffers that the launch changes (the state) and halves the limit of work per launch, so
-/// that the caller can repeat the launch. The session stores the limit (Session::launch_limit()). `T`: element types of
-/// the state's buffers.
+/// Guards launches on devices that end a kernel's loops early (kernels/shared/loop_canary.clh). After a launch whose
+/// loops were truncated, the guard restores the buffers that the launch changes (the state) and halves the limit of
+/// work per launch, so that the caller can repeat the launch. The session stores the limit (Session::launch_limit()).
+/// `T...`: element types of the state's buffers.
 template <class... T>
 class LaunchGuard {
   public:

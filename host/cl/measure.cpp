@@ -12,19 +12,20 @@
 namespace raya {
 namespace {
 
-// The number of work-items of a launch: two groups per compute unit on a CPU; elsewhere 2048 work-items per compute
-// unit, which is enough to hide latencies.
+// Returns the number of work-items of a launch: two groups per compute unit on a CPU; elsewhere 2048 work-items per
+// compute unit, which is enough to hide latencies.
 std::size_t work_items(const DeviceInfo& device, std::uint32_t group) {
     return std::size_t{device.compute_units} * (device.type == "cpu" ? 2 * group : 2048);
 }
 
-constexpr int kReadings = 2;                                     // samples of each rate in a measurement
+constexpr int kSamples = 2;                                      // samples of each rate in a measurement
 constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kRoot = 4;  // indices of kOperations
 
-// The size in bytes of each of the two buffers of a copy. Together they take at most an eighth of the device's memory.
+// Returns the size in bytes of each of the two buffers of a copy. Together they take at most an eighth of the device's
+// memory.
 std::uint64_t copied_bytes(const DeviceInfo& device) {
-    constexpr std::uint64_t kEnough = 256u << 20;
-    return std::min({kEnough, device.max_allocation_bytes, device.global_memory_bytes / 16});
+    constexpr std::uint64_t kMaxBytes = 256u << 20;
+    return std::min({kMaxBytes, device.max_allocation_bytes, device.global_memory_bytes / 16});
 }
 
 double copy_bytes_per_s(Session& session, std::uint64_t bytes) {
@@ -33,27 +34,29 @@ double copy_bytes_per_s(Session& session, std::uint64_t bytes) {
     session.fill("peak", from, 1);  // pages that were never written may not be allocated yet
     session.fill("peak", to, 2);
     session.clear_profile();
-    for (int i = 0; i < kReadings; ++i) session.copy("peak", from, 0, to, 0, bytes);
+    for (int i = 0; i < kSamples; ++i) session.copy("peak", from, 0, to, 0, bytes);
     const std::uint64_t min_ns = session.profile().summary().front().min_ns;
+    // 2e9 = 2 x 10^9 ns/s: a copy reads and writes each byte.
     return min_ns > 0 ? 2e9 * static_cast<double>(bytes) / static_cast<double>(min_ns) : 0;
 }
 
 // Measures all rates of a device repeatedly, and builds the programs only once.
-class Peak {
+class PeakRates {
   public:
-    Peak(Session& session, const NumberFormat& format, std::uint32_t lanes)
-        : session_(session), of_render_(session, format, lanes) {
+    PeakRates(Session& session, const NumberFormat& format, std::uint32_t lanes)
+        : session_(session), render_rates_(session, format, lanes) {
         const NumberFormat fp32{};
-        const std::uint32_t widest = default_lanes(session.device());
-        if (format != fp32 || lanes != widest) widest_.emplace(session, fp32, widest);
+        const std::uint32_t widest_lanes = default_lanes(session.device());
+        if (format != fp32 || lanes != widest_lanes) widest_fp32_rates_.emplace(session, fp32, widest_lanes);
     }
 
-    DevicePeak once() {
+    DevicePeak measure_all() {
         DevicePeak peak;
-        peak.multiply_per_s = of_render_.measure(kMultiplyAdd, kReadings);
-        peak.fp32_per_s = widest_ ? widest_->measure(kMultiplyAdd, kReadings) : peak.multiply_per_s;
-        peak.divide_per_s = of_render_.measure(kDivide, kReadings);
-        peak.root_per_s = of_render_.measure(kRoot, kReadings);
+        peak.multiply_per_s = render_rates_.measure(kMultiplyAdd, kSamples);
+        peak.fp32_per_s =
+            widest_fp32_rates_ ? widest_fp32_rates_->measure(kMultiplyAdd, kSamples) : peak.multiply_per_s;
+        peak.divide_per_s = render_rates_.measure(kDivide, kSamples);
+        peak.root_per_s = render_rates_.measure(kRoot, kSamples);
         peak.copy_bytes = copied_bytes(session_.device());
         peak.copy_bytes_per_s = copy_bytes_per_s(session_, peak.copy_bytes);
         return peak;
@@ -61,8 +64,9 @@ class Peak {
 
   private:
     Session& session_;
-    OperationRates of_render_;
-    std::optional<OperationRates> widest_;  // fp32 with the default lanes; empty if of_render_ measures the same
+    OperationRates render_rates_;
+    std::optional<OperationRates> widest_fp32_rates_;  // fp32 with the default lanes; empty if render_rates_ has this
+                                                       // format and number of lanes
 };
 
 }  // namespace
@@ -76,7 +80,7 @@ OperationRates::OperationRates(Session& session, const NumberFormat& format, std
       chains_(kernels_.get<Chains>()),
       results_(session.buffer<float>("results of operations", items_ * lanes)) {}
 
-double OperationRates::seconds(std::size_t kind) {
+double OperationRates::launch_seconds(std::size_t kind) {
     session_.clear_profile();
     session_.launch("operations", chains_, items_ / group_size_, group_size_, Uint<"kind">{static_cast<cl_uint>(kind)},
                     Uint<"rounds">{rounds_[kind]}, 1.0f, results_);
@@ -87,8 +91,8 @@ double OperationRates::seconds(std::size_t kind) {
 
 void OperationRates::find_rounds(std::size_t kind) {
     rounds_[kind] = 1000;
-    seconds(kind);  // PoCL compiles in the first launch
-    while (seconds(kind) < 0.01 && rounds_[kind] < 100'000'000) rounds_[kind] *= 4;
+    launch_seconds(kind);  // PoCL compiles in the first launch
+    while (launch_seconds(kind) < 0.01 && rounds_[kind] < 100'000'000) rounds_[kind] *= 4;
 }
 
 double OperationRates::measure(std::size_t kind, int samples) {
@@ -96,29 +100,29 @@ double OperationRates::measure(std::size_t kind, int samples) {
     const double operations = static_cast<double>(items_ * lanes_) * RAYA_CHAINS * rounds_[kind];
     double best = 0;
     for (int i = 0; i < samples; ++i) {
-        const double once = seconds(kind);
-        if (once > 0) best = std::max(best, operations / once);
+        const double elapsed_s = launch_seconds(kind);
+        if (elapsed_s > 0) best = std::max(best, operations / elapsed_s);
     }
     return best;
 }
 
 DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes) {
-    constexpr int kTimes = 3;
+    constexpr int kMeasurements = 3;
     Session session(device);
     DevicePeak best;
     if (session.profile().timed()) {
-        Peak peaks(session, format, lanes);
-        double lowest = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < kTimes; ++i) {
-            const DevicePeak peak = peaks.once();
-            lowest = std::min(lowest, peak.fp32_per_s);
+        PeakRates peak_rates(session, format, lanes);
+        double lowest_fp32 = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < kMeasurements; ++i) {
+            const DevicePeak peak = peak_rates.measure_all();
+            lowest_fp32 = std::min(lowest_fp32, peak.fp32_per_s);
             for (double DevicePeak::*rate :
                  {&DevicePeak::fp32_per_s, &DevicePeak::multiply_per_s, &DevicePeak::divide_per_s,
                   &DevicePeak::root_per_s, &DevicePeak::copy_bytes_per_s})
                 best.*rate = std::max(best.*rate, peak.*rate);
             best.copy_bytes = peak.copy_bytes;
         }
-        best.scatter = best.fp32_per_s > 0 ? 1 - lowest / best.fp32_per_s : 0;
+        best.scatter = best.fp32_per_s > 0 ? 1 - lowest_fp32 / best.fp32_per_s : 0;
     }
     best.format = format_name(format);
     return best;
@@ -135,18 +139,18 @@ ClockOffset clock_offset_of(std::uint64_t before, std::uint64_t queued, std::uin
 ClockOffset measure_clock_offset(Session& session) {
     if (!session.profile().timed())
         throw std::logic_error("measure_clock_offset: the device does not time its commands");
-    constexpr int kTries = 16;
+    constexpr int kCommands = 16;
     Buffer<std::uint32_t> word = session.buffer<std::uint32_t>("clock offset", 1);
-    std::uint64_t shortest = ~std::uint64_t{0};
+    std::uint64_t shortest_ns = ~std::uint64_t{0};
     ClockOffset best;
-    for (int i = 0; i < kTries; ++i) {
+    for (int i = 0; i < kCommands; ++i) {
         session.clear_profile();
         const std::uint64_t before = host_clock_ns();
         session.fill("clock offset", word, 0);
         const std::uint64_t after = host_clock_ns();
         const std::uint64_t queued = session.profile().commands().back().queued;
-        if (after - before >= shortest) continue;
-        shortest = after - before;
+        if (after - before >= shortest_ns) continue;
+        shortest_ns = after - before;
         best = clock_offset_of(before, queued, after);
     }
     session.clear_profile();

@@ -20,15 +20,17 @@ class OperationRates {
   public:
     OperationRates(Session& session, const NumberFormat& format, std::uint32_t lanes);
 
-    /// Operations of kind kOperations[kind] per second, the maximum of `samples` launches of at least 10 ms each. 0 if
-    /// the device does not time its commands.
+    /// Returns the number of operations kOperations[kind] per second: the maximum of `samples` launches of at least 10
+    /// ms each. 0 if the device does not time its commands.
     double measure(std::size_t kind, int samples);
 
   private:
     using Chains =
         DescribedKernel<"number/operations.cl", "operations", Uint<"kind">, Uint<"rounds">, cl_float, Buffer<float>&>;
 
-    double seconds(std::size_t kind);
+    /// Returns the device time of one launch, in seconds.
+    double launch_seconds(std::size_t kind);
+    /// Chooses rounds_[kind] so that a launch takes at least 10 ms.
     void find_rounds(std::size_t kind);
 
     Session& session_;
@@ -52,8 +54,8 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
 /// not time its commands.
 ClockOffset measure_clock_offset(Session& session);
 
-/// The clock offset that follows from one command, which was queued at `queued` (device clock) between `before` and
-/// `after` (host clock). Times in ns.
+/// Returns the clock offset that follows from one command. The command was queued at `queued` (device clock) between
+/// `before` and `after` (host clock). Times in ns.
 ClockOffset clock_offset_of(std::uint64_t before, std::uint64_t queued, std::uint64_t after);
 
 }  // namespace raya

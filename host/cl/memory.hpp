@@ -12,8 +12,8 @@
 
 namespace raya {
 
-/// `size()` elements of T in the device's global memory, allocated by Session::buffer(), initially undefined. It is a
-/// handle: copies refer to the same memory, which is freed with the last copy.
+/// `size()` elements of T in the device's global memory, allocated by Session::buffer(), initially undefined. A Buffer
+/// is a handle: its copies refer to the same memory, which is freed with the last copy.
 template <class T>
 class Buffer {
     static_assert(std::is_trivially_copyable_v<T>, "buffers are copied byte by byte");
@@ -57,7 +57,7 @@ class HostMemory {
     std::size_t size() const { return size_; }
 
     /// Registers a command that uses this memory. The queue must run it after all commands registered before.
-    void used_by(const cl::Event& command) { last_ = command; }
+    void used_by(const cl::Event& command) { last_command_ = command; }
 
     /// Waits for the last registered command. Throws cl::Error if that command failed.
     void wait();
@@ -65,10 +65,10 @@ class HostMemory {
   private:
     cl::CommandQueue queue_;
     std::size_t size_;
-    std::unique_ptr<std::byte[]> plain_;
-    cl::Buffer pinned_;
+    std::unique_ptr<std::byte[]> plain_memory_;
+    cl::Buffer pinned_buffer_;
     std::byte* bytes_ = nullptr;
-    cl::Event last_;
+    cl::Event last_command_;
 };
 
 /// Host memory for asynchronous reads of up to `size()` elements of T by Session::read().
@@ -90,13 +90,13 @@ class Readback {
     std::size_t size_;
 };
 
-/// Bytes of one half of a Staging, in pinned and in plain memory. Plain halves are for devices that share the host's
-/// memory, where a thread of the driver copies the bytes of a transfer. For a small transfer, waking that thread and
-/// waiting for it takes longer than copying the bytes twice, by way of the staging buffer.
-inline constexpr std::size_t kPinnedHalf = 4u << 20, kPlainHalf = 64u << 10;
+/// Sizes in bytes of one half of a Staging in pinned and in plain memory. Plain halves are for devices that share the
+/// host's memory, where a thread of the driver copies the bytes of a transfer. For a small transfer, waking that thread
+/// and waiting for it takes longer than copying the bytes twice through the staging buffer.
+inline constexpr std::size_t kPinnedHalfBytes = 4u << 20, kPlainHalfBytes = 64u << 10;
 
-/// Double buffering for transfers. Consecutive transfers fill one half; while the device copies that half, the host
-/// fills or reads the other.
+/// Staging buffer: host memory in two halves through which transfers between host and device go. Consecutive transfers
+/// fill one half. While the device copies that half, the host fills or reads the other half.
 class Staging {
   public:
     /// Allocates both halves. Throws cl::Error.
@@ -104,14 +104,15 @@ class Staging {
 
     std::size_t half_bytes() const { return halves_[0].size(); }
 
+    /// Reserved bytes of a half.
     struct Place {
         HostMemory& half;  // register the command with half.used_by()
         std::byte* bytes;
     };
 
     /// Reserves `bytes` bytes, at most half_bytes(). If they do not fit into the current half, switches to the other
-    /// half and waits for the commands that use it. Throws cl::Error if one of these failed.
-    Place take(std::size_t bytes);
+    /// half and waits for the commands that use it. Throws cl::Error if such a command failed.
+    Place reserve(std::size_t bytes);
 
   private:
     std::array<HostMemory, 2> halves_;

@@ -12,25 +12,25 @@
 namespace raya {
 namespace {
 
-// Some drivers report an end time before the start time.
-std::uint64_t span(std::uint64_t from, std::uint64_t to) { return to > from ? to - from : 0; }
+// Returns end - start, or 0, because some drivers report an end time before the start time.
+std::uint64_t duration_ns(std::uint64_t start, std::uint64_t end) { return end > start ? end - start : 0; }
 
 }  // namespace
 
 std::vector<LabelSummary> Profile::summary() const {
     std::vector<LabelSummary> lines;
-    std::map<std::pair<std::string, std::string>, std::size_t> line_of;  // (label, kind) -> index into lines
+    std::map<std::pair<std::string, std::string>, std::size_t> line_index;  // (label, kind) -> index into lines
     for (const CommandRecord& command : commands_) {
-        const std::uint64_t duration = span(command.started, command.ended);
-        const auto [place, is_new] = line_of.try_emplace({command.label, command.kind}, lines.size());
+        const std::uint64_t duration = duration_ns(command.started, command.ended);
+        const auto [place, is_new] = line_index.try_emplace({command.label, command.kind}, lines.size());
         if (is_new) lines.push_back({.label = command.label, .kind = command.kind, .min_ns = duration});
         LabelSummary& line = lines[place->second];
         line.launches += 1;
         line.total_ns += duration;
         line.min_ns = std::min(line.min_ns, duration);
         line.max_ns = std::max(line.max_ns, duration);
-        line.submit_ns += span(command.queued, command.submitted);
-        line.start_ns += span(command.submitted, command.started);
+        line.submit_ns += duration_ns(command.queued, command.submitted);
+        line.start_ns += duration_ns(command.submitted, command.started);
         line.bytes += command.bytes;
     }
     for (LabelSummary& line : lines) line.mean_ns = double(line.total_ns) / double(line.launches);

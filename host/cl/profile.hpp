@@ -13,13 +13,13 @@ struct ArgumentText {
     std::string name, value;
 };
 
-/// One command. Times are nanoseconds of the device's clock (CL_PROFILING_COMMAND_*), all 0 without profiling.
+/// A device command. Times are nanoseconds of the device's clock (CL_PROFILING_COMMAND_*), all 0 without profiling.
 struct CommandRecord {
     std::string label;
     std::string kind;  // "kernel", "write", "read", "copy" or "fill"
     std::uint64_t queued = 0, submitted = 0, started = 0, ended = 0;
     std::uint64_t bytes = 0;                   // transferred, copied or filled; 0 for a kernel
-    std::string object{};                      // name of the kernel, of the buffer, or of both buffers of a copy
+    std::string target_name{};                 // name of the kernel, of the buffer, or of both buffers of a copy
     std::uint64_t groups = 0, group_size = 0;  // of a kernel launch; group_size in work-items
     std::vector<ArgumentText> arguments{};     // of a kernel launch; only if Session::observe() requested them
 };
@@ -28,7 +28,7 @@ struct CommandRecord {
 /// end on the device.
 struct LabelSummary {
     std::string label, kind;
-    std::size_t launches = 0;
+    std::size_t launches = 0;  // number of commands
     std::uint64_t total_ns = 0, min_ns = 0;
     double mean_ns = 0;
     std::uint64_t max_ns = 0;
@@ -48,7 +48,7 @@ class Profile {
     bool timed() const { return timed_; }
     const std::vector<CommandRecord>& commands() const { return commands_; }
 
-    /// One entry for each label and kind, in the order of first use.
+    /// Returns one entry for each label and kind, in the order of first use.
     std::vector<LabelSummary> summary() const;
 
   private:
@@ -56,7 +56,7 @@ class Profile {
     std::vector<CommandRecord> commands_;
 };
 
-/// Nanoseconds of CLOCK_MONOTONIC_RAW, the clock of PoCL's event times.
+/// Returns the host's time in nanoseconds of CLOCK_MONOTONIC_RAW, the clock of PoCL's event times.
 std::uint64_t host_clock_ns();
 
 /// The offset of a device's clock: a device time plus `offset_ns` is the same time on the host's clock,
@@ -74,7 +74,7 @@ struct HostSpan {
     std::size_t depth = 0;                 // number of enclosing spans
 };
 
-/// Records the spans of the host.
+/// The spans of the host, recorded for a trace file.
 class SpanLog {
   public:
     /// A span, which lasts as long as this object. When it ends, it is logged at level kVerbose (host/base/log.hpp). It
@@ -100,7 +100,8 @@ class SpanLog {
         return std::forward<Action>(action)();
     }
 
-    /// All spans in the order in which they began. A span that is still running gets the current time as its end.
+    /// Returns all spans in the order in which they began. A span that is still running gets the current time as its
+    /// end.
     std::vector<HostSpan> spans() const;
 
   private:
@@ -110,13 +111,13 @@ class SpanLog {
 
 /// Peak rates measured on a device (measure.hpp); 0 if the device does not time its commands.
 struct DevicePeak {
-    double fp32_per_s = 0;      // multiply-adds with the default lanes, each counted as one operation
-    std::string format;         // of the render
-    double multiply_per_s = 0;  // multiply-adds in that format, with the lanes of the render
-    double divide_per_s = 0, root_per_s = 0;
-    double copy_bytes_per_s = 0;   // bytes read plus bytes written by a copy from buffer to buffer
-    std::uint64_t copy_bytes = 0;  // size of each of the two buffers
-    double scatter = 0;            // (best - worst) / best of three measurements of fp32_per_s
+    double fp32_per_s = 0;                    // multiply-adds with the default lanes, each counted as one operation
+    std::string format;                       // number format of the render
+    double multiply_per_s = 0;                // multiply-adds in that format, with the lanes of the render
+    double divide_per_s = 0, root_per_s = 0;  // likewise
+    double copy_bytes_per_s = 0;              // bytes read plus bytes written by a copy from buffer to buffer
+    std::uint64_t copy_bytes = 0;             // size of each of the two buffers
+    double scatter = 0;                       // (best - worst) / best of three measurements of fp32_per_s
 };
 
 }  // namespace raya

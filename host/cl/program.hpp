@@ -23,7 +23,7 @@ namespace raya {
 template <std::size_t Size>
 struct FixedText {
     // NOLINTNEXTLINE(google-explicit-constructor): converts a literal, as in Uint<"begin">
-    consteval FixedText(const char (&from)[Size]) { std::copy_n(from, Size, text); }
+    consteval FixedText(const char (&literal)[Size]) { std::copy_n(literal, Size, text); }
     char text[Size]{};
 };
 
@@ -35,10 +35,12 @@ struct Uint {
     cl_uint value;
 };
 
-/// The name of the parameter `index` in the kernel's source; `index` as text if the driver does not report names.
+/// Returns the name of the parameter `index` in the kernel's source; `index` as text if the driver does not report
+/// names.
 std::string argument_name(const cl::Kernel& kernel, cl_uint index);
 
-/// A kernel argument as text: name and size of a buffer, bytes of local memory, a number, or the size of a struct.
+/// Returns a kernel argument as text: name and size of a buffer, bytes of local memory, a number, or the size of a
+/// struct.
 template <class T>
 std::string argument_text(const Buffer<T>& buffer) {
     return fmt::format("{}, {} x {} bytes", buffer.name(), buffer.size(), sizeof(T));
@@ -76,7 +78,7 @@ class Kernel {
     const std::string& name() const { return name_; }
     const cl::Kernel& handle() const { return kernel_; }
 
-    /// The arguments of a launch as text: argument_name() and value of each.
+    /// Returns the arguments of a launch as text: argument_name() and value of each.
     std::vector<ArgumentText> argument_texts(const Args&... args) const {
         cl_uint index = 0;
         return {ArgumentText{argument_name(kernel_, index++), argument_text(args)}...};
@@ -116,7 +118,7 @@ class Kernel {
     std::string name_;
 };
 
-/// The bytes of local memory that a kernel argument requires: 0 unless it is a LocalMemory.
+/// Returns the number of bytes of local memory that a kernel argument requires: 0 unless it is a LocalMemory.
 template <class T>
 std::size_t local_bytes_of(const T&) {
     return 0;
@@ -127,7 +129,7 @@ std::size_t local_bytes_of(const LocalMemory<T>& local) {
     return local.bytes();
 }
 
-/// The value of RAYA_BUILD_OPTIONS, which is appended to the options of every program.
+/// Returns the value of the environment variable RAYA_BUILD_OPTIONS, which is appended to the options of every program.
 std::string user_build_options();
 
 /// Appends the time of a build or a first launch, from `start` to now, to the file that the environment variable
@@ -137,18 +139,18 @@ void log_kernel_build(const char* step, const std::string& name, const std::stri
 /// Returns true if RAYA_KERNEL_LOG is set.
 bool logs_kernel_builds();
 
-/// A program with its build time and the time of the first launches of its kernels.
+/// An OpenCL program with its build time and the time of the first launches of its kernels.
 struct KernelBuild {
     cl::Program program;
     std::string name, options;         // name as in Program; options as passed to the compiler
     double build_s = 0, launch_s = 0;  // seconds
 
-    /// The size of the program's binary in bytes. PoCL compiles every kernel of the program once more to make the
-    /// binary. Throws DeviceError.
+    /// Returns the size of the program's binary in bytes. PoCL compiles every kernel of the program once more to make
+    /// the binary. Throws DeviceError.
     std::size_t binary_bytes() const;
 };
 
-/// A built program, made by Session::build().
+/// A built OpenCL program, made by Session::build().
 class Program {
   public:
     /// Builds `source` for `device` with `options`, joined by blanks; `name` is for messages. Throws DeviceError, with
@@ -162,8 +164,8 @@ class Program {
     const cl::Program& handle() const { return program_; }
 
     /// Writes the binary, which contains the kernels launched so far, to the file from which later runs load it
-    /// (kernel_binaries.hpp). Does nothing if the program was itself loaded from that file. Throws UserError,
-    /// DeviceError.
+    /// (kernel_binaries.hpp). Does nothing if the program was itself loaded from that file. Throws UserError or
+    /// DeviceError on failure.
     void save_binary() const;
 
     /// Returns the kernel `kernel_name` with parameters Args (see Kernel). Throws DeviceError if there is no such
@@ -181,7 +183,8 @@ class Program {
 
     cl::Program program_;
     std::string name_, options_, log_;
-    std::filesystem::path binary_file_;  // for save_binary(); empty: loaded from that file, or it has no folder
+    std::filesystem::path binary_file_;  // file for save_binary(); empty if the program was loaded from it, or
+                                         // if module_folder() fails
 };
 
 }  // namespace raya

@@ -41,10 +41,10 @@ inline constexpr std::array<std::pair<const char*, std::uint32_t TunedValues::*>
      {"registers", &TunedValues::registers},
      {"link_exchange", &TunedValues::link_exchange}}};
 
-/// The default values for a device that was not tuned.
+/// Returns the default values for a device that was not tuned.
 TunedValues default_values(const DeviceInfo& device, const TuningKey& key);
 
-/// Returns `kernels` with these values, but with its own link_move unless that is kAutomatic. Throws UserError if
+/// Returns `kernels` with these values. A link_move of `kernels` other than kAutomatic stays. Throws UserError if
 /// link_exchange is out of range.
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values);
 
@@ -66,13 +66,13 @@ class ScopedTunedSource {
     ScopedTunedSource& operator=(const ScopedTunedSource&) = delete;
 
   private:
-    TunedSource before_;
+    TunedSource previous_source_;
 };
 
-/// Returns `kernels` with lanes, group size and tuning chosen. If the user has set lanes or group size, the other one
-/// is the default, and `origin` is "options". Otherwise the values and `origin` are those of the tuned source; without
-/// tuned values they are the defaults, and `origin` is "defaults". `link_origin` is "options" if the user has set the
-/// link move, `origin` if the tuned values set it, and empty if it stays kAutomatic.
+/// Returns `kernels` with lanes, group size and tuning chosen. If the user has set lanes or group size, the one that
+/// the user has not set is the default, and `origin` is "options". Otherwise the values and `origin` are those of the
+/// tuned source; without tuned values they are the defaults, and `origin` is "defaults". `link_origin` is "options" if
+/// the user has set the link move, `origin` if the tuned values set it, and empty if it stays kAutomatic.
 KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key);
 
 }  // namespace raya

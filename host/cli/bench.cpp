@@ -1,4 +1,5 @@
-// raya bench: rays per second by kernel, lanes and format on this device. Each row is checked before it is timed.
+// raya bench: measures rays per second by kernel, lanes and format on a device. Checks the image of each row before it
+// times the row.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -35,70 +36,74 @@ struct BenchCommand {
     RenderOptions render;
     std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
     std::vector<std::string> variants;
-    std::uint32_t samples = 7;
+    std::uint32_t samples = 7;  // time samples of each row
     std::string report, page, baseline;
-    double tolerance = 10;  // percent
+    double tolerance_percent = 10;
     bool denormals = false, build = false;
-    std::optional<double> limit;  // seconds
+    std::optional<double> limit_s;  // seconds to compile a kernel
 };
 
-// Checks --tolerance, --page and --compare before measuring. Returns the baseline, empty without --compare.
+// Checks the values of --tolerance, --page and --compare, before the measurements, which take long. Returns the report
+// of --compare; empty without this option.
 BenchReport read_baseline(const BenchCommand& command) {
-    if (!(command.tolerance >= 0 && command.tolerance <= 100))
-        throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance));
+    if (!(command.tolerance_percent >= 0 && command.tolerance_percent <= 100))
+        throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance_percent));
     if (!command.page.empty()) check_page_name("--page", command.page);
     if (command.baseline.empty()) return {};
     return read_bench_report(command.baseline);
 }
 
-void check_comparable(const BenchCommand& command, const BenchReport& baseline, const BenchReport& now) {
-    if (command.baseline.empty() || rows_in_common(baseline, now) > 0) return;
-    const BenchMeasurement &old_row = baseline.rows.front(), &new_row = now.rows.front();
+void check_comparable(const BenchCommand& command, const BenchReport& baseline, const BenchReport& measured) {
+    if (command.baseline.empty() || rows_in_common(baseline, measured) > 0) return;
+    const BenchMeasurement &old_row = baseline.rows.front(), &new_row = measured.rows.front();
     throw UserError(fmt::format(
-        "{}: contains no row of this run: it has {}, {}, {}, {}, {} lanes, group {}; this run has {}, {}, {}, {}, {} "
-        "lanes, group {}; remedy: the same scene and options, or a new baseline (raya bench --report)",
+        "{}: contains no row of this run: its first row is {}, {}, {}, {}, {} lanes, group {}; the first row of this "
+        "run is {}, {}, {}, {}, {} lanes, group {}; remedy: the same scene and options, or a new baseline (raya bench "
+        "--report)",
         command.baseline, old_row.scene, old_row.size, old_row.array, old_row.format, old_row.lanes, old_row.group_size,
         new_row.scene, new_row.size, new_row.array, new_row.format, new_row.lanes, new_row.group_size));
 }
 
-void finish(const BenchCommand& command, const BenchReport& baseline, BenchReport now) {
+void write_and_compare(const BenchCommand& command, const BenchReport& baseline, BenchReport measured) {
     BenchComparison result;
     if (!command.baseline.empty()) {
-        result = compare_bench(baseline, now, command.tolerance);
-        now.compared = {{"baseline", command.baseline}, {"tolerance_percent", command.tolerance},
-                        {"remarks", result.remarks},    {"compared", result.compared},
-                        {"slower", result.slower},      {"other_images", result.other_images},
-                        {"rows", result.rows}};
+        result = compare_bench(baseline, measured, command.tolerance_percent);
+        measured.compared = {{"baseline", command.baseline}, {"tolerance_percent", command.tolerance_percent},
+                             {"remarks", result.remarks},    {"compared", result.compared},
+                             {"slower", result.slower},      {"other_images", result.other_images},
+                             {"rows", result.rows}};
     }
-    write_report_and_page({command.report, command.page}, to_json(now));
+    write_report_and_page({command.report, command.page}, to_json(measured));
     if (command.baseline.empty()) return;
-    fmt::print("\ncompared with {}, tolerance {} % of its rates:\n{}", printable(command.baseline), command.tolerance,
-               result.text);
+    fmt::print("\ncompared with {}, tolerance {} % of its rates:\n{}", printable(command.baseline),
+               command.tolerance_percent, result.text);
     std::fflush(stdout);
     if (result.failed())
         throw CheckFailure{fmt::format("{}: {} of {} slower by more than {} %, {} with a different image",
                                        command.baseline, result.slower, counted(result.compared, "row"),
-                                       command.tolerance, result.other_images)};
+                                       command.tolerance_percent, result.other_images)};
     fmt::print("{} compared, none slower by more than {} %, all images equal\n", counted(result.compared, "row"),
-               command.tolerance);
+               command.tolerance_percent);
 }
 
 void check_build_options(const BenchCommand& command) {
-    if (command.limit && !(*command.limit > 0 && *command.limit <= 1e6))
-        throw UserError(fmt::format("--limit {}: must be above 0 and at most 1000000 seconds", *command.limit));
+    if (command.limit_s && !(*command.limit_s > 0 && *command.limit_s <= 1e6))
+        throw UserError(fmt::format("--limit {}: must be above 0 and at most 1000000 seconds", *command.limit_s));
 }
 
-void finish_builds(const BenchCommand& command, const BenchReport& report) {
+void write_and_check_builds(const BenchCommand& command, const BenchReport& report) {
     fmt::print("compiled for {} {} {}\n", report.platform, report.device, report.driver);
     print_builds(report.builds);
     write_report_and_page({command.report, ""}, to_json(report));
-    for (const BenchBuild& one : report.builds)
-        if (command.limit && one.build_s + one.launch_s > *command.limit)
-            throw CheckFailure{fmt::format("{}, {}, {}, {} lanes: {:.1f} s to compile, above --limit {} s", one.kernel,
-                                           one.variant, one.format, one.lanes, one.build_s + one.launch_s,
-                                           *command.limit)};
+    for (const BenchBuild& build : report.builds)
+        if (command.limit_s && build.build_s + build.launch_s > *command.limit_s)
+            throw CheckFailure{fmt::format("{}, {}, {}, {} lanes: {:.1f} s to compile, above --limit {} s",
+                                           build.kernel, build.variant, build.format, build.lanes,
+                                           build.build_s + build.launch_s, *command.limit_s)};
 }
 
+// Prepares the rows of one format: a render of each of --variants or, without this option, the trace kernel with each
+// number of lanes.
 std::vector<BenchRow> rows_of(const BenchCommand& command, Session& session, const Scene& scene,
                               const RingSettings& settings, const NumberFormat& format) {
     std::vector<BenchRow> rows;
@@ -128,7 +133,7 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
     return rows;
 }
 
-// Refuses options that would have no effect.
+// If all variants are the torus, refuses the options of ring machines, because they would have no effect.
 void refuse_unused_options(const CLI::App& parsed, const BenchCommand& command) {
     if (std::ranges::count(command.variants, "torus") < std::max(1L, std::ssize(command.variants))) return;
     for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
@@ -147,7 +152,7 @@ Scene scene_of(const BenchCommand& command) {
     return scene;
 }
 
-// Measures compilation, for --build.
+// Measures compile times, for --build.
 BenchReport time_builds(const BenchCommand& command, Session& session, const Scene& scene, const RingSettings& settings,
                         const std::vector<NumberFormat>& formats) {
     const std::vector<std::string> variants =
@@ -187,7 +192,7 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     if (command.build) {
         const BenchReport report = time_builds(command, session, scene, settings, formats);
         bar.reset();
-        return finish_builds(command, report);
+        return write_and_check_builds(command, report);
     }
     session.announce_compiling();
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
@@ -200,12 +205,12 @@ void bench(const CLI::App& parsed, BenchCommand command) {
                counted(settings.mapping.pes, "PE"), counted(settings.bounces, "bounce"),
                counted(rows.front().result.rays, "ray"), counted(command.samples, "sample"));
     print_tables(command, session, rows, formats);
-    BenchReport now = bench_report(rows, session.device());
+    BenchReport measured = bench_report(rows, session.device());
     if (!command.page.empty()) {
         const ProgressBar measuring(true, "measuring the device's peak");
-        add_rooflines(now, rows, device);
+        add_rooflines(measured, rows, device);
     }
-    finish(command, baseline, std::move(now));
+    write_and_compare(command, baseline, std::move(measured));
 }
 
 std::vector<ShortHelp> bench_short_help() {
@@ -215,11 +220,11 @@ std::vector<ShortHelp> bench_short_help() {
             {"--lanes", options, "Rays per work-item; default: 1, 4, 8 and 16 in turn"},
             {"--size", options, "Size in pixels, 1..16384 a side; default: the scene's"},
             {"--machine", options, "spa, grande, spa1, cap, pixel-machine or links"},
-            {"--samples", options, "Samples of each row, 1..1000"},
+            {"--samples", options, "Number of time samples of each row, 1..1000"},
             {"--device", options, "OpenCL device: its number, type or part of its name"},
             {"--report", options, "Write the rows as JSON; -: stdout"},
             {"--compare", options, "Compare with an earlier report: exit code 4 if slower"},
-            {"--tolerance", options, "Of --compare: percent, 0..100"},
+            {"--tolerance", options, "Tolerance of --compare in percent, 0..100"},
             {"--page", options, "Write rates, comparison and roofline as an HTML page"},
             {"--accel", more, "Acceleration structure in each PE's memory"},
             {"--pes", more, "Number of PEs; default: the machine's"},
@@ -227,9 +232,9 @@ std::vector<ShortHelp> bench_short_help() {
             {"--bounces", more, "Reflections and refractions, 0..31; default: 8"},
             {"--group", more, "Work-items per work-group, 1..1024"},
             {"--no-tuned", more, "Ignore the values that raya tune stored"},
-            {"--denormals", more, "Time every row also with denormals flushed to 0"},
+            {"--denormals", more, "Also time every row with denormals flushed to 0"},
             {"--build", more, "Measure only compilation"},
-            {"--limit", more, "Of --build: maximum seconds of a kernel"},
+            {"--limit", more, "Maximum seconds to compile a kernel, for --build"},
             {"--kernel-dir", more, "Read the kernels from this folder"}};
 }
 
@@ -239,7 +244,7 @@ void add_bench_command(CLI::App& program) {
     CLI::App* command =
         program.add_subcommand("bench", "Measure rays per second by kernel, lanes and format on this device");
     add_examples(*command, {{"raya bench --size 256 --report today.json",
-                             "Measure fp32 and e6m15 at all numbers of lanes, with a report for later comparison"},
+                             "Measure fp32 and e6m15 with each number of lanes, and write a report for --compare"},
                             {"raya bench scenes/centre.nff --size 128 --samples 3 --variants none,bvh",
                              "Time whole renders of a scene, without accelerator and with a BVH"}});
     const auto options = std::make_shared<BenchCommand>();
@@ -251,42 +256,43 @@ void add_bench_command(CLI::App& program) {
     add_value(
         *command, "--variants", options->variants,
         "Time whole renders instead of the trace kernel, in these variants, comma-separated: none, grid, bvh: the "
-        "ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; the others are compared with "
-        "the first")
+        "ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; raya compares the other "
+        "variants with the first")
         ->delimiter(',')
         ->allow_extra_args(false)  // the next argument is the scene
         ->type_name("none,grid,bvh,torus")
         ->excludes(command->get_option("--accel"));
     CLI::Option* denormals = command->add_flag(
         "--denormals", options->denormals,
-        "Time every row also with denormal numbers flushed to 0: if that is faster, denormals cost time");
+        "Also time every row with denormal numbers flushed to 0; if these rows are faster, denormals cost time");
     CLI::Option* build =
         command
             ->add_flag("--build", options->build,
-                       "Measure only compilation from source, for each kernel and format of the variants: seconds of "
-                       "the build and of the first launch, size of the binary")
+                       "Only compile from source, and measure for each kernel and format of the variants the seconds "
+                       "of the build and of the first launch, and the size of the binary")
             ->excludes(denormals);
-    add_value(*command, "--limit", options->limit,
-              "With --build: maximum seconds of a kernel; exit code 4 if one takes longer")
+    add_value(*command, "--limit", options->limit_s,
+              "With --build: maximum seconds to compile a kernel; exit code 4 if a kernel takes longer")
         ->type_name("SECONDS")
         ->needs(build);
     add_value(*command, "--samples", options->samples,
-              "Samples of each row, 1..1000; the best and the median are printed")
+              "Number of time samples of each row, 1..1000; the best and the median are printed")
         ->type_name("N")
         ->capture_default_str();
     group.next("Report and comparison");
     add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
              "Write the rows as JSON, for a later --compare; -: stdout, with the tables on stderr");
-    add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
-             "Write rates, comparison and roofline as an HTML page; raya page makes the same of a report. Measures the "
-             "device's peak for each format and number of lanes, some seconds each")
+    add_file(
+        *command, FileUse::kWritten, "--page", options->page, "FILE.html",
+        "Write rates, comparison and roofline as an HTML page; raya page makes the same page from a report. Measures "
+        "the device's peak for each format and number of lanes, which takes some seconds each")
         ->excludes(build);
     CLI::Option* compare =
         add_file(*command, FileUse::kRead, "--compare", options->baseline, "FILE.json",
                  "Compare the rows with those of an earlier --report: exit code 4 if a row is slower or its image "
                  "differs")
             ->excludes(build);
-    add_value(*command, "--tolerance", options->tolerance,
+    add_value(*command, "--tolerance", options->tolerance_percent,
               "With --compare: tolerance in percent, 0..100; a row is slower if both its best and its median rate fall "
               "by more")
         ->type_name("PERCENT")

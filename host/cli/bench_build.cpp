@@ -9,7 +9,7 @@
 namespace raya {
 namespace {
 
-std::string seconds(double s) { return fmt::format("{:.2f}", s); }
+std::string seconds_text(double s) { return fmt::format("{:.2f}", s); }
 
 }  // namespace
 
@@ -24,24 +24,25 @@ std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingS
     std::vector<BenchBuild> builds;
     for (const NumberFormat& format : formats) {
         for (const std::string& variant : variants) {
-            RingSettings s = settings;
-            std::uint32_t lanes = render_row(session, scene, s, format, variant).result.lanes;
-            if (variant != "torus" && variant == variants.front() && !s.dynamic)
+            RingSettings variant_settings = settings;
+            std::uint32_t lanes = render_row(session, scene, variant_settings, format, variant).result.lanes;
+            if (variant != "torus" && variant == variants.front() && !variant_settings.dynamic)
                 for (const AntialiasMethod method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
-                    s.antialias.method = method;
-                    lanes = render_row(session, scene, s, format, variant).result.lanes;
+                    variant_settings.antialias.method = method;
+                    lanes = render_row(session, scene, variant_settings, format, variant).result.lanes;
                 }
-            for (KernelBuild& one : recorded) {
-                std::string& options = one.options;
-                if (const auto at = options.find(unique_option); at != options.npos)
-                    options.erase(at > 0 ? at - 1 : at, unique_option.size() + (at > 0 ? 1 : 0));
-                builds.push_back({.kernel = one.name,
+            for (KernelBuild& build : recorded) {
+                std::string& options = build.options;
+                if (const auto position = options.find(unique_option); position != options.npos)
+                    options.erase(position > 0 ? position - 1 : position,
+                                  unique_option.size() + (position > 0 ? 1 : 0));
+                builds.push_back({.kernel = build.name,
                                   .variant = variant,
                                   .format = format_name(format),
                                   .lanes = lanes,
-                                  .build_s = one.build_s,
-                                  .launch_s = one.launch_s,
-                                  .binary_bytes = one.binary_bytes(),
+                                  .build_s = build.build_s,
+                                  .launch_s = build.launch_s,
+                                  .binary_bytes = build.binary_bytes(),
                                   .build_options = options});
             }
             recorded.clear();
@@ -55,14 +56,15 @@ void print_builds(const std::vector<BenchBuild>& builds) {
     std::vector<std::vector<std::string>> table = {
         {"kernel", "variant", "format", "lanes", "build s", "first launch s", "binary KB"}};
     double build_s = 0, launch_s = 0;
-    for (const BenchBuild& one : builds) {
-        table.push_back({one.kernel, one.variant, one.format, std::to_string(one.lanes), seconds(one.build_s),
-                         seconds(one.launch_s), fmt::format("{:.0f}", 1e-3 * static_cast<double>(one.binary_bytes))});
-        build_s += one.build_s;
-        launch_s += one.launch_s;
+    for (const BenchBuild& build : builds) {
+        table.push_back({build.kernel, build.variant, build.format, std::to_string(build.lanes),
+                         seconds_text(build.build_s), seconds_text(build.launch_s),
+                         fmt::format("{:.0f}", 1e-3 * static_cast<double>(build.binary_bytes))});
+        build_s += build.build_s;
+        launch_s += build.launch_s;
     }
-    fmt::print("{}first launch: includes compilation that the driver defers to it\n", text_table(table));
-    fmt::print("total: {} s of builds, {} s of first launches\n", seconds(build_s), seconds(launch_s));
+    fmt::print("{}first launch: includes compilation that the driver defers until then\n", text_table(table));
+    fmt::print("total: {} s of builds, {} s of first launches\n", seconds_text(build_s), seconds_text(launch_s));
 }
 
 }  // namespace raya

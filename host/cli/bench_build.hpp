@@ -12,7 +12,7 @@ namespace raya {
 
 /// Renders the scene once for each of `formats` and `variants` (none, grid, bvh or torus), and returns the build time,
 /// the time of the first launch and the binary size of each kernel. A unique build option bypasses the driver's cache.
-/// If the first variant is a ring machine without dynamic mapping, it is also rendered with both anti-aliasing methods.
+/// If the first variant is a ring machine without dynamic mapping, also renders it with both anti-aliasing methods.
 /// Throws DeviceError; UserError for an unknown variant.
 std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingSettings settings,
                                      const std::vector<NumberFormat>& formats,

@@ -44,26 +44,26 @@ BenchMeasurement make_measurement(const std::string& kernel, const Scene& scene,
             .hash = {}};
 }
 
-// Renders the first image and makes a row of it. `seconds(result)`: returns the measured time of an image. `work`:
-// returns the operations and bytes of the row's kernel.
+// Renders one image and returns a row with the image's counts. `seconds(result)`: returns the measured time of an
+// image. `work`: returns the operations and bytes of the row's kernel.
 template <class Renderer, class Seconds>
 BenchRow row_of(BenchMeasurement measurement, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
                 const EventCounts& (*events)(const decltype(renderer->render())&), Seconds seconds,
                 std::optional<KernelWork> (*work)(const RingSettings&, const decltype(renderer->render())&) = nullptr,
                 const RingSettings& settings = {}) {
-    const auto first = renderer->render();
-    measurement.lanes = first.lanes;
-    measurement.group_size = first.group_size;
-    measurement.rays = ray_count(events(first));
-    measurement.hash = pixel_hash(first.image);
-    measurement.build_options = first.build_options;
+    const auto result = renderer->render();
+    measurement.lanes = result.lanes;
+    measurement.group_size = result.group_size;
+    measurement.rays = ray_count(events(result));
+    measurement.hash = pixel_hash(result.image);
+    measurement.build_options = result.build_options;
     return {.format = format,
             .result = std::move(measurement),
-            .events = events(first),
-            .build_s = first.build_s,
-            .tuned = first.tuned,
+            .events = events(result),
+            .build_s = result.build_s,
+            .tuned = result.tuned,
             .image_s = [renderer, seconds] { return seconds(renderer->render()); },
-            .work = work != nullptr ? work(settings, first) : std::nullopt};
+            .work = work != nullptr ? work(settings, result) : std::nullopt};
 }
 
 const EventCounts& events_of_ring(const RingResult& r) { return r.all.events; }
@@ -73,7 +73,7 @@ std::optional<KernelWork> trace_work(const RingSettings& settings, const RingRes
     return ring_kernel_work(settings, result).front();
 }
 
-TorusSettings torus_of(const RingSettings& s) {
+TorusSettings torus_settings_of(const RingSettings& s) {
     TorusSettings t = default_torus({s.mapping.width, s.mapping.height});
     t.bounces = s.bounces;
     t.format = s.format;
@@ -82,15 +82,16 @@ TorusSettings torus_of(const RingSettings& s) {
     return t;
 }
 
-// Returns the first row of the same kernel and lanes, the reference of the slow-down.
-const BenchRow& first_of_lanes(const std::vector<BenchRow>& rows, const BenchRow& row) {
+// Returns the first row with the same kernel and lanes. Slow-downs are relative to this row's time.
+const BenchRow& first_row_of_kernel_and_lanes(const std::vector<BenchRow>& rows, const BenchRow& row) {
     return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) {
         return r.result.kernel == row.result.kernel && r.result.lanes == row.result.lanes;
     });
 }
 
-// Returns the first row of the same format, the reference of checks and speed-ups.
-const BenchRow& first_of_format(const std::vector<BenchRow>& rows, const BenchRow& row) {
+// Returns the first row with the same format. Images are compared with this row's image, and speed-ups are relative to
+// its time.
+const BenchRow& first_row_of_format(const std::vector<BenchRow>& rows, const BenchRow& row) {
     return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) { return r.format == row.format; });
 }
 
@@ -111,7 +112,7 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
     RingSettings s = settings;
     s.format = format;
     if (key.torus) {
-        const TorusSettings t = torus_of(s);
+        const TorusSettings t = torus_settings_of(s);
         const std::string array = fmt::format("4x4x4 nodes, torus3d, 4x4x4 voxels, {} bounces", t.bounces);
         return row_of(make_measurement("torus", scene, s, array), format,
                       std::make_shared<TorusRenderer>(session, scene, t), events_of_torus,
@@ -126,12 +127,12 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
 void check_rows(const std::vector<BenchRow>& rows) {
     for (const BenchRow& row : rows) {
         if (row.flushed) continue;
-        const BenchRow& first = first_of_format(rows, row);
+        const BenchRow& first = first_row_of_format(rows, row);
         const bool same_counts = row.result.kernel != first.result.kernel || row.events == first.events;
         if (row.result.hash == first.result.hash && row.result.rays == first.result.rays && same_counts) continue;
         throw DeviceError(fmt::format(
-            "{}: {}, {} lanes: the image or its counts differ from {}, {} lanes: {} and {}: the device or its compiler "
-            "is wrong; run raya verify to find the error",
+            "{}: {}, {} lanes: the image or its event counts differ from those of {}, {} lanes (image hashes {} and "
+            "{}): the device or its compiler is wrong; run raya verify to find the error",
             row.result.format, row.result.kernel, row.result.lanes, first.result.kernel, first.result.lanes,
             row.result.hash, first.result.hash));
     }
@@ -153,35 +154,35 @@ void print_rows(const std::vector<BenchRow>& rows) {
     std::vector<std::vector<std::string>> table = {{"kernel", "format", "lanes", "group", "Mrays/s best", "median",
                                                     "ms best", "median", "speed-up", "slow-down", "build s", "pixels"}};
     for (const BenchRow& row : rows) {
-        table.push_back({row.result.kernel, row.result.format, std::to_string(row.result.lanes),
-                         std::to_string(row.result.group_size), fmt::format("{:.1f}", row.result.best_rate()),
-                         fmt::format("{:.1f}", row.result.median_rate()),
-                         fmt::format("{:.2f}", 1e3 * row.result.best_s),
-                         fmt::format("{:.2f}", 1e3 * row.result.median_s),
-                         fmt::format("{:.2f}", first_of_format(rows, row).result.median_s / row.result.median_s),
-                         fmt::format("{:.2f}", row.result.median_s / first_of_lanes(rows, row).result.median_s),
-                         fmt::format("{:.2f}", row.build_s), row.result.hash.substr(0, 8)});
+        table.push_back(
+            {row.result.kernel, row.result.format, std::to_string(row.result.lanes),
+             std::to_string(row.result.group_size), fmt::format("{:.1f}", row.result.best_rate()),
+             fmt::format("{:.1f}", row.result.median_rate()), fmt::format("{:.2f}", 1e3 * row.result.best_s),
+             fmt::format("{:.2f}", 1e3 * row.result.median_s),
+             fmt::format("{:.2f}", first_row_of_format(rows, row).result.median_s / row.result.median_s),
+             fmt::format("{:.2f}", row.result.median_s / first_row_of_kernel_and_lanes(rows, row).result.median_s),
+             fmt::format("{:.2f}", row.build_s), row.result.hash.substr(0, 8)});
     }
     fmt::print("{}", text_table(table));
     fmt::print(
-        "speed-up: over the first row of the same format; slow-down: relative to the first row of the same kernel and "
-        "lanes (medians);\n"
-        "pixels: hash of the image, checked to be equal in all rows of a format\n");
+        "speed-up: median time of the first row with the same format over the row's; slow-down: the row's median time "
+        "over that of the first row with the same kernel and lanes;\n"
+        "pixels: first digits of the image's hash, checked to be equal in all rows of a format\n");
 }
 
 void print_operations(Session& session, const std::vector<NumberFormat>& formats, std::uint32_t lanes, int samples) {
     std::vector<std::vector<std::string>> table = {{"Gop/s", "lanes"}};
     table[0].insert(table[0].end(), kOperations.begin(), kOperations.end());
-    std::array<double, kOperations.size()> first{};
+    std::array<double, kOperations.size()> first_rates{};
     for (const NumberFormat& format : formats) {
         OperationRates operations(session, format, lanes);
         std::array<double, kOperations.size()> rates{};
         for (std::size_t kind = 0; kind < rates.size(); ++kind) rates[kind] = operations.measure(kind, samples);
-        if (table.size() == 1) first = rates;
+        if (table.size() == 1) first_rates = rates;
         table.push_back({format_name(format), std::to_string(lanes)});
         for (std::size_t i = 0; i < rates.size(); ++i)
             table.back().push_back(
-                fmt::format("{:.2f} ({:.1f} x)", rates[i] * 1e-9, rates[i] > 0 ? first[i] / rates[i] : 0));
+                fmt::format("{:.2f} ({:.1f} x)", rates[i] * 1e-9, rates[i] > 0 ? first_rates[i] / rates[i] : 0));
     }
     fmt::print("\noperations of the number layer, best of {}; in brackets the time relative to {}\n{}", samples,
                format_name(formats.front()), text_table(table));
@@ -198,19 +199,21 @@ void print_denormals(const std::vector<BenchRow>& rows) {
     std::vector<std::vector<std::string>> table = {
         {"kernel", "format", "lanes", "ms best", "flushed", "ratio", "median", "flushed", "ratio"}};
     for (const BenchRow& row : rows)
-        for (const BenchRow& other : rows) {
-            const bool pair = other.flushed && other.result.kernel == row.result.kernel + ", flushed" &&
-                              other.result.format == row.result.format && other.result.lanes == row.result.lanes;
-            if (!pair) continue;
+        for (const BenchRow& flushed_row : rows) {
+            const bool is_pair = flushed_row.flushed && flushed_row.result.kernel == row.result.kernel + ", flushed" &&
+                                 flushed_row.result.format == row.result.format &&
+                                 flushed_row.result.lanes == row.result.lanes;
+            if (!is_pair) continue;
             const auto ms = [](double s) { return fmt::format("{:.2f}", 1e3 * s); };
             table.push_back({row.result.kernel, row.result.format, std::to_string(row.result.lanes),
-                             ms(row.result.best_s), ms(other.result.best_s),
-                             fmt::format("{:.2f}", row.result.best_s / other.result.best_s), ms(row.result.median_s),
-                             ms(other.result.median_s),
-                             fmt::format("{:.2f}", row.result.median_s / other.result.median_s)});
+                             ms(row.result.best_s), ms(flushed_row.result.best_s),
+                             fmt::format("{:.2f}", row.result.best_s / flushed_row.result.best_s),
+                             ms(row.result.median_s), ms(flushed_row.result.median_s),
+                             fmt::format("{:.2f}", row.result.median_s / flushed_row.result.median_s)});
         }
-    fmt::print("\nwith denormal numbers, and with -cl-denorms-are-zero; ratio above 1: denormals cost time\n{}",
-               text_table(table));
+    fmt::print(
+        "\nwith denormal numbers, and flushed to 0 (-cl-denorms-are-zero); ratio above 1: denormals cost time\n{}",
+        text_table(table));
 }
 
 void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const cl::Device& device) {

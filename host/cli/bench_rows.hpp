@@ -13,7 +13,7 @@
 
 namespace raya {
 
-/// One row: a renderer and its measurement. The renderer has rendered one image, so its kernels are built.
+/// A row of the table: a renderer and its measurement. The renderer has rendered one image, so its kernels are built.
 struct BenchRow {
     NumberFormat format;
     BenchMeasurement result{};          // take_samples() adds the times
@@ -21,8 +21,8 @@ struct BenchRow {
     double build_s = 0;                 // seconds of the kernel builds
     std::string tuned{};                // source of the lanes and group size (host/cl/tuned.hpp)
     bool flushed = false;               // built with -cl-denorms-are-zero, which may change the image
-    std::function<double()> image_s{};  // renders another image; returns its time in seconds
-    std::optional<KernelWork> work{};   // per image; empty unless the row measures a single kernel
+    std::function<double()> image_s{};  // renders the image again; returns its seconds
+    std::optional<KernelWork> work{};   // of an image; empty unless the row measures a single kernel
 };
 
 /// Prepares a row that measures the trace kernel's time on the device.
@@ -59,7 +59,7 @@ void print_denormals(const std::vector<BenchRow>& rows);
 /// measures a single kernel, from its best sample. If a peak cannot be measured, the report contains the reason.
 void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const cl::Device& device);
 
-/// Returns the rows as a report. It has times only after take_samples().
+/// Returns the rows as a report. The report has times only after take_samples().
 BenchReport bench_report(const std::vector<BenchRow>& rows, const DeviceInfo& device);
 
 }  // namespace raya

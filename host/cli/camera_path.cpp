@@ -15,17 +15,17 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kMaxBytes = 1 << 28;
+constexpr std::uint64_t kMaxPathFileBytes = 1 << 28;  // maximum size of a camera path's file
 
-std::string text_of(const std::string& file) try {
-    std::string text = read_file(file, Pipes::kRead, kMaxBytes);
+std::string read_path_file(const std::string& file) try {
+    std::string text = read_file(file, Pipes::kRead, kMaxPathFileBytes);
     if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     return text;
 } catch (const UnreadableFile& why) {
     throw UserError(fmt::format("--camera-path {}: {}", file, why.what()));
 }
 
-double angle_of(const std::string& text) {
+double parse_angle(const std::string& text) {
     double angle = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), angle);
     if (error != std::errc{} || end != text.data() + text.size())
@@ -33,38 +33,38 @@ double angle_of(const std::string& text) {
     return angle;
 }
 
-// Parses the parameters of one line; `words`: alternating names and values.
-ViewOptions camera_of(std::istringstream& words) {
+// Parses the parameters of one camera. `words`: alternating names and values.
+ViewOptions parse_camera(std::istringstream& words) {
     std::map<std::string, std::string> values = {{"from", ""}, {"at", ""}, {"up", ""}, {"angle", ""}};
     for (std::string name, value; words >> name;) {
-        const auto known = values.find(name);
-        if (known == values.end())
+        const auto entry = values.find(name);
+        if (entry == values.end())
             throw UserError(
                 fmt::format("{}: must be from, at, up or angle, each followed by its value", in_quotes(name)));
         if (!(words >> value)) throw UserError(fmt::format("{} has no value", name));
-        if (!known->second.empty()) throw UserError(fmt::format("'{}' is given twice", name));
-        known->second = value;
+        if (!entry->second.empty()) throw UserError(fmt::format("'{}' is given twice", name));
+        entry->second = value;
     }
     ViewOptions camera{.from = values["from"], .at = values["at"], .up = values["up"]};
-    if (!values["angle"].empty()) camera.angle = angle_of(values["angle"]);
+    if (!values["angle"].empty()) camera.angle = parse_angle(values["angle"]);
     return camera;
 }
 
 }  // namespace
 
 std::vector<View> read_camera_path(const std::string& file, const View& view) {
-    std::istringstream lines(text_of(file));
+    std::istringstream lines(read_path_file(file));
     std::vector<View> cameras;
-    std::size_t number = 0;
+    std::size_t line_number = 0;
     for (std::string line; std::getline(lines, line);) {
-        ++number;
+        ++line_number;
         std::istringstream words(line.substr(0, line.find('#')));
         if ((words >> std::ws).eof()) continue;
         try {
             cameras.push_back(view);
-            change_viewpoint(camera_of(words), cameras.back());
+            change_viewpoint(parse_camera(words), cameras.back());
         } catch (const UserError& why) {
-            throw UserError(fmt::format("{}, line {}: {}", input_name(file), number, why.what()));
+            throw UserError(fmt::format("{}, line {}: {}", input_name(file), line_number, why.what()));
         }
     }
     if (cameras.empty()) throw UserError(fmt::format("{}: no camera; write one camera per line", input_name(file)));

@@ -20,8 +20,8 @@ struct CheckpointOptions {
 
 void add_checkpoint_options(CLI::App& command, CheckpointOptions& options);
 
-/// Throws UserError for incompatible options, for an existing file that is not a checkpoint, and for an existing
-/// checkpoint without --resume, which would be overwritten and may hold hours of work.
+/// Throws UserError for incompatible options, for an existing file that is not a checkpoint and, without --resume, for
+/// an existing checkpoint, because it may contain hours of work and the render would overwrite it.
 void check_checkpoint_options(const CLI::App& command, const CheckpointOptions& options);
 
 /// Saves and loads the checkpoints of a render.
@@ -29,10 +29,10 @@ class CheckpointFile {
   public:
     explicit CheckpointFile(const CheckpointOptions& options);
 
-    /// The functions by which the renderer saves and loads checkpoints; null without --checkpoint.
-    const RingCheckpointing* checkpointing() const { return options_.file.empty() ? nullptr : &hooks_; }
+    /// Returns the functions by which the renderer saves and loads checkpoints; null without --checkpoint.
+    const RingCheckpointing* checkpointing() const { return options_.file.empty() ? nullptr : &callbacks_; }
 
-    /// Removes the file. Call it after all outputs of the render are written.
+    /// Removes the checkpoint. Call remove() after all outputs of the render are written.
     void remove() const;
 
   private:
@@ -41,9 +41,9 @@ class CheckpointFile {
     std::optional<RingState> load(const StateSettings& settings, const RingState& shape) const;
 
     const CheckpointOptions& options_;
-    RingCheckpointing hooks_;
-    Clock::time_point saved_ = Clock::now();
-    double save_s_ = 0;  // seconds of the last save
+    RingCheckpointing callbacks_;
+    Clock::time_point last_save_ = Clock::now();
+    double last_save_s_ = 0;  // seconds that the last save took
 };
 
 }  // namespace raya

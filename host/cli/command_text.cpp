@@ -18,58 +18,59 @@ bool is_keyword(const std::string& text) {
 
 // Splits "none|bvh|grid[:AxBxC]" into none, bvh, grid. Returns an empty vector if a part is not a keyword or
 // if there is only one part.
-std::vector<std::string> choices_between(const std::string& text, char separator) {
+std::vector<std::string> choices_in(const std::string& text, char separator) {
     std::vector<std::string> choices;
-    for (std::size_t from = 0; from <= text.size();) {
-        const std::size_t to = std::min(text.find(separator, from), text.size());
-        const std::string part = text.substr(from, to - from);
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(separator, begin), text.size());
+        const std::string part = text.substr(begin, end - begin);
         choices.push_back(part.substr(0, part.find('[')));
         if (!is_keyword(choices.back())) return {};
-        from = to + 1;
+        begin = end + 1;
     }
     return choices.size() > 1 ? choices : std::vector<std::string>{};
 }
 
-bool starts_with_one_of(const std::string& text, const std::vector<std::string>& starts) {
-    return std::any_of(starts.begin(), starts.end(), [&](const std::string& one) { return text.starts_with(one); });
+bool starts_with_one_of(const std::string& text, const std::vector<std::string>& prefixes) {
+    return std::any_of(prefixes.begin(), prefixes.end(),
+                       [&](const std::string& prefix) { return text.starts_with(prefix); });
 }
 
-constexpr std::size_t kIndent = 2;          // blanks before names below a heading
-constexpr std::size_t kFarIndent = 6;       // blanks before descriptions below the names
-constexpr std::size_t kMaxNameColumn = 24;  // longer names have a separate line
-constexpr std::size_t kTwoColumns = 60;     // minimum line width for descriptions next to the names
+constexpr std::size_t kIndent = 2;              // blanks before names below a heading
+constexpr std::size_t kDescriptionIndent = 6;   // blanks before descriptions below the names
+constexpr std::size_t kMaxNameColumn = 24;      // longer names have a separate line
+constexpr std::size_t kMinTwoColumnWidth = 60;  // minimum line width for descriptions next to the names
 
 struct Entry {
     std::string name, description;
 };
 using Entries = std::vector<Entry>;
 
-/// Wraps a text to lines of at most `width` characters. The first line already has `line` characters. Each further line
-/// begins with `indent` blanks. Each line except the last ends with `end`.
-std::string wrapped(const std::string& text, std::size_t line, std::size_t indent, std::size_t width,
-                    const std::string& end = "") {
-    std::string all;
+/// Wraps a text to lines of at most `width` characters. The first line already has `line_size` characters. Each further
+/// line begins with `indent` blanks. Each line except the last ends with `line_end`.
+std::string wrapped(const std::string& text, std::size_t line_size, std::size_t indent, std::size_t width,
+                    const std::string& line_end = "") {
+    std::string lines;
     std::istringstream words(text);
-    bool begins = true;
-    for (std::string word; words >> word; begins = false) {
-        const std::size_t gap = begins ? 0 : 1;
-        if (!begins && line + gap + word.size() + end.size() > width) {
-            all += end + '\n' + std::string(indent, ' ');
-            line = indent;
+    bool is_first = true;
+    for (std::string word; words >> word; is_first = false) {
+        const std::size_t gap = is_first ? 0 : 1;
+        if (!is_first && line_size + gap + word.size() + line_end.size() > width) {
+            lines += line_end + '\n' + std::string(indent, ' ');
+            line_size = indent;
         } else {
-            all += std::string(gap, ' ');
-            line += gap;
+            lines += std::string(gap, ' ');
+            line_size += gap;
         }
-        all += word;
-        line += word.size();
+        lines += word;
+        line_size += word.size();
     }
-    return all + '\n';
+    return lines + '\n';
 }
 
 class HelpPage {
   public:
     HelpPage(const CommandText& command, std::size_t width) : width_(width) {
-        for (const Entry& entry : commands_of(command)) widen_for(entry.name);
+        for (const Entry& entry : subcommand_entries(command)) widen_for(entry.name);
         for (const OptionText& argument : command.arguments) widen_for(names_of(argument));
         for (const OptionText& option : command.options) widen_for(names_of(option));
         for (const std::string& line : lines_of(command.footer))
@@ -77,55 +78,56 @@ class HelpPage {
     }
 
     std::string usage(const CommandText& command, const std::string& path) const {
-        const std::string begin = "Usage: ";
+        const std::string label = "Usage: ";
         std::string text = path;
         if (!command.commands.empty()) text += " COMMAND";
-        for (const OptionText& argument : command.arguments) text += ' ' + in_usage(argument);
+        for (const OptionText& argument : command.arguments) text += ' ' + usage_text_of(argument);
         for (const OptionText& option : command.options)
-            if (option.required) text += ' ' + in_usage(option);
-        return begin + wrapped(text + " [OPTIONS]", begin.size(), begin.size(), width_);
+            if (option.required) text += ' ' + usage_text_of(option);
+        return label + wrapped(text + " [OPTIONS]", label.size(), label.size(), width_);
     }
 
     std::string paragraph(const std::string& text, std::size_t indent = 0) const {
         return wrapped(text, 0, indent, width_);
     }
 
-    std::string examples(const std::vector<ExampleText>& all) const {
+    std::string examples(const std::vector<ExampleText>& list) const {
         std::string text;
-        for (const ExampleText& one : all)  // line ends with a backslash, as a shell needs
-            text += std::string(kIndent, ' ') + wrapped(one.command, kIndent, kFarIndent, width_, " \\") +
-                    std::string(kFarIndent, ' ') + wrapped(one.description, kFarIndent, kFarIndent, width_);
+        for (const ExampleText& example : list)  // " \\" continues a shell command on the next line
+            text += std::string(kIndent, ' ') + wrapped(example.command, kIndent, kDescriptionIndent, width_, " \\") +
+                    std::string(kDescriptionIndent, ' ') +
+                    wrapped(example.description, kDescriptionIndent, kDescriptionIndent, width_);
         return text;
     }
 
-    std::string entries(const Entries& all) const {
+    std::string entries(const Entries& list) const {
         std::string text;
-        for (const Entry& entry : all) text += line_of(entry);
+        for (const Entry& entry : list) text += line_of(entry);
         return text;
     }
 
-    static Entries commands_of(const CommandText& command) {
-        Entries all;
-        for (const CommandText& one : command.commands) all.push_back({one.name, one.summary});
-        return all;
+    static Entries subcommand_entries(const CommandText& command) {
+        Entries list;
+        for (const CommandText& subcommand : command.commands) list.push_back({subcommand.name, subcommand.summary});
+        return list;
     }
 
-    static Entries options_of(const std::vector<OptionText>& options, const std::string& group) {
-        Entries all;
+    static Entries option_entries(const std::vector<OptionText>& options, const std::string& group) {
+        Entries list;
         for (const OptionText& option : options)
-            if (option.group == group) all.push_back({names_of(option), description_of(option)});
-        return all;
+            if (option.group == group) list.push_back({names_of(option), description_of(option)});
+        return list;
     }
 
-    static Entries arguments_of(const CommandText& command) {
-        Entries all;
+    static Entries argument_entries(const CommandText& command) {
+        Entries list;
         for (const OptionText& argument : command.arguments)
-            all.push_back({names_of(argument), description_of(argument)});
-        return all;
+            list.push_back({names_of(argument), description_of(argument)});
+        return list;
     }
 
     /// Returns the footer, formatted: paragraphs, and lines "  NAME   description" in columns.
-    std::string closing(const std::string& footer) const {
+    std::string footer_text(const std::string& footer) const {
         std::string text;
         for (const std::string& line : lines_of(footer))
             text += line.empty() ? "\n" : is_entry(line) ? line_of(entry_of(line)) : paragraph(line, kIndent);
@@ -156,22 +158,22 @@ class HelpPage {
         return option.is_flag() || option.is_argument() ? text : text + ' ' + option.value;
     }
 
-    static std::string in_usage(const OptionText& o) {
+    static std::string usage_text_of(const OptionText& o) {
         const std::string text =
             o.is_argument() ? o.names.front() + (o.repeated ? "..." : "") : o.names.front() + ' ' + o.value;
         return o.required ? text : '[' + text + ']';
     }
 
     void widen_for(const std::string& name) {
-        if (name.size() <= kMaxNameColumn) max_name_ = std::max(max_name_, name.size());
+        if (name.size() <= kMaxNameColumn) max_name_size_ = std::max(max_name_size_, name.size());
     }
 
     std::string line_of(const Entry& entry) const {
-        const bool two_columns = width_ >= kTwoColumns;
-        const std::size_t column = two_columns ? kIndent + max_name_ + 2 : kFarIndent;
+        const bool two_columns = width_ >= kMinTwoColumnWidth;
+        const std::size_t column = two_columns ? kIndent + max_name_size_ + 2 : kDescriptionIndent;
         std::string text = std::string(kIndent, ' ') + entry.name;
         if (entry.description.empty()) return text + '\n';
-        if (two_columns && entry.name.size() <= max_name_)
+        if (two_columns && entry.name.size() <= max_name_size_)
             text += std::string(column - text.size(), ' ');
         else
             text += '\n' + std::string(column, ' ');
@@ -179,17 +181,17 @@ class HelpPage {
     }
 
     std::size_t width_;
-    std::size_t max_name_ = 0;
+    std::size_t max_name_size_ = 0;
 };
 
 }  // namespace
 
-ValueText value_of(const OptionText& option) {
-    using enum ValueText::Kind;
+ValueCompletion value_completion(const OptionText& option) {
+    using enum ValueCompletion::Kind;
     if (!option.choices.empty()) return {.kind = option.repeated ? kList : kChoice, .choices = option.choices};
-    if (const auto choices = choices_between(option.value, '|'); !choices.empty())
+    if (const auto choices = choices_in(option.value, '|'); !choices.empty())
         return {.kind = kChoice, .choices = choices};
-    if (const auto choices = choices_between(option.value, ','); !choices.empty())
+    if (const auto choices = choices_in(option.value, ','); !choices.empty())
         return {.kind = kList, .choices = choices};
     if (option.value.starts_with("DIR")) return {.kind = kFolder};
     if (!starts_with_one_of(option.value, {"FILE", "SCENE", "IMAGE"})) return {};
@@ -210,11 +212,11 @@ std::vector<std::string> groups_of(const CommandText& command) {
     return groups;
 }
 
-std::string brief(const std::string& help, std::size_t max_letters) {
+std::string brief(const std::string& help, std::size_t max_characters) {
     std::string text = help.substr(0, std::min({help.find("; "), help.find(". "), help.find('\n')}));
-    if (text.size() <= max_letters) return text;
-    const std::size_t space = text.rfind(' ', max_letters - 4);
-    return text.substr(0, space == std::string::npos ? max_letters - 4 : space) + " ...";
+    if (text.size() <= max_characters) return text;
+    const std::size_t space = text.rfind(' ', max_characters - 4);
+    return text.substr(0, space == std::string::npos ? max_characters - 4 : space) + " ...";
 }
 
 std::string help_text(const CommandText& command, const std::string& path, std::size_t width) {
@@ -224,24 +226,24 @@ std::string help_text(const CommandText& command, const std::string& path, std::
         if (!part.empty()) text += '\n' + heading + ":\n" + part;
     };
     add("Examples", page.examples(command.examples));
-    add("Commands", page.entries(HelpPage::commands_of(command)));
-    add("Arguments", page.entries(HelpPage::arguments_of(command)));
+    add("Commands", page.entries(HelpPage::subcommand_entries(command)));
+    add("Arguments", page.entries(HelpPage::argument_entries(command)));
     for (const std::string& group : groups_of(command))
-        add(group, page.entries(HelpPage::options_of(command.options, group)));
-    return command.footer.empty() ? text : text + '\n' + page.closing(command.footer);
+        add(group, page.entries(HelpPage::option_entries(command.options, group)));
+    return command.footer.empty() ? text : text + '\n' + page.footer_text(command.footer);
 }
 
 CommandText short_form(CommandText command, const std::string& path) {
     if (command.short_help.empty()) return command;
     std::vector<OptionText> shown;
-    for (const ShortHelp& one : command.short_help) {
+    for (const ShortHelp& entry : command.short_help) {
         const auto option = std::find_if(command.options.begin(), command.options.end(), [&](const OptionText& o) {
-            return std::find(o.names.begin(), o.names.end(), one.name) != o.names.end();
+            return std::find(o.names.begin(), o.names.end(), entry.name) != o.names.end();
         });
-        if (option == command.options.end()) throw std::logic_error("short help of " + path + ": no " + one.name);
+        if (option == command.options.end()) throw std::logic_error("short help of " + path + ": no " + entry.name);
         shown.push_back(*option);
-        shown.back().group = one.group;
-        if (!one.help.empty()) shown.back().help = one.help;
+        shown.back().group = entry.group;
+        if (!entry.help.empty()) shown.back().help = entry.help;
     }
     command.footer = path + " --help-all prints all " + std::to_string(command.options.size()) +
                      " options in full.\n\n" + command.footer;

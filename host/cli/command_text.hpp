@@ -10,12 +10,12 @@ namespace raya {
 struct OptionText {
     std::vector<std::string> names{};    // "-o", "--output"; or "SCENE" for a positional argument
     std::string value{};                 // placeholder of the value: "FILE.json", "N|WxH"; empty: a flag
-    std::string default_value{};         // empty: no default, or `help` contains it
+    std::string default_value{};         // empty: no default, or `help` contains the default
     std::string help{};                  // the full text
     std::string group{};                 // heading above the option in help
     bool required = false;               // must be given
     bool repeated = false;               // may have several values
-    std::vector<std::string> choices{};  // legal values; empty if they are not a finite list
+    std::vector<std::string> choices{};  // legal values; empty if there is no finite list
 
     bool is_flag() const { return value.empty(); }
     bool is_argument() const { return !names.front().starts_with('-'); }
@@ -38,23 +38,23 @@ struct CommandText {
     std::string name{};  // "render"; "raya" for the program itself
     std::string summary{};
     std::vector<ExampleText> examples{};
-    std::string footer{};                 // paragraphs; "Title: " or a line "Title:" at the start of one is its title
+    std::string footer{};                 // paragraphs, which may begin with "Title: " or with a line "Title:"
     std::vector<OptionText> arguments{};  // positional arguments, in order
     std::vector<OptionText> options{};
     std::vector<CommandText> commands{};
-    std::vector<ShortHelp> short_help{};  // options that --help shows; empty: all
+    std::vector<ShortHelp> short_help{};  // options that --help shows; empty: all options
 };
 
 /// How shells complete an option's value.
-struct ValueText {
+struct ValueCompletion {
     enum class Kind { kOther, kChoice, kList, kFile, kFolder } kind = Kind::kOther;
-    std::vector<std::string> choices{};  // of kChoice, and of kList (a comma-separated list)
-    std::string extension{};             // of kFile: ".json"; empty: any
+    std::vector<std::string> choices{};  // kChoice: one of them; kList: several, comma-separated
+    std::string extension{};             // kFile: ".json"; empty: any
 };
 
-/// Uses the option's choices. Without choices it uses the placeholder: "ring|bus" is a choice, "none,grid" a list,
-/// FILE.json, SCENE.nff and IMAGE are files, DIR is a folder.
-ValueText value_of(const OptionText& option);
+/// Returns how shells complete the option's value: from its choices or, if it has none, from its placeholder.
+/// "ring|bus" is a choice, "none,grid" a list; FILE.json, SCENE.nff and IMAGE are files, DIR is a folder.
+ValueCompletion value_completion(const OptionText& option);
 
 /// Returns the option's help and default; if the help is empty, the placeholder of its value.
 std::string description_of(const OptionText& option);
@@ -62,24 +62,25 @@ std::string description_of(const OptionText& option);
 /// Returns the headings of a command's options, in order of first use.
 std::vector<std::string> groups_of(const CommandText& command);
 
-/// Returns the text before the first "; ", ". " or line break, cut to `max_letters` characters.
-std::string brief(const std::string& help, std::size_t max_letters = 72);
+/// Returns the text before the first "; ", ". " or line break, cut to `max_characters` characters.
+std::string brief(const std::string& help, std::size_t max_characters = 72);
 
-/// Calls `each(command, path)` for the command and all commands below it, parents first. A path is, for example,
-/// "raya generate balls".
+/// Calls `each(command, path)` for `command` and all its subcommands at any depth, parents first. A path is, for
+/// example, "raya generate balls".
 template <class Each>
-void for_each_command(const CommandText& command, const Each& each, const std::string& before = "") {
-    const std::string path = before.empty() ? command.name : before + ' ' + command.name;
+void for_each_command(const CommandText& command, const Each& each, const std::string& parent_path = "") {
+    const std::string path = parent_path.empty() ? command.name : parent_path + ' ' + command.name;
     each(command, path);
-    for (const CommandText& one : command.commands) for_each_command(one, each, path);
+    for (const CommandText& subcommand : command.commands) for_each_command(subcommand, each, path);
 }
 
 /// Returns the help of a command: usage, summary, examples, commands, options by group, footer. `path`: the command
 /// with its parents, "raya generate balls". Lines have at most `width` characters, except for a longer single word.
 std::string help_text(const CommandText& command, const std::string& path, std::size_t width);
 
-/// Returns `command` with only the options of its short help, and with a footer that mentions --help-all. Returns it
-/// unchanged if it has no short help. Throws std::logic_error if the short help names an option that does not exist.
+/// Returns `command` with only the options of its short help, and with a footer that mentions --help-all. Returns
+/// `command` unchanged if it has no short help. Throws std::logic_error if the short help names an option that does not
+/// exist.
 CommandText short_form(CommandText command, const std::string& path);
 
 /// A manual page of section 1, of the program or of one of its commands with all subcommands.
@@ -88,7 +89,7 @@ struct ManPage {
     std::string text{};  // troff source with man macros
 };
 
-/// Returns the pages of the program and of each of its commands. They list all options.
+/// Returns the pages of the program and of each of its commands. The pages list all options.
 std::vector<ManPage> man_pages(const CommandText& program, const std::string& name_and_version);
 
 }  // namespace raya

@@ -17,9 +17,9 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kDefaultWidth = 80, kMinWidth = 40, kMaxWidth = 120, kMaxColumns = 10'000;
+constexpr std::size_t kDefaultWidth = 80, kMinWidth = 40, kMaxWidth = 120, kMaxColumns = 10'000;  // characters
 
-/// Returns the environment variable COLUMNS; 0 if it is not a number up to kMaxColumns.
+/// Returns the number in the environment variable COLUMNS; 0 if COLUMNS is not a number up to kMaxColumns.
 std::size_t columns_variable() {
     const char* const columns = std::getenv("COLUMNS");
     if (columns == nullptr) return 0;
@@ -48,7 +48,7 @@ std::vector<std::string> is_member_choices(const std::string& type) {
     std::vector<std::string> choices;
     if (open == std::string::npos || close == std::string::npos || close < open) return choices;
     std::istringstream list(type.substr(open + 1, close - open - 1));
-    for (std::string one; std::getline(list, one, ',');) choices.push_back(one);
+    for (std::string choice; std::getline(list, choice, ',');) choices.push_back(choice);
     return choices;
 }
 
@@ -92,39 +92,39 @@ OptionText option_text(CLI::Option& option) {
 
 namespace {
 
-CommandText text_of(const CLI::App& command) {
+CommandText command_text_of(const CLI::App& command) {
     CommandText text;
     text.name = command.get_name();
     text.summary = command.get_description();
     const auto* const formatter = dynamic_cast<const HelpFormatter*>(command.get_formatter().get());
-    const HelpFormatter::Texts texts = formatter == nullptr ? HelpFormatter::Texts{} : formatter->texts_of(command);
-    text.examples = texts.examples;
-    text.short_help = texts.short_help;
+    const HelpFormatter::Texts stored = formatter == nullptr ? HelpFormatter::Texts{} : formatter->texts_of(command);
+    text.examples = stored.examples;
+    text.short_help = stored.short_help;
     text.footer = command.get_footer();
     for (const CLI::Option* option : command.get_options()) {
         if (option->get_group().empty()) continue;
         // The choices are stored in validators, which CLI11 returns only for a non-const option.
-        auto& readable = *const_cast<CLI::Option*>(option);
-        (option->get_positional() ? text.arguments : text.options).push_back(option_text(readable));
+        auto& mutable_option = *const_cast<CLI::Option*>(option);
+        (option->get_positional() ? text.arguments : text.options).push_back(option_text(mutable_option));
     }
     std::stable_partition(text.options.begin(), text.options.end(),
                           [](const OptionText& option) { return option.group != kGeneralOptions; });
     if (!text.short_help.empty())
         for (const OptionText& option : text.options)
             if (option.group == kGeneralOptions) text.short_help.push_back({option.names.back(), option.group, ""});
-    for (const CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; }))
-        if (!one->get_group().empty()) text.commands.push_back(text_of(*one));
+    for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
+        if (!subcommand->get_group().empty()) text.commands.push_back(command_text_of(*subcommand));
     return text;
 }
 
 }  // namespace
 
 CommandText command_text(const CLI::App& program) {
-    CommandText text = text_of(program);
+    CommandText text = command_text_of(program);
     std::vector<std::string> names;
-    for (const CommandText& one : text.commands) names.push_back(one.name);
-    for (CommandText& one : text.commands)
-        for (OptionText& argument : one.arguments)
+    for (const CommandText& command : text.commands) names.push_back(command.name);
+    for (CommandText& command : text.commands)
+        for (OptionText& argument : command.arguments)
             if (argument.value == "COMMAND") argument.choices = names;
     return text;
 }

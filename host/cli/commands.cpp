@@ -52,55 +52,56 @@ constexpr const char* kEnvironment =
     "  RAYA_BINARIES       off: ignore the kernels that render --cache-kernels stored, and compile\n"
     "  RAYA_PYTHON         the Python that runs studies; default: /usr/bin/python3\n"
     "  RAYA_MPIRUN         the command with which study ranks starts ranks; default: mpirun --bind-to none\n"
-    "  RAYA_RANK_TIMEOUT   seconds that a rank waits for the others; default: 600\n"
+    "  RAYA_RANK_TIMEOUT   seconds that a rank waits for other ranks; default: 600\n"
     "  XDG_CACHE_HOME      raya tune stores its values in raya/ in this folder; default: ~/.cache";
 
-/// The handler of std::terminate(). A std::bad_alloc is uncaught in a destructor, in a thread or before main().
-[[noreturn]] void end_uncaught() {
-    const std::type_info* const thrown = abi::__cxa_current_exception_type();
-    if (thrown == nullptr || *thrown != typeid(std::bad_alloc)) __gnu_cxx::__verbose_terminate_handler();
+/// Handler of std::terminate(). Reports a std::bad_alloc that no handler catches because it is thrown in a destructor,
+/// in a thread or before main().
+[[noreturn]] void report_uncaught() {
+    const std::type_info* const type = abi::__cxa_current_exception_type();
+    if (type == nullptr || *type != typeid(std::bad_alloc)) __gnu_cxx::__verbose_terminate_handler();
     remove_files_in_progress();
     for (const std::string_view part : {"raya: ", kOutOfMemory, "\n"})
         if (::write(STDERR_FILENO, part.data(), part.size()) < 0) break;
     ::_exit(kExitUserError);
 }
 
-// Priority 101 runs it before the constructors of CLI11's global objects, which allocate memory.
-[[gnu::constructor(101)]] void handle_uncaught() { std::set_terminate(end_uncaught); }
+// Priority 101 runs this function before the constructors of CLI11's global objects, which allocate memory.
+[[gnu::constructor(101)]] void install_terminate_handler() { std::set_terminate(report_uncaught); }
 
-/// Opens /dev/null for closed standard descriptors, because the next open() would otherwise return them. Opens it
-/// read-only, so that writing to a closed stdout still fails.
+/// Opens /dev/null for closed standard descriptors, because the next open() would otherwise return them. Opens
+/// /dev/null read-only, so that writing to a closed stdout still fails.
 void open_standard_files() {
     for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(descriptor, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) < 0) return;
 }
 
-// Runs raya as a worker process. An error is the last line of its output.
-int run_worker(const WorkerOrder& order) {
+// Runs raya as a worker process. If the task fails, the last line of the worker's output contains the error.
+int run_worker(const WorkerRequest& request) {
     restore_crash_signals();  // the parent process reports crashes
-    const auto stop = [&](const char* kind, const std::exception& error) {
-        send_line(order.lines, {{"error", error.what()}, {"kind", kind}});
+    const auto send_error = [&](const char* kind, const std::exception& error) {
+        send_line(request.pipe, {{"error", error.what()}, {"kind", kind}});
         return kExitOk;
     };
     try {
-        (order.task == kTrialTask ? run_trial : run_checks)(order.lines, order.settings);
+        (request.task == kTrialTask ? run_trial : run_checks)(request.pipe, request.settings);
         return kExitOk;
     } catch (const UserError& error) {
-        return stop("user", error);
+        return send_error("user", error);
     } catch (const DeviceError& error) {
-        return stop("device", error);
+        return send_error("device", error);
     } catch (const std::exception& error) {
-        return stop("internal", error);
+        return send_error("internal", error);
     }
 }
 
 int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     try {
-        if (ranks.many()) check_same_program(ranks, {argv + 1, argv + argc});
+        if (ranks.has_several()) check_same_program(ranks, {argv + 1, argv + argc});
         parse_arguments(program, {argv + 1, argv + argc});
         return kExitOk;
     } catch (const CLI::ParseError& error) {
-        return ranks.first() ? program.exit(error) : kExitOk;  // --help, --version
+        return ranks.is_first() ? program.exit(error) : kExitOk;  // --help, --version
     } catch (const RankFailure& failure) {
         return ranks.fail(failure);
     } catch (const UserError& error) {
@@ -117,11 +118,11 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     }
 }
 
-/// Flushes stdout. Returns `code`; reports lost output and returns kExitUserError.
+/// Flushes stdout and returns `code`. If output is lost, reports this and returns kExitUserError instead of kExitOk.
 int flush_stdout(Ranks& ranks, int code) {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-    if (stdout_is_reserved()) return code;  // text goes to stderr, where losing it is no error
+    if (stdout_is_reserved()) return code;  // text goes to stderr, where lost text is not an error
     const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
     ranks.fail(fmt::format("cannot write to stdout{}; redirect it to a file system with free space", reason),
                kExitUserError);
@@ -134,18 +135,20 @@ void silence_signals_of_other_ranks() {
     if (launch && launch->rank != 0) suppress_interrupt_message();
 }
 
-// Refuses several ranks for all commands except render and ping: the others would run once in every process.
+// Refuses several ranks for all commands except render and ping, because the other commands would run once in every
+// process.
 void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
-    if (!ranks.many()) return;
+    if (!ranks.has_several()) return;
     for (CLI::App* command : program.get_subcommands({}))
         if (command->get_name() != "render" && command->get_name() != "ping")
             command->preparse_callback([name = command->get_name()](std::size_t) {
                 throw UserError(fmt::format(
-                    "{} runs in one process: only render and ping support several; start it without mpirun", name));
+                    "{} runs in one process: only render and ping support several ranks; start it without mpirun",
+                    name));
             });
 }
 
-int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
+int run_with_ranks(Ranks& ranks, int argc, char** argv, const std::string& build) {
     const std::shared_ptr<CLI::App> program = make_program(ranks, build);
     refuse_many_ranks(*program, ranks);
     try {
@@ -155,18 +158,18 @@ int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
     }
 }
 
-// Reports an error that happens in every process before ranks exist. Only the first process prints it.
+// Reports an error that happens in every process before ranks exist. Only the first process prints the error.
 int fail_at_start(const std::string& text, int code) {
     const std::optional<Launch> launch = find_launch();
-    return !launch || launch->rank == 0 ? Ranks::alone().fail(text, code) : code;
+    return !launch || launch->rank == 0 ? Ranks::single().fail(text, code) : code;
 }
 
 }  // namespace
 
 std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
-    auto made = std::make_shared<CLI::App>(
+    auto owned_program = std::make_shared<CLI::App>(
         "A ray tracer on models of distributed-memory array machines, written as OpenCL kernels.", "raya");
-    CLI::App& program = *made;
+    CLI::App& program = *owned_program;
     program.formatter(std::make_shared<HelpFormatter>());  // inherited by the commands
     add_examples(program, {{"raya render scenes/centre.nff -o centre.png",
                             "Render a scene on a ring of 256 PEs and print their load balance"},
@@ -197,9 +200,9 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     program.parse_complete_callback([&program, &ranks] {
         const CLI::App* command = &program;
         while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
-        if (ranks.first()) check_files(*command);
+        if (ranks.is_first()) check_files(*command);
     });
-    return made;
+    return owned_program;
 }
 
 int run_program(int argc, char** argv, const std::string& build) {
@@ -208,12 +211,12 @@ int run_program(int argc, char** argv, const std::string& build) {
     install_crash_handlers();
     silence_signals_of_other_ranks();
     try {
-        if (const auto order = worker_order(argc, argv)) return run_worker(*order);
+        if (const auto request = worker_request(argc, argv)) return run_worker(*request);
         const std::unique_ptr<Ranks> ranks = open_ranks();
         if (ranks)
             set_crash_prefix(fmt::format("rank {} on {}: ", ranks->rank(), ranks->host()),
                              failure_delay_s(ranks->rank()));
-        return run_on(ranks ? *ranks : Ranks::alone(), argc, argv, build);
+        return run_with_ranks(ranks ? *ranks : Ranks::single(), argc, argv, build);
     } catch (const UserError& error) {
         return fail_at_start(error.what(), kExitUserError);
     } catch (const DeviceError& error) {

@@ -22,7 +22,7 @@ std::string fish_completion(const CommandText& program);
 std::string shell_quoted(const std::string& text);
 
 /// Returns the clauses of a shell's `case` statement that selects a body by command path. Paths with equal bodies share
-/// a clause: "'raya generate balls'|'raya generate gears')".
+/// one clause: "'raya generate balls'|'raya generate gears')".
 std::string shell_cases(const std::vector<std::pair<std::string, std::string>>& paths_and_bodies);
 
 }  // namespace raya

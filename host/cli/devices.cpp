@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-const char* yes(bool truth) { return truth ? "yes" : "no"; }
+const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
 
 void list_devices() {
     std::vector<std::vector<std::string>> rows = {{"#", "device", "platform", "type", "units", "lanes", "group",
@@ -24,16 +24,17 @@ void list_devices() {
             {std::to_string(rows.size() - 1), info.name, info.platform, info.type, std::to_string(info.compute_units),
              std::to_string(default_lanes(info)), std::to_string(default_group_size(info)),
              fmt::format("{}{}", info.local_memory_bytes / 1024, info.local_memory_is_dedicated ? "" : " (global)"),
-             std::to_string(info.global_memory_bytes >> 20), yes(info.correctly_rounded_divide_sqrt),
-             yes(info.fused_multiply_add), yes(info.profiling), yes(info.available && info.compiler_available)});
+             std::to_string(info.global_memory_bytes >> 20), yes_or_no(info.correctly_rounded_divide_sqrt),
+             yes_or_no(info.fused_multiply_add), yes_or_no(info.profiling),
+             yes_or_no(info.available && info.compiler_available)});
         versions.push_back(fmt::format("{}: {}, driver {}", versions.size(), info.version, info.driver));
     }
     if (versions.empty()) choose_device("");  // throws the error for a computer without devices
     fmt::print("{}\n", text_table(rows));
     for (const std::string& version : versions) fmt::print("{}\n", version);
     fmt::print(
-        "\nlanes, group: the defaults of --lanes and --group. --device takes a number, a type or a part of a name or "
-        "version; so does RAYA_DEVICE.\nRAYA_BUILD_OPTIONS is added to every kernel's build options and listed in the "
+        "\nlanes, group: the defaults of --lanes and --group. --device and RAYA_DEVICE take a number, a type, or "
+        "part of a name or version.\nRAYA_BUILD_OPTIONS is added to every kernel's build options and listed in the "
         "report, e.g. -cl-opt-disable to check for a compiler error.\n");
 }
 

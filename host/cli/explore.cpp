@@ -74,6 +74,7 @@ std::string command_of(const ExploreCommand& command, const RingSettings& settin
     return text;
 }
 
+// Returns the machine's rates, from which the page computes modelled times; empty if a rate is not known.
 Json rates_of(const Machine& machine) {
     if (!machine.cycle_ns || !machine.link_words_per_s || !machine.rotation_sync_ms || !machine.host_words_per_s)
         return {};
@@ -96,7 +97,7 @@ Json machine_json(const RingSettings& settings) {
             {"rates", rates_of(settings.machine)}};
 }
 
-// Returns the page's data. It contains no measured times, so that equal renders give equal pages.
+// Returns the page's data. The data contain no measured times, so that equal renders give equal pages.
 Json exploration(const ExploreCommand& command, const RingSettings& settings, const DeviceInfo& device,
                  const RingResult& result) {
     return {
@@ -113,7 +114,7 @@ Json exploration(const ExploreCommand& command, const RingSettings& settings, co
 
 // Refuses an image that is too large for a page. Called before the render.
 void check_pixels(const ImageSize& size) {
-    constexpr std::uint64_t kMaxPixels = 2'000'000;  // the scenes in scenes/ take about one byte per pixel
+    constexpr std::uint64_t kMaxPixels = 2'000'000;  // pages of the scenes in scenes/ have about one byte per pixel
     if (std::uint64_t{size.width} * size.height <= kMaxPixels) return;
     throw UserError(fmt::format("--size {}x{}: too many pixels for a page, maximum {}; remedy: a smaller --size",
                                 size.width, size.height, kMaxPixels));
@@ -122,7 +123,8 @@ void check_pixels(const ImageSize& size) {
 void check_cycles(const std::string& scene, const CostImage& cost) {
     if (total_cycles(cost) < kExactCycles) return;
     throw UserError(
-        fmt::format("{}: its pixels take {} cycles, more than a page can add exactly; remedy: a smaller --size, fewer "
+        fmt::format("{}: the pixels take {} cycles in total, more than the page's script can add exactly; remedy: a "
+                    "smaller --size, fewer "
                     "--bounces, or --accel bvh",
                     scene, total_cycles(cost)));
 }
@@ -130,10 +132,11 @@ void check_cycles(const std::string& scene, const CostImage& cost) {
 void check_bytes(const std::string& scene, const CostImage& cost, std::size_t bytes) {
     constexpr std::size_t kMaxBytes = 1'000'000;  // maximum size of a page, small enough for e-mail
     if (bytes <= kMaxBytes) return;
-    const double less = 0.9 * std::sqrt(static_cast<double>(kMaxBytes) / static_cast<double>(bytes));
-    const auto side = [less](std::uint32_t pixels) { return std::max(1, static_cast<int>(less * pixels)); };
+    const double scale = 0.9 * std::sqrt(static_cast<double>(kMaxBytes) / static_cast<double>(bytes));
+    const auto smaller = [scale](std::uint32_t pixels) { return std::max(1, static_cast<int>(scale * pixels)); };
     throw UserError(fmt::format("{}: a page of {} x {} pixels would have {} bytes, maximum {}; remedy: --size {}x{}",
-                                scene, cost.width, cost.height, bytes, kMaxBytes, side(cost.width), side(cost.height)));
+                                scene, cost.width, cost.height, bytes, kMaxBytes, smaller(cost.width),
+                                smaller(cost.height)));
 }
 
 void explore(const ExploreCommand& command) {
@@ -205,7 +208,7 @@ void add_explore_command(CLI::App& program) {
     add_render_options(*command, options->render, false);
     command->get_option("--mapping")
         ->description(
-            "The mapping that the page shows first: cyclic, cyclic:p, column, rows, blocks, grid:AxB, tiles:WxH, "
+            "Mapping that the page shows first: cyclic, cyclic:p, column, rows, blocks, grid:AxB, tiles:WxH, "
             "random:seed; default: the machine's, cyclic on spa");
     command->callback([options] { explore(*options); });
 }

@@ -16,44 +16,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kUse = "file use";
+constexpr const char* kFileUseNote = "file use";
 
 class FileCheck {
   public:
-    void read(const NamedFile& input) {
+    void add_input(const NamedFile& input) {
         std::error_code error;
         const fs::path file = is_standard_stream(input.file) ? "/dev/stdin" : input.file;
         if (fs::exists(file, error)) inputs_.emplace(file_identity(file), input);
     }
 
-    void read_kernels(const NamedFile& folder) {
+    void add_kernels(const NamedFile& folder) {
         constexpr std::string_view kKernels = "kernels/";
         check_folder({.folder = folder.file});
         for (const auto& [name, text] : embedded_files())
             if (name.starts_with(kKernels))
-                read({folder.option, (fs::path(folder.file) / name.substr(kKernels.size())).string()});
+                add_input({folder.option, (fs::path(folder.file) / name.substr(kKernels.size())).string()});
     }
 
-    void write(const NamedFile& output) {
-        written_.push_back(output.file);
+    void add_output(const NamedFile& output) {
+        output_names_.push_back(output.file);
         const std::string identity = identity_of(output);
         if (identity.empty()) return;
         refuse_input(output, identity);
-        const auto [other, is_new] = outputs_.emplace(identity, output);
-        if (!is_new) refuse_output(output, other->second);
+        const auto [known, is_new] = outputs_.emplace(identity, output);
+        if (!is_new) refuse_output(output, known->second);
     }
 
-    // Refuses an output folder that contains an input other than a scene, which the command might overwrite.
-    void write_folder(const NamedFile& folder) const {
+    // Refuses an output folder that contains an input of the command, because the command might overwrite this file.
+    // Scenes may be in the folder.
+    void check_output_folder(const NamedFile& folder) const {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder.file, error))
             if (entry.path().extension() != ".nff")
                 refuse_input({folder.option, entry.path().string()}, file_identity(entry.path()));
     }
 
-    /// Call it after all comparisons, because it redirects stdout.
+    /// Call check_all_writable() after adding all files, because it redirects stdout.
     void check_all_writable() const {
-        for (const std::string& file : written_) check_writable(file);
+        for (const std::string& file : output_names_) check_writable(file);
     }
 
   private:
@@ -71,41 +72,42 @@ class FileCheck {
                                     output.file, input->second.option, input->second.file));
     }
 
-    [[noreturn]] static void refuse_output(const NamedFile& output, const NamedFile& other) {
-        if (is_standard_stream(output.file) && is_standard_stream(other.file))
-            throw UserError(fmt::format("{} - and {} -: only one file can go to stdout; name files for the others",
-                                        other.option, output.option));
+    [[noreturn]] static void refuse_output(const NamedFile& output, const NamedFile& earlier_output) {
+        if (is_standard_stream(output.file) && is_standard_stream(earlier_output.file))
+            throw UserError(
+                fmt::format("{} - and {} -: only one file can go to stdout; name files for the other options",
+                            earlier_output.option, output.option));
         throw UserError(fmt::format("{} {}: the same file as {} {}; name another file", output.option, output.file,
-                                    other.option, other.file));
+                                    earlier_output.option, earlier_output.file));
     }
 
     std::map<std::string, NamedFile> inputs_, outputs_;  // key: file_identity()
-    std::vector<std::string> written_;
+    std::vector<std::string> output_names_;
 };
 
 }  // namespace
 
 CLI::Option* set_file_use(CLI::Option* option, FileUse use) {
-    return attach_note(option, kUse, std::to_string(static_cast<int>(use)));
+    return attach_note(option, kFileUseNote, std::to_string(static_cast<int>(use)));
 }
 
 FileUse file_use_of(CLI::Option& option) {
-    const std::string use = note_of(option, kUse);
+    const std::string use = note_of(option, kFileUseNote);
     return use.empty() ? FileUse::kNone : static_cast<FileUse>(std::stoi(use));
 }
 
 void check_files(const CLI::App& command, const std::vector<NamedFile>& more_outputs) {
     FileCheck check;
-    const auto each = [&](FileUse use, auto take) {
+    const auto for_each_file = [&](FileUse use, auto add) {
         for (CLI::Option* option : const_cast<CLI::App&>(command).get_options())
             if (option->count() > 0 && file_use_of(*option) == use)
-                for (const std::string& file : option->results()) take(NamedFile{option->get_name(), file});
+                for (const std::string& file : option->results()) add(NamedFile{option->get_name(), file});
     };
-    each(FileUse::kRead, [&](const NamedFile& file) { check.read(file); });
-    each(FileUse::kKernelFolder, [&](const NamedFile& folder) { check.read_kernels(folder); });
-    each(FileUse::kWrittenFolder, [&](const NamedFile& folder) { check.write_folder(folder); });
-    each(FileUse::kWritten, [&](const NamedFile& file) { check.write(file); });
-    for (const NamedFile& file : more_outputs) check.write(file);
+    for_each_file(FileUse::kRead, [&](const NamedFile& file) { check.add_input(file); });
+    for_each_file(FileUse::kKernelFolder, [&](const NamedFile& folder) { check.add_kernels(folder); });
+    for_each_file(FileUse::kWrittenFolder, [&](const NamedFile& folder) { check.check_output_folder(folder); });
+    for_each_file(FileUse::kWritten, [&](const NamedFile& file) { check.add_output(file); });
+    for (const NamedFile& file : more_outputs) check.add_output(file);
     check.check_all_writable();
 }
 

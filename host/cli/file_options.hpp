@@ -7,7 +7,7 @@
 
 namespace raya {
 
-/// How a command uses the file or folder that an option names. kNone: the value is not a file.
+/// How a command uses the file or folder that an option names. kNone: the option names neither.
 enum class FileUse { kNone, kRead, kWritten, kKernelFolder, kWrittenFolder };
 
 /// Sets how the command uses the option's file.
@@ -21,15 +21,15 @@ CLI::Option* add_file(CLI::App& command, FileUse use, const std::string& name, V
     return set_file_use(add_value(command, name, value, help)->type_name(type), use);
 }
 
-/// A file, and the option that names it or from whose value its name is derived.
+/// A file and its option. The option's value is the file's name, or the file's name is derived from that value.
 struct NamedFile {
     std::string option, file;
 };
 
-/// Throws UserError if an output is the same file as an input or another output, also under another name (links), or if
-/// an output is not writable. Checks the files of the command's options and `more_outputs`. The parser calls it before
-/// the callback of every command. A command that derives further output names from an option calls it again with them
-/// before it writes.
+/// Throws UserError if an output is the same file as an input or another output, also through links, or if
+/// an output is not writable. Checks the files of the command's options and `more_outputs`. The parser calls
+/// check_files() before the callback of every command. A command that derives further output names from an option calls
+/// check_files() again with these names before it writes.
 void check_files(const CLI::App& command, const std::vector<NamedFile>& more_outputs = {});
 
 }  // namespace raya

@@ -8,30 +8,31 @@ namespace raya {
 namespace {
 
 std::string fish_quoted(const std::string& text) {
-    std::string all = "'";
-    for (const char c : text) all += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-    return all + "'";
+    std::string quoted_text = "'";
+    for (const char c : text) quoted_text += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+    return quoted_text + "'";
 }
 
 // Returns the argument of fish's -a for the option's value: candidates, or a command in parentheses that lists them.
 std::string fish_offer_of(const OptionText& option) {
-    const ValueText value = value_of(option);
+    const ValueCompletion value = value_completion(option);
     switch (value.kind) {
-        case ValueText::Kind::kChoice:
+        case ValueCompletion::Kind::kChoice:
             return fmt::format(" -a '{}'", fmt::join(value.choices, " "));
-        case ValueText::Kind::kList:
+        case ValueCompletion::Kind::kList:
             return fmt::format(" -a '(__fish_append , {})'", fmt::join(value.choices, " "));
-        case ValueText::Kind::kFile:
+        case ValueCompletion::Kind::kFile:
             return fmt::format(" -a '(__fish_complete_suffix \"{}\")'", value.extension);
-        case ValueText::Kind::kFolder:
+        case ValueCompletion::Kind::kFolder:
             return " -a '(__fish_complete_directories)'";
-        case ValueText::Kind::kOther:
+        case ValueCompletion::Kind::kOther:
             break;
     }
     return "";
 }
 
-std::string line_of(const OptionText& option) {
+// Returns the arguments of `complete` for an option: its names, its value and its help.
+std::string complete_arguments_of(const OptionText& option) {
     std::string text;
     for (const std::string& name : option.names)
         text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
@@ -53,17 +54,18 @@ end
 }  // namespace
 
 std::string fish_completion(const CommandText& program) {
-    std::string nodes, lines;
+    std::string paths, lines;
     for_each_command(program, [&](const CommandText& command, const std::string& path) {
-        const std::string here = fmt::format("complete -c raya -n '__raya_at {}'", path);
-        nodes += ' ' + fish_quoted(path);
-        for (const CommandText& one : command.commands)
-            lines += fmt::format("{} -a {} -d {}\n", here, one.name, fish_quoted(brief(one.summary)));
+        const std::string command_line = fmt::format("complete -c raya -n '__raya_at {}'", path);
+        paths += ' ' + fish_quoted(path);
+        for (const CommandText& subcommand : command.commands)
+            lines +=
+                fmt::format("{} -a {} -d {}\n", command_line, subcommand.name, fish_quoted(brief(subcommand.summary)));
         for (const OptionText& argument : command.arguments)
-            if (const std::string offer = fish_offer_of(argument); !offer.empty()) lines += here + offer + '\n';
-        for (const OptionText& option : command.options) lines += here + line_of(option) + '\n';
+            if (const std::string offer = fish_offer_of(argument); !offer.empty()) lines += command_line + offer + '\n';
+        for (const OptionText& option : command.options) lines += command_line + complete_arguments_of(option) + '\n';
     });
-    return kFishBeginning + ("set -g __raya_nodes" + nodes) + "\ncomplete -c raya -f\n" + lines;
+    return kFishBeginning + ("set -g __raya_nodes" + paths) + "\ncomplete -c raya -f\n" + lines;
 }
 
 }  // namespace raya

@@ -25,10 +25,10 @@ constexpr double kMaxTurnDegrees = 360'000;
         "--frames {}: must be A:B (frames A to B) or A:B/N (frames A to B of 1 to N), each 0..{}", text, kMaxFrames));
 }
 
-std::uint32_t number_of(const std::string& frames, std::string_view word) {
+std::uint32_t parse_frame_number(const std::string& frames, std::string_view text) {
     std::uint32_t number = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc{} || end != word.data() + word.size() || number > kMaxFrames) refuse_frames(frames);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc{} || end != text.data() + text.size() || number > kMaxFrames) refuse_frames(frames);
     return number;
 }
 
@@ -37,7 +37,7 @@ std::vector<Frame> frames_on_path(const FrameOptions& o, const View& view) {
     FrameRange range{1, static_cast<std::uint32_t>(cameras.size())};
     if (!o.frames.empty()) range = parse_frames(o.frames);
     if (range.first < 1 || range.last > cameras.size())
-        throw UserError(fmt::format("--frames {}: {} has {}; choose frames of 1 to {}", o.frames, o.camera_path,
+        throw UserError(fmt::format("--frames {}: {} has {}; choose frames from 1 to {}", o.frames, o.camera_path,
                                     counted(cameras.size(), "camera"), cameras.size()));
     std::vector<Frame> frames;
     for (std::uint32_t n = range.first; n <= range.last; ++n) frames.push_back({n, cameras[n - 1]});
@@ -50,8 +50,8 @@ void add_frame_options(CLI::App& command, FrameOptions& o) {
     const OptionGroup group(command, "Frames");
     add_value(command, "--frames", o.frames,
               "Render frames A to B to numbered files IMAGE-0001.png, ..., also for --cost, --mask and --report; "
-              "A:B/N: of a sequence from 1 to N. IMAGE-frames.json records the frames; a frame with unchanged settings "
-              "and files is not rendered again")
+              "A:B/N: frames A to B of a sequence from 1 to N. IMAGE-frames.json records the frames; a frame with "
+              "unchanged settings and files is not rendered again")
         ->type_name("A:B[/N]");
     add_value(command, "--turn", o.turn,
               "With --frames: turn the eye by this angle about the axis through --at along --up, anticlockwise seen "
@@ -65,13 +65,13 @@ void add_frame_options(CLI::App& command, FrameOptions& o) {
 FrameRange parse_frames(const std::string& text) {
     const std::size_t colon = text.find(':'), slash = text.find('/');
     if (colon == std::string::npos || (slash != std::string::npos && slash < colon)) refuse_frames(text);
-    const std::string_view all = text;
+    const std::string_view view = text;
     FrameRange range;
-    range.first = range.begin = number_of(text, all.substr(0, colon));
-    range.last = range.end = number_of(text, all.substr(colon + 1, slash - colon - 1));
+    range.first = range.begin = parse_frame_number(text, view.substr(0, colon));
+    range.last = range.end = parse_frame_number(text, view.substr(colon + 1, slash - colon - 1));
     if (slash != std::string::npos) {
         range.begin = 1;
-        range.end = number_of(text, all.substr(slash + 1));
+        range.end = parse_frame_number(text, view.substr(slash + 1));
     }
     if (range.first > range.last || range.first < range.begin || range.last > range.end) refuse_frames(text);
     return range;
@@ -84,14 +84,14 @@ std::vector<Frame> frames_of(const FrameOptions& o, const View& view) {
     if (!o.turn)
         throw UserError(
             fmt::format("--frames {}: all frames would be equal; add --turn DEGREES or --camera-path FILE", o.frames));
-    if (o.frames.empty()) throw UserError(fmt::format("--turn {}: add --frames A:B", *o.turn));
+    if (o.frames.empty()) throw UserError(fmt::format("--turn {} requires frames: add --frames A:B", *o.turn));
     if (!(std::abs(*o.turn) <= kMaxTurnDegrees))
         throw UserError(fmt::format("--turn {}: must be -{}..{} degrees", *o.turn, kMaxTurnDegrees, kMaxTurnDegrees));
     const FrameRange range = parse_frames(o.frames);
-    const double count = range.end - range.begin + 1.0;
+    const double frame_count = range.end - range.begin + 1.0;
     std::vector<Frame> frames;
     for (std::uint32_t n = range.first; n <= range.last; ++n)
-        frames.push_back({n, turned(view, *o.turn * (n - range.begin) / count)});
+        frames.push_back({n, turned(view, *o.turn * (n - range.begin) / frame_count)});
     return frames;
 }
 

@@ -16,7 +16,7 @@ namespace raya {
 /// The options as given on the command line. If none is given, the command renders one image.
 struct FrameOptions {
     std::string frames, camera_path;
-    std::optional<double> turn;  // degrees by which the camera turns during the sequence
+    std::optional<double> turn;  // degrees by which the eye turns about --at during the sequence
 
     bool given() const { return !frames.empty() || !camera_path.empty() || turn.has_value(); }
 };
@@ -35,10 +35,11 @@ struct Frame {
 /// Adds --frames, --turn and --camera-path.
 void add_frame_options(CLI::App& command, FrameOptions& options);
 
-/// Parses "A:B" (frames A to B are the whole sequence) or "A:B/N" (frames A to B of the sequence 1 to N). UserError.
+/// Parses "A:B" (frames A to B are the whole sequence) or "A:B/N" (frames A to B of the sequence 1 to N). Throws
+/// UserError for other texts.
 FrameRange parse_frames(const std::string& text);
 
-/// Returns the frames to render with their cameras: `view` rotated about the scene (--turn), or with the changes of a
+/// Returns the frames to render with their cameras: `view` turned about its centre point (--turn), or changed by a
 /// camera path. Throws UserError for incompatible options or an invalid camera.
 std::vector<Frame> frames_of(const FrameOptions& options, const View& view);
 

@@ -28,23 +28,23 @@ std::optional<std::string> hash_of_file(const fs::path& file) try {
     return {};
 }
 
-Json json_of(const FrameEntry& e) {
+Json json_of(const FrameEntry& entry) {
     Json files = Json::array();
-    for (const auto& [name, hash] : e.files) files.push_back({{"name", name}, {"hash", hash}});
-    return {{"number", e.number},       {"settings", e.settings}, {"pixels", e.pixels},
-            {"imbalance", e.imbalance}, {"speed_up", e.speed_up}, {"files", files}};
+    for (const auto& [name, hash] : entry.files) files.push_back({{"name", name}, {"hash", hash}});
+    return {{"number", entry.number},       {"settings", entry.settings}, {"pixels", entry.pixels},
+            {"imbalance", entry.imbalance}, {"speed_up", entry.speed_up}, {"files", files}};
 }
 
 FrameEntry entry_of(const Json& json) {
-    FrameEntry e{static_cast<std::uint32_t>(json.at("number").integer(UINT32_MAX)),
-                 json.at("settings").text(),
-                 json.at("pixels").text(),
-                 json.at("imbalance").number(),
-                 json.at("speed_up").number(),
-                 {}};
+    FrameEntry entry{static_cast<std::uint32_t>(json.at("number").integer(UINT32_MAX)),
+                     json.at("settings").text(),
+                     json.at("pixels").text(),
+                     json.at("imbalance").number(),
+                     json.at("speed_up").number(),
+                     {}};
     for (const Json& file : json.at("files").elements())
-        e.files.emplace_back(file.at("name").text(), file.at("hash").text());
-    return e;
+        entry.files.emplace_back(file.at("name").text(), file.at("hash").text());
+    return entry;
 }
 
 std::map<std::uint32_t, FrameEntry> entries_of(const Json& record) {
@@ -88,8 +88,8 @@ FrameRecord::FrameRecord(fs::path file) : file_(std::move(file)) { read(); }
 
 void FrameRecord::read() {
     if (!fs::exists(file_)) return;
-    const JsonSource from{file_.string(), "move it, or change -o: the record of the frames is written to this file"};
-    std::map<std::uint32_t, FrameEntry> entries = read_json(json_text(file_, from), from, entries_of);
+    const JsonSource source{file_.string(), "move this file, or change -o: raya writes the record of the frames to it"};
+    std::map<std::uint32_t, FrameEntry> entries = read_json(json_text(file_, source), source, entries_of);
     for (const std::uint32_t number : added_) entries.insert_or_assign(number, entries_.at(number));
     entries_ = std::move(entries);
 }
@@ -101,8 +101,9 @@ const FrameEntry* FrameRecord::find(std::uint32_t number, const std::string& set
     const FrameEntry& entry = found->second;
     if (entry.settings != settings || entry.files.size() != files.size()) return nullptr;
     const bool unchanged = std::ranges::all_of(files, [&](const std::string& file) {
-        const auto known = std::ranges::find(entry.files, name_of(file), &std::pair<std::string, std::string>::first);
-        return known != entry.files.end() && hash_of_file(file) == known->second;
+        const auto recorded =
+            std::ranges::find(entry.files, name_of(file), &std::pair<std::string, std::string>::first);
+        return recorded != entry.files.end() && hash_of_file(file) == recorded->second;
     });
     return unchanged ? &entry : nullptr;
 }

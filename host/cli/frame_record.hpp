@@ -1,5 +1,5 @@
-// The record of a sequence's rendered frames. With it an interrupted sequence resumes, and a changed one renders only
-// the frames whose settings or files have changed.
+// The record of a sequence's rendered frames. An interrupted sequence continues after the last recorded frame. A
+// changed sequence renders only the frames whose settings or files have changed.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -19,15 +19,16 @@ struct FrameEntry {
     std::string settings;                                    // hash of everything that determines the frame
     std::string pixels;                                      // pixel_hash() of the image
     double imbalance = 0, speed_up = 0;                      // load figures of the modelled machine
-    std::vector<std::pair<std::string, std::string>> files;  // [path, bytes_hash()]; relative to the record
+    std::vector<std::pair<std::string, std::string>> files;  // [path relative to the record, bytes_hash()]
 };
 
+/// The entries of the rendered frames, and their file.
 class FrameRecord {
   public:
-    /// Reads `file` if it exists. Throws UserError if it is not a record.
+    /// Reads `file` if it exists. Throws UserError if the file is not a record.
     explicit FrameRecord(std::filesystem::path file);
 
-    /// Returns the entry of frame `number` if it was rendered with these settings and its `files` still have the
+    /// Returns the entry of frame `number` if it was rendered with these settings and if `files` still have the
     /// recorded hashes; otherwise null.
     const FrameEntry* find(std::uint32_t number, const std::string& settings,
                            const std::vector<std::string>& files) const;
@@ -36,8 +37,8 @@ class FrameRecord {
     /// record if 20 times the duration of the last write has passed, so that writes take at most 5 % of the time.
     const FrameEntry& add(FrameEntry entry, const std::vector<std::string>& files);
 
-    /// Merges the frames that this object added with those that other processes have written to the file, and writes
-    /// the file. Holds a lock meanwhile.
+    /// Merges the frames that this object added with the frames that other processes have written to the file, and
+    /// writes the file. Locks the file's folder meanwhile.
     void write();
 
   private:

@@ -19,8 +19,8 @@ namespace {
 
 struct GenerateOptions {
     std::string output;
-    int level = 4, count = 0;
-    std::uint32_t size = 12, wheels = 4;
+    int level = 4, sphere_count = 0;
+    std::uint32_t cylinders = 12, wheels = 4;  // along an edge of the cube
     std::string voxels = "4x4x4";
     std::uint64_t seed = 1;
 };
@@ -33,15 +33,15 @@ void write_scene(const GenerateOptions& options, Make&& make) {
     write_whole_file(options.output, write_nff(scene));
 }
 
-CLI::App* add_kind(CLI::App& command, GenerateOptions& options, const std::string& name, const std::string& help,
-                   const std::vector<ExampleText>& examples) {
-    CLI::App* kind = command.add_subcommand(name, help);
-    add_examples(*kind, examples);
-    kind->option_defaults()->group("Scene");
-    const OptionGroup group(*kind, kFiles);
-    add_file(*kind, FileUse::kWritten, "-o,--output", options.output, "SCENE.nff", "NFF file to write; -: stdout")
+CLI::App* add_generator(CLI::App& command, GenerateOptions& options, const std::string& name, const std::string& help,
+                        const std::vector<ExampleText>& examples) {
+    CLI::App* generator = command.add_subcommand(name, help);
+    add_examples(*generator, examples);
+    generator->option_defaults()->group("Scene");
+    const OptionGroup group(*generator, kFiles);
+    add_file(*generator, FileUse::kWritten, "-o,--output", options.output, "SCENE.nff", "NFF file to write; -: stdout")
         ->required();
-    return kind;
+    return generator;
 }
 
 }  // namespace
@@ -55,75 +55,77 @@ void add_generate_command(CLI::App& program) {
     const auto options = std::make_shared<GenerateOptions>();
 
     CLI::App* balls =
-        add_kind(*command, *options, "balls", "SPD's sphereflake: 1 + 9 + ... + 9^L spheres above a square",
-                 {{"raya generate balls -o balls.nff", "SPD's default size: 7,381 spheres"},
-                  {"raya generate balls --level 1 -o ten.nff", "A sphere surrounded by nine"}});
-    add_value(*balls, "--level", options->level, "Levels L below the largest sphere, 0..6 (4: 7,381 spheres)")
+        add_generator(*command, *options, "balls", "SPD's sphereflake: 1 + 9 + ... + 9^L spheres above a square",
+                      {{"raya generate balls -o balls.nff", "SPD's default size: 7,381 spheres"},
+                       {"raya generate balls --level 1 -o ten.nff", "A sphere surrounded by nine"}});
+    add_value(*balls, "--level", options->level, "Number L of levels below the largest sphere, 0..6 (4: 7,381 spheres)")
         ->type_name("LEVEL")
         ->capture_default_str();
     balls->callback([options] { write_scene(*options, [&] { return generate_balls(options->level); }); });
 
     CLI::App* lattice =
-        add_kind(*command, *options, "lattice", "SPD's lattice: (N + 1)^3 spheres joined by cylinders, in a cube",
-                 {{"raya generate lattice -o lattice.nff", "SPD's default size: 2,197 spheres, 6,084 cylinders"},
-                  {"raya generate lattice --size 2 -o small.nff", "27 spheres, 54 cylinders"}});
-    add_value(*lattice, "--size", options->size,
-              "Cylinders N along an edge, 1..64 (12, SPD's: 2,197 spheres, 6,084 cylinders)")
+        add_generator(*command, *options, "lattice", "SPD's lattice: (N + 1)^3 spheres joined by cylinders, in a cube",
+                      {{"raya generate lattice -o lattice.nff", "SPD's default size: 2,197 spheres, 6,084 cylinders"},
+                       {"raya generate lattice --size 2 -o small.nff", "27 spheres, 54 cylinders"}});
+    add_value(*lattice, "--size", options->cylinders,
+              "Number N of cylinders along an edge, 1..64 (12, SPD's: 2,197 spheres, 6,084 cylinders)")
         ->type_name("N")
         ->capture_default_str();
     lattice->callback(
-        [options] { write_scene(*options, [&] { return generate_lattice(static_cast<int>(options->size)); }); });
+        [options] { write_scene(*options, [&] { return generate_lattice(static_cast<int>(options->cylinders)); }); });
 
     CLI::App* gears =
-        add_kind(*command, *options, "gears", "N^3 meshing gear wheels with outlines of 144 vertices, in a cube",
-                 {{"raya generate gears -o gears.nff", "As many triangles as SPD's gears: 36,610"},
-                  {"raya generate gears --size 1 -o wheel.nff", "One wheel"}});
+        add_generator(*command, *options, "gears", "N^3 meshing gear wheels with outlines of 144 vertices, in a cube",
+                      {{"raya generate gears -o gears.nff", "As many triangles as SPD's gears: 36,610"},
+                       {"raya generate gears --size 1 -o wheel.nff", "One wheel"}});
     add_value(*gears, "--size", options->wheels,
-              "Wheels N along an edge, 1..16 (4: 9,345 polygons = 36,610 triangles, as many as SPD's gears)")
+              "Number N of wheels along an edge, 1..16 (4: 9,345 polygons = 36,610 triangles, as many as SPD's gears)")
         ->type_name("N")
         ->capture_default_str();
     gears->callback(
         [options] { write_scene(*options, [&] { return generate_gears(static_cast<int>(options->wheels)); }); });
 
-    CLI::App* uniform =
-        add_kind(*command, *options, "uniform", "N matt spheres, evenly distributed over the voxels of a cube",
-                 {{"raya generate uniform 64 --voxels 4x4x4 -o even.nff", "One sphere in each of 64 voxels"},
-                  {"raya generate uniform 1000 --voxels 2x2x1 -o slab.nff", "250 spheres in each of four voxels"}});
-    add_value(*uniform, "N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
-    add_value(*uniform, "--voxels", options->voxels, "Voxels along x, y and z, 1..256 each, at most 1,048,576 in total")
+    CLI::App* uniform = add_generator(
+        *command, *options, "uniform", "N matt spheres, evenly distributed over the voxels of a cube",
+        {{"raya generate uniform 64 --voxels 4x4x4 -o even.nff", "One sphere in each of 64 voxels"},
+         {"raya generate uniform 1000 --voxels 2x2x1 -o slab.nff", "250 spheres in each of four voxels"}});
+    add_value(*uniform, "N", options->sphere_count, "Number of spheres, 1..1000000")->type_name("COUNT")->required();
+    add_value(*uniform, "--voxels", options->voxels,
+              "Number of voxels along x, y and z, 1..256 each, at most 1,048,576 in total")
         ->type_name("XxYxZ")
         ->required();
     uniform->callback([options] {
         const auto sides = parse_three_sides("--voxels", options->voxels, fmt::format("1..{} each", kMaxVoxelsPerAxis));
         write_scene(*options, [&] {
-            return generate_uniform(
-                options->count, {static_cast<int>(sides[0]), static_cast<int>(sides[1]), static_cast<int>(sides[2])});
+            return generate_uniform(options->sphere_count, {static_cast<int>(sides[0]), static_cast<int>(sides[1]),
+                                                            static_cast<int>(sides[2])});
         });
     });
 
-    CLI::App* random = add_kind(*command, *options, "random", "N spheres at random positions in a cube",
-                                {{"raya generate random 500 -o random.nff", "500 spheres"},
-                                 {"raya generate random 500 --seed 2 -o other.nff", "500 other spheres"}});
-    add_value(*random, "N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
+    CLI::App* random = add_generator(*command, *options, "random", "N spheres at random positions in a cube",
+                                     {{"raya generate random 500 -o random.nff", "500 spheres"},
+                                      {"raya generate random 500 --seed 2 -o other.nff", "500 other spheres"}});
+    add_value(*random, "N", options->sphere_count, "Number of spheres, 1..1000000")->type_name("COUNT")->required();
     add_value(*random, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
         ->type_name("N")
         ->capture_default_str();
     random->callback(
-        [options] { write_scene(*options, [&] { return generate_random(options->count, options->seed); }); });
+        [options] { write_scene(*options, [&] { return generate_random(options->sphere_count, options->seed); }); });
 
-    CLI::App* cluster = add_kind(*command, *options, "cluster",
-                                 "Seven spheres above a floor, as in Kohata & Ito's scene of high and uneven cost",
-                                 {{"raya generate cluster -o cluster.nff", "The scene of raya study cluster"},
-                                  {"raya generate cluster --seed 2 -o other.nff", "Another scene of the same kind"}});
+    CLI::App* cluster =
+        add_generator(*command, *options, "cluster",
+                      "Seven spheres above a floor, as in Kohata & Ito's scene of high and uneven cost",
+                      {{"raya generate cluster -o cluster.nff", "The scene of raya study cluster"},
+                       {"raya generate cluster --seed 2 -o other.nff", "Another scene of the same kind"}});
     add_value(*cluster, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
         ->type_name("N")
         ->capture_default_str();
     cluster->callback([options] { write_scene(*options, [&] { return generate_cluster(options->seed); }); });
 
-    CLI::App* centre =
-        add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres clustered at the centre",
-                 {{"raya generate centre -o centre.nff", "The scene in scenes/centre.nff"},
-                  {"raya generate centre -o - | raya info -", "Print its objects and the machines that hold them"}});
+    CLI::App* centre = add_generator(
+        *command, *options, "centre", "The main scene: glass and mirror spheres clustered at the centre",
+        {{"raya generate centre -o centre.nff", "The scene in scenes/centre.nff"},
+         {"raya generate centre -o - | raya info -", "Print its objects and the machines that hold them"}});
     centre->callback([options] { write_scene(*options, [&] { return generate_centre(); }); });
 }
 

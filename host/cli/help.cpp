@@ -15,9 +15,9 @@
 namespace raya {
 namespace {
 
-const CLI::App& command_below(const CLI::App& command, const std::string& name) {
-    for (const CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; }))
-        if (one->get_name() == name) return *one;
+const CLI::App& subcommand_named(const CLI::App& command, const std::string& name) {
+    for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
+        if (subcommand->get_name() == name) return *subcommand;
     const std::vector<std::string> known = command_names(command);
     if (known.empty())
         throw UserError(
@@ -30,7 +30,7 @@ void print_help(const CLI::App& program, const std::vector<std::string>& names) 
     const CLI::App* command = &program;
     std::string path = program.get_name();
     for (const std::string& name : names) {
-        command = &command_below(*command, name);
+        command = &subcommand_named(*command, name);
         path += ' ' + name;
     }
     fmt::print("{}", command->get_formatter()->make_help(command, path, CLI::AppFormatMode::Normal));

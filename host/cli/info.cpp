@@ -26,7 +26,7 @@ struct InfoCommand {
     bool json = false;
 };
 
-// Options of a render that do not affect the memory needs of a PE. raya info does not have them.
+// Options of raya render that raya info does not have, because they do not affect the memory needs of a PE.
 constexpr std::array<const char*, 16> kExecutionOptions = {
     "--device", "--lanes",   "--group",     "--no-tuned",     "--kernel-dir",    "--exchange", "--sampling", "--points",
     "--inject", "--returns", "--threshold", "--packet-words", "--link-exchange", "--packets",  "--replay",   "--async"};
@@ -45,29 +45,30 @@ void add_options(CLI::App& command, InfoCommand& options) {
         ->description("Only this machine, as in raya render; default: all machines");
 }
 
-// Returns the needs of all machines, or of --machine. If a machine does not support the options: UserError with
-// --machine, otherwise the machine's row contains the reason.
+// Returns the memory needs of all machines, or only of --machine. If a machine does not support the options, its entry
+// contains the reason. Throws UserError if this machine is that of --machine, or if no ring machine supports the
+// options.
 std::vector<MachineNeeds> needs_of_machines(const CLI::App& parsed, const InfoCommand& command, SceneNeeds& needs) {
     if (parsed.count("--machine") > 0) {
         refuse_options_of_other_machines(parsed, machine_named(command.render.machine));
         return {needs.needs_of(command.render.machine)};
     }
-    std::vector<MachineNeeds> all;
+    std::vector<MachineNeeds> machine_needs;
     for (const Machine& machine : machines()) try {
-            all.push_back(needs.needs_of(machine.name));
+            machine_needs.push_back(needs.needs_of(machine.name));
         } catch (const UserError& error) {
-            all.push_back({.machine = machine.name,
-                           .format = {},
-                           .pes = 0,
-                           .memory_bytes = {},
-                           .needs = {},
-                           .refusal = error.what()});
+            machine_needs.push_back({.machine = machine.name,
+                                     .format = {},
+                                     .pes = 0,
+                                     .memory_bytes = {},
+                                     .needs = {},
+                                     .refusal = error.what()});
         }
-    const bool all_rings_failed = std::ranges::all_of(all, [](const MachineNeeds& m) {
+    const bool all_rings_failed = std::ranges::all_of(machine_needs, [](const MachineNeeds& m) {
         return !m.refusal.empty() || machine_named(m.machine).kind == MachineKind::kTorus;
     });
-    if (all_rings_failed) throw UserError(all.front().refusal);
-    return all;
+    if (all_rings_failed) throw UserError(machine_needs.front().refusal);
+    return machine_needs;
 }
 
 void info(const CLI::App& parsed, const InfoCommand& command) {

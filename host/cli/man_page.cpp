@@ -10,7 +10,7 @@ namespace raya {
 namespace {
 
 // Escapes the characters that man interprets.
-std::string plain(const std::string& text) {
+std::string man_escaped(const std::string& text) {
     std::string page;
     for (const char c : text) switch (c) {
             case '\\':
@@ -41,17 +41,17 @@ std::string plain(const std::string& text) {
 }
 
 // Returns a line of text. Escapes a leading dot, which would begin a macro.
-std::string line(const std::string& text) { return (text.starts_with('.') ? "\\&" : "") + plain(text) + '\n'; }
+std::string line(const std::string& text) { return (text.starts_with('.') ? "\\&" : "") + man_escaped(text) + '\n'; }
 
-std::string bold(const std::string& text) { return "\\fB" + plain(text) + "\\fR"; }
-std::string italic(const std::string& text) { return "\\fI" + plain(text) + "\\fR"; }
+std::string bold(const std::string& text) { return "\\fB" + man_escaped(text) + "\\fR"; }
+std::string italic(const std::string& text) { return "\\fI" + man_escaped(text) + "\\fR"; }
 
 std::string upper(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
     return text;
 }
 
-std::string heading(const std::string& text) { return ".SH " + upper(plain(text)) + '\n'; }
+std::string heading(const std::string& text) { return ".SH " + upper(man_escaped(text)) + '\n'; }
 
 std::string in_synopsis(const OptionText& o) {
     std::string text = o.is_argument() ? italic(o.names.front()) + (o.repeated ? " ..." : "")
@@ -111,10 +111,11 @@ std::string examples(const CommandText& command) {
     return text;
 }
 
-// Returns the command without the options `all`, which the page of the parent command already lists.
-CommandText without(CommandText command, const std::vector<OptionText>& all) {
+// Returns the command without the options that its page already lists for the parent command.
+CommandText without_options(CommandText command, const std::vector<OptionText>& listed) {
     std::erase_if(command.options, [&](const OptionText& o) {
-        return std::any_of(all.begin(), all.end(), [&](const OptionText& one) { return one.names == o.names; });
+        return std::any_of(listed.begin(), listed.end(),
+                           [&](const OptionText& option) { return option.names == o.names; });
     });
     return command;
 }
@@ -122,18 +123,20 @@ CommandText without(CommandText command, const std::vector<OptionText>& all) {
 // Returns the subcommands with their options. Subcommands with equal options share one list.
 std::string commands_below(const CommandText& command, const std::string& path) {
     std::string text = heading("Commands");
-    std::vector<const CommandText*> left;
-    for (const CommandText& one : command.commands) left.push_back(&one);
-    while (!left.empty()) {
-        const CommandText& first = *left.front();
-        const auto others = std::stable_partition(left.begin(), left.end(),
-                                                  [&](const auto* one) { return have_same_options(*one, first); });
-        for (auto one = left.begin(); one != others; ++one)
-            text += ".TP\n" + synopsis(**one, path + ' ' + (*one)->name) + line((*one)->summary);
-        text += ".RS\n" + grouped(without(first, command.options), [](const std::string&) { return std::string(); });
+    std::vector<const CommandText*> remaining;
+    for (const CommandText& subcommand : command.commands) remaining.push_back(&subcommand);
+    while (!remaining.empty()) {
+        const CommandText& first = *remaining.front();
+        const auto first_different =
+            std::stable_partition(remaining.begin(), remaining.end(),
+                                  [&](const auto* subcommand) { return have_same_options(*subcommand, first); });
+        for (auto subcommand = remaining.begin(); subcommand != first_different; ++subcommand)
+            text += ".TP\n" + synopsis(**subcommand, path + ' ' + (*subcommand)->name) + line((*subcommand)->summary);
+        text += ".RS\n" +
+                grouped(without_options(first, command.options), [](const std::string&) { return std::string(); });
         if (!first.examples.empty()) text += ".TP\nExamples\n" + (".RS\n" + examples(first)) + ".RE\n";
         text += ".RE\n";
-        left.erase(left.begin(), others);
+        remaining.erase(remaining.begin(), first_different);
     }
     return text;
 }
@@ -141,61 +144,63 @@ std::string commands_below(const CommandText& command, const std::string& path) 
 std::vector<std::string> lines_of(const std::string& text) {
     std::vector<std::string> lines;
     std::istringstream in(text);
-    for (std::string one; std::getline(in, one);) lines.push_back(one);
+    for (std::string text_line; std::getline(in, text_line);) lines.push_back(text_line);
     return lines;
 }
 
-// Formats an indented line: "  NAME   description" as a list entry, any other line verbatim.
-std::string indented(const std::string& one) {
-    const std::string text = one.substr(std::min(one.find_first_not_of(' '), one.size()));
+// Formats an indented line: "  NAME   description" as a list entry, any other line and raya commands verbatim.
+std::string indented(const std::string& source_line) {
+    const std::string text = source_line.substr(std::min(source_line.find_first_not_of(' '), source_line.size()));
     const std::size_t gap = text.find("  ");
     if (gap == std::string::npos || text.starts_with("raya ")) return ".PP\n.EX\n" + line("    " + text) + ".EE\n";
     return ".TP\n" + bold(text.substr(0, gap)) + '\n' + line(text.substr(text.find_first_not_of(' ', gap)));
 }
 
 // Returns the footer of the command's help as sections of the page.
-std::string closing(const std::string& footer) {
+std::string footer_sections(const std::string& footer) {
     std::string text;
-    bool begins = true;
-    for (const std::string& one : lines_of(footer)) {
-        const std::size_t colon = one.find(':');
-        const bool titled = begins && colon != std::string::npos && !one.starts_with(' ');
-        if (titled) text += heading(one.substr(0, colon));
-        const std::string rest = titled ? one.substr(std::min(colon + 2, one.size())) : one;
+    bool begins_paragraph = true;
+    for (const std::string& source_line : lines_of(footer)) {
+        const std::size_t colon = source_line.find(':');
+        const bool titled = begins_paragraph && colon != std::string::npos && !source_line.starts_with(' ');
+        if (titled) text += heading(source_line.substr(0, colon));
+        const std::string rest = titled ? source_line.substr(std::min(colon + 2, source_line.size())) : source_line;
         if (!rest.empty()) text += rest.starts_with("  ") ? indented(rest) : line(rest);
-        begins = one.empty();
+        begins_paragraph = source_line.empty();
     }
     return text;
 }
 
-std::string beginning(const std::string& name, const CommandText& command, const std::string& path,
-                      const std::string& version) {
+std::string page_header(const std::string& name, const CommandText& command, const std::string& path,
+                        const std::string& version) {
     std::string summary = command.summary;
     if (summary.starts_with(command.name + ' ')) summary.erase(0, command.name.size() + 1);
     return fmt::format(
                ".\\\" Generated by raya manual from the texts of --help-all.\n"
                ".TH {} 1 \"\" \"{}\" \"User Commands\"\n{}{} \\- {}",
-               upper(plain(name)), version, heading("Name"), plain(name), line(summary)) +
+               upper(man_escaped(name)), version, heading("Name"), man_escaped(name), line(summary)) +
            heading("Synopsis") + synopsis(command, path) + heading("Description") + line(command.summary);
 }
 
-std::string reference(const std::string& name) { return ".BR " + plain(name) + " (1)"; }
+std::string page_reference(const std::string& name) { return ".BR " + man_escaped(name) + " (1)"; }
 
 ManPage page_of(const CommandText& command, const CommandText& program, const std::string& version) {
-    const bool whole = &command == &program;
-    const std::string name = whole ? program.name : program.name + '-' + command.name;
-    const std::string path = whole ? program.name : program.name + ' ' + command.name;
-    std::string text = beginning(name, command, path, version);
-    if (!whole && !command.commands.empty()) text += commands_below(command, path);
-    if (whole) text += heading("Commands");
-    for (const CommandText& one : program.commands)
-        if (whole) text += ".TP\n" + reference(name + '-' + one.name) + '\n' + line(one.summary);
+    const bool is_program = &command == &program;
+    const std::string name = is_program ? program.name : program.name + '-' + command.name;
+    const std::string path = is_program ? program.name : program.name + ' ' + command.name;
+    std::string text = page_header(name, command, path, version);
+    if (!is_program && !command.commands.empty()) text += commands_below(command, path);
+    if (is_program) text += heading("Commands");
+    for (const CommandText& subcommand : program.commands)
+        if (is_program)
+            text += ".TP\n" + page_reference(name + '-' + subcommand.name) + '\n' + line(subcommand.summary);
     text += grouped(command, heading);
     if (!command.examples.empty()) text += heading("Examples") + examples(command);
-    text += closing(command.footer) + heading("See also");
-    if (!whole) return {name, text + reference(program.name) + '\n'};
-    for (const CommandText& one : program.commands)
-        text += reference(name + '-' + one.name) + (&one == &program.commands.back() ? "\n" : " ,\n");
+    text += footer_sections(command.footer) + heading("See also");
+    if (!is_program) return {name, text + page_reference(program.name) + '\n'};
+    for (const CommandText& subcommand : program.commands)
+        text +=
+            page_reference(name + '-' + subcommand.name) + (&subcommand == &program.commands.back() ? "\n" : " ,\n");
     return {name, text};
 }
 

@@ -51,7 +51,7 @@ struct CompletionCommand {
 void run_completion(const CLI::App& program, const CompletionCommand& command) {
     const std::vector<std::string>& shells = completed_shells();
     if (std::find(shells.begin(), shells.end(), command.shell) == shells.end())
-        throw UserError(fmt::format("{}: must be {}", command.shell, fmt::join(shells, ", ")));
+        throw UserError(fmt::format("completion {}: must be {}", command.shell, fmt::join(shells, ", ")));
     const std::string script = completion_script(command_text(program), command.shell);
     if (command.file.empty()) return fmt::print("{}", script);
     write_whole_file(command.file, script);
@@ -67,7 +67,8 @@ void add_manual_command(CLI::App& program) {
                   {"mkdir -p man1 && raya manual -o man1", "Write all pages: man1/raya.1, man1/raya-render.1, ..."}});
     const auto options = std::make_shared<ManualCommand>();
     const OptionGroup group(*command, kFiles);
-    add_value(*command, "COMMAND", options->command, "The command; default: raya itself, whose page lists the others")
+    add_value(*command, "COMMAND", options->command,
+              "Command whose page is printed; default: raya itself, whose page lists all commands")
         ->type_name("COMMAND");
     add_file(*command, FileUse::kWrittenFolder, "-o,--output", options->folder, "DIR",
              "Write all pages to this folder: raya.1, raya-render.1, ...");

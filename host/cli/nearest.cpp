@@ -14,9 +14,9 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
                 distance[i][j] = i + j;
                 continue;
             }
-            const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
+            const std::size_t substitution = a[i - 1] == b[j - 1] ? 0 : 1;
             distance[i][j] =
-                std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1, distance[i - 1][j - 1] + change});
+                std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1, distance[i - 1][j - 1] + substitution});
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
                 distance[i][j] = std::min(distance[i][j], distance[i - 2][j - 2] + 1);
         }
@@ -31,8 +31,8 @@ std::string nearest_name(const std::string& word, const std::vector<std::string>
     std::string nearest;
     std::size_t min_distance = word.size() / 3 + 1;
     for (const std::string& name : names) {
-        const bool begins = word.size() >= kMinPrefix && name.starts_with(word);
-        const std::size_t distance = begins ? 0 : edit_distance(word, name);
+        const bool has_prefix = word.size() >= kMinPrefix && name.starts_with(word);
+        const std::size_t distance = has_prefix ? 0 : edit_distance(word, name);
         if (distance >= min_distance) continue;
         min_distance = distance;
         nearest = name;

@@ -42,7 +42,7 @@ CLI::Option* offer_choices(CLI::Option* option, const std::vector<std::string>& 
 std::vector<std::string> offered_choices(CLI::Option& option) {
     std::vector<std::string> choices;
     std::istringstream text(note_of(option, kChoices));
-    for (std::string one; text >> one;) choices.push_back(one);
+    for (std::string choice; text >> choice;) choices.push_back(choice);
     return choices;
 }
 

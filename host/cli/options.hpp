@@ -1,4 +1,4 @@
-// Options of a command, whose values are checked for the types of their variables.
+// Options of a command. An option's value is checked for the type of the variable that stores it.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -33,11 +33,11 @@ void check_value(const std::string& option, const std::string& text, const std::
         Value value{};
         const char* const end = text.data() + text.size();
         const auto [read_to, error] = std::from_chars(text.data(), end, value);
-        const char* const kind = std::is_integral_v<Value> ? "not a whole number" : "not a number";
-        const bool below = std::is_unsigned_v<Value> && text.size() > 1 && text[0] == '-' &&
-                           text.find_first_not_of("0123456789", 1) == std::string::npos;
-        if (below || error == std::errc::result_out_of_range) refuse_value(option, text, "out of range", help);
-        if (error != std::errc{} || read_to != end) refuse_value(option, text, kind, help);
+        const char* const reason = std::is_integral_v<Value> ? "not a whole number" : "not a number";
+        const bool is_negative = std::is_unsigned_v<Value> && text.size() > 1 && text[0] == '-' &&
+                                 text.find_first_not_of("0123456789", 1) == std::string::npos;
+        if (is_negative || error == std::errc::result_out_of_range) refuse_value(option, text, "out of range", help);
+        if (error != std::errc{} || read_to != end) refuse_value(option, text, reason, help);
     }
 }
 
@@ -55,19 +55,19 @@ inline constexpr const char* kGeneralOptions = "General options";  // options th
 class OptionGroup {
   public:
     OptionGroup(CLI::App& command, const std::string& heading)
-        : defaults_(*command.option_defaults()), before_(defaults_.get_group()) {
+        : defaults_(*command.option_defaults()), previous_heading_(defaults_.get_group()) {
         defaults_.group(heading);
     }
     OptionGroup(const OptionGroup&) = delete;
     OptionGroup& operator=(const OptionGroup&) = delete;
-    ~OptionGroup() { defaults_.group(before_); }
+    ~OptionGroup() { defaults_.group(previous_heading_); }
 
     /// Sets the heading of the options that are added from now on.
     void next(const std::string& heading) { defaults_.group(heading); }
 
   private:
     CLI::OptionDefaults& defaults_;
-    std::string before_;
+    std::string previous_heading_;
 };
 
 /// Adds an option that check_value() checks and that is stored in `value`.
@@ -80,15 +80,16 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value,
     });
 }
 
-/// Attaches a text with a name to an option. Help does not show it. note_of() returns the text, or "" if there is none.
+/// Attaches a text with a name to an option. Help does not show the text. note_of() returns the text, or "" if there is
+/// none.
 CLI::Option* attach_note(CLI::Option* option, const char* name, const std::string& text);
 std::string note_of(CLI::Option& option, const char* name);
 
-/// Sets the values that shell completion offers. They neither restrict the option's value nor appear in help. Not
-/// needed if the placeholder lists the values: "ring|bus".
+/// Sets the values that shell completion offers. They neither restrict the option's value nor appear in help. The
+/// call is not needed if the placeholder lists the values: "ring|bus".
 CLI::Option* offer_choices(CLI::Option* option, const std::vector<std::string>& choices);
 
-/// Returns the values that offer_choices() set; empty if it was not called.
+/// Returns the values that offer_choices() set; empty if offer_choices() was not called.
 std::vector<std::string> offered_choices(CLI::Option& option);
 
 }  // namespace raya

@@ -26,7 +26,7 @@ struct PageCommand {
     std::string report, page;
 };
 
-// Removes the folders of file names, because users send pages to others.
+// Removes the folders from file names in the report, because users send pages to others.
 Json without_folders(Json report) {
     const auto shorten = [](Json& object, const char* key) {
         const Json* const path = object.find(key);
@@ -35,10 +35,10 @@ Json without_folders(Json report) {
     const Json *const scene = report.find("scene"), *const warnings = report.find("warnings");
     if (scene != nullptr && scene->is_text() && warnings != nullptr) {
         const std::string file = scene->text();
-        Json shorter = Json::array();
+        Json shortened = Json::array();
         for (const std::string& text : warnings->strings())
-            shorter.push_back(text.starts_with(file + ':') ? text.substr(file.rfind('/') + 1) : text);
-        report["warnings"] = shorter;
+            shortened.push_back(text.starts_with(file + ':') ? text.substr(file.rfind('/') + 1) : text);
+        report["warnings"] = shortened;
     }
     shorten(report, "scene");
     for (const auto& [part, key] : {std::pair{"image", "file"}, {"device", "tuned"}, {"compared", "baseline"}})
@@ -52,7 +52,8 @@ void check_kind(const Json& report) {
     for (const char* known : {kRenderReportKind, kBenchReportKind, kVerifyReportKind, "raya gpu_day"})
         if (name == known) return;
     if (kind == nullptr && (report.find("measured") != nullptr || report.find("devices") != nullptr))
-        throw JsonError("a report of an older raya, without the command that wrote it; write the report again");
+        throw JsonError(
+            "a report of an older raya, which does not state the command that wrote it; write the report again");
     throw JsonError("valid JSON, but not a report of raya render, bench, verify or gpu_day");
 }
 

@@ -11,18 +11,18 @@
 namespace raya {
 
 std::vector<std::uint32_t> parse_sizes(const std::string& text) {
-    constexpr std::uint32_t kMaxSize = 1'000'000;
+    constexpr std::uint32_t kMaxSize = 1'000'000;  // the product of three fits in 64 bits
     std::vector<std::uint32_t> sizes;
-    const char* at = text.data();
-    const char* const end = at + text.size();
+    const char* position = text.data();
+    const char* const end = position + text.size();
     for (;;) {
         std::uint32_t size = 0;
-        const auto [next, error] = std::from_chars(at, end, size);
+        const auto [next, error] = std::from_chars(position, end, size);
         if (error != std::errc{} || size < 1 || size > kMaxSize) return {};
         sizes.push_back(size);
         if (next == end) return sizes;
         if (*next != 'x') return {};
-        at = next + 1;
+        position = next + 1;
     }
 }
 
@@ -67,8 +67,8 @@ AntialiasMethod parse_antialias(const std::string& text) {
 }
 
 ExchangeMethod parse_exchange(const std::string& text) {
-    for (const ExchangeMethod way : {ExchangeMethod::kRing, ExchangeMethod::kBus, ExchangeMethod::kBroadcast})
-        if (text == exchange_name(way)) return way;
+    for (const ExchangeMethod method : {ExchangeMethod::kRing, ExchangeMethod::kBus, ExchangeMethod::kBroadcast})
+        if (text == exchange_name(method)) return method;
     throw UserError(fmt::format("--exchange {}: must be ring, bus or bus-broadcast", text));
 }
 

@@ -21,10 +21,12 @@ namespace raya {
 /// Parses integers from 1 to 10^6 separated by x: {512, 256} for "512x256". Returns an empty vector for other texts.
 std::vector<std::uint32_t> parse_sizes(const std::string& text);
 
-/// Parses an image size: "512" (square) or "512x256". UserError with the legal values. image_size() checks the range.
+/// Parses an image size: "512" (square) or "512x256". Throws UserError with the legal values. image_size()
+/// checks the maximum.
 ImageSize parse_image_size(const std::string& text);
 
-/// Parses three numbers, along x, y and z: "4x4x4". Throws UserError with the option and `legal`: "1..256 each".
+/// Parses three numbers, along x, y and z: "4x4x4". Throws UserError with the option and the text `legal`: "1..256
+/// each".
 std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
                                                const std::string& legal);
 

@@ -38,19 +38,19 @@ struct UnparsedArgument {
 };
 
 UnparsedArgument first_unparsed(const CLI::App& program, const std::vector<std::string>& arguments) {
-    const std::vector<std::string> left = program.remaining(true);
+    const std::vector<std::string> remaining = program.remaining(true);
     const auto separator = std::find(arguments.begin(), arguments.end(), "--");
-    const auto first = std::find_if(arguments.begin(), arguments.end(), [&](const std::string& one) {
-        return one != "--" && std::find(left.begin(), left.end(), one) != left.end();
+    const auto first = std::find_if(arguments.begin(), arguments.end(), [&](const std::string& argument) {
+        return argument != "--" && std::find(remaining.begin(), remaining.end(), argument) != remaining.end();
     });
     return first == arguments.end() ? UnparsedArgument{} : UnparsedArgument{*first, first > separator};
 }
 
 /// Rewords CLI11's message about too many or too few values.
 std::string value_error_text(std::string text) {
-    const auto replace = [&](const std::string& what, const std::string& by) {
-        const std::size_t at = text.find(what);
-        if (at != std::string::npos) text.replace(at, what.size(), by);
+    const auto replace = [&](const std::string& old_text, const std::string& new_text) {
+        const std::size_t at = text.find(old_text);
+        if (at != std::string::npos) text.replace(at, old_text.size(), new_text);
     };
     replace("At Most 1 required but received", "takes one value, not");
     replace("1 required ", "value ");
@@ -63,22 +63,22 @@ std::string current_option_name(const std::string& option) {
     return option == "--width" || option == "--height" || option == "--resolution" ? "--size" : option;
 }
 
-std::string reason(const CLI::App& command, const UnparsedArgument& first, const CLI::ParseError& error) {
+std::string failure_reason(const CLI::App& command, const UnparsedArgument& unparsed, const CLI::ParseError& error) {
     const std::vector<std::string> commands = command_names(command);
-    const std::string& left = first.text;
-    if (first.after_separator)
-        return fmt::format("unexpected argument '{}' after --; put options and commands before it", left);
-    if (left.starts_with("-") && left.size() > 1) {
-        const std::string name = left.substr(0, left.find('='));
+    const std::string& argument = unparsed.text;
+    if (unparsed.after_separator)
+        return fmt::format("unexpected argument '{}' after --; put options and commands before it", argument);
+    if (argument.starts_with("-") && argument.size() > 1) {
+        const std::string name = argument.substr(0, argument.find('='));
         if (command.get_option_no_throw(name) != nullptr)
             return fmt::format("{} is an option of {}; put it after {}", name, command.get_name(), command.get_name());
         return fmt::format("no option {}{}", name, did_you_mean(current_option_name(name), option_names(command)));
     }
-    if (!left.empty() && commands.empty()) return fmt::format("unexpected argument '{}'", left);
-    if (!left.empty() && command.get_option_no_throw("--" + left) != nullptr)
-        return fmt::format("no command {} (did you mean --{}?)", left, left);
-    if (!left.empty())
-        return fmt::format("no command {}{}; commands: {}", left, did_you_mean(left, commands),
+    if (!argument.empty() && commands.empty()) return fmt::format("unexpected argument '{}'", argument);
+    if (!argument.empty() && command.get_option_no_throw("--" + argument) != nullptr)
+        return fmt::format("no command {} (did you mean --{}?)", argument, argument);
+    if (!argument.empty())
+        return fmt::format("no command {}{}; commands: {}", argument, did_you_mean(argument, commands),
                            fmt::join(commands, ", "));
     if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !commands.empty())
         return fmt::format("command missing; commands: {}", fmt::join(commands, ", "));
@@ -91,9 +91,9 @@ std::string failure_text(const CLI::App& program, const CLI::ParseError& error,
     const CLI::App& command = selected_command(program, name);
     const bool has_unparsed = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
                               dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
-    const UnparsedArgument left = has_unparsed ? first_unparsed(program, arguments) : UnparsedArgument{};
+    const UnparsedArgument unparsed = has_unparsed ? first_unparsed(program, arguments) : UnparsedArgument{};
     return fmt::format("{}{}{}; see raya{} --help", name.empty() ? "" : name.substr(1), name.empty() ? "" : ": ",
-                       reason(command, left, error), name);
+                       failure_reason(command, unparsed, error), name);
 }
 
 /// If `argument` is an option whose value is the next argument, returns the option, otherwise null. Refuses forms that
@@ -102,11 +102,11 @@ std::string failure_text(const CLI::App& program, const CLI::ParseError& error,
 const CLI::Option* check_option(const CLI::App& command, const std::string& argument) {
     const bool is_long = argument.starts_with("--");
     const std::size_t equals = std::min(argument.find('='), argument.size());
-    for (std::size_t at = 1, end = 0; end < argument.size(); ++at) {
-        end = is_long ? equals : at + 1;
-        const std::string name = is_long ? argument.substr(0, end) : std::string{'-', argument[at]};
+    for (std::size_t i = 1, end = 0; end < argument.size(); ++i) {
+        end = is_long ? equals : i + 1;
+        const std::string name = is_long ? argument.substr(0, end) : std::string{'-', argument[i]};
         const CLI::Option* option = command.get_option_no_throw(name);
-        if (option == nullptr && at == 1) return nullptr;
+        if (option == nullptr && i == 1) return nullptr;
         if (option == nullptr) throw UserError(fmt::format("{}: no option {}", argument, name));
         const bool takes_value = option->get_items_expected_max() > 0;
         if (takes_value && is_long && equals + 1 == argument.size())
@@ -119,22 +119,24 @@ const CLI::Option* check_option(const CLI::App& command, const std::string& argu
 }
 
 void check_argument_values(const CLI::App& program, const std::vector<std::string>& arguments) {
-    constexpr std::size_t kMaxBytes = 4096;  // of an argument; Linux's PATH_MAX
+    constexpr std::size_t kMaxBytes = 4096;  // maximum size of an argument: Linux's PATH_MAX
     const CLI::App* command = &program;
-    const CLI::Option* value_of_option = nullptr;  // set if this argument is its value
+    const CLI::Option* valued_option = nullptr;  // the option whose value is this argument, else null
     bool after_separator = false;
     for (const std::string& argument : arguments) {
         if (argument.size() > kMaxBytes)
             throw UserError(fmt::format("{}: the value has {} bytes, maximum {}",
-                                        value_of_option
-                                            ? value_of_option->get_name()
+                                        valued_option
+                                            ? valued_option->get_name()
                                             : argument.substr(0, std::min<std::size_t>(argument.find('='), 40)),
                                         argument.size(), kMaxBytes));
-        after_separator = after_separator || (value_of_option == nullptr && argument == "--");
-        const bool free = value_of_option == nullptr && !after_separator;
-        value_of_option = free && argument.starts_with("-") ? check_option(*command, argument) : nullptr;
-        const auto next = command->get_subcommands([&](const CLI::App* one) { return one->get_name() == argument; });
-        if (free && !next.empty()) command = next.front();
+        after_separator = after_separator || (valued_option == nullptr && argument == "--");
+        const bool may_be_option_or_command = valued_option == nullptr && !after_separator;
+        valued_option =
+            may_be_option_or_command && argument.starts_with("-") ? check_option(*command, argument) : nullptr;
+        const auto next =
+            command->get_subcommands([&](const CLI::App* subcommand) { return subcommand->get_name() == argument; });
+        if (may_be_option_or_command && !next.empty()) command = next.front();
     }
 }
 
@@ -147,8 +149,8 @@ std::string with_suggestion(const CLI::App& program, std::string text) {
         if (!text.starts_with(start) || end == std::string::npos || end < start.size()) continue;
         const std::string value = text.substr(start.size(), end - start.size());
         // The choices are stored in validators, which CLI11 returns only for a non-const option.
-        const ValueText offered = value_of(option_text(*const_cast<CLI::Option*>(option)));
-        if (!value.starts_with(nearest_name(value, offered.choices)))  // "grid:4" is not misspelt
+        const ValueCompletion offered = value_completion(option_text(*const_cast<CLI::Option*>(option)));
+        if (!value.starts_with(nearest_name(value, offered.choices)))  // the value "grid:4" is not misspelt
             text.insert(end, did_you_mean(value, offered.choices));
         break;
     }
@@ -159,8 +161,8 @@ std::string with_suggestion(const CLI::App& program, std::string text) {
 
 std::vector<std::string> command_names(const CLI::App& command) {
     std::vector<std::string> names;
-    for (const CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; }))
-        names.push_back(one->get_name());
+    for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(subcommand->get_name());
     return names;
 }
 

@@ -40,28 +40,28 @@ std::optional<std::uint32_t> parse_pair(std::string_view text) {
 constexpr std::uint32_t kDefaultSeed = 1;
 constexpr std::uint32_t kMaxSeed = std::numeric_limits<std::uint32_t>::max();
 
-// Parses `rest`, the text after the colon, into the mapping's parameter. Throws UserError with the legal form.
-std::uint32_t parse_parameter(const MappingText& mapping, std::string_view rest) {
+// Parses the text after the colon into the mapping's parameter. Throws UserError with the legal form.
+std::uint32_t parse_parameter(const MappingText& mapping, std::string_view text) {
     std::optional<std::uint32_t> parameter;
     std::string legal = mapping.name() + ", without a parameter";
     if (mapping.rule.kind == RAYA_GRID) {
-        parameter = parse_pair(rest);
+        parameter = parse_pair(text);
         legal = fmt::format("grid:AxB with A rows of B PEs, each 1..{}", kMaxSide);
     } else if (mapping.rule.kind == RAYA_TILES) {
-        parameter = parse_pair(rest);
+        parameter = parse_pair(text);
         legal = fmt::format("tiles:WxH with the sides of a tile in pixels, each 1..{}", kMaxSide);
     } else if (mapping.rule.kind == RAYA_RANDOM) {
-        parameter = parse_number(rest, 0, kMaxSeed);
+        parameter = parse_number(text, 0, kMaxSeed);
         legal = fmt::format("random:seed with a seed 0..{}, or random", kMaxSeed);
     } else if (mapping.takes_offset_option) {
-        parameter = parse_number(rest, 0, kMaxSide - 1);
+        parameter = parse_number(text, 0, kMaxSide - 1);
         legal = "cyclic:p with an offset p 0..W-1, less than the image's width, or cyclic";
     }
     if (!parameter) throw UserError(fmt::format("--mapping {}: must be {}", mapping.text, legal));
     return *parameter;
 }
 
-[[noreturn]] void refuse_plan(const std::string& text) {
+[[noreturn]] void refuse_dynamic_mapping(const std::string& text) {
     throw UserError(
         fmt::format("--mapping {}: must be dynamic:CHUNK[,OVERHEAD] or hybrid:CHUNK[,OVERHEAD[,SHARE]] with "
                     "CHUNK 1..{} pixels per request, OVERHEAD 0..{} cycles per request, SHARE 0..1 of the pixels "
@@ -88,21 +88,21 @@ const std::vector<std::string>& mapping_forms() {
 }
 
 MappingText parse_mapping(const std::string& text) {
-    struct Name {
+    struct KnownMapping {
         const char* name;
         MappingRule rule;  // the rule if there is no parameter
         bool needs_parameter = false, takes_offset_option = false;
     };
-    static const Name names[] = {{"cyclic", cyclic_mapping(0), false, true},
-                                 {"column", column_mapping()},
-                                 {"rows", rows_mapping()},
-                                 {"blocks", blocks_mapping()},
-                                 {"grid", grid_mapping(1, 1), true},
-                                 {"tiles", tiles_mapping(1, 1), true},
-                                 {"random", random_mapping(kDefaultSeed)}};
+    static const KnownMapping names[] = {{"cyclic", cyclic_mapping(0), false, true},
+                                         {"column", column_mapping()},
+                                         {"rows", rows_mapping()},
+                                         {"blocks", blocks_mapping()},
+                                         {"grid", grid_mapping(1, 1), true},
+                                         {"tiles", tiles_mapping(1, 1), true},
+                                         {"random", random_mapping(kDefaultSeed)}};
     const std::size_t colon = text.find(':');
     const auto* const found = std::find_if(std::begin(names), std::end(names),
-                                           [&](const Name& n) { return n.name == text.substr(0, colon); });
+                                           [&](const KnownMapping& n) { return n.name == text.substr(0, colon); });
     if (found == std::end(names))
         throw UserError(fmt::format("--mapping {}: no such mapping; mappings: {}, dynamic:CHUNK, hybrid:CHUNK", text,
                                     fmt::join(mapping_forms(), ", ")));
@@ -124,14 +124,14 @@ bool is_dynamic(const std::string& text) { return text.starts_with("dynamic") ||
 DynamicPlan parse_dynamic(const std::string& text) {
     const std::string_view view = text;
     const bool hybrid = view.starts_with("hybrid:");
-    if (!hybrid && !view.starts_with("dynamic:")) refuse_plan(text);
+    if (!hybrid && !view.starts_with("dynamic:")) refuse_dynamic_mapping(text);
     const auto fields = split_at_commas(view.substr(view.find(':') + 1));
     DynamicPlan plan;
-    if (hybrid) plan.static_share = 0.5;
-    const bool good = fields.size() <= (hybrid ? 3 : 2) && read_number(fields[0], plan.chunk) &&
-                      (fields.size() < 2 || read_number(fields[1], plan.overhead)) &&
-                      (fields.size() < 3 || read_number(fields[2], plan.static_share));
-    if (!good || !is_plan(plan)) refuse_plan(text);
+    if (hybrid) plan.static_fraction = 0.5;
+    const bool is_valid = fields.size() <= (hybrid ? 3 : 2) && read_number(fields[0], plan.chunk) &&
+                          (fields.size() < 2 || read_number(fields[1], plan.overhead)) &&
+                          (fields.size() < 3 || read_number(fields[2], plan.static_fraction));
+    if (!is_valid || !is_valid_plan(plan)) refuse_dynamic_mapping(text);
     return plan;
 }
 

@@ -20,8 +20,8 @@ namespace raya {
 ///     random:seed        pixels at random, equally many for each PE; "random" alone: seed 1
 struct MappingText {
     std::string text;                 // as given on the command line
-    MappingRule rule{};               // mappings with slots: cyclic fold; --fold may change it
-    bool takes_offset_option = true;  // "cyclic" without p
+    MappingRule rule{};               // a mapping with slots has the cyclic fold, unless --fold is given
+    bool takes_offset_option = true;  // "cyclic" without p: --offset applies
 
     /// Returns the part of `text` before the colon.
     std::string name() const { return text.substr(0, text.find(':')); }
@@ -40,8 +40,8 @@ Fold parse_fold(const std::string& text);
 bool is_dynamic(const std::string& text);
 
 /// Parses "dynamic:chunk[,overhead]" or "hybrid:chunk[,overhead[,share]]". `chunk`: pixels per request; `overhead`:
-/// cycles per request, default 0; `share`: static share of a PE's pixels, default 0.5. Throws UserError with the option
-/// and its legal forms.
+/// cycles per request, default 0; `share`: fraction of a PE's pixels that is assigned statically, default 0.5. Throws
+/// UserError with the option and its legal forms.
 DynamicPlan parse_dynamic(const std::string& text);
 
 }  // namespace raya

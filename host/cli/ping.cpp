@@ -11,11 +11,11 @@
 namespace raya {
 namespace {
 
-void ping_pong(Ranks& ranks) {
-    if (!ranks.many())
+void run_ping(Ranks& ranks) {
+    if (!ranks.has_several())
         throw UserError("ping needs two ranks or more and there is one; start it as mpirun -n 2 raya ping");
     const PingReport report = ping(ranks);
-    if (ranks.first()) fmt::print("{}\n", report.json().dump(2));
+    if (ranks.is_first()) fmt::print("{}\n", report.json().dump(2));
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ void add_ping_command(CLI::App& program, Ranks& ranks) {
     add_examples(*command, {{"mpirun -n 2 raya ping", "Measure between two ranks of this machine"},
                             {"mpirun -n 2 --host one,other raya ping >network.json",
                              "Measure between two machines; raya study ranks --network takes alpha and beta"}});
-    command->callback([&ranks] { ping_pong(ranks); });
+    command->callback([&ranks] { run_ping(ranks); });
 }
 
 }  // namespace raya

@@ -4,12 +4,12 @@
 
 namespace raya {
 
-std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts, const RankWork& work) {
-    if (!ranks.many()) return {};
+std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts_member, const RankWork& work) {
+    if (!ranks.has_several()) return {};
     const DeviceInfo& device = session.device();
     const Json this_rank = {{"rank", ranks.rank()},
                             {"host", ranks.host()},
-                            {parts, work.parts},
+                            {parts_member, work.parts},
                             {"device",
                              {{"name", device.name},
                               {"platform", device.platform},
@@ -24,10 +24,10 @@ std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char*
                             {"bytes_sent", work.traffic.bytes},
                             {"waiting_s", work.traffic.waiting_s},
                             {"commands", commands_json(work.commands, true)}};
-    std::vector<Json> all;
+    std::vector<Json> reports;
     for (const std::string& text : ranks.gather(this_rank.dump()))
-        all.push_back(Json::parse(text, {"the report of a rank"}));
-    return all;
+        reports.push_back(Json::parse(text, {"the report of a rank"}));
+    return reports;
 }
 
 }  // namespace raya

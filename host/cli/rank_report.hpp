@@ -12,7 +12,7 @@ namespace raya {
 
 /// Figures of this rank's part of a render.
 struct RankWork {
-    std::uint32_t parts = 0;  // PEs of the ring or nodes of the torus
+    std::uint32_t parts = 0;  // number of PEs or nodes that this rank simulates
     std::uint32_t lanes = 0, group_size = 0;
     double build_s = 0, render_s = 0;
     RankTraffic traffic{};  // messages during the render
@@ -20,14 +20,14 @@ struct RankWork {
 };
 
 /// Sends every rank's `work` to rank 0. Returns, on rank 0, one JSON object per rank; empty on other ranks, and with a
-/// single rank. `parts`: name of the member for RankWork::parts, "pes" or "nodes".
-std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts, const RankWork& work);
+/// single rank. `parts_member`: name of the JSON member for RankWork::parts, "pes" or "nodes".
+std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts_member, const RankWork& work);
 
-/// Same with the work from the result of a ring or torus render.
+/// Same, with the work in the result of a ring or torus render.
 template <class Result>
-std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts, const Result& r) {
-    return rank_reports(ranks, session, parts,
-                        RankWork{r.parts_here, r.lanes, r.group_size, r.build_s, r.render_s, r.traffic, r.commands});
+std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char* parts_member, const Result& r) {
+    return rank_reports(ranks, session, parts_member,
+                        RankWork{r.parts_of_rank, r.lanes, r.group_size, r.build_s, r.render_s, r.traffic, r.commands});
 }
 
 }  // namespace raya

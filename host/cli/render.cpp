@@ -13,13 +13,13 @@ namespace {
 
 void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) {
     refuse_options_of_other_machines(parsed, machine_named(command.render.machine));
-    if (ranks.first()) check_render(parsed, command);  // only rank 0 writes files
+    if (ranks.is_first()) check_render(parsed, command);  // only rank 0 writes files
     RenderRun run(command, ranks);
     if (command.frames.given())
         render_frames(parsed, command, run);
     else
         render_image(command, run);
-    if (command.cache_kernels && ranks.first()) run.session().save_binaries();
+    if (command.cache_kernels && ranks.is_first()) run.session().save_binaries();
 }
 
 std::vector<ShortHelp> render_short_help() {
@@ -90,10 +90,11 @@ void describe_render(CLI::App& command, RenderCommand& options) {
              "Write all counts and measurements as JSON; -: stdout");
     add_file(command, FileUse::kWritten, "--page", options.page, "FILE.html",
              "Write an HTML page: image, owners of pixels, loads, times by label, roofline, modelled and measured "
-             "times, build options; raya page makes the same of a report. Measures the device's peak like --profile");
+             "times, build options; raya page makes the same page from a report. Like --profile, measures the device's "
+             "peak");
     command.add_flag("--profile", options.profile,
-                     "Print launches and times of every labelled command, build times, and each kernel's share of the "
-                     "device's measured peak (the roofline)");
+                     "Print launches and times of every labelled command, build times, and which fraction of the "
+                     "device's measured peak each kernel reaches (the roofline)");
     add_trace_options(command, options.trace);
 }
 

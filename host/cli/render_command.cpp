@@ -36,7 +36,7 @@ void check_replay(const CLI::App& parsed, const TorusOptions& t) {
 
 void check_output_files(const CLI::App& parsed, const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
-    if (!find_launch())  // mpirun may connect raya to a pseudoterminal
+    if (!find_launch())  // under mpirun, stdout may be a pseudoterminal although the output goes to a file
         for (const std::string& file : {command.image, command.cost, command.mask, packets})
             refuse_bytes_on_terminal(file);
     tone_of(command.tone, command.image);
@@ -52,13 +52,13 @@ void check_output_files(const CLI::App& parsed, const RenderCommand& command) {
 
 SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks) {
     SceneInput input;
-    if (ranks.first()) {
+    if (ranks.is_first()) {
         input = recorder.spans().during("read scene", [&] { return read_scene(options.scene, options.strict); });
         change_view(options.view, input.scene);
     }
-    if (!ranks.many()) return input;
+    if (!ranks.has_several()) return input;
     const bool ring = machine_named(options.machine).kind == MachineKind::kRing;
-    if (ranks.first() && ring) options.accel = accel_text(ring_settings(options, input.scene).accel);
+    if (ranks.is_first() && ring) options.accel = accel_text(ring_settings(options, input.scene).accel);
     ranks.broadcast(input.scene.name);
     ranks.broadcast(input.scene.view.width);
     ranks.broadcast(input.scene.view.height);
@@ -69,8 +69,8 @@ SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ran
 void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Device& device, const NumberFormat& format,
                  const std::vector<KernelWork>& works, Warnings& warnings) {
     report.measured.builds = recorder.builds();
-    if (!report.ranks.empty()) {  // commands are those of one rank, work is that of all
-        report.measured.roofline.emplace().unavailable = "the roofline is for one device; start one rank";
+    if (!report.ranks.empty()) {  // the commands are those of rank 0, `works` are the work of all ranks
+        report.measured.roofline.emplace().unavailable = "the roofline is for a single device; start a single rank";
         return;
     }
     try {
@@ -80,8 +80,8 @@ void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Devic
         constexpr double kMaxScatter = 0.15;  // relative to the best sample
         if (peak.scatter > kMaxScatter)
             warnings.add(
-                fmt::format("three measurements of the device's peak scatter by {:.0f} %: something else runs on it; "
-                            "shares of the peak are unreliable",
+                fmt::format("three measurements of the device's peak scatter by {:.0f} %: another program uses the "
+                            "device; fractions of the peak are unreliable",
                             100 * peak.scatter));
     } catch (const DeviceError& error) {  // the render's figures are valid without a roofline
         report.measured.roofline.emplace().unavailable = error.what();
@@ -90,8 +90,8 @@ void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Devic
 
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image) {
     const Tone tone = tone_of(command.tone, command.image);
-    const Image small = preview_of(tone == Tone{} ? image : as_displayed(image, tone));
-    report.image.preview = {small.width, small.height, plain_png(small)};
+    const Image preview = preview_of(tone == Tone{} ? image : as_displayed(image, tone));
+    report.image.preview = {preview.width, preview.height, plain_png(preview)};
 }
 
 ImageAttributes image_attributes(const RenderReport& report, const std::string& scene) {
@@ -120,7 +120,7 @@ void write_main_image(const RenderCommand& command, const Image& image, ImageAtt
 void write_report(const RenderCommand& command, const RenderReport& report) {
     if (command.reports()) write_report_and_page({command.report, command.page}, to_json(report));
     if (!is_quiet() && command.summary) fmt::print("{}", printable(summary_text(report)));
-    if (!command.profile || !command.prints) return;
+    if (!command.profile || !command.prints_profile) return;
     const auto& measured = report.measured;
     fmt::print("\n{}\n{}", profile_table(measured.build_s, measured.builds, measured.commands),
                roofline_table(*measured.roofline));

@@ -1,4 +1,4 @@
-// The options of `raya render`, and the steps that are the same for all machines: checks before a render, its output.
+// The options of `raya render`, and the steps of a render that are the same for all machines: checks, report, output.
 #pragma once
 #include <string>
 
@@ -32,18 +32,20 @@ struct RenderCommand {
     FrameOptions frames;
     CheckpointOptions checkpoint;
     TraceOptions trace;
-    bool profile = false, cache_kernels = false, summary = true;
-    bool prints = true;                               // print the table of --profile
+    bool profile = false, cache_kernels = false;
+    bool summary = true;                              // print the report's summary
+    bool prints_profile = true;                       // print the table of --profile
     ProgressCallback progress{};                      // empty: progress bar on a terminal
-    PixelSubset pixels{};                             // torus: pixels that get primary rays
+    PixelSubset pixels{};                             // torus: pixels for which primary rays are traced
     bool record_costs = false, keep_packets = false;  // store costs or packets in Render
 
-    /// The options whose files get frame numbers with --frames, and their values (empty: not given).
+    /// Returns the options whose files get frame numbers with --frames, and their values (empty: not given).
     std::vector<std::pair<const char*, std::string>> files() const {
         return {{"--output", image}, {"--cost", cost}, {"--mask", mask}, {"--report", report}};
     }
 
-    /// Returns kOn if times of device commands are shown. Otherwise kOff, because timing slows down a GPU's queue.
+    /// Returns kOn if the times of device commands are printed or written, otherwise kOff, because timing slows down a
+    /// GPU's queue.
     Timing timing() const {
         return profile || reports() || !trace.file.empty() || verbosity() >= kDetailed ? Timing::kOn : Timing::kOff;
     }
@@ -58,17 +60,18 @@ struct Render {
     RenderReport report{};
     std::optional<RingResult> ring{};
     std::optional<TorusResult> torus{};
-    std::vector<PacketRecord> packets{};  // if RenderCommand::keep_packets
+    std::vector<PacketRecord> packets{};  // with RenderCommand::keep_packets
     std::optional<TorusSettings> torus_settings{};
     std::uint32_t lights = 0;                           // number of the scene's lights
     std::optional<History> history{};                   // for the torus with --async
-    std::vector<std::uint64_t> cycles{}, link_words{};  // with keep_packets: [superstep][node] and
+    std::vector<std::uint64_t> cycles{}, link_words{};  // with keep_packets: [superstep][node],
                                                         // [superstep][node][RAYA_LINKS]
 
     const Image& image() const { return ring ? ring->image : torus->image; }
 };
 
-/// Renders on a ring machine or on the torus machine and writes the command's files. Empty on ranks other than 0.
+/// Renders on a ring machine or on the torus machine and writes the command's files. Returns an empty result on ranks
+/// other than 0.
 std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& run);
 std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& run);
 
@@ -84,9 +87,9 @@ void check_render(const CLI::App& parsed, const RenderCommand& command);
 /// Throws UserError for outputs that --frames does not support: stdout, and files for a single image only.
 void check_frames(const RenderCommand& command);
 
-/// Renders the frames that the record (frame_record.hpp) does not contain with the same settings and files. Writes the
-/// files and the record, and prints a line for each frame. `parsed`: the command's parser, which knows the options that
-/// were given. Throws UserError.
+/// Renders the frames, except those whose settings and files are the same as in the record (frame_record.hpp). Writes
+/// the frames' files and the record, and prints a line for each frame. `parsed`: the command's parser, which knows the
+/// options that were given. Throws UserError.
 void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderRun& run);
 
 /// Rank 0 reads the scene and applies the view options. Other ranks get the scene's name and resolution, without
@@ -96,7 +99,7 @@ SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ran
 /// Throws UserError for an output file's unsupported name, and for options that do not apply to the output files.
 void check_output_files(const CLI::App& parsed, const RenderCommand& command);
 
-/// Returns the tone mapping of the command's image if that has 8-bit codes; empty for linear images.
+/// Returns the tone mapping of the command's image if the image has 8-bit codes; empty for linear images.
 std::optional<ImageCodes> codes_of(const RenderCommand& command);
 
 /// Adds a small copy of the image, with the same tone mapping, for the report's page.

@@ -20,21 +20,22 @@ namespace raya {
 namespace {
 
 // Returns the command that renders one frame, with numbered file names.
-RenderCommand command_of(const RenderCommand& all, std::uint32_t frame) {
-    RenderCommand one = all;
-    for (std::string* file : {&one.image, &one.cost, &one.mask, &one.report}) *file = numbered(*file, frame);
-    one.summary = false;
-    return one;
+RenderCommand command_of(const RenderCommand& sequence_command, std::uint32_t frame) {
+    RenderCommand frame_command = sequence_command;
+    for (std::string* file : {&frame_command.image, &frame_command.cost, &frame_command.mask, &frame_command.report})
+        *file = numbered(*file, frame);
+    frame_command.summary = false;
+    return frame_command;
 }
 
-std::vector<std::string> files_of(const RenderCommand& one) {
+std::vector<std::string> files_of(const RenderCommand& frame_command) {
     std::vector<std::string> files;
-    for (const auto& [option, file] : one.files())
+    for (const auto& [option, file] : frame_command.files())
         if (!file.empty()) files.push_back(file);
     return files;
 }
 
-void check_files_of(const CLI::App& parsed, const RenderCommand& command, const std::vector<Frame>& frames) {
+void check_frame_files(const CLI::App& parsed, const RenderCommand& command, const std::vector<Frame>& frames) {
     std::vector<NamedFile> outputs = {{"--frames", frame_record_file(command.image)}};
     for (const Frame& frame : frames)
         for (const auto& [option, file] : command.files())
@@ -42,13 +43,15 @@ void check_files_of(const CLI::App& parsed, const RenderCommand& command, const 
     check_files(parsed, outputs);
 }
 
-// Returns a text with everything that determines a frame, except its camera: scene, lights, options, program.
+// Returns a text with everything that determines the frames, except their cameras and size: program, options, scene
+// with lights.
 std::string settings_of(const CLI::App& parsed, const Scene& scene) {
-    static const std::set<std::string> neutral = {"SCENE",  "--output", "--cost",        "--mask",  "--report",
-                                                  "--turn", "--frames", "--camera-path", "--quiet", "--verbose"};
+    static const std::set<std::string> irrelevant_options = {"SCENE",    "--output", "--cost",   "--mask",
+                                                             "--report", "--turn",   "--frames", "--camera-path",
+                                                             "--quiet",  "--verbose"};
     std::string text = raya_version();
     for (const CLI::Option* option : parsed.get_options())
-        if (option->count() > 0 && !neutral.contains(option->get_name()))
+        if (option->count() > 0 && !irrelevant_options.contains(option->get_name()))
             text += fmt::format("\n{} {}", option->get_name(), fmt::join(option->results(), " "));
     Scene objects = scene;
     objects.view = {};
@@ -64,32 +67,32 @@ FrameEntry entry_of(const RenderReport& report, std::uint32_t number, const std:
     return {number, settings, report.image.hash, report.load.imbalance, report.load.speedup, {}};
 }
 
-void print_frame(const RenderCommand& one, const FrameEntry& frame, bool unchanged) {
+void print_frame(const RenderCommand& frame_command, const FrameEntry& frame, bool unchanged) {
     if (is_quiet()) return;
     clear_status();
     fmt::print("frame {:4}  u {:.3f}  speed-up {:7.1f}  {}  {}{}\n", frame.number, frame.imbalance, frame.speed_up,
-               frame.pixels, printable(one.image), unchanged ? ", unchanged" : "");
+               frame.pixels, printable(frame_command.image), unchanged ? ", unchanged" : "");
     std::fflush(stdout);  // so that a log file shows the progress
 }
 
-struct Sums {
+struct FrameTotals {
     std::size_t frames = 0, rendered = 0;
-    double min = 0, max = 0, sum = 0;
+    double min_imbalance = 0, max_imbalance = 0, imbalance_sum = 0;
 
-    void add(double imbalance, bool now) {
-        min = frames == 0 ? imbalance : std::min(min, imbalance);
-        max = std::max(max, imbalance);
-        sum += imbalance;
+    void add(double imbalance, bool is_rendered) {
+        min_imbalance = frames == 0 ? imbalance : std::min(min_imbalance, imbalance);
+        max_imbalance = std::max(max_imbalance, imbalance);
+        imbalance_sum += imbalance;
         ++frames;
-        rendered += now;
+        rendered += is_rendered;
     }
 };
 
-void print_sums(const Sums& sums, const std::string& record) {
+void print_totals(const FrameTotals& totals, const std::string& record) {
     if (is_quiet()) return;
     fmt::print("{}, {} rendered, {} unchanged according to {}; u {:.3f} to {:.3f}, mean {:.3f}\n",
-               counted(sums.frames, "frame"), sums.rendered, sums.frames - sums.rendered, printable(record), sums.min,
-               sums.max, sums.sum / static_cast<double>(sums.frames));
+               counted(totals.frames, "frame"), totals.rendered, totals.frames - totals.rendered, printable(record),
+               totals.min_imbalance, totals.max_imbalance, totals.imbalance_sum / static_cast<double>(totals.frames));
 }
 
 }  // namespace
@@ -101,13 +104,13 @@ void check_frames(const RenderCommand& command) {
                 fmt::format("{} -: --frames writes several files, not stdout; name a file: each frame adds its number "
                             "to the name",
                             option));
-    const std::pair<const char*, bool> of_one_image[] = {{"--page", !command.page.empty()},
-                                                         {"--trace", !command.trace.file.empty()},
-                                                         {"--profile", command.profile},
-                                                         {"--checkpoint", !command.checkpoint.file.empty()},
-                                                         {"--packets", !command.torus.packets.empty()},
-                                                         {"--replay", !command.torus.replay.empty()}};
-    for (const auto& [option, given] : of_one_image)
+    const std::pair<const char*, bool> single_image_options[] = {{"--page", !command.page.empty()},
+                                                                 {"--trace", !command.trace.file.empty()},
+                                                                 {"--profile", command.profile},
+                                                                 {"--checkpoint", !command.checkpoint.file.empty()},
+                                                                 {"--packets", !command.torus.packets.empty()},
+                                                                 {"--replay", !command.torus.replay.empty()}};
+    for (const auto& [option, given] : single_image_options)
         if (given)
             throw UserError(fmt::format(
                 "{} with --frames: only for a single image; render the frame alone, with the view in its report "
@@ -120,9 +123,9 @@ void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderR
     std::vector<Frame> frames;
     std::optional<FrameRecord> record;
     std::string settings;
-    if (ranks.first()) {
+    if (ranks.is_first()) {
         frames = frames_of(command.frames, run.input.scene.view);
-        check_files_of(parsed, command, frames);
+        check_frame_files(parsed, command, frames);
         record.emplace(frame_record_file(command.image));
         settings = settings_of(parsed, run.input.scene);
     }
@@ -130,29 +133,29 @@ void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderR
     ranks.broadcast(count);
     frames.resize(count);
     run.progress.begin_images(frames.size());
-    Sums sums;
+    FrameTotals totals;
     for (const Frame& frame : frames) {
-        const RenderCommand one = command_of(command, frame.number);
-        if (ranks.first()) run.input.scene.view = frame.view;
-        const std::string hash = ranks.first() ? settings_hash(settings, run.input.scene) : "";
+        const RenderCommand frame_command = command_of(command, frame.number);
+        if (ranks.is_first()) run.input.scene.view = frame.view;
+        const std::string hash = ranks.is_first() ? settings_hash(settings, run.input.scene) : "";
         // With --kernel-dir no frame is reused, because the kernels in that folder may have changed.
-        const bool may_reuse = ranks.first() && command.render.kernel_dir.empty();
-        const FrameEntry* entry = may_reuse ? record->find(frame.number, hash, files_of(one)) : nullptr;
-        std::uint32_t renders = entry == nullptr;
-        ranks.broadcast(renders);
-        if (renders != 0) {
-            const std::optional<Render> made = render_image(one, run);
-            if (made) entry = &record->add(entry_of(made->report, frame.number, hash), files_of(one));
+        const bool may_reuse = ranks.is_first() && command.render.kernel_dir.empty();
+        const FrameEntry* entry = may_reuse ? record->find(frame.number, hash, files_of(frame_command)) : nullptr;
+        std::uint32_t must_render = entry == nullptr;
+        ranks.broadcast(must_render);
+        if (must_render != 0) {
+            const std::optional<Render> result = render_image(frame_command, run);
+            if (result) entry = &record->add(entry_of(result->report, frame.number, hash), files_of(frame_command));
         }
         if (entry != nullptr) {
-            print_frame(one, *entry, renders == 0);
-            sums.add(entry->imbalance, renders != 0);
+            print_frame(frame_command, *entry, must_render == 0);
+            totals.add(entry->imbalance, must_render != 0);
         }
         run.progress.next_image();
     }
-    if (!ranks.first()) return;
-    if (sums.rendered > 0) record->write();
-    print_sums(sums, frame_record_file(command.image));
+    if (!ranks.is_first()) return;
+    if (totals.rendered > 0) record->write();
+    print_totals(totals, frame_record_file(command.image));
 }
 
 }  // namespace raya

@@ -28,10 +28,10 @@ std::vector<std::string> mapping_names() {
 
 // Sets the shell completion of values that the placeholder does not list.
 void offer_render_choices(CLI::App& command) {
-    std::vector<std::string> rings;
+    std::vector<std::string> ring_names;
     for (const Machine& machine : machines())
-        if (machine.kind == MachineKind::kRing) rings.push_back(machine.name);
-    offer_choices(command.get_option("--machine"), rings);
+        if (machine.kind == MachineKind::kRing) ring_names.push_back(machine.name);
+    offer_choices(command.get_option("--machine"), ring_names);
     offer_choices(command.get_option("--mapping"), mapping_names());
     offer_choices(command.get_option("--format"), {"fp32", "spa22"});
     offer_choices(command.get_option("--lanes"), {"1", "4", "8", "16"});
@@ -40,12 +40,12 @@ void offer_render_choices(CLI::App& command) {
 void add_antialias_options(CLI::App& command, RenderOptions& o) {
     add_value(command, "--antialias", o.antialias,
               "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more samples for pixels that "
-              "differ from a neighbour. PEs exchange border pixels as --exchange says")
+              "differ from a neighbour. PEs exchange border pixels as --exchange sets")
         ->type_name("none|filter|supersample")
         ->capture_default_str();
     add_value(command, "--exchange", o.exchange,
               "How PEs get their neighbours' pixels: ring: all blocks move to the next PE at once; bus: from PE to "
-              "PE, one transfer at a time; bus-broadcast: each PE in turn to all. The image is the same")
+              "PE, one transfer at a time; bus-broadcast: each PE in turn to all PEs. All three give the same image")
         ->type_name("ring|bus|bus-broadcast")
         ->default_str("ring");
     add_value(command, "--threshold", o.threshold,
@@ -65,7 +65,8 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
     OptionGroup group(command, kImageGroup);
     add_value(command, "--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")
         ->type_name("N|WxH");
-    add_value(command, "--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
+    add_value(command, "--bounces", o.bounces,
+              "Maximum number of reflections and refractions after the primary ray, 0..31; default: 8")
         ->type_name("N");
     add_value(command, "--sampling", o.sampling,
               "Primary rays pass through pixel centres, or through pixel corners as in SPD")
@@ -80,48 +81,49 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
               "limit, to compare loads")
         ->type_name("NAME")
         ->capture_default_str();
-    add_value(command, "--pes", o.pes, "Processing elements P, 1..W*H; default: the machine's, or A*B of a grid")
+    add_value(command, "--pes", o.pes,
+              "Number P of processing elements, 1..W*H; default: the machine's, or A*B of a grid")
         ->type_name("P");
     add_value(command, "--offset", o.offset,
               "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W), 0 on machines whose "
               "default mapping is not cyclic")
         ->type_name("p");
     add_value(command, "--mapping", o.mapping,
-              "Which PE owns which pixel: cyclic (slots of a sheared image, --offset), cyclic:p, column (the column "
+              "Assignment of pixels to PEs: cyclic (slots of a sheared image, --offset), cyclic:p, column (the column "
               "split, offset 0), rows (scan lines round robin), blocks (contiguous scan lines), grid:AxB (A rows of B "
               "PEs: every A-th line, every B-th pixel of it), tiles:WxH (tiles of W x H pixels round robin), "
               "random:seed (default seed 1); dynamic:CHUNK[,OVERHEAD]: PEs request chunks of pixels at run time; "
-              "hybrid:CHUNK[,OVERHEAD[,SHARE]]: the same after a static SHARE (0.5) of the pixels; their loads are "
-              "simulated; default: the machine's, cyclic on spa")
+              "hybrid:CHUNK[,OVERHEAD[,SHARE]]: the same after the static assignment of a fraction SHARE (0.5) of the "
+              "pixels; the loads of dynamic and hybrid are simulated; default: the machine's, cyclic on spa")
         ->type_name("NAME");
-    add_value(command, "--fold", o.fold, "Slots to PEs if P is not W: cyclic (c mod P) or block (c P div W)")
+    add_value(command, "--fold", o.fold, "PE of slot c if P is not W: cyclic (c mod P) or block (c P div W)")
         ->type_name("cyclic|block")
         ->default_str("cyclic");
     add_value(
         command, "--accel", o.accel,
-        "Acceleration structure in each PE's memory; the hits are the same: none: every ray is tested against all "
-        "objects; bvh: faster from a few hundred objects on; grid: a uniform grid of A x B x C voxels along x, y, z, "
-        "by default a few for each object; default: none; on grande bvh if it is faster, from about 100 spheres or 30 "
-        "polygons on")
+        "Acceleration structure in each PE's memory, which does not change the hits: none: every ray is tested against "
+        "all objects; bvh: faster from a few hundred objects on; grid: a uniform grid of A x B x C voxels along x, y, "
+        "z, by default a few for each object; default: none; on grande bvh if it is faster, from about 100 spheres or "
+        "30 polygons on")
         ->type_name("none|bvh|grid[:AxBxC]");
     add_value(command, "--pe-memory", o.pe_memory,
-              "Bytes of memory of a PE, or of a torus node with all its buffers; default: the machine's, 32768 on spa, "
+              "Memory in bytes of a PE, or of a torus node with all its buffers; default: the machine's, 32768 on spa, "
               "4194304 on torus, no limit on grande")
         ->type_name("BYTES");
     group.next(kKernels);
-    add_value(command, "--format", o.format,
-              "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
-              "fraction bits, t truncates; default: the machine's, fp32 on grande and torus, e6m15 on the others")
+    add_value(
+        command, "--format", o.format,
+        "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
+        "fraction bits, t truncates; default: the machine's, fp32 on grande and torus, e6m15 on the other machines")
         ->type_name("NAME");
     add_device_option(command, o.device);
     add_value(command, "--lanes", o.lanes,
-              "Rays V per work-item: 1, 4, 8 or 16; default: as the device was tuned (raya tune), else the width of "
-              "its float vectors")
+              "Number V of rays per work-item: 1, 4, 8 or 16; default: as raya tune stored it, else the width of "
+              "the device's float vectors")
         ->type_name("V");
-    add_value(
-        command, "--group", o.group,
-        "Work-items L in the work-group that simulates a PE, 1..1024; default: as the device was tuned, else 1 on "
-        "a CPU, 128 elsewhere")
+    add_value(command, "--group", o.group,
+              "Number L of work-items in the work-group that simulates a PE, 1..1024; default: as raya tune stored it, "
+              "else 1 on a CPU, 128 elsewhere")
         ->type_name("L");
     add_tuned_option(command, o.no_tuned);
     add_file(command, FileUse::kKernelFolder, "--kernel-dir", o.kernel_dir, "DIR",
@@ -147,7 +149,7 @@ Antialias antialias_settings(const RenderOptions& o) {
 }
 
 // --offset and --fold apply only to mappings with slots. Refuses them for other mappings, and --offset for a mapping
-// that sets another offset itself.
+// whose parameter is a different offset.
 void check_slot_options(const RenderOptions& o, const MappingText& mapping, const ImageSize& image) {
     const bool has_slots = mapping.rule.has_slots();
     if (!has_slots && o.offset)
@@ -166,8 +168,9 @@ void check_slot_options(const RenderOptions& o, const MappingText& mapping, cons
             fmt::format("--offset {}: must be 0..{}, less than the image's width", *o.offset, image.width - 1));
 }
 
-// Returns --mapping, or the machine's mapping without this option. For dynamic and hybrid mappings it returns the
-// cyclic mapping: it assigns the pixels for which the device traces rays, and the static pixels of hybrid mappings.
+// Returns --mapping, or the machine's mapping without this option. For dynamic and hybrid mappings, returns the
+// cyclic mapping, by which the device distributes the pixels when it traces them, and which assigns the static pixels
+// of hybrid mappings.
 MappingText requested_mapping(const RenderOptions& o, const Machine& machine) {
     if (!o.mapping.empty()) return parse_mapping(is_dynamic(o.mapping) ? "cyclic" : o.mapping);
     if (machine.mapping.has_slots()) return parse_mapping("cyclic");
@@ -183,7 +186,7 @@ MappingRule rule_of(const MappingText& mapping, const RenderOptions& o, const Ma
     return cyclic_mapping(offset, o.fold.empty() ? Fold::kCyclic : parse_fold(o.fold));
 }
 
-// Sets the mapping and, if --mapping is dynamic or hybrid, its plan.
+// Sets the mapping, and the plan of a dynamic or hybrid mapping.
 void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize& image) {
     const Machine& machine = settings.machine;
     if (o.mapping.empty())
@@ -199,8 +202,8 @@ void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize
 // Returns --accel, or the machine's default without this option. With few objects a BVH costs more time than it saves.
 Accel accel_of(const RenderOptions& o, const RingSettings& settings, const Scene& scene) {
     if (!o.accel.empty()) return parse_accel(o.accel);
-    const bool pays = settings.machine.accel.kind != AccelKind::kBvh || bvh_pays(scene, settings.format);
-    return pays ? settings.machine.accel : Accel{};
+    const bool default_pays = settings.machine.accel.kind != AccelKind::kBvh || bvh_pays(scene, settings.format);
+    return default_pays ? settings.machine.accel : Accel{};
 }
 
 }  // namespace
@@ -236,10 +239,10 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     RingSettings settings;
     settings.machine = machine_named(o.machine);
     if (settings.machine.kind == MachineKind::kTorus)
-        throw UserError(
-            fmt::format("--machine {}: its nodes hold voxels of the scene, not pixels; only raya render supports it; "
-                        "choose a ring: spa",
-                        o.machine));
+        throw UserError(fmt::format(
+            "--machine {}: its nodes hold voxels of the scene, not pixels; only raya render supports this machine; "
+            "choose a ring: spa",
+            o.machine));
     settings.format = format_of(o, settings.machine);
     settings.sampling = parse_sampling(o.sampling);
     set_mapping(settings, o, image_size(o, scene));

@@ -1,4 +1,4 @@
-// Options that all commands with renders share. torus_options.hpp has the options of the torus machine.
+// Options of all commands that render. torus_options.hpp has the options of the torus machine.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -29,7 +29,7 @@ struct RenderOptions {
 /// Adds the options. `antialiasing`: adds the options of anti-aliasing too.
 void add_render_options(CLI::App& command, RenderOptions& options, bool antialiasing = true);
 
-// Values of options that every machine has. UserError names the option.
+// Values of options that every machine has. The functions throw UserError with the option's name.
 
 /// Returns --size, with width and height in 1..16384; without it the scene's resolution.
 ImageSize image_size(const RenderOptions& options, const Scene& scene);
@@ -38,7 +38,8 @@ KernelChoice kernel_choice(const RenderOptions& options);
 /// Returns the bytes of a PE's memory: --pe-memory, or the machine's memory without this option. Empty: no limit.
 std::optional<std::uint64_t> pe_memory_of(const RenderOptions& options, const Machine& machine);
 
-/// Returns the settings of the ring renderer. UserError for an option out of range, or a machine that is not a ring.
+/// Returns the settings of the ring renderer. Throws UserError for an option out of range, or a machine that is not a
+/// ring.
 RingSettings ring_settings(const RenderOptions& options, const Scene& scene);
 
 }  // namespace raya

@@ -17,7 +17,7 @@
 namespace raya {
 namespace {
 
-// Prefix of the names of Session's build spans.
+// Prefix of the names of the spans in which Session builds programs.
 constexpr std::string_view kBuild = "build ";
 
 }  // namespace
@@ -31,9 +31,10 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
               "Maximum number of events in the trace, 1 or more; a warning gives the number of omitted events")
         ->type_name("N")
         ->capture_default_str();
-    add_value(command, "--trace-pes", trace.pes,
-              "PEs or nodes of the modelled machine that get a track: a quarter of them the busiest, a quarter the "
-              "idlest, the others evenly spaced; 0: no modelled machine")
+    add_value(
+        command, "--trace-pes", trace.pes,
+        "Number of PEs or nodes of the modelled machine that get a track: the busiest (a quarter of N), the idlest (a "
+        "quarter), and others at even distances (the rest); 0 omits the modelled machine")
         ->type_name("N")
         ->capture_default_str();
 }
@@ -56,35 +57,36 @@ RenderRecorder::RenderRecorder(const TraceOptions& trace, bool profile) : trace_
 void RenderRecorder::observe(Session& session, Ranks& ranks) {
     if (!traces() && !profile_) return;
     session.observe(spans_, traces() ? trace_.events : 0);
-    if (traces() && session.profile().timed()) clock_offset_ = measure_clock_offset(session);
-    if (traces() && ranks.many()) compare_clocks(ranks);
+    if (traces() && session.profile().timed()) device_clock_offset_ = measure_clock_offset(session);
+    if (traces() && ranks.has_several()) compare_clocks(ranks);
 }
 
-// Measures the offsets of the ranks' clocks. Sets the beginning of the trace to the earliest start of all ranks.
+// Measures the offsets of the ranks' clocks. Sets the beginning of the trace to the earliest beginning on all ranks.
 void RenderRecorder::compare_clocks(Ranks& ranks) {
-    many_ = true;
-    clock_ = rank_clock(ranks, host_clock_ns);
-    const auto offset = static_cast<std::uint64_t>(clock_.offset_ns);  // additions wrap modulo 2^64
-    const std::vector<std::uint64_t> begins = ranks.all_gather(begin_ + offset);
-    begin_ = *std::min_element(begins.begin(), begins.end()) - offset;
-    for (const RankClock& c : ranks.all_gather(clock_))
-        clocks_.push_back({{"offset_ns", c.offset_ns}, {"uncertainty_ns", c.uncertainty_ns}});
+    has_several_ranks_ = true;
+    rank_clock_ = rank_clock(ranks, host_clock_ns);
+    const auto offset = static_cast<std::uint64_t>(rank_clock_.offset_ns);  // additions wrap modulo 2^64
+    const std::vector<std::uint64_t> begins = ranks.all_gather(begin_ns_ + offset);
+    begin_ns_ = *std::min_element(begins.begin(), begins.end()) - offset;
+    for (const RankClock& c : ranks.all_gather(rank_clock_))
+        all_rank_clocks_.push_back({{"offset_ns", c.offset_ns}, {"uncertainty_ns", c.uncertainty_ns}});
 }
 
 void RenderRecorder::gather(Session& session, Ranks& ranks) {
-    if (!traces() || !ranks.many()) return;
+    if (!traces() || !ranks.has_several()) return;
     TraceFile this_rank(trace_.events / ranks.count());
-    if (!ranks.first()) add_measured(this_rank, session, ranks.rank());
+    if (!ranks.is_first()) add_measured(this_rank, session, ranks.rank());
     const TraceFile::Part part = this_rank.part();
-    const std::vector<std::string> names = ranks.gather(part.names), texts = ranks.gather(part.text);
+    const std::vector<std::string> names = ranks.gather(part.names), event_texts = ranks.gather(part.text);
     const std::vector<std::uint64_t> events = ranks.all_gather(part.events), left_out = ranks.all_gather(part.left_out);
-    for (std::size_t rank = 1; rank < texts.size(); ++rank)
-        others_.push_back({names[rank], texts[rank], events[rank], left_out[rank]});
+    for (std::size_t rank = 1; rank < event_texts.size(); ++rank)
+        parts_of_other_ranks_.push_back({names[rank], event_texts[rank], events[rank], left_out[rank]});
 }
 
 void RenderRecorder::add_measured(TraceFile& file, Session& session, std::uint32_t rank) {
-    add_host_spans(file, spans_.spans(), begin_, {rank, many_});
-    add_device_commands(file, session.device().name, session.profile(), clock_offset_, begin_, {rank, many_});
+    add_host_spans(file, spans_.spans(), begin_ns_, {rank, has_several_ranks_});
+    add_device_commands(file, session.device().name, session.profile(), device_clock_offset_, begin_ns_,
+                        {rank, has_several_ranks_});
 }
 
 std::vector<ProgramBuild> RenderRecorder::builds() const {
@@ -97,12 +99,12 @@ std::vector<ProgramBuild> RenderRecorder::builds() const {
 
 void RenderRecorder::write(Session& session, const std::function<void(TraceFile&)>& add_machine) {
     if (!traces()) return;
-    TraceFile file(trace_.events / (1 + others_.size()));
+    TraceFile file(trace_.events / (1 + parts_of_other_ranks_.size()));
     file.metadata()["program"] = name_and_version();
-    if (many_) file.metadata()["rank_clocks"] = clocks_;
+    if (has_several_ranks_) file.metadata()["rank_clocks"] = all_rank_clocks_;
     add_measured(file, session, 0);
     add_machine(file);
-    for (const TraceFile::Part& part : others_) file.add(part);
+    for (const TraceFile::Part& part : parts_of_other_ranks_) file.add(part);
     write_whole_file(trace_.file, file.finish(trace_.file.ends_with(".gz")));
     if (file.left_out() > 0)
         warn(fmt::format("{}: {} of {} events omitted; remedy: --trace-events {}, or fewer --trace-pes", trace_.file,

@@ -20,18 +20,21 @@ namespace raya {
 /// The options as given on the command line. An empty `file` means no trace.
 struct TraceOptions {
     std::string file;
-    std::size_t events = 1'000'000, pes = 16;  // maximum number of events; number of PEs with a track
+    std::size_t events = 1'000'000;  // maximum number of events
+    std::size_t pes = 16;            // number of PEs or nodes that get a track
 };
 
 /// Adds --trace, --trace-events and --trace-pes.
 void add_trace_options(CLI::App& command, TraceOptions& trace);
 
-/// Throws UserError if the file's name does not end in .json or .json.gz, or for other trace options without --trace.
+/// Throws UserError if the file's name does not end in .json or .json.gz, or if the other trace options are
+/// given without --trace.
 void check_trace(const CLI::App& command, const TraceOptions& trace);
 
 class RenderRecorder {
   public:
-    /// `profile`: records the time of each build. Without trace and profile only the spans run by spans() are recorded.
+    /// `profile`: records the time of each build. Without trace and profile, the recorder has only the spans that its
+    /// owner adds by spans().
     RenderRecorder(const TraceOptions& trace, bool profile);
 
     bool traces() const { return !trace_.file.empty(); }
@@ -41,10 +44,10 @@ class RenderRecorder {
     /// and of this rank's clock to rank 0's.
     void observe(Session& session, Ranks& ranks);
 
-    /// Sends what the other ranks recorded to rank 0. Every rank calls it.
+    /// Sends the records of the other ranks to rank 0. Every rank must call gather().
     void gather(Session& session, Ranks& ranks);
 
-    /// Returns the seconds of each program's build, in order.
+    /// Returns the build time of each program, in order of the builds.
     std::vector<ProgramBuild> builds() const;
 
     /// With --trace: writes the host's spans, the commands in the session's profile, and the events that `add_machine`
@@ -57,13 +60,13 @@ class RenderRecorder {
 
     const TraceOptions& trace_;
     bool profile_;
-    std::uint64_t begin_ = host_clock_ns();  // time 0 of the trace
+    std::uint64_t begin_ns_ = host_clock_ns();  // host's clock at time 0 of the trace
     SpanLog spans_;
-    ClockOffset clock_offset_;             // offset of the device's clock
-    RankClock clock_;                      // offset of this rank's clock to rank 0's
-    bool many_ = false;                    // several ranks
-    std::vector<TraceFile::Part> others_;  // on rank 0: the events of the other ranks
-    Json clocks_ = Json::array();          // offset and uncertainty of each rank's clock
+    ClockOffset device_clock_offset_;  // offset of the device's clock to the host's
+    RankClock rank_clock_;             // offset of this rank's clock to rank 0's
+    bool has_several_ranks_ = false;
+    std::vector<TraceFile::Part> parts_of_other_ranks_;  // on rank 0: their events
+    Json all_rank_clocks_ = Json::array();               // offset and uncertainty of each rank's clock
 };
 
 }  // namespace raya

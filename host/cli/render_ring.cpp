@@ -69,13 +69,13 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
 }
 
 // Converts cycle counts to floats. Counts above 2^24 are rounded.
-GreyImage grey(const CostImage& cost) {
+GreyImage grey_image(const CostImage& cost) {
     return {static_cast<int>(cost.width), static_cast<int>(cost.height), {cost.cycles.begin(), cost.cycles.end()}};
 }
 
 void write_images(const RenderCommand& command, const RingResult& result, const ImageAttributes& attributes) {
     write_main_image(command, result.image, attributes);
-    if (!command.cost.empty()) write_image(command.cost, grey(result.cost()), attributes);
+    if (!command.cost.empty()) write_image(command.cost, grey_image(result.cost()), attributes);
     if (!command.mask.empty()) write_image(command.mask, result.mask, attributes);
 }
 
@@ -91,16 +91,16 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     Session& session = run.session();
     RingRenderer renderer(session, scene, settings, ranks);
-    if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
+    if (ranks.is_first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     run.progress.stage("rendering");
     const CheckpointFile checkpoint(command.checkpoint);
     RingResult result = renderer.render(run.progress.callback(), checkpoint.checkpointing());
-    const std::vector<Json> of_ranks = rank_reports(ranks, session, "pes", result);
+    const std::vector<Json> rank_figures = rank_reports(ranks, session, "pes", result);
     recorder.gather(session, ranks);
-    if (!ranks.first()) return {};
+    if (!ranks.is_first()) return {};
     run.progress.stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
-    report.ranks = of_ranks;
+    report.ranks = rank_figures;
     report.measured.earlier_s = result.earlier_s;
     recorder.spans().during("write images",
                             [&] { write_images(command, result, image_attributes(report, scene.name)); });

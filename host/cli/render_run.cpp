@@ -8,42 +8,45 @@
 
 namespace raya {
 
-void RenderProgress::stage(const std::string& what) {
-    if (bar_ && images_ == 0) bar_->stage(what);
+void RenderProgress::stage(const std::string& label) {
+    if (bar_ && sequence_size_ == 0) bar_->stage(label);
 }
 
 void RenderProgress::begin_images(std::size_t count) {
-    images_ = count;
-    done_ = 0;
+    sequence_size_ = count;
+    finished_images_ = 0;
     if (bar_) bar_->stage(counted(count, "frame"));
 }
 
 void RenderProgress::next_image() {
-    ++done_;
-    if (bar_ && images_ > 0) bar_->update(static_cast<double>(done_) / static_cast<double>(images_));
+    ++finished_images_;
+    if (bar_ && sequence_size_ > 0)
+        bar_->update(static_cast<double>(finished_images_) / static_cast<double>(sequence_size_));
 }
 
 ProgressCallback RenderProgress::callback() {
     if (!bar_ || !bar_->active()) return callback_;
-    if (images_ == 0) return [this](double share) { bar_->update(share); };
-    return [this](double share) { bar_->update((static_cast<double>(done_) + share) / static_cast<double>(images_)); };
+    if (sequence_size_ == 0) return [this](double fraction) { bar_->update(fraction); };
+    return [this](double fraction) {
+        bar_->update((static_cast<double>(finished_images_) + fraction) / static_cast<double>(sequence_size_));
+    };
 }
 
 void RenderProgress::end() {
-    if (images_ == 0) bar_.reset();
+    if (sequence_size_ == 0) bar_.reset();
 }
 
-RenderRun::RenderRun(const RenderCommand& command, Ranks& of)
-    : ranks(of),
+RenderRun::RenderRun(const RenderCommand& command, Ranks& all_ranks)
+    : ranks(all_ranks),
       recorder(command.trace, command.roofline()),
-      progress(of.first(), "reading the scene"),
+      progress(all_ranks.is_first(), "reading the scene"),
       options(command.render),
-      input(read_scene_once(recorder, options, of)),
+      input(read_scene_once(recorder, options, all_ranks)),
       timing_(command.timing()),
-      images_{command.image, command.cost, command.mask} {}
+      image_files_{command.image, command.cost, command.mask} {}
 
 RenderRun::RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session)
-    : ranks(Ranks::alone()),
+    : ranks(Ranks::single()),
       recorder(command.trace, command.roofline()),
       progress(command.progress),
       options(command.render),
@@ -60,17 +63,17 @@ RenderRun::RenderRun(const RenderCommand& command, SceneInput scene, const cl::D
 Session& RenderRun::session() {
     if (session_ != nullptr) return *session_;
     tuned_.reset(new ScopedTunedSource(use_tuned(options.no_tuned, &input.warnings)));
-    if (ranks.first()) warn_of_build_options(input.warnings);
+    if (ranks.is_first()) warn_of_build_options(input.warnings);
     progress.stage("preparing");
     device_ =
         recorder.spans().during("choose device", [&] { return choose_device(options.device, ranks.rank_on_host()); });
     // Loads OpenImageIO after the OpenCL drivers. Both use TBB, a process keeps the first TBB that it loads, and
     // Intel's OpenCL runtime needs a newer version than OpenImageIO.
-    for (const std::string& image : images_)
-        if (ranks.first() && !image.empty()) load_encoder(image);
+    for (const std::string& file : image_files_)
+        if (ranks.is_first() && !file.empty()) load_encoder(file);
     opened_session_.emplace(recorder.spans().during("open device", [&] { return Session(device_, timing_); }));
     session_ = &*opened_session_;
-    if (ranks.first()) session_->announce_compiling();
+    if (ranks.is_first()) session_->announce_compiling();
     recorder.observe(*session_, ranks);
     return *session_;
 }

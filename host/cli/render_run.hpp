@@ -20,12 +20,12 @@ struct RenderCommand;
 /// The progress bar of a command that renders one image or a sequence.
 class RenderProgress {
   public:
-    RenderProgress(bool wanted, const std::string& what) : bar_(std::in_place, wanted, what) {}
+    RenderProgress(bool wanted, const std::string& label) : bar_(std::in_place, wanted, label) {}
     /// Calls `callback` with the progress instead of showing a bar.
     explicit RenderProgress(ProgressCallback callback) : callback_(std::move(callback)) {}
 
     /// Sets the bar's label to the current stage of a single image. In a sequence the label is the number of images.
-    void stage(const std::string& what);
+    void stage(const std::string& label);
 
     /// Starts a sequence: from now on the bar shows how many of `count` images are finished.
     void begin_images(std::size_t count);
@@ -34,21 +34,24 @@ class RenderProgress {
     /// Returns the callback that shows the progress of the current image; empty if the progress is not shown.
     ProgressCallback callback();
 
-    /// Erases the bar of a single image, before its summary is printed. The bar of a sequence remains, below its lines.
+    /// Erases the bar of a single image, so that its summary can be printed. The bar of a sequence remains below the
+    /// lines of its images.
     void end();
 
   private:
     std::optional<ProgressBar> bar_;
     ProgressCallback callback_;
-    std::size_t images_ = 0, done_ = 0;  // images of the sequence (0: a single image), finished ones
+    std::size_t sequence_size_ = 0;  // images; 0: a single image
+    std::size_t finished_images_ = 0;
 };
 
+/// A command's scene, session and progress. Several renders may use them, one after the other.
 class RenderRun {
   public:
     /// Reads the scene on rank 0. Throws UserError.
     RenderRun(const RenderCommand& command, Ranks& ranks);
 
-    /// For one rank, with an existing scene, device and session. Device and session must outlive this object.
+    /// Uses an existing scene, device and session, on a single rank. Device and session must outlive this object.
     RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session);
 
     /// Returns the session on the device. The first call loads tuned values and image encoders, and opens the device.
@@ -60,11 +63,11 @@ class RenderRun {
     RenderRecorder recorder;
     RenderProgress progress;
     RenderOptions options;  // with the default of --accel that rank 0 chose for the scene
-    SceneInput input;       // its view is that of the current image
+    SceneInput input;       // input.scene.view: the view of the current image
 
   private:
     Timing timing_;
-    std::vector<std::string> images_;  // image files of the command, for their encoders
+    std::vector<std::string> image_files_;  // whose encoders session() loads
     std::unique_ptr<ScopedTunedSource> tuned_;
     cl::Device device_;
     std::optional<Session> opened_session_;

@@ -62,8 +62,8 @@ TorusResult render_or_find_queue(TorusRenderer& renderer, RenderProgress& progre
         return render_with_progress(renderer, progress, outputs);
     } catch (const TorusDeadlock& deadlock) {
         progress.stage("searching a sufficient queue length");
-        const QueueSearchResult found = find_longer_queue(deadlock.figures.queue, renderer.queue_trial());
-        throw TorusDeadlock(deadlock.figures, queue_remedy(found));
+        const QueueSearchResult search = find_longer_queue(deadlock.figures.queue, renderer.queue_trial());
+        throw TorusDeadlock(deadlock.figures, queue_remedy(search));
     }
 }
 
@@ -110,7 +110,7 @@ void write_images(const RenderCommand& command, const TorusResult& result, const
 }
 
 void refuse_history_of_ranks(const TorusSettings& settings, const Ranks& ranks) {
-    if (settings.history && ranks.many())
+    if (settings.history && ranks.has_several())
         throw UserError("--async and --replay record every packet in one process; start raya without mpirun");
 }
 
@@ -157,15 +157,15 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     refuse_history_of_ranks(settings, ranks);
     Session& session = run.session();
     TorusRenderer renderer(session, scene, settings, ranks);
-    if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
+    if (ranks.is_first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     TorusOutputs outputs(command, recorder, settings);
     TorusResult result = render_or_find_queue(renderer, run.progress, outputs);
-    const std::vector<Json> of_ranks = rank_reports(ranks, session, "nodes", result);
+    const std::vector<Json> rank_figures = rank_reports(ranks, session, "nodes", result);
     recorder.gather(session, ranks);
-    if (!ranks.first()) return {};
+    if (!ranks.is_first()) return {};
     run.progress.stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
-    report.ranks = of_ranks;
+    report.ranks = rank_figures;
     std::optional<History> history;
     if (outputs.history) {
         run.progress.stage("simulating");

@@ -16,7 +16,8 @@
 namespace raya {
 
 void Warnings::add(const std::string& text) {
-    if (std::ranges::find(texts_, text) != texts_.end()) return;  // an earlier frame printed it
+    if (std::ranges::find(texts_, text) != texts_.end())
+        return;  // an earlier frame of the sequence printed this warning
     warn("warning: " + text);
     texts_.push_back(text);
 }
@@ -25,7 +26,7 @@ void add_strict_option(CLI::App& command, bool& strict) {
     const OptionGroup group(command, kFiles);
     command.add_flag(
         "--strict", strict,
-        "Refuse a scene with degenerate or non-planar facets, or with entities that are not NFF's, instead of "
+        "Refuse a scene with degenerate or non-planar facets, or with entities that NFF does not define, instead of "
         "omitting, triangulating or skipping them with a warning");
 }
 
@@ -49,23 +50,23 @@ SceneInput read_scene(const std::string& file, bool strict) {
 }
 
 void warn_of_build_options(Warnings& warnings) {
-    static const std::set<std::string> harmless = {"-cl-opt-disable",
-                                                   "-cl-fp32-correctly-rounded-divide-sqrt",
-                                                   "-cl-kernel-arg-info",
-                                                   "-cl-uniform-work-group-size",
-                                                   "-cl-nv-verbose",
-                                                   "-g",
-                                                   "-w",
-                                                   "-Werror"};
+    static const std::set<std::string> harmless_options = {"-cl-opt-disable",
+                                                           "-cl-fp32-correctly-rounded-divide-sqrt",
+                                                           "-cl-kernel-arg-info",
+                                                           "-cl-uniform-work-group-size",
+                                                           "-cl-nv-verbose",
+                                                           "-g",
+                                                           "-w",
+                                                           "-Werror"};
     std::istringstream options(user_build_options());
     for (std::string option; options >> option;)
-        if (!harmless.contains(option))
+        if (!harmless_options.contains(option))
             warnings.add(fmt::format("RAYA_BUILD_OPTIONS: {} may change pixels and counts", option));
 }
 
 void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warnings) {
-    constexpr std::size_t kMany = 100'000;
-    if (accelerated || scene.object_count() < kMany) return;
+    constexpr std::size_t kManyObjects = 100'000;
+    if (accelerated || scene.object_count() < kManyObjects) return;
     warnings.add(fmt::format("{}: every ray is tested against {} objects; --accel bvh finds the same hits faster",
                              scene.name, scene.object_count()));
 }

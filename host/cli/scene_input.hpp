@@ -24,7 +24,8 @@ class Warnings {
     std::vector<std::string> texts_;
 };
 
-/// Adds --strict, which refuses contents that are not NFF or cannot be traced, instead of skipping or changing them.
+/// Adds --strict, with which raya refuses contents that are not NFF or cannot be traced, instead of skipping or
+/// changing these contents.
 void add_strict_option(CLI::App& command, bool& strict);
 
 struct SceneInput {

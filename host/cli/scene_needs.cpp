@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-constexpr std::array<AccelKind, 3> kKinds = {AccelKind::kNone, AccelKind::kBvh, AccelKind::kGrid};
+constexpr std::array<AccelKind, 3> kAccelKinds = {AccelKind::kNone, AccelKind::kBvh, AccelKind::kGrid};
 
 void set_missing(AccelNeed& need, const DoesNotFit& refusal) {
     need.pe_bytes = refusal.needed_bytes;
@@ -39,22 +39,23 @@ const FormatFit& SceneNeeds::fit_of(const NumberFormat& format) {
     return formats_.emplace_back(std::move(fit));
 }
 
-const SceneNeeds::Words& SceneNeeds::words_of(const RingSettings& settings, const LengthScale& scale) {
+const SceneNeeds::PackedSize& SceneNeeds::size_of(const RingSettings& settings, const LengthScale& scale) {
     const std::string format = format_name(settings.format);
-    const auto [entry, added] = words_.try_emplace(format + ' ' + accel_text(settings.accel));
-    Words& words = entry->second;
-    if (!added) return words;
+    const auto [entry, added] = sizes_.try_emplace(format + ' ' + accel_text(settings.accel));
+    PackedSize& size = entry->second;
+    if (!added) return size;
     try {
-        if (!plain_ || plain_->first != format) plain_.emplace(format, pack_for_ring(scene_, settings, scale));
-        words.words = plain_->second.words().size();
-        if (settings.accel.kind == AccelKind::kNone) return words;
-        PackedJob job = plain_->second;
-        words.made = append_accel(job, settings);
-        words.words = job.words().size();
-    } catch (const UserError& error) {  // more words than 32-bit addresses can reach
-        words.refusal = error.what();
+        if (!last_packed_ || last_packed_->first != format)
+            last_packed_.emplace(format, pack_for_ring(scene_, settings, scale));
+        size.words = last_packed_->second.words().size();
+        if (settings.accel.kind == AccelKind::kNone) return size;
+        PackedJob job = last_packed_->second;
+        size.accel = append_accel(job, settings);
+        size.words = job.words().size();
+    } catch (const UserError& error) {  // the scene has more words than 32-bit addresses can reach
+        size.refusal = error.what();
     }
-    return words;
+    return size;
 }
 
 AccelNeed SceneNeeds::need_of(const RingSettings& settings, const FormatFit& fit) {
@@ -62,50 +63,50 @@ AccelNeed SceneNeeds::need_of(const RingSettings& settings, const FormatFit& fit
     need.accel = accel_text(settings.accel);
     need.refusal = fit.refusal;
     if (!need.refusal.empty()) return need;
-    const Words& words = words_of(settings, fit.scale);
-    need.words = words.words;
-    need.made = words.made;
-    need.refusal = words.refusal;
+    const PackedSize& size = size_of(settings, fit.scale);
+    need.words = size.words;
+    need.summary = size.accel;
+    need.refusal = size.refusal;
     if (!need.refusal.empty()) return need;
     try {
-        need.pe_bytes = plan_pe_memory(settings.machine, pe_demand(settings, scene_.name, words.words)).bytes();
+        need.pe_bytes = plan_pe_memory(settings.machine, pe_demand(settings, scene_.name, size.words)).bytes();
     } catch (const DoesNotFit& refusal) {
         set_missing(need, refusal);
     }
     return need;
 }
 
-MachineNeeds SceneNeeds::of_ring(const RenderOptions& options) {
+MachineNeeds SceneNeeds::ring_needs(const RenderOptions& options) {
     RingSettings settings = ring_settings(options, scene_);
     check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
-    MachineNeeds all{.machine = options.machine,
-                     .format = format_name(settings.format),
-                     .pes = settings.mapping.pes,
-                     .memory_bytes = settings.machine.pe_memory_bytes,
-                     .needs = {},
-                     .refusal = {}};
+    MachineNeeds machine{.machine = options.machine,
+                         .format = format_name(settings.format),
+                         .pes = settings.mapping.pes,
+                         .memory_bytes = settings.machine.pe_memory_bytes,
+                         .needs = {},
+                         .refusal = {}};
     const FormatFit fit = fit_of(settings.format);
     const std::string default_accel = accel_text(settings.accel);
     std::vector<Accel> accels;
-    for (const AccelKind kind : kKinds)
+    for (const AccelKind kind : kAccelKinds)
         if (options.accel.empty()) accels.push_back({kind, {}});
     if (accels.empty()) accels.push_back(settings.accel);
     for (const Accel& accel : accels) {
         settings.accel = accel;
-        all.needs.push_back(need_of(settings, fit));
-        all.needs.back().is_default = options.accel.empty() && all.needs.back().accel == default_accel;
+        machine.needs.push_back(need_of(settings, fit));
+        machine.needs.back().is_default = options.accel.empty() && machine.needs.back().accel == default_accel;
     }
-    return all;
+    return machine;
 }
 
-MachineNeeds SceneNeeds::of_torus(const RenderOptions& options) {
+MachineNeeds SceneNeeds::torus_needs(const RenderOptions& options) {
     const TorusSettings settings = torus_settings(options, torus_, scene_);
-    MachineNeeds all{.machine = options.machine,
-                     .format = format_name(settings.format),
-                     .pes = raya_nodes(settings.torus),
-                     .memory_bytes = settings.memory_bytes,
-                     .needs = {},
-                     .refusal = {}};
+    MachineNeeds machine{.machine = options.machine,
+                         .format = format_name(settings.format),
+                         .pes = raya_nodes(settings.torus),
+                         .memory_bytes = settings.memory_bytes,
+                         .needs = {},
+                         .refusal = {}};
     AccelNeed need;
     need.accel = "voxels";
     need.is_default = true;
@@ -121,14 +122,14 @@ MachineNeeds SceneNeeds::of_torus(const RenderOptions& options) {
     } catch (const UserError& error) {
         need.refusal = error.what();
     }
-    all.needs.push_back(need);
-    return all;
+    machine.needs.push_back(need);
+    return machine;
 }
 
 MachineNeeds SceneNeeds::needs_of(const std::string& machine) {
     RenderOptions options = render_;
     options.machine = machine;
-    return machine_named(machine).kind == MachineKind::kTorus ? of_torus(options) : of_ring(options);
+    return machine_named(machine).kind == MachineKind::kTorus ? torus_needs(options) : ring_needs(options);
 }
 
 }  // namespace raya

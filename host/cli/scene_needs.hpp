@@ -18,32 +18,33 @@ class SceneNeeds {
     SceneNeeds(const RenderOptions& render, const TorusOptions& torus, const Scene& scene);
 
     /// Returns the machine's memory needs with accelerators none, bvh and grid, or only with the accelerator of
-    /// --accel. Throws UserError if the machine does not support the options' values. It is no error if the scene
-    /// does not fit.
+    /// --accel. Throws UserError if the machine does not support the options' values. A scene that does not
+    /// fit is not an error; the result contains the missing bytes.
     MachineNeeds needs_of(const std::string& machine);
 
     /// Returns the formats of the machines for which needs_of() was called.
     std::vector<FormatFit> formats() const { return formats_; }
 
   private:
-    struct Words {
-        std::uint64_t words = 0;  // of the packed scene with its accelerator
-        AccelSummary made;        // the accelerator
-        std::string refusal;      // why the scene could not be packed; else empty
+    /// Size of the packed scene with an accelerator.
+    struct PackedSize {
+        std::uint64_t words = 0;  // number of 32-bit words
+        AccelSummary accel;
+        std::string refusal;  // why the scene cannot be packed; empty if it can
     };
 
     const FormatFit& fit_of(const NumberFormat& format);
-    const Words& words_of(const RingSettings& settings, const LengthScale& scale);
+    const PackedSize& size_of(const RingSettings& settings, const LengthScale& scale);
     AccelNeed need_of(const RingSettings& settings, const FormatFit& fit);
-    MachineNeeds of_ring(const RenderOptions& options);
-    MachineNeeds of_torus(const RenderOptions& options);
+    MachineNeeds ring_needs(const RenderOptions& options);
+    MachineNeeds torus_needs(const RenderOptions& options);
 
     const RenderOptions& render_;
     const TorusOptions& torus_;
     const Scene& scene_;
     std::vector<FormatFit> formats_;
-    std::map<std::string, Words> words_;                      // key: format and accelerator
-    std::optional<std::pair<std::string, PackedJob>> plain_;  // [format, scene]: last one packed without accelerator
+    std::map<std::string, PackedSize> sizes_;                       // key: format and accelerator
+    std::optional<std::pair<std::string, PackedJob>> last_packed_;  // [format, scene without accelerator]
 };
 
 }  // namespace raya

@@ -45,12 +45,12 @@ struct StudyCommand {
 // Returns [name, summary] of each study in tools/lab/studies.txt.
 std::vector<std::array<std::string, 2>> listed_studies() {
     std::istringstream lines(embedded_files().at("tools/lab/studies.txt"));
-    std::vector<std::array<std::string, 2>> all;
+    std::vector<std::array<std::string, 2>> studies;
     for (std::string line; std::getline(lines, line);) {
         const std::size_t colon = line.find(": ");
-        all.push_back({line.substr(0, colon), line.substr(colon + 2)});
+        studies.push_back({line.substr(0, colon), line.substr(colon + 2)});
     }
-    return all;
+    return studies;
 }
 
 std::vector<std::string> study_names() {
@@ -80,7 +80,7 @@ void check_study(const StudyCommand& command) {
     for (const std::string& scene : command.scenes)
         if (is_study(scene) && !fs::exists(scene, error))
             throw UserError(fmt::format(
-                "{} is a study, not a scene; run one study at a time, or all of them with raya study all", scene));
+                "{} is a study, not a scene; run one study at a time, or all studies with raya study all", scene));
     constexpr std::uint32_t kMinStudySide = 17, kMaxStudySide = 4096;  // the width must exceed the paper's offset, 16
     if (command.size && (*command.size < kMinStudySide || *command.size > kMaxStudySide))
         throw UserError(
@@ -109,12 +109,13 @@ Json settings_of(const StudyCommand& command) {
 
 void describe_study(CLI::App& command, StudyCommand& options) {
     OptionGroup group(command, kFiles);
-    CLI::Option* const study = add_file(command, FileUse::kRead, "STUDY", options.study, "STUDY|all|FILE.py",
-                                        "A study of the list below, all, or a file with your own study");
+    CLI::Option* const study =
+        add_file(command, FileUse::kRead, "STUDY", options.study, "STUDY|all|FILE.py",
+                 "Name of a study in the list below, all for all studies, or a file with your own study");
     offer_choices(study->required(), study_names());
     add_file(
         command, FileUse::kRead, "SCENE", options.scenes, "SCENE.nff",
-        "Scenes in NFF, at most one of them - for stdin; with `all`, studies of a single scene take the first one; "
+        "Scenes in NFF, at most one of them - for stdin; with `all`, studies of a single scene take the first scene; "
         "default: the study's own");
     add_file(command, FileUse::kWrittenFolder, "-o,--output", options.folder, "DIR",
              "Folder for index.html, Markdown, CSV, JSON and plots; created if missing")
@@ -125,8 +126,8 @@ void describe_study(CLI::App& command, StudyCommand& options) {
         ->type_name("N");
     group.next(kMachine);
     add_value(command, "--network", options.network,
-              "Study ranks: adds a network with this latency in microseconds per message and time in nanoseconds per "
-              "byte, such as 30,0.8")
+              "For study ranks: add a network with a latency ALPHA in microseconds per message and a time BETA in "
+              "nanoseconds per byte, such as 30,0.8")
         ->delimiter(',')
         ->allow_extra_args(false)  // so that a scene may follow
         ->type_name("ALPHA,BETA");
@@ -145,26 +146,27 @@ fs::path package_folder(const fs::path& program) {
 }
 
 // Refuses a module folder in which other users can change files.
-void check_folder(const fs::path& folder) {
+void check_module_folder(const fs::path& folder) {
     struct stat status {};
     ::stat(folder.c_str(), &status);
-    const std::string why = other_writers(folder / "raya", {::geteuid(), status.st_uid}, Sticky::kRefused);
+    const std::string why = unsafe_path_reason(folder / "raya", {::geteuid(), status.st_uid}, Sticky::kRefused);
     if (!why.empty()) throw UserError(fmt::format("refused to run '{}': {}; remedy: chmod go-w", folder.string(), why));
 }
 
-[[noreturn]] void start_laboratory(const std::string& settings) {
-    const char* const other = std::getenv("RAYA_PYTHON");
-    const std::string python = other != nullptr && *other != '\0' ? other : "/usr/bin/python3";
+[[noreturn]] void start_lab_module(const std::string& settings) {
+    const char* const python_variable = std::getenv("RAYA_PYTHON");
+    const std::string python =
+        python_variable != nullptr && *python_variable != '\0' ? python_variable : "/usr/bin/python3";
     const fs::path program = fs::read_symlink("/proc/self/exe"), folder = package_folder(program);
-    if (folder.empty() && other == nullptr)
+    if (folder.empty() && python_variable == nullptr)
         throw UserError(
             "study needs the Python module raya, and this program was built without it; remedy: tools/setup, then "
             "build again, or set RAYA_PYTHON to a Python that has the module");
     if (!folder.empty()) {
-        check_folder(folder);
+        check_module_folder(folder);
         const char* const path = std::getenv("PYTHONPATH");
-        const std::string more = path != nullptr && *path != '\0' ? fmt::format(":{}", path) : "";
-        ::setenv("PYTHONPATH", (folder.string() + more).c_str(), 1);
+        const std::string further_folders = path != nullptr && *path != '\0' ? fmt::format(":{}", path) : "";
+        ::setenv("PYTHONPATH", (folder.string() + further_folders).c_str(), 1);
     }
     ::setenv("PYTHONSAFEPATH", "1", 1);  // Python imports no modules from the working folder
     ::setenv("RAYA_PROGRAM", program.c_str(), 1);
@@ -188,7 +190,7 @@ void add_study_command(CLI::App& program, const std::function<void(const std::st
     command->callback([options, run] {
         check_study(*options);
         const std::string settings = settings_of(*options).dump();
-        run ? run(settings) : start_laboratory(settings);
+        run ? run(settings) : start_lab_module(settings);
     });
 }
 

@@ -13,14 +13,16 @@ namespace raya {
 
 /// The options as given on the command line. Empty: the default.
 struct ToneOptions {
-    std::optional<double> exposure, gamma;  // in stops (factors of 2); as an exponent
+    std::optional<double> exposure;  // stops: colours are multiplied by 2^exposure
+    std::optional<double> gamma;     // colours are raised to the power 1/gamma
     std::string curve;
 };
 
 /// Adds --exposure, --gamma and --tone.
 void add_tone_options(CLI::App& command, ToneOptions& tone);
 
-/// Returns the tone mapping for the image `file`. UserError for a value out of range, or options with a linear format.
+/// Returns the tone mapping for the image `file`. Throws UserError for a value out of range, and for options
+/// with a linear format.
 Tone tone_of(const ToneOptions& options, const std::string& file);
 
 }  // namespace raya

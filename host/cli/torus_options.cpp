@@ -20,44 +20,45 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
     const OptionGroup group(command, kTorusMachine);
     CLI::Option* machine = command.get_option("--machine");
     machine->description(machine->get_description() +
-                         "; torus: nodes of 4 MB that hold voxels of the scene, see Torus machine");
-    std::vector<std::string> names;
-    for (const Machine& one : machines()) names.push_back(one.name);
-    offer_choices(machine, names);
+                         "; torus: nodes of 4 MB that hold voxels of the scene, see the options under Torus machine");
+    std::vector<std::string> machine_names;
+    for (const Machine& known : machines()) machine_names.push_back(known.name);
+    offer_choices(machine, machine_names);
     const auto add = [&](const std::string& name, auto& value, const std::string& text, const std::string& type) {
         return add_value(command, name, value, text)->type_name(type);
     };
-    add("--nodes", t.nodes, "Nodes along x, y and z of the scene, at most 65,536 in total", "IxJxK")
+    add("--nodes", t.nodes, "Number of nodes along x, y and z of the scene, at most 65,536 in total", "IxJxK")
         ->default_str("4x4x4");
     add("--voxels", t.voxels,
-        "Equal voxels that divide the scene's box, at most 1024 along an axis and 2^24 in total; more voxels than "
-        "nodes are assigned cyclically, fewer leave nodes empty; default: one for each node",
+        "Number of equal voxels along x, y and z that divide the scene's box, at most 1024 along an axis and 2^24 in "
+        "total; more voxels than nodes are assigned cyclically, fewer voxels leave nodes empty; default: one "
+        "for each node",
         "AxBxC");
     add("--links", t.links, "Links of a node: six, or four as on a T805, with the slabs of nodes side by side",
         "torus3d|torus2d")
         ->default_str("torus3d");
     add("--inject", t.inject,
-        "Source of the primary rays: the root, which sends them to the nodes where they enter the box, or all nodes, "
-        "each the rays that enter at its voxels",
+        "Source of the primary rays: root: the root creates all rays and sends each to the node where the ray enters "
+        "the scene's box; all: each node creates the rays that enter the box at its voxels",
         "root|all")
         ->default_str("all");
     add("--returns", t.returns,
-        "Contents of a return packet in the model: one term of a ray (ambient light, a light, or the background), or "
-        "all terms of a ray in 6 words after its shadow rays, as in Yoshitani & Yamazaki",
+        "Contents of a return packet in the model: terms: a single term of a ray (ambient light, a light, or the "
+        "background); rays: all terms of a ray, in 6 words after the ray's shadow rays, as in Yoshitani & Yamazaki",
         "terms|rays")
         ->default_str("terms");
     add("--packet-words", t.packet_words,
-        "Modelled size of a ray packet in 32-bit words, in its creation and on links; the renderer moves 16, "
+        "Modelled size of a ray packet in 32-bit words, at its creation and on links; the renderer itself moves 16, "
         "Yoshitani & Yamazaki use 22 and more; 16..4096",
         "N")
         ->default_str("16");
     add("--queue", t.queue,
-        "Maximum packets queued in a node; if the queue is too short, the error gives a sufficient length; default: "
-        "as many as fit in memory, at most 8192",
+        "Maximum number of packets queued in a node; if the queue is too short, the error gives a sufficient length; "
+        "default: as many as fit in memory, at most 8192",
         "N");
     add("--link-exchange", t.link_exchange,
-        "How the host moves packets over links; the result is the same: as copies between buffers or by a kernel; "
-        "auto: as the device was tuned (raya tune), else the kernel on a CPU, elsewhere the faster one, measured when "
+        "How the host moves packets over links, which does not change the result: as copies between buffers or by a "
+        "kernel; auto: as raya tune stored it, else the kernel on a CPU, elsewhere the faster one, measured when "
         "the render begins",
         "auto|copies|kernel")
         ->default_str("auto");
@@ -78,6 +79,7 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
 
 namespace {
 
+/// An option that does not apply to a machine; the reason completes the error message.
 struct InapplicableOption {
     const char *option, *reason;
 };
@@ -121,16 +123,16 @@ constexpr std::array<InapplicableOption, 11> kTorusOnlyOptions = {
 }  // namespace
 
 void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine) {
-    const auto refuse = [&](const InapplicableOption& one) {
-        const CLI::Option* option = command.get_option_no_throw(one.option);
+    const auto refuse = [&](const InapplicableOption& inapplicable) {
+        const CLI::Option* option = command.get_option_no_throw(inapplicable.option);
         if (option == nullptr || option->empty() || option->results().front() == "none") return;
-        throw UserError(fmt::format("{} {} with --machine {}: {}", one.option, option->results().front(), machine.name,
-                                    one.reason));
+        throw UserError(fmt::format("{} {} with --machine {}: {}", inapplicable.option, option->results().front(),
+                                    machine.name, inapplicable.reason));
     };
     if (machine.kind == MachineKind::kTorus)
-        for (const InapplicableOption& one : kRingOnlyOptions) refuse(one);
+        for (const InapplicableOption& inapplicable : kRingOnlyOptions) refuse(inapplicable);
     else
-        for (const InapplicableOption& one : kTorusOnlyOptions) refuse(one);
+        for (const InapplicableOption& inapplicable : kTorusOnlyOptions) refuse(inapplicable);
 }
 
 namespace {

@@ -9,7 +9,7 @@
 
 namespace raya {
 
-/// The options as given on the command line. Empty: the default.
+/// The options as given on the command line. An empty value means the default.
 struct TorusOptions {
     std::string nodes, voxels, links, inject, returns, packets, replay, link_exchange;
     std::optional<std::uint32_t> packet_words;
@@ -17,7 +17,8 @@ struct TorusOptions {
     bool async = false;
 };
 
-/// Adds the options, and adds the torus to the machines in the help of --machine. Call it after add_render_options().
+/// Adds the options, and adds the torus to the machines in the help of --machine. Call this function after
+/// add_render_options().
 void add_torus_options(CLI::App& command, TorusOptions& torus);
 
 /// The files that --replay simgrid writes for packet trace FILE.csv.gz: FILE.xml (SimGrid's platform), FILE.replay.
@@ -26,7 +27,7 @@ struct ReplayFiles {
     std::string platform, replay;
 };
 
-/// Throws UserError with option, reason and remedy if an option that was given does not apply to the machine.
+/// Throws UserError with option, reason and remedy if a given option does not apply to the machine.
 void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine);
 
 /// Returns the settings of the torus renderer. Throws UserError for an option out of range.

@@ -30,7 +30,7 @@ namespace {
 
 struct TuneCommand {
     TrialSetup render;
-    RenderOptions image;  // of these options tune has only --size
+    RenderOptions image;  // only image.size is an option of tune
     std::string report;
     std::vector<std::string> variants, formats;
     double seconds = 60, candidate_seconds = 20;
@@ -45,14 +45,14 @@ void check_range(const char* option, double value, double min, double max) {
 std::vector<Workload> workloads_of(const TuneCommand& command) {
     if (command.variants.empty() && command.formats.empty()) return default_workloads();
     using Names = std::vector<std::string>;
-    std::vector<Workload> all;
+    std::vector<Workload> workloads;
     for (const std::string& format : command.formats.empty() ? Names{"fp32"} : command.formats)
         for (const std::string& variant :
              command.variants.empty() ? Names{"none", "grid", "bvh", "torus"} : command.variants) {
-            all.push_back({variant, parse_format(format)});
-            all.back().key();  // throws for an unknown variant
+            workloads.push_back({variant, parse_format(format)});
+            workloads.back().key();  // throws for an unknown variant
         }
-    return all;
+    return workloads;
 }
 
 TrialProgress progress_printer(const Workload& workload, const Space& space) {
@@ -86,10 +86,11 @@ void print_dropped(const Tuning& tuning) {
 }
 
 void print_exhaustive(const Tuning& tuning) {
-    if (tuning.best_all)
-        fmt::print("all {} candidates: {}: the best is {}; the tuned one takes {:.3f} of its time\n",
-                   tuning.tried_all + 1, tuning.workload.name(),
-                   change_text(tuning.space, *tuning.best_all, *tuning.best_all), tuning.ratio_all);
+    if (tuning.exhaustive_best)
+        fmt::print("all {} candidates: {}: the best is {}; the tuned values take {:.3f} of its time\n",
+                   tuning.exhaustive_tried + 1, tuning.workload.name(),
+                   change_text(tuning.space, *tuning.exhaustive_best, *tuning.exhaustive_best),
+                   tuning.exhaustive_ratio);
 }
 
 void print_tunings(const std::vector<Tuning>& tunings) {
@@ -101,8 +102,8 @@ void print_tunings(const std::vector<Tuning>& tunings) {
                          change_text(t.space, t.space.defaults, t.best) + (t.complete ? "" : " (time limit)")});
     fmt::print("{}", text_table(table));
     fmt::print(
-        "speed-up: time of a render with the defaults over that with the best values, the median of 9 pairs after "
-        "the search;\ntried: candidates that were rendered and compared with the image of the defaults; own: the "
+        "speed-up: time of a render with the defaults over the time with the best values, median of 9 pairs of renders "
+        "after the search;\ntried: candidates that were rendered and compared with the image of the defaults; own: the "
         "kernels' own default\n");
     if (std::any_of(tunings.begin(), tunings.end(), [](const Tuning& t) { return !t.complete; }))
         fmt::print("time limit: --seconds allows a longer search\n");
@@ -134,20 +135,20 @@ void tune_device(const CLI::App& parsed, TuneCommand& command) {
     std::fflush(stdout);
     TuneSettings settings{.render = render, .limit_s = command.candidate_seconds, .exhaustive = command.exhaustive};
     std::vector<Tuning> tunings;
-    double left = command.seconds;
+    double remaining_s = command.seconds;
     const std::string date = utc_text("%Y-%m-%d");
     for (const Workload& workload : workloads) {
-        settings.seconds = left / static_cast<double>(workloads.size() - tunings.size());
+        settings.seconds = remaining_s / static_cast<double>(workloads.size() - tunings.size());
         tunings.push_back(
             tune(device, workload, settings, progress_printer(workload, space_of(device, workload.key()))));
-        left = std::max(0.0, left - tunings.back().seconds);
+        remaining_s = std::max(0.0, remaining_s - tunings.back().seconds);
         const std::string scene = render.scene.empty() ? "own" : render.scene;
         save_tuned(device, {date, {entry_of(tunings.back(), scene)}});
     }
     clear_status();
     print_tunings(tunings);
     if (!command.report.empty()) write_whole_file(command.report, t4_text(device, tunings));
-    fmt::print("stored in {}: render, bench and study use it, unless --lanes, --group or --no-tuned is given\n",
+    fmt::print("stored in {}: render, bench and study use this file, unless --lanes, --group or --no-tuned is given\n",
                printable(file.string()));
 }
 
@@ -164,17 +165,16 @@ void add_rendered_options(CLI::App& command, TuneCommand& options) {
         ->delimiter(',')
         ->allow_extra_args(false)  // so that the scene may follow
         ->type_name("none,grid,bvh,torus");
-    add_value(
-        command, "--format", options.formats,
-        "Formats, comma-separated: fp32, spa22 (e6m15), eXmY[t]; the values of one reduced format apply to all of "
-        "them; default: fp32 for the given variants")
+    add_value(command, "--format", options.formats,
+              "Formats, comma-separated: fp32, spa22 (e6m15), eXmY[t]; the values of one reduced format apply to all "
+              "reduced formats; default: fp32 for the given variants")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("NAME,...");
     add_value(command, "--size", options.image.size,
               "Image size in pixels, 1..16384 a side; default: 512, with an accelerator and on the torus 256")
         ->type_name("N|WxH");
-    add_value(command, "--pes", render.pes, "Processing elements of the ring, 1..W*H")
+    add_value(command, "--pes", render.pes, "Number P of processing elements of the ring, 1..W*H")
         ->type_name("P")
         ->capture_default_str();
     add_device_option(command, render.device);
@@ -188,15 +188,15 @@ void add_search_options(CLI::App& command, TuneCommand& options) {
     add_value(command, "--seconds", options.seconds, "Duration of the search in seconds, 1..86400")
         ->type_name("S")
         ->capture_default_str();
-    add_value(
-        command, "--candidate-seconds", options.candidate_seconds,
-        "Time limit of a candidate with its build, 1..3600 seconds; each runs in its own process. Candidates that "
-        "fail or whose image differs from that of the defaults are dropped as well")
+    add_value(command, "--candidate-seconds", options.candidate_seconds,
+              "Time limit of a candidate with its build, 1..3600 seconds; each candidate runs in its own process. raya "
+              "drops candidates that exceed the limit, fail, or give an image that differs from that of the defaults")
         ->type_name("S")
         ->capture_default_str();
-    command.add_flag("--exhaustive", options.exhaustive,
-                     "Afterwards try every candidate, without a time limit, and print how close the search came to the "
-                     "best");
+    command.add_flag(
+        "--exhaustive", options.exhaustive,
+        "After the search, try every candidate without a time limit, and compare the tuned values with the "
+        "best candidate");
     add_file(command, FileUse::kWritten, "--report", options.report, "FILE.json",
              "Write all trials in the T4 format of Kernel Tuner; -: stdout, with the tables on stderr");
 }

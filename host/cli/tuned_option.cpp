@@ -9,7 +9,7 @@ void add_tuned_option(CLI::App& command, bool& no_tuned) {
     const OptionGroup group(command, kKernels);
     command.add_flag("--no-tuned", no_tuned,
                      "Use the defaults, not the values that raya tune stored for this device and driver, like the "
-                     "environment variable RAYA_TUNED=off; the image is the same");
+                     "environment variable RAYA_TUNED=off; the image does not change");
 }
 
 ScopedTunedSource use_tuned(bool no_tuned, Warnings* warnings) {

@@ -13,11 +13,11 @@ namespace {
 
 struct VerbosityFlags {
     int quiet = 0, verbose = 0;
-    bool first_rank = true;
+    bool is_first_rank = true;
 
     void set() const {
         if (quiet > 0 && verbose > 0) throw UserError("--quiet and --verbose: give one of them");
-        set_verbosity(first_rank || quiet > 0 ? verbose - quiet : 0);
+        set_verbosity(is_first_rank || quiet > 0 ? verbose - quiet : 0);
     }
 };
 
@@ -40,14 +40,15 @@ void add_to(CLI::App& command, const std::shared_ptr<VerbosityFlags>& flags) {
         },
         "Log the host's steps and their seconds on stderr; twice: also kernels' build options and logs, and the "
         "device's times by label");
-    for (CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; })) add_to(*one, flags);
+    for (CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
+        add_to(*subcommand, flags);
 }
 
 }  // namespace
 
 void add_verbosity_options(CLI::App& program, const Ranks& ranks) {
     const auto flags = std::make_shared<VerbosityFlags>();
-    flags->first_rank = ranks.first();
+    flags->is_first_rank = ranks.is_first();
     add_to(program, flags);
 }
 

@@ -32,16 +32,18 @@ struct VerifyCommand {
     Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
 };
 
-// Returns "57 checks passed, 0 failed, 2 skipped in 12.3 s".
+// Returns the text "57 checks passed, 0 failed, 2 skipped in 12.3 s".
 std::string closing_text(const std::vector<Check>& checks, double seconds) {
     return fmt::format("{} passed, {} failed, {} skipped in {:.1f} s",
                        counted(count_of(checks, Outcome::kPass), "check"), count_of(checks, Outcome::kFail),
                        count_of(checks, Outcome::kSkip), seconds);
 }
 
-DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
-                        std::size_t& devices) {
-    const bool brief = is_quiet(), shows = shows_progress();
+// Verifies the device number `index` of those that --device selects, and prints each check. Sets `devices` to the
+// number of selected devices.
+DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
+                           std::size_t& devices) {
+    const bool quiet = is_quiet(), shows = shows_progress();
     const auto print = [&](const std::string& line) {
         clear_status();
         fmt::print("{}", line);
@@ -50,7 +52,7 @@ DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const V
     const SupervisorSink sink{
         .device =
             [&](const DeviceChecks& device, const std::vector<std::string>& left_out) {
-                if (brief) return;
+                if (quiet) return;
                 if (index == 0)
                     for (const std::string& line : left_out) print(line + "\n");
                 print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
@@ -61,28 +63,28 @@ DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const V
             },
         .finished =
             [&](const Check& check) {
-                if (!brief || check.verdict.outcome == Outcome::kFail) print(check_lines(check));
+                if (!quiet || check.verdict.outcome == Outcome::kFail) print(check_lines(check));
             }};
     DeviceChecks result = supervise(command.device, index, settings, sink, devices);
-    if (!brief || devices == 1 || !result.all_passed())
+    if (!quiet || devices == 1 || !result.all_passed())
         print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
     return result;
 }
 
-Json report_of(const std::vector<DeviceChecks>& all, Depth depth) {
+Json report_of(const std::vector<DeviceChecks>& device_checks, Depth depth) {
     Json devices = Json::array();
-    for (const DeviceChecks& one : all) {
+    for (const DeviceChecks& device : device_checks) {
         Json checks = Json::array();
-        for (const Check& check : one.checks) checks.push_back(to_json(check));
-        devices.push_back({{"name", one.name},
-                           {"platform", one.platform},
-                           {"version", one.version},
-                           {"driver", one.driver},
-                           {"right", one.all_passed()},
-                           {"passed", count_of(one.checks, Outcome::kPass)},
-                           {"failed", count_of(one.checks, Outcome::kFail)},
-                           {"skipped", count_of(one.checks, Outcome::kSkip)},
-                           {"seconds", one.seconds},
+        for (const Check& check : device.checks) checks.push_back(to_json(check));
+        devices.push_back({{"name", device.name},
+                           {"platform", device.platform},
+                           {"version", device.version},
+                           {"driver", device.driver},
+                           {"right", device.all_passed()},
+                           {"passed", count_of(device.checks, Outcome::kPass)},
+                           {"failed", count_of(device.checks, Outcome::kFail)},
+                           {"skipped", count_of(device.checks, Outcome::kSkip)},
+                           {"seconds", device.seconds},
                            {"checks", checks}});
     }
     return {{"kind", kVerifyReportKind},
@@ -91,14 +93,14 @@ Json report_of(const std::vector<DeviceChecks>& all, Depth depth) {
             {"devices", devices}};
 }
 
-void print_overall(const std::vector<DeviceChecks>& all) {
+void print_overall(const std::vector<DeviceChecks>& device_checks) {
     std::vector<Check> checks;
     double seconds = 0;
-    for (const DeviceChecks& one : all) {
-        checks.insert(checks.end(), one.checks.begin(), one.checks.end());
-        seconds += one.seconds;
+    for (const DeviceChecks& device : device_checks) {
+        checks.insert(checks.end(), device.checks.begin(), device.checks.end());
+        seconds += device.seconds;
     }
-    fmt::print("{}: {}\n", counted(all.size(), "device"), closing_text(checks, seconds));
+    fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
 }
 
 void run_verify(const VerifyCommand& command) {
@@ -108,15 +110,15 @@ void run_verify(const VerifyCommand& command) {
     warn_of_build_options(warnings);
     const VerifySettings settings{
         .depth = command.depth(), .sources = {command.kernel_dir}, .only = command.only, .lanes = command.lanes};
-    std::vector<DeviceChecks> all;
-    bool right = true;
-    for (std::size_t devices = 1; all.size() < devices;) {
-        all.push_back(verify_one(command, all.size(), settings, devices));
-        right = right && all.back().all_passed();
+    std::vector<DeviceChecks> device_checks;
+    bool all_passed = true;
+    for (std::size_t devices = 1; device_checks.size() < devices;) {
+        device_checks.push_back(verify_device(command, device_checks.size(), settings, devices));
+        all_passed = all_passed && device_checks.back().all_passed();
     }
-    if (all.size() > 1) print_overall(all);
-    write_report_and_page({command.report, command.page}, report_of(all, command.depth()));
-    if (!right) throw CheckFailure{};
+    if (device_checks.size() > 1) print_overall(device_checks);
+    write_report_and_page({command.report, command.page}, report_of(device_checks, command.depth()));
+    if (!all_passed) throw CheckFailure{};
 }
 
 }  // namespace
@@ -126,7 +128,7 @@ void add_verify_command(CLI::App& program) {
         "verify", "Check a device, its driver and its compiler bit by bit: arithmetic, hits, machines and images");
     add_examples(*command, {{"raya verify", "Run the default checks, a line for each"},
                             {"raya verify --brief --only number --report verify.json",
-                             "Run few checks, those of arithmetic only, with a report"}});
+                             "Run only the brief checks of arithmetic, and write a report"}});
     const auto options = std::make_shared<VerifyCommand>();
     OptionGroup group(*command, "Checks");
     command->add_flag("--quick", options->quick,
@@ -155,7 +157,8 @@ void add_verify_command(CLI::App& program) {
     add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
              "Write all checks and their failures as JSON; -: stdout, with the lines on stderr");
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
-             "Write all checks, and the first failure in full, as an HTML page; raya page makes the same of a report");
+             "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
+             "report");
     command->callback([options] { run_verify(*options); });
 }
 

@@ -18,10 +18,10 @@ constexpr const char* kPoint = "must be three numbers X,Y,Z, each at most 1e30 i
 constexpr const char* kColour = "must be three numbers R,G,B from 0 to 1e9; 1 is full intensity";
 constexpr const char* kLight = "must be a position X,Y,Z, or position and colour X,Y,Z,R,G,B, colours from 0 to 1e9";
 
-constexpr std::size_t kShown = 60;  // maximum bytes of a value in messages
+constexpr std::size_t kMaxShownBytes = 60;  // maximum bytes of a value in messages
 
-/// Parses comma-separated numbers. Returns an empty vector if one is malformed or its magnitude exceeds
-/// kMaxSceneLength.
+/// Parses comma-separated numbers. Returns an empty vector if a number is malformed or its magnitude
+/// exceeds kMaxSceneLength.
 std::vector<double> numbers_of(std::string_view text) {
     std::vector<double> numbers;
     while (true) {
@@ -37,7 +37,7 @@ std::vector<double> numbers_of(std::string_view text) {
 }
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text, const char* legal) {
-    throw UserError(fmt::format("{} {}: {}", option, text.substr(0, kShown), legal));
+    throw UserError(fmt::format("{} {}: {}", option, text.substr(0, kMaxShownBytes), legal));
 }
 
 Vec3 vector_of(const std::string& option, const std::string& text, const char* legal) {
@@ -60,7 +60,7 @@ std::string viewpoint_text(const ViewOptions& v) {
     std::string text;
     for (const auto& [option, value] : v.given_options())
         if (option != "--background" && option != "--light")
-            text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, value.substr(0, kShown));
+            text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, value.substr(0, kMaxShownBytes));
     return text;
 }
 
@@ -90,9 +90,10 @@ void add_view_options(CLI::App& command, ViewOptions& v) {
     add_value(command, "--angle", v.angle, "Vertical field of view, between 0 and 180 degrees")->type_name("DEGREES");
     add_value(command, "--background", v.background, "Colour of rays that hit nothing; linear, 1 is full intensity")
         ->type_name("R,G,B");
-    add_value(command, "--light", v.lights,
-              "A light at X,Y,Z of colour R,G,B; default: white, where n lights have the total intensity sqrt(n)/2; "
-              "repeat it for several lights; replaces all lights of the scene")
+    add_value(
+        command, "--light", v.lights,
+        "A light at X,Y,Z of colour R,G,B; default colour: white, with the total intensity sqrt(n)/2 for n lights; "
+        "repeat the option for several lights; they replace all lights of the scene")
         ->allow_extra_args(false)  // so that the scene may follow
         ->type_name("X,Y,Z[,R,G,B]");
 }
@@ -107,10 +108,10 @@ void change_viewpoint(const ViewOptions& v, View& view) {
     if (!v.at.empty()) view.at = vector_of("--at", v.at, kPoint);
     if (!v.up.empty()) view.up = vector_of("--up", v.up, kPoint);
     if (v.angle) view.angle_degrees = *v.angle;
-    const std::string given = viewpoint_text(v);
-    if (given.empty()) return;
-    const std::string fault = view_error(view);
-    if (!fault.empty()) throw UserError(fmt::format("{}: {}", given, fault));
+    const std::string given_text = viewpoint_text(v);
+    if (given_text.empty()) return;
+    const std::string error = view_error(view);
+    if (!error.empty()) throw UserError(fmt::format("{}: {}", given_text, error));
 }
 
 void change_view(const ViewOptions& v, Scene& scene) {

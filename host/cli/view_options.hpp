@@ -13,7 +13,7 @@ class App;
 
 namespace raya {
 
-/// The options as given on the command line. Empty: the scene's value.
+/// The options as given on the command line. An empty value means the scene's value.
 struct ViewOptions {
     std::string from{}, at{}, up{}, background{};
     std::optional<double> angle{};  // degrees

@@ -19,19 +19,19 @@ std::string zsh_plain(const std::string& text) {
 
 // Returns the message and action of an _arguments spec, ":NAME:(a b)", for an option's value or a positional argument.
 std::string zsh_offer_of(const OptionText& option) {
-    const ValueText value = value_of(option);
+    const ValueCompletion value = value_completion(option);
     const std::string name = ':' + zsh_plain(option.value) + ':';
     switch (value.kind) {
-        case ValueText::Kind::kChoice:
+        case ValueCompletion::Kind::kChoice:
             return fmt::format("{}({})", name, fmt::join(value.choices, " "));
-        case ValueText::Kind::kList:
+        case ValueCompletion::Kind::kList:
             return fmt::format("{}_values -s , {} {}", name, shell_quoted(zsh_plain(option.value)),
                                fmt::join(value.choices, " "));
-        case ValueText::Kind::kFile:
+        case ValueCompletion::Kind::kFile:
             return fmt::format("{}_files -g \"*{}(-.)\"", name, value.extension);
-        case ValueText::Kind::kFolder:
+        case ValueCompletion::Kind::kFolder:
             return name + "_files -/";
-        case ValueText::Kind::kOther:
+        case ValueCompletion::Kind::kOther:
             break;
     }
     return name + "( )";
@@ -41,9 +41,9 @@ std::string zsh_offer_of(const OptionText& option) {
 std::string arguments_of(const OptionText& option) {
     std::string text;
     for (const std::string& name : option.names) {
-        const std::string others = option.repeated ? "*" : fmt::format("({})", fmt::join(option.names, " "));
-        const std::string follows = option.is_flag() ? "" : name.starts_with("--") ? "=" : "+";
-        const std::string spec = others + name + follows + '[' + zsh_plain(brief(option.help)) + ']';
+        const std::string exclusions = option.repeated ? "*" : fmt::format("({})", fmt::join(option.names, " "));
+        const std::string value_mark = option.is_flag() ? "" : name.starts_with("--") ? "=" : "+";
+        const std::string spec = exclusions + name + value_mark + '[' + zsh_plain(brief(option.help)) + ']';
         text += " \\\n            " + shell_quoted(option.is_flag() ? spec : spec + zsh_offer_of(option));
     }
     return text;
@@ -56,8 +56,8 @@ std::string zsh_body_of(const CommandText& command) {
         text += " \\\n            " + shell_quoted((argument.repeated ? "*" : "") + zsh_offer_of(argument));
     if (command.commands.empty()) return text + '\n';
     text = "        local -a commands=(";
-    for (const CommandText& one : command.commands)
-        text += "\n            " + shell_quoted(zsh_plain(one.name) + ':' + brief(one.summary));
+    for (const CommandText& subcommand : command.commands)
+        text += "\n            " + shell_quoted(zsh_plain(subcommand.name) + ':' + brief(subcommand.summary));
     text += ")\n        if [[ $PREFIX == -* ]]; then\n    _arguments -S";
     for (const OptionText& option : command.options) text += arguments_of(option);
     return text + "\n        else\n            _describe command commands\n        fi\n";

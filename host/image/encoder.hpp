@@ -1,5 +1,5 @@
-// Interface of the module that encodes images with OpenImageIO. It is a module because loading OpenImageIO's 250
-// libraries takes longer than a small render.
+// Interface of the module that encodes images with OpenImageIO. The encoder is loaded on demand, because loading
+// OpenImageIO's 250 libraries takes longer than a small render.
 #pragma once
 #include <string>
 #include <utility>
@@ -12,9 +12,9 @@ inline constexpr int kJpegQuality = 95;  // libjpeg's scale, 1..100
 inline constexpr const char* kEncoderModule = "raya_pictures";
 inline constexpr const char* kEncoderFunction = "raya_encode_picture";
 
-/// Metadata of an image file, as pairs of key and text. PNG stores them as text chunks and OpenEXR as header
-/// attributes, named `raya:key` to avoid the names of standard attributes. TIFF and JPEG store lines `raya:key=text` in
-/// the image description. PFM and PPM do not support metadata.
+/// Metadata of an image file, as pairs of key and text. PNG stores them as text chunks, and OpenEXR as header
+/// attributes; the names are `raya:key`, to avoid the names of standard attributes. TIFF and JPEG store lines
+/// `raya:key=text` in the image description. PFM and PPM do not support metadata.
 using ImageAttributes = std::vector<std::pair<std::string, std::string>>;
 
 /// An image to encode. `values` has the shape [height, width, channels]; row 0 is the top.

@@ -10,16 +10,17 @@
 namespace raya {
 namespace {
 
-// The attributes as one image description, for TIFF and JPEG, which do not support attributes with custom names.
+// Returns the attributes as one text, for TIFF and JPEG, which do not support attributes with custom names.
 std::string description(const ImageAttributes& attributes) {
     std::string text;
     for (const auto& [key, value] : attributes) text += (text.empty() ? "raya:" : "\nraya:") + key + '=' + value;
     return text;
 }
 
+// Sets the attributes of a format with 8-bit codes.
 void describe_codes(OIIO::ImageSpec& spec, const PictureToEncode& picture, std::string_view format) {
     std::string space = "sRGB";
-    if (picture.gamma != 0) {  // PNG files store it; TIFF and JPEG cannot
+    if (picture.gamma != 0) {  // PNG files store the gamma; TIFF and JPEG cannot
         std::ostringstream name;
         name << "Gamma" << picture.gamma;
         space = name.str();
@@ -32,8 +33,7 @@ void describe_codes(OIIO::ImageSpec& spec, const PictureToEncode& picture, std::
     if (!picture.attributes.empty()) spec.attribute("ImageDescription", description(picture.attributes));
     if (format == "tiff") {
         spec.attribute("compression", "zip");
-        // EXIF data are in a second TIFF directory that the first one refers to. OpenImageIO 2.4 cannot write them to
-        // memory.
+        // OpenImageIO 2.4 cannot write EXIF data to memory, because they are in a second TIFF directory.
         spec.attribute("tiff:write_exif", 0);
         return;
     }

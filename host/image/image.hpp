@@ -19,8 +19,9 @@ struct GreyImage {
     std::vector<float> values;
 };
 
-/// The XXH3 hash (128 bits, as 32 lower-case hexadecimal digits) of width, height and the bits of all floats, as 32-bit
-/// little-endian words on any machine. Since bits are hashed, -0 and +0 differ, and so do NaNs with different bits.
+/// Returns the XXH3 hash (128 bits, as 32 lower-case hexadecimal digits) of width, height and the bits of all floats,
+/// as 32-bit little-endian words on any machine. Because bits are hashed, the hashes of -0 and +0 differ, and so do
+/// those of NaNs with different bits.
 std::string pixel_hash(const Image& image);
 
 }  // namespace raya

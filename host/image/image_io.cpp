@@ -31,7 +31,8 @@ struct Pixels {
     }
 };
 
-// The extension of `path` in lower case; for stdout that of a format in `extensions` that needs no library.
+// Returns the extension of `path` in lower case. For stdout, returns the extension of a format that needs no library:
+// ".ppm" if it is one of `extensions`, else ".pfm".
 std::string lower_case_extension(const fs::path& path, std::span<const std::string_view> extensions) {
     if (is_standard_stream(path))
         return std::find(extensions.begin(), extensions.end(), ".ppm") != extensions.end() ? ".ppm" : ".pfm";
@@ -40,7 +41,7 @@ std::string lower_case_extension(const fs::path& path, std::span<const std::stri
     return extension;
 }
 
-// OpenImageIO's name of the format; null for the formats that raya writes itself.
+// Returns OpenImageIO's name of the format, or null for a format that raya writes without OpenImageIO.
 const char* encoded_format(const std::string& extension) {
     if (extension == ".png") return "png";
     if (extension == ".exr") return "exr";
@@ -57,9 +58,10 @@ void check_shape(int width, int height, std::size_t channels, std::size_t floats
 }
 
 [[noreturn]] void refuse_to_encode(const fs::path& path, const std::string& reason, const std::string& remedy = "") {
-    const char* plain = stores_codes(path) ? ".ppm" : ".pfm";  // the same precision; no library needed
+    // A format of the same precision that needs no library.
+    const char* plain_extension = stores_codes(path) ? ".ppm" : ".pfm";
     throw UserError(
-        fmt::format("cannot write '{}': {}; {}name a {} file instead", path.string(), reason, remedy, plain));
+        fmt::format("cannot write '{}': {}; {}name a {} file instead", path.string(), reason, remedy, plain_extension));
 }
 
 /// Returns the module's encoding function. The first call loads the module. `path`: for error messages.
@@ -93,8 +95,8 @@ std::string encode_codes(const fs::path& path, const char* format, const Pixels&
     return encode(path, format, pixels, codes.data(), attributes, tone.gamma.value_or(0));
 }
 
-// Writes a header, then row by row, so that the file is not in memory as a whole. append_row(bytes, row) appends a
-// row's bytes.
+// Writes a header, then one row at a time, so that memory never holds the whole file. append_row(bytes, row) appends
+// the bytes of a row.
 template <class AppendRow>
 void write_rows(const fs::path& path, const Pixels& pixels, const std::string& header, const AppendRow& append_row) {
     std::string piece;
@@ -133,7 +135,7 @@ void write_pfm(const fs::path& path, const Pixels& pixels) {
     });
 }
 
-// Writes the format of `extension`. `tone` applies only to formats with 8-bit codes.
+// Writes the pixels in the format of `extension`. `tone` applies only to formats with 8-bit codes.
 void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttributes& attributes,
                   const std::string& extension, const Tone& tone) {
     const char* const format = encoded_format(extension);

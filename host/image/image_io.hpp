@@ -14,7 +14,7 @@ namespace raya {
 
 inline constexpr std::array<std::string_view, 8> kImageExtensions{".png", ".exr",  ".pfm", ".ppm",
                                                                   ".tif", ".tiff", ".jpg", ".jpeg"};
-inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".pfm"};  // floats only
+inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".pfm"};  // formats that store floats
 
 /// Returns true if a colour image in the file `path` is stored as 8-bit codes, to which a Tone applies.
 bool stores_codes(const std::filesystem::path& path);
@@ -23,8 +23,8 @@ bool stores_codes(const std::filesystem::path& path);
 /// `extensions`. Images on stdout ("-") are PPM if ".ppm" is one of `extensions`, else PFM.
 void check_image_name(const std::filesystem::path& path, std::span<const std::string_view> extensions);
 
-/// Loads the encoder module if the format of that file needs it, so that a command fails before rendering instead of
-/// after it. Throws UserError with file, reason and remedy.
+/// Loads the encoder module if the format of the file `path` needs it, so that a command fails before rendering instead
+/// of after it. Throws UserError with file, reason and remedy.
 void load_encoder(const std::filesystem::path& path);
 
 /// Writes an image atomically in the format of the extension, without date, host or program version. PNG, TIFF (zip),
@@ -34,7 +34,8 @@ void load_encoder(const std::filesystem::path& path);
 void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes,
                  const Tone& tone = {});
 
-/// Writes an image of one number per pixel as EXR (channel Y, zip) or PFM. Throws as above.
+/// Writes an image of one number per pixel as EXR (channel Y, zip) or PFM. Throws UserError with file, reason
+/// and remedy; std::logic_error if `image` does not have one float per pixel.
 void write_image(const std::filesystem::path& path, const GreyImage& image, const ImageAttributes& attributes);
 
 }  // namespace raya

@@ -30,28 +30,28 @@ void append_chunk(std::string& file, const char* name, std::string_view data) {
                           crc32(0, static_cast<const Bytef*>(bytes), static_cast<uInt>(checked.size()))));
 }
 
-// Paeth's predictor (filter type 4): of the bytes left, above and above left (`corner`), the one that is nearest to
-// left + above - corner.
-std::uint8_t predicted(int left, int above, int corner) {
+// Paeth's predictor (filter type 4): returns that of the bytes to the left, above, and above to the left (`corner`)
+// which is nearest to left + above - corner.
+std::uint8_t prediction(int left, int above, int corner) {
     const int p = left + above - corner;
     const int a = std::abs(p - left), b = std::abs(p - above), c = std::abs(p - corner);
     return static_cast<std::uint8_t>(a <= b && a <= c ? left : b <= c ? above : corner);
 }
 
-// The filtered rows of the image. Each row is the filter type, followed by the differences of its bytes from their
-// predictions.
+// Returns the filtered rows of the image. A filtered row is the filter type, followed by the differences between the
+// row's bytes and their predictions.
 std::string filtered_rows(const Image& image) {
     constexpr char kPaeth = 4;
     const std::size_t row_bytes = kChannels * static_cast<std::size_t>(image.width);
     std::string above(row_bytes, '\0'), row(row_bytes, '\0'), rows;
-    const auto at = [](const std::string& codes, std::size_t i) { return static_cast<std::uint8_t>(codes[i]); };
+    const auto byte_at = [](const std::string& codes, std::size_t i) { return static_cast<std::uint8_t>(codes[i]); };
     for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {
         rows += kPaeth;
         for (std::size_t i = 0; i < row_bytes; ++i) {
             row[i] = static_cast<char>(srgb_code(image.rgb[y * row_bytes + i]));
-            const int left = i < kChannels ? 0 : at(row, i - kChannels);
-            const int corner = i < kChannels ? 0 : at(above, i - kChannels);
-            rows += static_cast<char>(at(row, i) - predicted(left, at(above, i), corner));
+            const int left = i < kChannels ? 0 : byte_at(row, i - kChannels);
+            const int corner = i < kChannels ? 0 : byte_at(above, i - kChannels);
+            rows += static_cast<char>(byte_at(row, i) - prediction(left, byte_at(above, i), corner));
         }
         std::swap(row, above);
     }
@@ -61,9 +61,9 @@ std::string filtered_rows(const Image& image) {
 std::string deflated(const std::string& text) {
     uLongf size = compressBound(static_cast<uLong>(text.size()));
     std::string bytes(size, '\0');
-    void* const to = bytes.data();
-    const void* const from = text.data();
-    const int code = compress2(static_cast<Bytef*>(to), &size, static_cast<const Bytef*>(from),
+    void* const output = bytes.data();
+    const void* const input = text.data();
+    const int code = compress2(static_cast<Bytef*>(output), &size, static_cast<const Bytef*>(input),
                                static_cast<uLong>(text.size()), Z_BEST_COMPRESSION);
     if (code != Z_OK) throw std::bad_alloc();  // the only possible error: the buffer is large enough
     bytes.resize(size);

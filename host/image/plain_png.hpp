@@ -6,9 +6,9 @@
 
 namespace raya {
 
-/// The bytes of a PNG file (ISO/IEC 15948) with the nearest 8-bit sRGB code of each value clamped to 0..1, as from
-/// write_image() with the default Tone, without attributes. Throws std::logic_error if `image` has no pixels or does
-/// not have 3 floats per pixel.
+/// Returns the bytes of a PNG file (ISO/IEC 15948) without attributes. It stores the 8-bit sRGB code nearest to each
+/// value clamped to 0..1, as write_image() does with the default Tone. Throws std::logic_error if `image` has no pixels
+/// or does not have 3 floats per pixel.
 std::string plain_png(const Image& image);
 
 }  // namespace raya

@@ -5,19 +5,19 @@
 
 namespace raya {
 
-inline constexpr int kPreviewSide = 256;  // pixels
+inline constexpr int kPreviewSide = 256;  // default maximum of a preview's longer side, pixels
 
-/// The number of pixels of one side of a preview. `own`: pixels of the same side of the image; `longest`: pixels of the
-/// image's longer side; `side`: maximum for the preview's longer side. Both sides are reduced by the same factor, to at
-/// least 1 pixel; an image within the maximum is not reduced.
-int preview_side(int own, int longest, int side = kPreviewSide);
+/// Returns the length of one side of a preview, in pixels as all lengths here. `image_side`: the same side of the
+/// image; `longer_side`: the image's longer side; `max_side`: maximum for the preview's longer side. Both sides are
+/// reduced by the same factor, but to at least 1 pixel. A small image is not enlarged.
+int preview_side(int image_side, int longer_side, int max_side = kPreviewSide);
 
-/// Reduces an image to at most `side` pixels per side, with the same proportions. Each pixel of the result is the mean
-/// of the pixels that it covers, after clamping them to 0..1 (NaN: 0), in linear light. An image within the maximum is
-/// only clamped. Throws std::logic_error if `image` has no pixels.
-Image preview_of(const Image& image, int side = kPreviewSide);
+/// Reduces an image to at most `max_side` pixels per side and keeps its proportions. Each pixel of the result is the
+/// mean of the pixels that it covers, after clamping them to 0..1 (NaN: 0), in linear light. A small image is only
+/// clamped. Throws std::logic_error if `image` has no pixels.
+Image preview_of(const Image& image, int max_side = kPreviewSide);
 
-/// The linear light that an sRGB screen displays for the 8-bit codes of the image with this tone.
+/// Returns the linear light that an sRGB screen displays for the 8-bit codes of `image` converted with `tone`.
 Image as_displayed(const Image& image, const Tone& tone);
 
 }  // namespace raya

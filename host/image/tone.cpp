@@ -51,13 +51,13 @@ ToneCodes::ToneCodes(const Tone& tone)
 
 std::array<std::uint8_t, 3> ToneCodes::operator()(const float* rgb) const {
     constexpr double kMaxFloat = std::numeric_limits<float>::max();
-    std::array<double, 3> v{};
+    std::array<double, 3> linear{};
     for (std::size_t i = 0; i < 3; ++i)
-        v[i] = std::isnan(rgb[i]) ? 0 : factor_ * std::clamp<double>(rgb[i], -kMaxFloat, kMaxFloat);
-    const double bright = luminance(v);
-    const double less = curve_ == ToneCurve::kReinhard && bright > 0 ? 1 / (1 + bright) : 1;
+        linear[i] = std::isnan(rgb[i]) ? 0 : factor_ * std::clamp<double>(rgb[i], -kMaxFloat, kMaxFloat);
+    const double light = luminance(linear);
+    const double scale = curve_ == ToneCurve::kReinhard && light > 0 ? 1 / (1 + light) : 1;
     std::array<std::uint8_t, 3> codes{};
-    for (std::size_t i = 0; i < 3; ++i) codes[i] = code_between(borders_, v[i] * less);
+    for (std::size_t i = 0; i < 3; ++i) codes[i] = code_between(borders_, linear[i] * scale);
     return codes;
 }
 

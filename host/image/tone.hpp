@@ -10,11 +10,12 @@
 
 namespace raya {
 
-/// borders[k]: the linear value at which the nearest code changes from k to k + 1: that of the encoded value
-/// (k + 1/2) / 255.
+/// borders[k]: the linear value at which the nearest code changes from k to k + 1. Its encoded value is (k + 1/2) /
+/// 255.
 using CodeBorders = std::array<double, 255>;
 
-/// The borders of a transfer curve. `linear_from`: the inverse of the curve, from encoded values 0..1 to linear light.
+/// Returns the borders of a transfer curve. `linear_from`: the inverse of the curve, from encoded values 0..1 to linear
+/// light.
 template <class Curve>
 CodeBorders code_borders(Curve&& linear_from) {
     CodeBorders borders;
@@ -22,24 +23,24 @@ CodeBorders code_borders(Curve&& linear_from) {
     return borders;
 }
 
-/// The borders of the sRGB curve.
+/// Returns the borders of the sRGB curve.
 const CodeBorders& srgb_borders();
 
-/// The code 0..255 that is nearest to 255 curve(linear), for the curve of `borders`; 0 for negative values and NaN, 255
-/// above 1.
+/// Returns the code 0..255 that is nearest to 255 curve(linear), for the curve of `borders`; 0 for negative values and
+/// NaN, 255 above 1.
 std::uint8_t code_between(const CodeBorders& borders, double linear);
 
-/// The nearest code on the sRGB curve. It is the same on every machine: the code follows from comparisons with the 255
-/// borders, and the relative distance of every float from every border is more than 10^-11, while the relative error of
-/// the C library's pow() is about 10^-16.
+/// Returns the nearest code on the sRGB curve. The code is the same on every machine, because it follows from
+/// comparisons with the 255 borders. The relative distance of every float from every border is more than 10^-11, but
+/// the relative error of the C library's pow() is only about 10^-16.
 std::uint8_t srgb_code(float linear);
 
-/// The linear value of a code on the sRGB curve.
+/// Returns the linear value of a code on the sRGB curve.
 float srgb_light(std::uint8_t code);
 
 enum class ToneCurve {
     kClip,      // clamps to 1
-    kReinhard,  // luminance L becomes L / (1 + L); all three components are scaled by 1 / (1 + L), which keeps hues
+    kReinhard,  // scales all three components by 1 / (1 + L), L: luminance; keeps hues
 };
 
 /// The conversion of linear colours to codes: multiplication by 2^exposure, then the tone curve, then the transfer
@@ -51,14 +52,14 @@ struct Tone {
     bool operator==(const Tone&) const = default;
 };
 
-/// The name of a curve in options and metadata: "clip" or "reinhard".
+/// Returns the name of a curve in options and metadata: "clip" or "reinhard".
 const char* tone_curve_name(ToneCurve curve);
 
-/// The members of `tone` that differ from the defaults, as attributes of an image file.
+/// Returns the members of `tone` that differ from the defaults, as attributes of an image file.
 ImageAttributes tone_attributes(const Tone& tone);
 
 /// Converts pixels to codes. The result is the same on every machine, except for values at the border of two codes,
-/// where the rounding of pow() matters.
+/// which depend on the rounding of pow().
 ///
 /// kReinhard: equation 3 of E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone Reproduction for Digital
 /// Images", SIGGRAPH 2002. The factor 2^exposure replaces the paper's key value divided by the log-average luminance,
@@ -68,7 +69,7 @@ class ToneCodes {
   public:
     explicit ToneCodes(const Tone& tone);
 
-    /// The codes of one pixel. `rgb`: 3 linear values, red, green and blue.
+    /// Returns the codes of one pixel. `rgb`: 3 linear values, red, green and blue.
     std::array<std::uint8_t, 3> operator()(const float* rgb) const;
 
   private:

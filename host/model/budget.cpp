@@ -3,17 +3,16 @@
 namespace raya {
 namespace {
 
-// The cost of each ray in addition to its intersection tests. Branches: call of the search for the nearest hit, and
-// return. Moves: counter and pointer for each of the two object lists of the paper's machine, spheres and planes.
+// Cost of a ray in addition to its intersection tests. Branches: call of the search for the nearest hit, and return.
+// Moves: counter and pointer for each of the two object lists of the paper's machine, spheres and planes.
 constexpr std::uint32_t kRayBranches = 2, kRayMoves = 4;
 
-// The cost of a sphere that the ray intersects, from the square root s on. It is charged to the hit, because the test
-// ends with the sign of the discriminant. b - s, b + s: 2; comparison with the nearest hit so far: 1. Branches: 0 < t,
-// nearer.
-constexpr std::uint32_t kPiercedOperations = 3, kPiercedBranches = 2;
+// Cost of a hit on a sphere in addition to the sphere test, which ends with the sign of the discriminant, and to the
+// square root s. b - s, b + s: 2; comparison with the nearest hit so far: 1. Branches: 0 < t, nearer.
+constexpr std::uint32_t kSphereHitOperations = 3, kSphereHitBranches = 2;
 
 // The comment before each budget lists the terms of the event's formulas (names as in kernels/README.md), each with its
-// number of multiply-accumulates, then the moves and the conditions of the branches.
+// number of multiply-accumulates, then the moves with their numbers, and the conditions of the branches.
 constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
     // corner + j step: 3, + x step: 3, normalise: 3 + 3. Moves: conversion of j and x to numbers 2, origin 3, sum 3,
     // weight 1, store of the finished pixel 3. Branches: next pixel.
@@ -23,15 +22,15 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .roots = 1,
      .moves = 2 + 3 + 3 + 1 + 3 + kRayMoves,
      .branches = 1 + kRayBranches,
-     .why = "normalised direction through the pixel; store of the pixel. Excluded: the 3 operations of the background "
-            "for a ray that hits nothing"},
-    {.event = RAYA_PRIMARY_HITS, .why = "counted only for the report: the work is charged to the shaded hits"},
+     .work = "normalised direction through the pixel; store of the pixel. Excluded: the 3 operations of the background "
+             "for a ray that hits nothing"},
+    {.event = RAYA_PRIMARY_HITS, .work = "counted only for the report: the work is charged to the shaded hits"},
     // weight: 1. Moves: origin and direction, which replace those of the ray after all lights were processed.
     {.event = RAYA_REFLECTED,
      .multiply_accumulates = 1,
      .moves = 6 + kRayMoves,
      .branches = kRayBranches,
-     .why = "weight; the direction is charged to the shaded hit, because highlights need it too"},
+     .work = "weight; the direction is charged to the shaded hit, because highlights need it too"},
     // cos: 3, 1 - cos^2: 1, e^2: 1, g: 1, e cos - root: 2, times N: 3, + e D: 3, normalise: 3 + 3, weight: 1, P-: 3.
     // Divisions: 1 / ior, normalise. Moves: push 7, pop 7. Branches: g < 0, level.
     {.event = RAYA_REFRACTED,
@@ -40,8 +39,8 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .roots = 2,
      .moves = 7 + 7 + kRayMoves,
      .branches = 2 + kRayBranches,
-     .why = "Snell's law, normalised direction; push and pop. Excluded: the 6 operations and the division that end in "
-            "total reflection or at the last level"},
+     .work = "Snell's law, normalised direction; push and pop. Excluded: the 6 operations and the division that end in "
+             "total reflection or at the last level"},
     // arm: 3, N.arm: 3, |arm|^2: 3, direction: 3. Branches: faces away, occluded, next light.
     {.event = RAYA_SHADOW,
      .multiply_accumulates = 3 + 3 + 3 + 3,
@@ -49,24 +48,24 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .roots = 1,
      .moves = kRayMoves,
      .branches = 3 + kRayBranches,
-     .why = "vector to the light and its length. Excluded: the 6 operations for a surface that faces away"},
+     .work = "vector to the light and its length. Excluded: the 6 operations for a surface that faces away"},
     {.event = RAYA_SHADOW_HITS,
-     .multiply_accumulates = kPiercedOperations,
+     .multiply_accumulates = kSphereHitOperations,
      .roots = 1,
-     .branches = kPiercedBranches,
-     .why = "root of the sphere that occludes the light. Excluded: spheres hit beyond the light; too high if a plane "
-            "occludes it"},
+     .branches = kSphereHitBranches,
+     .work = "root of the sphere that occludes the light. Excluded: spheres hit beyond the light; too high if a plane "
+             "occludes it"},
     // C - O: 3, b = c.D: 3, l = c - b D: 3, r^2 - l.l: 3. Branches: miss.
     {.event = RAYA_SPHERE_TESTS,
      .multiply_accumulates = 3 + 3 + 3 + 3,
      .branches = 1,
-     .why = "up to the sign of the discriminant. The 12 operations hide the loads of its 4 words"},
+     .work = "up to the sign of the discriminant. The 12 operations hide the loads of its 4 words"},
     // n.D: 3, d - n.O: 3, comparison of t with the nearest hit so far: 1. Branches: 0 < t, nearer.
     {.event = RAYA_PLANE_TESTS,
      .multiply_accumulates = 3 + 3 + 1,
      .divisions = 1,
      .branches = 2,
-     .why = "up to t, which is required to detect a miss"},
+     .work = "up to t, which is required to detect a miss"},
     // For each of four corners: minus O: 3, shear: 2, v compared with 0: 1. For each of the two edges that cross v = 0,
     // comparison of two products: 3. One test in twenty continues with (box: 4 * 3 + 4 * 6, plane: 7, t D: 3, inside
     // the box: 6) / 20. Moves: counter and pointer of the corners. Branches: one per edge, inside.
@@ -74,8 +73,8 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .multiply_accumulates = 4 * (3 + 2 + 1) + 2 * 3 + (12 + 24 + 7 + 3 + 6) / 20,
      .moves = 2,
      .branches = 4 + 1,
-     .why = "an outline of four edges (3.5 in scenes/polygons.nff), and its plane for one test in twenty. Excluded: "
-            "two divisions per ray, once for all its polygons"},
+     .work = "an outline of four edges (3.5 in scenes/polygons.nff), and its plane for one test in twenty. Excluded: "
+             "two divisions per ray, once for all its polygons"},
     // X - base: 3, to the nearest point: 3 + 3, z: 3, dz: 3, side: 3, dside: 3, radius: 1, dradius: 1, a: 1 + 3,
     // b: 1 + 3, c: 1 + 3, discriminant: 2. A third of the tests continues with (q, z and t twice, comparisons with 0, h
     // and the nearest hit: 9) / 3, and with a root and two divisions, charged as one division to every test. Branches:
@@ -84,25 +83,25 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .multiply_accumulates = 3 + 3 + 3 + 3 + 3 + 3 + 3 + 1 + 1 + 4 + 4 + 4 + 2 + 9 / 3,
      .divisions = 1,
      .branches = 1 + 3 / 3,
-     .why = "up to the sign of the discriminant; three tests in ten (scenes/cones.nff) continue to a root and two "
-            "divisions, charged as one division to every test. The 40 operations hide the loads of its 10 words"},
-    // Sphere: kPiercedOperations. P: 3, P - C: 3, normalise: 3 + 3, N.D: 3, orient: 3, margin: 3 comparisons + 1,
+     .work = "up to the sign of the discriminant; three tests in ten (scenes/cones.nff) continue to a root and two "
+             "divisions, charged as one division to every test. The 40 operations hide the loads of its 10 words"},
+    // Sphere: kSphereHitOperations. P: 3, P - C: 3, normalise: 3 + 3, N.D: 3, orient: 3, margin: 3 comparisons + 1,
     // P+: 3, N.D of the oriented normal: 3, times -2: 1, R: 3, Kd C: 3, w A: 1, ambient: 3, kr: 1. Moves: t and number
     // of the nearest hit. Branches: any hit, sphere, cone, leaving, T > 0, kr > 0, level, pending ray.
     {.event = RAYA_SHADED,
-     .multiply_accumulates = kPiercedOperations + 3 + 3 + 3 + 3 + 3 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 1,
+     .multiply_accumulates = kSphereHitOperations + 3 + 3 + 3 + 3 + 3 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 1,
      .divisions = 1,
      .roots = 1 + 1,
      .moves = 2,
-     .branches = kPiercedBranches + 8,
-     .why = "root of the sphere, point, normal, margin, mirror direction, tint and ambient term for a sphere; a plane "
-            "needs no root and no normalisation, a cone 7 operations more. Excluded: spheres hit farther away, a "
-            "patch's normal, and a checker's two divisions"},
+     .branches = kSphereHitBranches + 8,
+     .work = "root of the sphere, point, normal, margin, mirror direction, tint and ambient term for a sphere; a plane "
+             "needs no root and no normalisation, a cone 7 operations more. Excluded: spheres hit farther away, a "
+             "patch's normal, and a checker's two divisions"},
     // N.L: 3, times tint: 3, R.L: 3, times I: 3, added to the sum: 3. Branches: Ks > 0, R.L > 0.
     {.event = RAYA_LIT,
      .multiply_accumulates = 3 + 3 + 3 + 3 + 3,
      .branches = 2,
-     .why = "diffuse term and cosine of the highlight, times the light, added to the pixel"},
+     .work = "diffuse term and cosine of the highlight, times the light, added to the pixel"},
     // x compared with 1: 1, log2 (number/power.clh): m - 1, m + 1, s^2, three terms, plus the exponent: 7, times n: 1,
     // exp2: integer part, f, six terms, times the power of two: 9, Ks: 1, added to three colours: 3. Moves: split of
     // significand and exponent 2, exponent to number 1, number to exponent 2. Branches: too dark to be visible.
@@ -111,7 +110,7 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .divisions = 1,
      .moves = 2 + 1 + 2,
      .branches = 1,
-     .why = "x^n as 2^(n log2 x); both series have fp32's length, 16 bits would need one term less in each"},
+     .work = "x^n as 2^(n log2 x); both series have fp32's length, 16 bits would need one term less in each"},
     // 1 / D: three divisions; entry to and exit from the box: 6 planes of 2, and 4 comparisons; first voxel: 3 times
     // (O + t D, minus corner, times 1 / cell, integer part: 4); its far sides: 3 times (plane: 1, minus O: 1, times
     // 1 / D: 1). Moves: voxel numbers and signs of D. Branches: misses the box, sign of each component.
@@ -120,14 +119,14 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .divisions = 3,
      .moves = 6,
      .branches = 1 + 3,
-     .why = "clipping of the ray to the box, and its first voxel"},
+     .work = "clipping of the ray to the box, and its first voxel"},
     // Minimum of three: 2 comparisons, voxel: 1, next plane: 1, minus O: 1, times 1 / D: 1, nearest hit compared with
     // the voxel's far side: 1. Moves: start and end of the voxel's list. Branches: axis 2, left the box, done.
     {.event = RAYA_STEPS,
      .multiply_accumulates = 2 + 1 + 1 + 1 + 1 + 1,
      .moves = 2,
      .branches = 2 + 1 + 1,
-     .why = "the next voxel (Amanatides & Woo 1987, but recomputing the plane's position instead of adding)"},
+     .work = "the next voxel (Amanatides & Woo 1987, but recomputing the plane's position instead of adding)"},
     // Direction of a primary ray: 12, as for RAYA_PRIMARY; its first voxel: 37, as for RAYA_WALKS. Moves: j and x 2,
     // origin 3, sum 3, first voxel 6. Branches: next pixel, first voxel 4, owner of the voxel.
     {.event = RAYA_DISCARDED,
@@ -136,8 +135,8 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .roots = 1,
      .moves = 2 + 3 + 3 + 6,
      .branches = 1 + 4 + 1,
-     .why = "a primary ray whose first voxel belongs to another node: no packet. A ray that misses the box is charged "
-            "the same"},
+     .work = "a primary ray whose first voxel belongs to another node: no packet. A ray that misses the box is charged "
+             "the same"},
 }};
 
 constexpr bool budgets_in_order() {
@@ -157,28 +156,28 @@ std::uint32_t cycles_of(const Budget& b) {
 }
 
 Operations operations_of(const EventCounts& events) {
-    Operations sum;
+    Operations total;
     for (const Budget& b : kBudgets) {
         const std::uint64_t count = events[static_cast<std::size_t>(b.event)];
-        sum.multiply_accumulates += count * b.multiply_accumulates;
-        sum.divisions += count * b.divisions;
-        sum.roots += count * b.roots;
-        sum.moves += count * b.moves;
-        sum.branches += count * b.branches;
+        total.multiply_accumulates += count * b.multiply_accumulates;
+        total.divisions += count * b.divisions;
+        total.roots += count * b.roots;
+        total.moves += count * b.moves;
+        total.branches += count * b.branches;
     }
-    return sum;
+    return total;
 }
 
 // Each colour component of a pixel takes four additions and one multiplication by 1/9. The two buses load both operands
-// of an operation in parallel with arithmetic, but the result must be stored before the next operands are loaded: one
-// move per operation. Branches: for each side, neighbour exists.
+// of an operation in parallel with arithmetic. But the result must be stored before the next operands are loaded, so
+// each operation takes one move. Branches: for each side of the pixel, neighbour exists.
 std::uint64_t filter_cycles(std::uint64_t pixels) {
     constexpr Budget kPixel = {.multiply_accumulates = 3 * (4 + 1), .moves = 3 * (4 + 1), .branches = 4};
     return pixels * cycles_of(kPixel);
 }
 
-// For each side and colour component: clamp of both values to 0..1: 4, difference: 1, comparison with the threshold: 1.
-// Branches for each side: neighbour exists, and one per component. Moves: the flag that the pixel is supersampled.
+// For each side of a pixel and colour component: clamp of both values to 0..1: 4, difference: 1, comparison with the
+// threshold: 1. Branches for each side: neighbour exists, and one per component. Moves: store of the mark.
 std::uint64_t compare_cycles(std::uint64_t pixels) {
     constexpr Budget kPixel = {.multiply_accumulates = 4 * 3 * (4 + 1 + 1), .moves = 1, .branches = 4 * (1 + 3)};
     return pixels * cycles_of(kPixel);

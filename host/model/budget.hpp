@@ -1,15 +1,15 @@
 // Instruction budgets: the cycles that each event costs on a DSP with one multiply-accumulate per cycle and no hardware
-// division or square root. They were counted by hand from the formulas in kernels/README.md, not fitted to published
-// times.
+// division or square root. The operations were counted by hand from the formulas in kernels/README.md, not fitted to
+// published times.
 //
-// The assumptions and their sources: [P] printed in Kohata & Ito 1993, [?] assumed here.
+// Assumptions, each with its source: [P] printed in Kohata & Ito 1993, [?] assumed here.
 //   - One multiply-accumulate, addition, multiplication or comparison takes one cycle [P: 20 MFLOPS at 100 ns]. Its
 //     result can be used in the next cycle, and a negation is a multiply-subtract [?].
-//   - Two data buses transfer two words per cycle in parallel with the arithmetic; a DSP needs them to sustain one
-//     multiply-accumulate per cycle. A move costs a cycle only if no arithmetic runs in parallel with it. The budgets
-//     contain only such moves [?].
+//   - Two data buses transfer two words per cycle in parallel with the arithmetic, because one multiply-accumulate per
+//     cycle requires two operands per cycle. A move costs a cycle only if no arithmetic runs in parallel with it. The
+//     budgets contain only such moves [?].
 //   - Loops over objects and lights are hardware loops without overhead. A conditional branch, call or return costs 3
-//     cycles, taken or not: its own and two that are lost in the pipeline (fetch, decode, execute) [?].
+//     cycles, taken or not: one to execute it and two that are lost in the pipeline (fetch, decode, execute) [?].
 //   - Division a / b: seed y = 1 / b from a table of 256 words indexed by the upper 8 bits of the significand, error
 //     < 2^-8; one Newton step, e = 1 - b y, y + e y, squares the error to < 2^-16, half a unit of a 16-bit significand;
 //     then a y [?].
@@ -26,28 +26,28 @@
 
 namespace raya {
 
-inline constexpr std::uint32_t kSeedCycles = 3;                        // extract the index, read, set the exponent
-inline constexpr std::uint32_t kDivisionCycles = kSeedCycles + 2 + 1;  // Newton step, a y
-inline constexpr std::uint32_t kRootCycles = kSeedCycles + 1 + 3 + 1;  // x/2, Newton step, x y
+inline constexpr std::uint32_t kSeedCycles = 3;  // extract the table index, read the table, set the exponent
+inline constexpr std::uint32_t kDivisionCycles = kSeedCycles + 2 + 1;  // seed, Newton step, a y
+inline constexpr std::uint32_t kRootCycles = kSeedCycles + 1 + 3 + 1;  // seed, x/2, Newton step, x y
 inline constexpr std::uint32_t kBranchCycles = 3;
 
-/// The operations that one event of a kind costs.
+/// Numbers of operations that one event of a kind costs.
 struct Budget {
     int event = 0;                           // RAYA_* of kernels/shared/events.h
     std::uint32_t multiply_accumulates = 0;  // additions, multiplications, comparisons and multiply-accumulates
     std::uint32_t divisions = 0, roots = 0;
-    std::uint32_t moves = 0;  // only moves without arithmetic in parallel
+    std::uint32_t moves = 0;  // moves without arithmetic in parallel
     std::uint32_t branches = 0;
-    const char* why = "";  // which work is included and excluded
+    const char* work = "";  // text: the work that the budget includes and excludes
 };
 
-/// The budgets of all events, in the order of kernels/shared/events.h.
+/// Returns the budgets of all events, in the order of kernels/shared/events.h.
 const std::array<Budget, RAYA_EVENTS>& budgets();
 
-/// The cycles of one event with this budget.
+/// Returns the cycles of one event with this budget.
 std::uint32_t cycles_of(const Budget& budget);
 
-/// The total operations of many events.
+/// Total numbers of operations of many events.
 struct Operations {
     std::uint64_t multiply_accumulates = 0, divisions = 0, roots = 0, moves = 0, branches = 0;
 };

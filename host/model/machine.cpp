@@ -31,10 +31,11 @@ Machine spa() {
         .host_words_per_s = 196'608 / 0.140};            // [D] Table 2: 256 x 256 pixels of 3 words in 140 ms
 }
 
-// An array with a mapping that the paper compares with the SPA. Its PEs are those of the SPA without a memory limit, so
-// that loads can be compared. There are no modelled times, because the rates of the real PEs and links are unknown.
-Machine array_like(const std::string& name, const std::string& title, const std::string& topology,
-                   const MappingRule& mapping, std::uint32_t pes) {
+// Returns an array with a mapping that the paper compares with the SPA. Its PEs are those of the SPA without a memory
+// limit, so that loads can be compared. It has no modelled times, because the rates of the real PEs and links are
+// unknown.
+Machine array_of_spa_pes(const std::string& name, const std::string& title, const std::string& topology,
+                         const MappingRule& mapping, std::uint32_t pes) {
     Machine machine;
     machine.name = name;
     machine.title = title;
@@ -45,15 +46,16 @@ Machine array_like(const std::string& name, const std::string& title, const std:
     return machine;
 }
 
-// [P] When a PE has finished a pixel, it requests the next one from a root PE. [?] As many PEs as the SPA.
+// [P] When a PE has finished a pixel, it requests the next one from a root PE. [?] The array has as many PEs as the
+// SPA.
 Machine links() {
     Machine machine =
-        array_like("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", cyclic_mapping(0), 256);
+        array_of_spa_pes("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", cyclic_mapping(0), 256);
     machine.dynamic = DynamicPlan{.chunk = 1};
     return machine;
 }
 
-// [?] The SPA without the memory limit, one PE per column, with fp32 and a BVH: for scenes that do not fit into an SPA.
+// [?] The SPA without a memory limit, with one PE per image column, fp32 and a BVH: for scenes that do not fit the SPA.
 Machine grande() {
     Machine machine = spa();
     machine.name = machine.title = "grande";
@@ -64,7 +66,7 @@ Machine grande() {
     return machine;
 }
 
-// [P] The SPA with one DSP of Table 2, with the same host.
+// [P] The machine with one DSP of Table 2; its host is that of the SPA.
 Machine spa1() {
     Machine machine = spa();
     machine.name = "spa1";
@@ -106,11 +108,11 @@ const std::vector<Machine>& machines() {
         spa(),
         grande(),
         spa1(),
-        // [P] 256 cells; every 16th pixel in both directions [D: n = 16 where P = n x n]
-        array_like("cap", "the array of the CAP, on PEs of the SPA", "2-D array", grid_mapping(16, 16), 256),
-        // [P] 64 nodes; every 8th pixel of every 8th line [D]
-        array_like("pixel-machine", "the array of the Pixel Machine, on PEs of the SPA", "2-D array",
-                   grid_mapping(8, 8), 64),
+        // [P] 256 cells; each has every 16th pixel in both directions [D: n = 16 if P = n x n]
+        array_of_spa_pes("cap", "the array of the CAP, on PEs of the SPA", "2-D array", grid_mapping(16, 16), 256),
+        // [P] 64 nodes; each has every 8th pixel of every 8th line [D]
+        array_of_spa_pes("pixel-machine", "the array of the Pixel Machine, on PEs of the SPA", "2-D array",
+                         grid_mapping(8, 8), 64),
         links(),
         torus(),
     };

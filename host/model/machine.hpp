@@ -1,6 +1,5 @@
-// Descriptions of the array machines (machine.cpp gives the source of each number), and of the acceleration structure
-// inside a PE. The acceleration structure determines which objects a ray is tested against, but does not change the
-// image.
+// Descriptions of the array machines, and of the acceleration structure inside a PE. The acceleration structure
+// determines which objects a ray is tested against, but does not change the image.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,7 +15,7 @@
 
 namespace raya {
 
-using Divisions = std::array<std::uint32_t, 3>;  // voxels along x, y, z
+using Divisions = std::array<std::uint32_t, 3>;  // numbers of voxels along x, y, z
 
 enum class AccelKind : std::uint32_t {
     kNone = RAYA_ACCEL_NONE,  // every ray is tested against all objects
@@ -27,22 +26,22 @@ enum class AccelKind : std::uint32_t {
 /// The choice of an acceleration structure.
 struct Accel {
     AccelKind kind = AccelKind::kNone;
-    std::optional<Divisions> divisions{};  // of a grid over the bounding box of the scene; empty: see accel_partition()
+    std::optional<Divisions> divisions{};  // of a grid; empty: accel_partition() chooses them
 };
 
-/// The structure as a value of the option `--accel`: "none", "grid", "grid:4x4x4", "bvh".
+/// Returns a value of the option `--accel`: "none", "grid", "grid:4x4x4", "bvh".
 std::string accel_text(const Accel& accel);
 
 /// Size of an acceleration structure, for reports.
 struct AccelSummary {
     AccelKind kind = AccelKind::kNone;
-    std::uint64_t words = 0;     // its 32-bit words in the job
-    Divisions divisions{};       // of a grid
-    std::uint64_t copies = 0;    // of a grid: entries in the voxels' lists beyond one per object
-    std::uint32_t separate = 0;  // finite objects in no list and no leaf: every ray is tested against them
-    std::uint64_t nodes = 0;     // of a BVH
-    std::uint64_t leaves = 0;
-    std::uint32_t depth = 0;  // nodes on the longest path from the root of a BVH
+    std::uint64_t words = 0;   // number of 32-bit words of the structure in the job
+    Divisions divisions{};     // of a grid
+    std::uint64_t copies = 0;  // of a grid: number of entries in the voxels' lists minus number of objects in the lists
+    std::uint32_t separate = 0;  // number of separate objects (docs/glossary.md)
+    std::uint64_t nodes = 0;     // number of nodes of a BVH
+    std::uint64_t leaves = 0;    // number of leaves of a BVH
+    std::uint32_t depth = 0;     // number of nodes on the longest path from the root of a BVH
 };
 
 /// The scene or image does not fit into a PE's memory.
@@ -50,7 +49,7 @@ struct DoesNotFit : UserError {
     DoesNotFit(const std::string& message, std::uint64_t needed, std::uint64_t memory)
         : UserError(message), needed_bytes(needed), memory_bytes(memory) {}
 
-    std::uint64_t needed_bytes, memory_bytes;  // bytes that the fullest PE requires; bytes that a PE has
+    std::uint64_t needed_bytes, memory_bytes;  // memory that the fullest PE requires; memory of a PE
 };
 
 /// The number of events of each kind (RAYA_* of kernels/shared/events.h).
@@ -68,29 +67,30 @@ struct Machine {
     std::string title;     // for messages: "the SPA"
     std::string topology;  // of the links between PEs: "ring+bus", "torus3d", ...
     MachineKind kind = MachineKind::kRing;
-    std::optional<std::uint32_t> pes;              // empty: as many as the image has columns
-    std::optional<std::uint64_t> pe_memory_bytes;  // empty: no limit
-    std::uint32_t bounces = 8;
+    std::optional<std::uint32_t> pes;              // number of PEs; empty: one per image column
+    std::optional<std::uint64_t> pe_memory_bytes;  // memory of a PE; empty: no limit
+    std::uint32_t bounces = 8;             // maximum number of reflections and refractions after the primary ray
     NumberFormat format{};                 // of the PEs' arithmetic
     MappingRule mapping{};                 // of a ring: mapping of pixels to PEs
     Accel accel{};                         // of a ring: acceleration structure in every PE
     std::optional<DynamicPlan> dynamic{};  // empty: PEs do not request pixels at run time
 
     // Rates of the time model (model/time_model.hpp); empty if unknown.
-    std::optional<double> cycle_ns;          // cycle time of a PE: time of one multiply-accumulate
-    std::optional<double> link_words_per_s;  // rate of a link from a PE to its neighbour, and of the bus
+    std::optional<double> cycle_ns;  // cycle time of a PE
+    std::optional<double>
+        link_words_per_s;  // rate of a link from a PE to its neighbour, and rate of the bus between PEs
     std::optional<double> rotation_sync_ms;  // overhead of one rotation, or of one transfer over the bus
     std::optional<double> host_words_per_s;  // rate of broadcasts from the host and gathers to the host
 };
 
-/// The machines of `--machine`, the default first.
+/// Returns the machines that the option `--machine` accepts. The first is the default.
 const std::vector<Machine>& machines();
 
-/// The machine of that name. Throws UserError, with a list of all machines, if there is none.
+/// Returns the machine called `name`. Throws UserError, with a list of all machines, if there is no such machine.
 const Machine& machine_named(const std::string& name);
 
-/// Modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h) on a PE of the SPA, from the
-/// instruction budgets (model/budget.hpp). t805_cycles() (model/t805.hpp) is the same for the nodes of a torus.
+/// Returns the modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h) on a PE of the SPA, from
+/// the instruction budgets (model/budget.hpp). t805_cycles() (model/t805.hpp) returns those on a node of a torus.
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events();
 
 }  // namespace raya

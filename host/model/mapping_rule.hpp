@@ -1,5 +1,5 @@
-// Image sizes, mapping rules and dynamic distributions. A mapping rule is a mapping of pixels to PEs for which the size
-// of the image and the number of PEs are not chosen yet (kernels/shared/mapping.h defines mappings).
+// Image sizes, mapping rules and dynamic distributions. A mapping rule, an image size and a number of PEs together
+// determine a mapping of pixels to PEs (kernels/shared/mapping.h).
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace raya {
 
-inline constexpr std::uint32_t kMaxSide = 16384;  // pixels
+inline constexpr std::uint32_t kMaxSide = 16384;  // maximum width or height of an image, pixels
 
 struct ImageSize {
     std::uint32_t width = 0, height = 0;  // pixels
@@ -18,16 +18,15 @@ struct ImageSize {
     bool operator==(const ImageSize&) const = default;
 };
 
-/// The assignment of slots to PEs if the number of slots differs from the number of PEs.
+/// Assignment of slots to PEs if the number of slots differs from the number of PEs (kernels/shared/mapping.h).
 enum class Fold : std::uint32_t { kCyclic = RAYA_FOLD_CYCLIC, kBlock = RAYA_FOLD_BLOCK };
 
-/// A mapping rule. Create it by the functions below.
+/// The functions below create mapping rules.
 struct MappingRule {
-    std::uint32_t kind = RAYA_FOLD_CYCLIC;  // as in raya_mapping
-    std::uint32_t parameter = 0;            // as in raya_mapping
+    std::uint32_t kind = RAYA_FOLD_CYCLIC, parameter = 0;  // members of raya_mapping
 
     bool has_slots() const { return kind <= RAYA_FOLD_BLOCK; }
-    /// The number of PEs that the rule requires (grid_mapping()); empty for mappings to any number of PEs.
+    /// Returns the number of PEs that a grid_mapping() requires; empty for other rules, which map to any number of PEs.
     std::optional<std::uint32_t> pes() const {
         if (kind != RAYA_GRID) return {};
         return raya_first_of(parameter) * raya_second_of(parameter);
@@ -45,33 +44,35 @@ inline MappingRule column_mapping(Fold fold = Fold::kCyclic) { return cyclic_map
 inline MappingRule rows_mapping() { return {RAYA_ROWS, 0}; }
 /// Each PE has a contiguous block of scan lines.
 inline MappingRule blocks_mapping() { return {RAYA_BLOCKS, 0}; }
-/// `down` rows of `across` PEs; each PE has every `across`-th pixel of every `down`-th line. Both below 2^16.
+/// The array has `down` rows of `across` PEs. Each PE has every `across`-th pixel of every `down`-th scan line. `down`
+/// and `across` must be less than 2^16.
 inline MappingRule grid_mapping(std::uint32_t down, std::uint32_t across) {
     return {RAYA_GRID, raya_pair(down, across)};
 }
-/// Tiles of `width` x `height` pixels are assigned to the PEs cyclically. Both below 2^16.
+/// Tiles of `width` x `height` pixels are assigned to the PEs cyclically. `width` and `height`
+/// must be less than 2^16.
 inline MappingRule tiles_mapping(std::uint32_t width, std::uint32_t height) {
     return {RAYA_TILES, raya_pair(width, height)};
 }
 /// Pixels are assigned to the PEs at random; the numbers of pixels of any two PEs differ by at most one.
 inline MappingRule random_mapping(std::uint32_t seed) { return {RAYA_RANDOM, seed}; }
 
-inline constexpr std::uint32_t kMaxChunk = kMaxSide * kMaxSide;  // pixels: the largest image
-inline constexpr std::uint64_t kMaxOverhead = 1'000'000'000;     // cycles; times the largest image's pixels: < 2^58
+inline constexpr std::uint32_t kMaxChunk = kMaxSide * kMaxSide;  // pixels of the largest image
+inline constexpr std::uint64_t kMaxOverhead = 1'000'000'000;     // cycles; kMaxOverhead x kMaxChunk < 2^58
 
 /// A dynamic distribution: PEs request pixels at run time.
 struct DynamicPlan {
-    std::uint32_t chunk = 1;     // pixels per request, 1..kMaxChunk
+    std::uint32_t chunk = 1;     // number of pixels per request, 1..kMaxChunk
     std::uint64_t overhead = 0;  // cycles that a request costs the PE, 0..kMaxOverhead
-    double static_share = 0;     // fraction of its statically mapped pixels that a PE renders first, 0..1; 0: none
+    double static_fraction = 0;  // fraction of its statically mapped pixels that a PE renders before requests, 0..1
 
     bool operator==(const DynamicPlan&) const = default;
 };
 
 /// Returns true if all members of `plan` are in their ranges.
-inline bool is_plan(const DynamicPlan& plan) {
-    const bool is_share = !std::signbit(plan.static_share) && plan.static_share <= 1;  // no NaN, no -0
-    return plan.chunk >= 1 && plan.chunk <= kMaxChunk && plan.overhead <= kMaxOverhead && is_share;
+inline bool is_valid_plan(const DynamicPlan& plan) {
+    const bool is_fraction = !std::signbit(plan.static_fraction) && plan.static_fraction <= 1;  // no NaN, no -0
+    return plan.chunk >= 1 && plan.chunk <= kMaxChunk && plan.overhead <= kMaxOverhead && is_fraction;
 }
 
 }  // namespace raya

@@ -14,34 +14,34 @@
 namespace raya {
 namespace {
 
-[[noreturn]] void refuse(const std::string& text) {
+[[noreturn]] void throw_invalid_format(const std::string& text) {
     throw UserError(
         fmt::format("--format {}: must be fp32, spa22 (e6m15), or eXmY with X = 5..8 exponent and Y = 4..21 fraction "
                     "bits, and t to truncate",
                     text));
 }
 
-// Reads `letter` and the decimal number after it, from position `at` on. Advances `at` past both.
-int read_field(const std::string& text, std::size_t& at, char letter) {
-    if (at >= text.size() || text[at] != letter) refuse(text);
+// Reads `letter` and a decimal number at `position`, and advances `position` past both. Returns the number.
+int read_field(const std::string& text, std::size_t& position, char letter) {
+    if (position >= text.size() || text[position] != letter) throw_invalid_format(text);
     int value = 0;
-    const auto [end, error] = std::from_chars(text.data() + at + 1, text.data() + text.size(), value);
-    if (error != std::errc{}) refuse(text);
-    at = static_cast<std::size_t>(end - text.data());
+    const auto [end, error] = std::from_chars(text.data() + position + 1, text.data() + text.size(), value);
+    if (error != std::errc{}) throw_invalid_format(text);
+    position = static_cast<std::size_t>(end - text.data());
     return value;
 }
 
-constexpr int kDoubleFraction = 52, kDoubleBias = 1023;
+constexpr int kDoubleFractionBits = 52, kDoubleBias = 1023;
 
 // 2^exponent, which must be in the range of normal doubles.
 double power_of_two(int exponent) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(kDoubleBias + exponent) << kDoubleFraction);
+    return std::bit_cast<double>(static_cast<std::uint64_t>(kDoubleBias + exponent) << kDoubleFractionBits);
 }
 
 // Rounds to `bits` fraction bits, ties to even, or truncates. A carry out of the fraction gives the next power of two,
 // or infinity. The result for denormal doubles does not matter: they are below the range of every format.
 double with_fraction_bits(double value, int bits, bool truncates) {
-    const int dropped = kDoubleFraction - bits;
+    const int dropped = kDoubleFractionBits - bits;
     auto pattern = std::bit_cast<std::uint64_t>(value);
     const std::uint64_t unit = std::uint64_t{1} << dropped;
     if (!truncates) pattern += unit / 2 - 1 + (pattern >> dropped & 1);
@@ -53,14 +53,14 @@ double with_fraction_bits(double value, int bits, bool truncates) {
 NumberFormat parse_format(const std::string& text) {
     if (text == "fp32") return {};
     if (text == "spa22") return {6, 15, false};
-    std::size_t at = 0;
+    std::size_t position = 0;
     NumberFormat format;
-    format.exponent_bits = read_field(text, at, 'e');
-    format.fraction_bits = read_field(text, at, 'm');
-    format.truncates = at < text.size() && text[at] == 't';
-    if (at + (format.truncates ? 1 : 0) != text.size()) refuse(text);
+    format.exponent_bits = read_field(text, position, 'e');
+    format.fraction_bits = read_field(text, position, 'm');
+    format.truncates = position < text.size() && text[position] == 't';
+    if (position + (format.truncates ? 1 : 0) != text.size()) throw_invalid_format(text);
     if (format.exponent_bits < 5 || format.exponent_bits > 8 || format.fraction_bits < 4 || format.fraction_bits > 21)
-        refuse(text);
+        throw_invalid_format(text);
     return format;
 }
 
@@ -72,7 +72,7 @@ std::string format_name(const NumberFormat& format) {
 double smallest_number(const NumberFormat& format) { return std::ldexp(1.0, 2 - (1 << (format.exponent_bits - 1))); }
 
 double farthest_hit(const NumberFormat& format) {
-    constexpr int kFp32Exponent = 60;
+    constexpr int kFp32Exponent = 60;  // RAYA_FAR of fp32 is 2^60
     return std::ldexp(1.0, std::min((1 << (format.exponent_bits - 2)) - 1, kFp32Exponent));
 }
 

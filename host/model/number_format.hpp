@@ -19,13 +19,13 @@ struct NumberFormat {
 /// for any other text.
 NumberFormat parse_format(const std::string& text);
 
-/// The name of a format as parse_format() reads it: "fp32", "e6m15", "e6m15t".
+/// Returns the name of a format, which parse_format() accepts: "fp32", "e6m15", "e6m15t".
 std::string format_name(const NumberFormat& format);
 
-/// The smallest positive normal number. Results with a smaller magnitude may be flushed to zero.
+/// Returns the smallest positive normal number. Results with a smaller magnitude may be flushed to zero.
 double smallest_number(const NumberFormat& format);
 
-/// The maximum distance of a hit (RAYA_FAR in kernels/number/), whose square does not overflow.
+/// Returns the maximum distance of a hit (RAYA_FAR in kernels/number/). Its square does not overflow.
 double farthest_hit(const NumberFormat& format);
 
 /// Converts `value` to the format: rounds once, saturates at the largest number, and flushes magnitudes below

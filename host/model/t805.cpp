@@ -7,20 +7,23 @@
 namespace raya {
 namespace {
 
-// The terms of each sum are in the order of the comments here, which abbreviate those of model/budget.cpp.
+// Each comment lists the terms of the sums below it, in the same order. model/budget.cpp explains the terms.
 constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     // corner + j step, + x step, normalise: |d|^2, times 1 / |d|
-    {.event = RAYA_PRIMARY, .additions = 3 + 3 + 2, .multiplications = 3 + 3 + 3 + 3, .makes = Makes::kRay},
+    {.event = RAYA_PRIMARY, .additions = 3 + 3 + 2, .multiplications = 3 + 3 + 3 + 3, .creates = CreatedPacket::kRay},
     {.event = RAYA_PRIMARY_HITS},
     // weight
-    {.event = RAYA_REFLECTED, .multiplications = 1, .makes = Makes::kRay},
+    {.event = RAYA_REFLECTED, .multiplications = 1, .creates = CreatedPacket::kRay},
     // cos, 1 - cos^2, e^2, g, e cos - root, times N, + e D, normalise, weight, P-
     {.event = RAYA_REFRACTED,
      .additions = 2 + 1 + 0 + 1 + 1 + 0 + 3 + 2 + 0 + 3,
      .multiplications = 3 + 1 + 1 + 1 + 1 + 3 + 3 + (3 + 3) + 1 + 3,
-     .makes = Makes::kRay},
+     .creates = CreatedPacket::kRay},
     // arm, N.arm, |arm|^2, direction
-    {.event = RAYA_SHADOW, .additions = 3 + 2 + 2 + 0, .multiplications = 0 + 3 + 3 + 3, .makes = Makes::kRay},
+    {.event = RAYA_SHADOW,
+     .additions = 3 + 2 + 2 + 0,
+     .multiplications = 0 + 3 + 3 + 3,
+     .creates = CreatedPacket::kRay},
     // b - s, b + s, comparison with the nearest hit so far
     {.event = RAYA_SHADOW_HITS, .additions = 2 + 1},
     // C - O, b, l, r^2 - l.l
@@ -42,9 +45,12 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     {.event = RAYA_SHADED,
      .additions = 3 + 3 + 3 + 2 + 2 + 3 + 3 + 3 + 2 + 0 + 3 + 0 + 0 + 3 + 0,
      .multiplications = 0 + 3 + 0 + (3 + 3) + 3 + 0 + 1 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 1,
-     .makes = Makes::kReturn},
+     .creates = CreatedPacket::kReturn},
     // N.L, times tint, R.L, times I, added to the sum; the shadow packet becomes a return packet
-    {.event = RAYA_LIT, .additions = 2 + 0 + 2 + 0 + 3, .multiplications = 3 + 3 + 3 + 3 + 3, .makes = Makes::kTerm},
+    {.event = RAYA_LIT,
+     .additions = 2 + 0 + 2 + 0 + 3,
+     .multiplications = 3 + 3 + 3 + 3 + 3,
+     .creates = CreatedPacket::kContribution},
     // x compared with 1, log2, times n, exp2, Ks, added to three colours
     {.event = RAYA_HIGHLIGHTS,
      .additions = 1 + (2 + 0 + 3 + 1) + 0 + (1 + 1 + 6) + 0 + 3,
@@ -65,11 +71,11 @@ constexpr bool work_in_order() {
 static_assert(work_in_order());
 
 std::uint32_t cycles_of(const T805Work& work, const Budget& budget, const PacketCharge& packets) {
-    const std::uint32_t operations =
-        work.additions + work.multiplications + budget.divisions + budget.roots;  // each loads one operand
+    const std::uint32_t operations = work.additions + work.multiplications + budget.divisions +
+                                     budget.roots;  // number of operations that load an operand
     return kT805AdditionCycles * work.additions + kT805MultiplicationCycles * work.multiplications +
            kT805DivisionCycles * budget.divisions + kT805RootCycles * budget.roots + kT805OperandCycles * operations +
-           kT805MoveCycles * budget.moves + kT805StoreCycles * packets.words_of(work.makes) +
+           kT805MoveCycles * budget.moves + kT805StoreCycles * packets.words_of(work.creates) +
            kT805BranchCycles * budget.branches;
 }
 
@@ -77,15 +83,15 @@ std::uint32_t cycles_of(const T805Work& work, const Budget& budget, const Packet
 
 const std::array<T805Work, RAYA_EVENTS>& t805_work() { return kWork; }
 
-std::uint32_t PacketCharge::words_of(Makes made) const {
-    switch (made) {
-        case Makes::kRay:
+std::uint32_t PacketCharge::words_of(CreatedPacket packet) const {
+    switch (packet) {
+        case CreatedPacket::kRay:
             return ray_words;
-        case Makes::kReturn:
+        case CreatedPacket::kReturn:
             return return_words();
-        case Makes::kTerm:
+        case CreatedPacket::kContribution:
             return return_a_ray ? 0 : return_words();
-        case Makes::kNothing:
+        case CreatedPacket::kNone:
             break;
     }
     return 0;
@@ -103,9 +109,9 @@ std::uint64_t t805_message_cycles(std::uint64_t messages, std::uint64_t words) {
 }
 
 double t805_link_ms(std::uint64_t words, std::uint64_t words_back) {
-    constexpr double kMsPerByte = 1e3;
+    constexpr double kMsPerS = 1e3, kBytesPerWord = 4;
     const auto [less, more] = std::minmax(words, words_back);
-    return kMsPerByte * 4 *
+    return kMsPerS * kBytesPerWord *
            (2 * static_cast<double>(less) / kT805BothWaysBytesPerS +
             static_cast<double>(more - less) / kT805OneWayBytesPerS);
 }

@@ -43,11 +43,12 @@ std::optional<ModelledTime> modelled_time(const Machine& machine, std::span<cons
     time.compute_ms = milliseconds(cycles, *machine.cycle_ns, factor);
     time.filter_ms = milliseconds(smoothing.filter, *machine.cycle_ns, factor);
     time.compare_ms = milliseconds(smoothing.compare, *machine.cycle_ns, factor);
-    // In a rotation all P PEs send at once, each 1/P of the words. The bus carries one transfer at a time.
+    // In a rotation all P PEs send at the same time, each 1/P of the words. The bus carries one transfer at a time.
     const auto pes = static_cast<double>(phases.front().per_pe.size());
-    const std::uint64_t moves = communication.rotations + communication.transfers + communication.pe_broadcasts;
+    const std::uint64_t synchronisations =
+        communication.rotations + communication.transfers + communication.pe_broadcasts;
     time.communication_ms =
-        static_cast<double>(moves) * *machine.rotation_sync_ms +
+        static_cast<double>(synchronisations) * *machine.rotation_sync_ms +
         milliseconds(communication.rotation_words, *machine.link_words_per_s) / pes +
         milliseconds(communication.transfer_words + communication.pe_broadcast_words, *machine.link_words_per_s);
     time.image_ms = milliseconds(communication.gather_words, *machine.host_words_per_s);

@@ -1,5 +1,5 @@
-// Load balance and communication of the PEs, and modelled times: counted cycles and words, multiplied by the times that
-// a machine takes for each.
+// Load balance and communication of the PEs, and modelled times: numbers of cycles and words, multiplied by a machine's
+// times per cycle and per word.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,18 +10,19 @@
 
 namespace raya {
 
-/// Numbers of transfers and of words in them. A word is a machine word of the modelled machine, which holds one number.
+/// Numbers of transfers, and numbers of words in these transfers. A word is a machine word of the modelled machine: it
+/// holds one number.
 struct Communication {
     std::uint64_t broadcasts = 0, broadcast_words = 0;        // host to all PEs
     std::uint64_t rotations = 0, rotation_words = 0;          // every PE to its neighbour
     std::uint64_t gathers = 0, gather_words = 0;              // all PEs to the host
-    std::uint64_t transfers = 0, transfer_words = 0;          // one PE to one other, over the bus
-    std::uint64_t pe_broadcasts = 0, pe_broadcast_words = 0;  // one PE to all, over the bus
+    std::uint64_t transfers = 0, transfer_words = 0;          // one PE to another PE, over the bus
+    std::uint64_t pe_broadcasts = 0, pe_broadcast_words = 0;  // one PE to all PEs, over the bus
 };
 
 /// The loads of P PEs, in modelled cycles, and their statistics.
 struct Load {
-    std::vector<std::uint64_t> per_pe;
+    std::vector<std::uint64_t> per_pe;  // [PE]: its load
     double mean = 0;
     std::uint64_t max = 0, min = 0;
     double imbalance = 0;   // u = (max - mean) / mean (Kohata & Ito 1993, Fig. 8); 0 without load
@@ -29,34 +30,35 @@ struct Load {
     double efficiency = 0;  // speedup / P
 };
 
-/// Computes the statistics. `per_pe`: the load of each PE, not empty.
+/// Computes the statistics of `per_pe`, which must not be empty.
 Load load_of(std::vector<std::uint64_t> per_pe);
 
-/// Cycles of the busiest PE for filtering and for comparing neighbouring pixels (model/budget.hpp); 0 without
+/// Modelled cycles in which the busiest PE filters and compares neighbouring pixels (model/budget.hpp); 0 without
 /// anti-aliasing.
 struct SmoothingCycles {
     std::uint64_t filter = 0, compare = 0;
 };
 
-/// Modelled times of a ring in milliseconds, without the display of the image.
+/// Modelled times of a render on a ring, in milliseconds, without the display of the image.
 struct ModelledTime {
     double objects_ms = 0;        // broadcast of the scene
-    double compute_ms = 0;        // computation of the PEs: tracing, filter_ms and compare_ms
+    double compute_ms = 0;        // computation of the PEs: ray tracing, filter_ms and compare_ms
     double filter_ms = 0;         // part of compute_ms: means of neighbouring pixels
     double compare_ms = 0;        // part of compute_ms: comparisons with neighbouring pixels
     double communication_ms = 0;  // rotations of the ring; transfers and broadcasts of PEs on the bus
     double image_ms = 0;          // gather of the image by the host
     double total_ms = 0;          // objects_ms + compute_ms + communication_ms + image_ms
-    double factor = 1;            // the factor of modelled_time() that compute_ms was multiplied by
+    double factor = 1;            // argument of modelled_time(); the compute times above include it
 };
 
 /// Modelled times of a torus whose nodes compute while its links transfer (host/torus/async_machine.hpp), milliseconds.
 struct AsynchronousTime {
-    double finish_ms = 0;
-    double processor_ms = 0, links_ms = 0;  // busy time of the busiest node; of the busiest direction of a link
-    double port_ms = 0;                     // longest time that a main task waited for space in an outgoing buffer
-    std::uint64_t delivered = 0;            // number of messages, including those from a node to itself
-    std::uint64_t queue_max = 0;            // maximum number of rays that waited for a main task
+    double finish_ms = 0;  // when the last task has ended and the last return is delivered
+    double processor_ms = 0,
+           links_ms = 0;          // busy times of the busiest processor, and of the busiest direction of a link
+    double port_ms = 0;           // longest time that a main task waited for space in an outgoing buffer
+    std::uint64_t delivered = 0;  // number of delivered messages, including those from a node to itself
+    std::uint64_t queue_max = 0;  // maximum number of rays that waited for a main task
 };
 
 /// Modelled times of a torus in milliseconds (host/torus/torus_result.hpp), without the transfer of the scene to the
@@ -66,16 +68,17 @@ struct TorusTime {
     double compute_ms = 0;     // maximum over the nodes
     double messages_ms = 0;    // processor time for sending and receiving, maximum over the nodes
     double processor_ms = 0;   // computation plus sending and receiving, maximum over the nodes
-    double links_ms = 0;       // time for both directions, maximum over the links
-    double overlapped_ms = 0;  // lower bound: no processor and no link ever waits for another one
+    double links_ms = 0;       // transfer time of both directions, maximum over the links
+    double overlapped_ms = 0;  // lower bound: processors and links never wait for each other
     double stepwise_ms = 0;    // every superstep waits for its busiest node, then for its busiest link
-    std::optional<AsynchronousTime> asynchronous{};  // times without supersteps; empty if not simulated
+    std::optional<AsynchronousTime> asynchronous{};  // times without supersteps; empty: not simulated
 };
 
-/// The modelled time of a ring; empty if the machine's rates are unknown. `phases`: the loads of all PEs in each phase,
-/// not empty; the machine waits for the busiest PE of each phase. The bus carries the words of one PE at a time, with
-/// the rate of a link and the overhead of a rotation (Machine). `factor` > 0 scales the compute time, to account for
-/// cycles that the budgets do not include; if it was fitted to a published time, say so in the report.
+/// Returns the modelled time of a ring; empty if the machine's rates are unknown. `phases`: the loads of all PEs in
+/// each phase, not empty; the machine waits for the busiest PE of each phase. The bus carries the words of one PE at a
+/// time, at the rate of a link and with the overhead of a rotation (Machine). `factor` > 0 scales the compute time, to
+/// account for cycles that the budgets do not include. If `factor` was fitted to a published time, the report must say
+/// so.
 std::optional<ModelledTime> modelled_time(const Machine& machine, std::span<const Load> phases,
                                           const Communication& communication, double factor = 1,
                                           const SmoothingCycles& smoothing = {});

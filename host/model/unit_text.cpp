@@ -11,8 +11,8 @@ std::string tenths_text(std::uint64_t tenths) { return fmt::format("{}.{} KB", t
 
 }  // namespace
 
-std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many.empty() ? one + 's' : many);
+std::string counted(std::uint64_t count, const std::string& singular, const std::string& plural) {
+    return fmt::format("{} {}", count, count == 1 ? singular : plural.empty() ? singular + 's' : plural);
 }
 
 std::string required_size_text(std::uint64_t bytes) {

@@ -10,14 +10,14 @@ std::string text_of(const std::string& option, const py::handle& value) {
         throw py::type_error(fmt::format("{}: the option takes a value, not True", option));
     if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value)) return py::str(value);
     std::string text;
-    for (const py::handle part : value) text += (text.empty() ? "" : ",") + text_of(option, part);
+    for (const py::handle element : value) text += (text.empty() ? "" : ",") + text_of(option, element);
     return text;
 }
 
 bool holds_sequences(const py::handle& value) {
     if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value)) return false;
-    for (const py::handle part : value)
-        if (py::isinstance<py::list>(part) || py::isinstance<py::tuple>(part) || py::isinstance<py::str>(part))
+    for (const py::handle element : value)
+        if (py::isinstance<py::list>(element) || py::isinstance<py::tuple>(element) || py::isinstance<py::str>(element))
             return true;
     return false;
 }
@@ -28,7 +28,7 @@ std::vector<std::string> option_arguments(const py::dict& options) {
     std::vector<std::string> arguments;
     for (const auto& [key, value] : options) {
         std::string name = py::str(key);
-        while (name.ends_with('_')) name.pop_back();  // "from_" stands for "from", a keyword of Python
+        while (name.ends_with('_')) name.pop_back();  // "from_": the option --from; `from` is a keyword of Python
         for (char& letter : name)
             if (letter == '_') letter = '-';
         const std::string option = "--" + name;
@@ -46,11 +46,11 @@ std::vector<std::string> option_arguments(const py::dict& options) {
 py::object python_of(const Json& json) { return py::module_::import("json").attr("loads")(json.dump()); }
 
 CostImage cost_image_of(const py::array& cost) {
-    const char kind = cost.dtype().kind();
-    if (cost.ndim() != 2 || (kind != 'u' && kind != 'i'))
-        throw py::value_error("cost: must be an array [height, width] of integers, modelled cycles");
-    if (kind == 'i' && cost.size() > 0 && cost.attr("min")().cast<std::int64_t>() < 0)
-        throw py::value_error("cost: must not be negative");
+    const char type_kind = cost.dtype().kind();
+    if (cost.ndim() != 2 || (type_kind != 'u' && type_kind != 'i'))
+        throw py::value_error("cost: must be an integer array [height, width] of modelled cycles");
+    if (type_kind == 'i' && cost.size() > 0 && cost.attr("min")().cast<std::int64_t>() < 0)
+        throw py::value_error("cost: modelled cycles must not be negative");
     const CostArray array(cost);
     CostImage image{static_cast<std::uint32_t>(array.shape(1)), static_cast<std::uint32_t>(array.shape(0)), {}};
     image.cycles.assign(array.data(), array.data() + array.size());

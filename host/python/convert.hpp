@@ -18,16 +18,16 @@ namespace py = pybind11;
 
 using CostArray = py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>;
 
-/// Converts keyword arguments to command-line arguments: offset=16 to "--offset=16", strict=True to "--strict", False
-/// and None to nothing, from_=(1, 2, 3) to "--from=1,2,3", and a list of lights to one --light per element. Raises
-/// TypeError for True in a sequence.
+/// Converts keyword arguments to command-line arguments: offset=16 to "--offset=16", strict=True to "--strict",
+/// from_=(1, 2, 3) to "--from=1,2,3", and a list of lights to one --light per element. Omits arguments with the value
+/// False or None. Raises TypeError for True or False in a sequence.
 std::vector<std::string> option_arguments(const py::dict& options);
 
 /// Converts a JSON document to Python's dicts, lists, strings and numbers (by json.loads()).
 py::object python_of(const Json& json);
 
-/// A read-only array of shape `shape` that refers to `values`, which belong to the Python object `owner`. The array
-/// keeps `owner` alive.
+/// Returns a read-only array of shape `shape` that refers to `values`, which belong to the Python object `owner`. The
+/// array keeps `owner` alive.
 template <class T>
 py::array view_of(std::span<const T> values, std::vector<py::ssize_t> shape, const py::object& owner) {
     py::array_t<T> array(std::move(shape), values.data(), owner);
@@ -35,7 +35,7 @@ py::array view_of(std::span<const T> values, std::vector<py::ssize_t> shape, con
     return array;
 }
 
-/// A copy of the n `values` as an array [n].
+/// Returns a copy of the n `values` as an array [n].
 template <class T>
 py::array copy_of(const std::vector<T>& values) {
     return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());

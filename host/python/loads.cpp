@@ -1,5 +1,5 @@
-// Functions of the Python module that need no device: mappings, loads and schedules from given pixel costs, machines,
-// and the reference image.
+// Functions of the Python module that need no device: mappings, loads and schedules computed from given pixel costs,
+// the list of machines, and the reference image.
 #include <fmt/core.h>
 #include <pybind11/stl.h>
 
@@ -17,18 +17,18 @@
 #include "host/ring/mapping.hpp"
 #include "host/ring/route.hpp"
 #include "host/ring/schedule.hpp"
-#include "host/torus/node_share.hpp"
+#include "host/torus/node_distribution.hpp"
 #include "host/torus/topology.hpp"
 #include "tests/reference/reference.hpp"
 
 namespace raya {
 namespace {
 
-using Number = std::optional<std::uint32_t>;
+using OptionalNumber = std::optional<std::uint32_t>;
 
-// Makes the mapping with the checks and error messages of the options of `raya render`.
-raya_mapping mapping_of(const ImageSize& size, const std::string& mapping, Number offset, const std::string& fold,
-                        Number pes) {
+// Returns the mapping that these options of `raya render` select. Invalid values give the same messages as there.
+raya_mapping mapping_of(const ImageSize& size, const std::string& mapping, OptionalNumber offset,
+                        const std::string& fold, OptionalNumber pes) {
     if (is_dynamic(mapping))
         throw UserError(fmt::format("--mapping {}: not a static mapping; use schedule()", mapping));
     RenderOptions options;
@@ -43,18 +43,19 @@ raya_mapping mapping_of(const ImageSize& size, const std::string& mapping, Numbe
 
 ImageSize size_of(const CostImage& cost) { return {cost.width, cost.height}; }
 
-py::array owners(std::uint32_t width, std::uint32_t height, const std::string& mapping, Number offset,
-                 const std::string& fold, Number pes) {
-    const raya_mapping m = mapping_of({width, height}, mapping, offset, fold, pes);
+py::array owners(std::uint32_t width, std::uint32_t height, const std::string& mapping, OptionalNumber offset,
+                 const std::string& fold, OptionalNumber pes) {
+    const raya_mapping owner_mapping = mapping_of({width, height}, mapping, offset, fold, pes);
     py::array_t<std::uint32_t> array({height, width});
     auto owner = array.mutable_unchecked<2>();
     for (std::uint32_t row = 0; row < height; ++row)
-        for (std::uint32_t column = 0; column < width; ++column) owner(row, column) = raya_owner(m, row, column);
+        for (std::uint32_t column = 0; column < width; ++column)
+            owner(row, column) = raya_owner(owner_mapping, row, column);
     return array;
 }
 
-py::array loads(const py::array& costs, const std::string& mapping, Number offset, const std::string& fold,
-                Number pes) {
+py::array loads(const py::array& costs, const std::string& mapping, OptionalNumber offset, const std::string& fold,
+                OptionalNumber pes) {
     const CostImage cost = cost_image_of(costs);
     return copy_of(static_load(cost, mapping_of(size_of(cost), mapping, offset, fold, pes)).per_pe);
 }
@@ -71,51 +72,52 @@ py::array imbalances(const py::array& costs, std::uint32_t pes, const std::vecto
     return copy_of(u);
 }
 
-// For efficiency: if there are at most as many PEs as slots (image columns), every PE owns whole slots. The loads of
-// the slots are then computed once per offset, as an image of one row whose columns are mapped to the PEs.
+// If there are at most as many PEs as slots (image columns), every PE owns whole slots. To save time, the loads of the
+// slots are then computed once per offset. They form an image of one row, whose columns are mapped to the PEs.
 py::array speedups(const py::array& costs, const std::vector<std::uint32_t>& pes,
                    const std::vector<std::uint32_t>& offsets, const std::string& fold) {
     const CostImage cost = cost_image_of(costs);
     if (offsets.size() != pes.size() && offsets.size() != 1)
         throw py::value_error("offsets: must have one element, or as many as pes");
-    const Fold how = parse_fold(fold);
-    std::vector<double> all;
-    CostImage slots{cost.width, 1, {}};
-    Number of_slots;
+    const Fold fold_kind = parse_fold(fold);
+    std::vector<double> speedup_by_pes;
+    CostImage slot_loads{cost.width, 1, {}};
+    OptionalNumber slot_offset;  // offset for which slot_loads was computed
     for (std::size_t i = 0; i < pes.size(); ++i) {
         const std::uint32_t offset = offsets[offsets.size() == 1 ? 0 : i];
         const auto mapping = [&](const ImageSize& size, std::uint32_t count, std::uint32_t p) {
-            return make_mapping(cyclic_mapping(p, how), size, count);
+            return make_mapping(cyclic_mapping(p, fold_kind), size, count);
         };
         if (pes[i] > cost.width) {
-            all.push_back(static_load(cost, mapping(size_of(cost), pes[i], offset)).speedup);
+            speedup_by_pes.push_back(static_load(cost, mapping(size_of(cost), pes[i], offset)).speedup);
             continue;
         }
-        if (of_slots != offset) slots.cycles = static_load(cost, mapping(size_of(cost), cost.width, offset)).per_pe;
-        of_slots = offset;
-        all.push_back(static_load(slots, mapping({cost.width, 1}, pes[i], 0)).speedup);
+        if (slot_offset != offset)
+            slot_loads.cycles = static_load(cost, mapping(size_of(cost), cost.width, offset)).per_pe;
+        slot_offset = offset;
+        speedup_by_pes.push_back(static_load(slot_loads, mapping({cost.width, 1}, pes[i], 0)).speedup);
     }
-    return copy_of(all);
+    return copy_of(speedup_by_pes);
 }
 
-py::dict schedule(const py::array& costs, const std::string& plan, const std::string& mapping, Number offset,
-                  const std::string& fold, Number pes) {
+py::dict schedule(const py::array& costs, const std::string& plan, const std::string& mapping, OptionalNumber offset,
+                  const std::string& fold, OptionalNumber pes) {
     const CostImage cost = cost_image_of(costs);
     const Schedule run =
         dynamic_schedule(cost, mapping_of(size_of(cost), mapping, offset, fold, pes), parse_dynamic(plan));
-    py::dict all;
-    all["loads"] = copy_of(run.load.per_pe);
-    all["requests"] = run.requests;
-    all["makespan"] = makespan(run);
-    all["speedup"] = speedup(run, cost);
-    return all;
+    py::dict results;
+    results["loads"] = copy_of(run.load.per_pe);
+    results["requests"] = run.requests;
+    results["makespan"] = makespan(run);
+    results["speedup"] = speedup(run, cost);
+    return results;
 }
 
-// The number of rotations that bring each PE the neighbours of its pixels once from each of the four sides, if PEs pass
-// on all their pixels in a rotation. If no two PEs share a slot, a pixel's owner depends only on its slot, so only the
-// pairs of slots of neighbouring pixels matter, and an image of two rows has the same pairs as one of more rows. The
-// only horizontal pair that a row lacks is the one across the image's left border: for an offset p > 0 the two rows
-// lack different pairs, for p = 0 all rows lack the same one.
+// Returns the number of rotations that bring each PE the neighbours of its pixels once from each of the four sides, if
+// each PE sends all its pixels in every rotation. If every slot belongs to one PE, only the pairs of slots to which
+// neighbouring pixels belong matter, and two rows of the image have the same pairs as all rows: a row has all
+// horizontal pairs (s, s + 1 mod W) except the pair of its last and its first pixel. For an offset p > 0 two successive
+// rows lack different pairs; for p = 0 all rows lack the same pair.
 std::uint64_t neighbour_rotations(raya_mapping mapping) {
     if (raya_has_slots(mapping) && mapping.pes <= mapping.width) mapping.height = std::min(mapping.height, 2u);
     std::uint64_t rotations = 0;
@@ -125,65 +127,66 @@ std::uint64_t neighbour_rotations(raya_mapping mapping) {
     return rotations;
 }
 
-std::uint64_t rotations(std::uint32_t width, std::uint32_t height, const std::string& mapping, Number offset,
-                        const std::string& fold, Number pes) {
+std::uint64_t rotations(std::uint32_t width, std::uint32_t height, const std::string& mapping, OptionalNumber offset,
+                        const std::string& fold, OptionalNumber pes) {
     return neighbour_rotations(mapping_of({width, height}, mapping, offset, fold, pes));
 }
 
-std::uint64_t exchange_rotations(std::uint32_t width, std::uint32_t height, const std::string& mapping, Number offset,
-                                 const std::string& fold, Number pes) {
+std::uint64_t exchange_rotations(std::uint32_t width, std::uint32_t height, const std::string& mapping,
+                                 OptionalNumber offset, const std::string& fold, OptionalNumber pes) {
     return sum_of(
         exchange_moves(mapping_of({width, height}, mapping, offset, fold, pes), ExchangeMethod::kRing, false));
 }
 
-std::uint32_t share(std::uint32_t width, std::uint32_t height, const std::string& mapping, Number offset,
-                    const std::string& fold, Number pes) {
+std::uint32_t pixels_of_largest_share(std::uint32_t width, std::uint32_t height, const std::string& mapping,
+                                      OptionalNumber offset, const std::string& fold, OptionalNumber pes) {
     return largest_share(mapping_of({width, height}, mapping, offset, fold, pes));
 }
 
-// Modelled times of the SPA for every offset of the cyclic mapping, from the pixels' costs in cycles: times of the
-// busiest PE in each pass, of filtering and comparing neighbouring pixels, and of the rotations that bring these.
-// Broadcast and gather are not included. `trace`, `supersample`: costs of the two passes, [H, W].
+// Computes modelled times of the SPA for every offset of the cyclic mapping: of the busiest PE in each pass, of
+// filtering and comparing neighbouring pixels, and of the rotations that bring the neighbouring pixels. Broadcast and
+// gather are not included. `trace`, `supersample`: cycles of each pixel in the two passes, [H, W].
 py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::string& antialias,
                       const std::optional<py::array>& supersample) {
-    const CostImage first = cost_image_of(trace);
+    const CostImage trace_cost = cost_image_of(trace);
     const AntialiasMethod method = parse_antialias(antialias);
     const Machine& spa = machine_named("spa");
-    std::vector<std::uint32_t> offsets(first.width);
+    std::vector<std::uint32_t> offsets(trace_cost.width);
     std::iota(offsets.begin(), offsets.end(), 0u);
-    const std::vector<double> u = imbalance_of_offsets(first, pes, RAYA_FOLD_CYCLIC, offsets);
+    const std::vector<double> u = imbalance_of_offsets(trace_cost, pes, RAYA_FOLD_CYCLIC, offsets);
     const auto busiest_ms = [&](const CostImage& cost, const std::vector<double>& imbalance) {
         const double mean = static_cast<double>(total_cycles(cost)) / pes;
         std::vector<double> ms;
-        for (const double one : imbalance) ms.push_back(mean * (1 + one) * *spa.cycle_ns * 1e-6);
+        for (const double offset_imbalance : imbalance)
+            ms.push_back(mean * (1 + offset_imbalance) * *spa.cycle_ns * 1e-6);
         return ms;
     };
-    std::vector<double> again(first.width), smooth(first.width), ring(first.width);
-    std::vector<std::uint64_t> rotations(first.width);
+    std::vector<double> supersample_ms(trace_cost.width), smooth_ms(trace_cost.width), ring_ms(trace_cost.width);
+    std::vector<std::uint64_t> rotations(trace_cost.width);
     if (method == AntialiasMethod::kSupersample) {
         if (!supersample) throw py::value_error("supersample: the costs of supersampling are required");
         const CostImage cost = cost_image_of(*supersample);
-        again = busiest_ms(cost, imbalance_of_offsets(cost, pes, RAYA_FOLD_CYCLIC, offsets));
+        supersample_ms = busiest_ms(cost, imbalance_of_offsets(cost, pes, RAYA_FOLD_CYCLIC, offsets));
     }
     if (method != AntialiasMethod::kNone)
         for (const std::uint32_t p : offsets) {
-            const raya_mapping mapping = make_mapping(cyclic_mapping(p), size_of(first), pes);
-            const std::uint32_t share = largest_share(mapping);
-            const SmoothingCycles cycles = smoothing_cycles(method, share);
-            smooth[p] = static_cast<double>(cycles.filter + cycles.compare) * *spa.cycle_ns * 1e-6;
+            const raya_mapping mapping = make_mapping(cyclic_mapping(p), size_of(trace_cost), pes);
+            const std::uint32_t pixels = largest_share(mapping);
+            const SmoothingCycles cycles = smoothing_cycles(method, pixels);
+            smooth_ms[p] = static_cast<double>(cycles.filter + cycles.compare) * *spa.cycle_ns * 1e-6;
             rotations[p] = neighbour_rotations(mapping);
-            const double words_ms = 1e3 * 3.0 * share / *spa.link_words_per_s;
-            ring[p] = static_cast<double>(rotations[p]) * (*spa.rotation_sync_ms + words_ms);
+            const double words_ms = 1e3 * 3.0 * pixels / *spa.link_words_per_s;
+            ring_ms[p] = static_cast<double>(rotations[p]) * (*spa.rotation_sync_ms + words_ms);
         }
-    py::dict all;
-    all["offset"] = copy_of(offsets);
-    all["imbalance"] = copy_of(u);
-    all["trace_ms"] = copy_of(busiest_ms(first, u));
-    all["smooth_ms"] = copy_of(smooth);
-    all["supersample_ms"] = copy_of(again);
-    all["ring_ms"] = copy_of(ring);
-    all["rotations"] = copy_of(rotations);
-    return all;
+    py::dict arrays;
+    arrays["offset"] = copy_of(offsets);
+    arrays["imbalance"] = copy_of(u);
+    arrays["trace_ms"] = copy_of(busiest_ms(trace_cost, u));
+    arrays["smooth_ms"] = copy_of(smooth_ms);
+    arrays["supersample_ms"] = copy_of(supersample_ms);
+    arrays["ring_ms"] = copy_of(ring_ms);
+    arrays["rotations"] = copy_of(rotations);
+    return arrays;
 }
 
 py::array reference_image(const Scene& scene, std::uint32_t size, int bounces, int threads) {
@@ -201,9 +204,9 @@ py::array reference_image(const Scene& scene, std::uint32_t size, int bounces, i
 }
 
 py::array ranks_of_pes(std::uint32_t pes, std::uint32_t ranks) {
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t pe = 0; pe < pes; ++pe) all.push_back(rank_of_pe(pes, ranks, pe));
-    return copy_of(all);
+    std::vector<std::uint32_t> ranks_by_pe;
+    for (std::uint32_t pe = 0; pe < pes; ++pe) ranks_by_pe.push_back(rank_of_pe(pes, ranks, pe));
+    return copy_of(ranks_by_pe);
 }
 
 py::array ranks_of_torus(const std::array<std::uint32_t, 3>& nodes, std::uint32_t ranks) {
@@ -220,73 +223,88 @@ py::array link_ends(const std::array<std::uint32_t, 3>& nodes) {
 }
 
 py::list all_machines() {
-    py::list all;
-    for (const Machine& m : machines()) {
-        py::dict one;
-        one["name"] = m.name;
-        one["topology"] = m.topology;
-        one["pes"] = m.pes;
-        one["pe_memory_bytes"] = m.pe_memory_bytes;
-        one["bounces"] = m.bounces;
-        one["format"] = format_name(m.format);
-        one["cycle_ns"] = m.cycle_ns;
-        one["link_words_per_s"] = m.link_words_per_s;
-        one["rotation_sync_ms"] = m.rotation_sync_ms;
-        one["host_words_per_s"] = m.host_words_per_s;
-        all.append(one);
+    py::list dicts;
+    for (const Machine& machine : machines()) {
+        py::dict fields;
+        fields["name"] = machine.name;
+        fields["topology"] = machine.topology;
+        fields["pes"] = machine.pes;
+        fields["pe_memory_bytes"] = machine.pe_memory_bytes;
+        fields["bounces"] = machine.bounces;
+        fields["format"] = format_name(machine.format);
+        fields["cycle_ns"] = machine.cycle_ns;
+        fields["link_words_per_s"] = machine.link_words_per_s;
+        fields["rotation_sync_ms"] = machine.rotation_sync_ms;
+        fields["host_words_per_s"] = machine.host_words_per_s;
+        dicts.append(fields);
     }
-    return all;
+    return dicts;
 }
 
 }  // namespace
 
 void add_loads(py::module_& module) {
-    const auto of_mapping = [&](const char* name, auto function, const char* help) {
+    const auto add_mapping_function = [&](const char* name, auto function, const char* help) {
         module.def(name, function, py::arg("width"), py::arg("height"), py::arg("mapping") = "",
                    py::arg("offset") = py::none(), py::arg("fold") = "", py::arg("pes") = py::none(), help);
     };
-    of_mapping("owners", owners,
-               "uint32 [height, width]: the PE that owns each pixel. mapping, offset, fold and pes: as in raya render "
-               "--machine grande. Raises ValueError.");
-    of_mapping("rotations", rotations,
-               "Rotations of the ring that bring each PE its neighbours' pixels from all four sides.");
-    of_mapping("exchange_rotations", exchange_rotations, "Rotations of the filter's exchange, if whole shares move.");
-    of_mapping("largest_share", share, "The number of pixels of the PE with the largest share.");
-    module.def("loads", loads, py::arg("cost"), py::arg("mapping") = "", py::arg("offset") = py::none(),
-               py::arg("fold") = "", py::arg("pes") = py::none(),
-               "uint64 [P]: the load of each PE, the sum of its pixels' costs. cost: integers [H, W].");
+    add_mapping_function(
+        "owners", owners,
+        "uint32 [height, width]: the PE that owns each pixel. mapping, offset, fold and pes: as the options of raya "
+        "render --machine grande. Raises ValueError.");
+    add_mapping_function(
+        "rotations", rotations,
+        "Number of rotations of the ring that bring each PE the neighbours of its pixels from all four sides.");
+    add_mapping_function(
+        "exchange_rotations", exchange_rotations,
+        "Number of rotations of the filter's exchange, if every PE sends all its pixels in each rotation.");
+    add_mapping_function("largest_share", pixels_of_largest_share,
+                         "Number of pixels of the PE that owns the most pixels.");
+    module.def(
+        "loads", loads, py::arg("cost"), py::arg("mapping") = "", py::arg("offset") = py::none(), py::arg("fold") = "",
+        py::arg("pes") = py::none(),
+        "uint64 [P]: the load of each PE in modelled cycles, the sum of its pixels' costs. cost: integers [H, W].");
     module.def("imbalances", imbalances, py::arg("cost"), py::arg("pes"), py::arg("offsets"),
                py::arg("fold") = "cyclic",
                "float64 [n]: u = (max - mean) / mean of the loads with the cyclic mapping, for each offset.");
     module.def("speedups", speedups, py::arg("cost"), py::arg("pes"), py::arg("offsets"), py::arg("fold") = "cyclic",
                "float64 [n]: sum / max of the loads with the cyclic mapping, for each number of PEs pes[i] with offset "
                "offsets[i], or offsets[0] for all.");
-    module.def("schedule", schedule, py::arg("cost"), py::arg("plan"), py::arg("mapping") = "",
-               py::arg("offset") = py::none(), py::arg("fold") = "", py::arg("pes") = py::none(),
-               "Simulates a dynamic or hybrid distribution. plan: 'dynamic:CHUNK[,OVERHEAD]' or "
-               "'hybrid:CHUNK[,OVERHEAD[,SHARE]]'; mapping: the static part of a hybrid. Returns a dict: loads (uint64 "
-               "[P], finishing times in cycles), requests, makespan (cycles), speedup (work / makespan).");
+    module.def(
+        "schedule", schedule, py::arg("cost"), py::arg("plan"), py::arg("mapping") = "", py::arg("offset") = py::none(),
+        py::arg("fold") = "", py::arg("pes") = py::none(),
+        "Simulates a dynamic or hybrid distribution of pixels. plan: 'dynamic:CHUNK[,OVERHEAD]' or "
+        "'hybrid:CHUNK[,OVERHEAD[,SHARE]]'; mapping, offset, fold: the mapping of "
+        "the static part of a hybrid distribution. Returns a dict: loads (uint64 [P]: finishing time of each PE in "
+        "cycles), requests (number of requests to the host), makespan (cycles), speedup (total cycles / makespan).");
     module.def(
         "lower_bound", [](const py::array& costs, std::uint32_t pes) { return lower_bound(cost_image_of(costs), pes); },
         py::arg("cost"), py::arg("pes"), "Lower bound in cycles of any distribution of whole pixels over P PEs.");
-    module.def("filter_cycles", filter_cycles, py::arg("pixels"), "Modelled cycles of the 3 x 3 filter on one PE.");
+    module.def("filter_cycles", filter_cycles, py::arg("pixels"),
+               "Modelled cycles that one PE takes to filter `pixels` pixels with the 3 x 3 filter.");
     module.def("compare_cycles", compare_cycles, py::arg("pixels"),
-               "Modelled cycles of the comparison of pixels with their neighbours on one PE.");
+               "Modelled cycles that one PE takes to compare `pixels` pixels with their neighbours.");
     module.def(
         "offset_times", offset_times, py::arg("cost"), py::arg("pes"), py::arg("antialias") = "none",
         py::arg("supersample") = py::none(),
-        "Modelled ms of the SPA for each offset of the cyclic mapping, without the set-up of exchanges. Returns a "
-        "dict of arrays [W]: offset, imbalance (of the first pass), trace_ms, smooth_ms, supersample_ms, ring_ms, "
-        "rotations.");
+        "Modelled ms that the SPA takes with each offset of the cyclic mapping, without broadcast, gather and the "
+        "set-up "
+        "of exchanges. cost, supersample: modelled cycles of each pixel in the two passes, [H, W]. Returns a dict of "
+        "arrays [W]: offset, imbalance (of the first pass), trace_ms and supersample_ms (of the busiest PE), smooth_ms "
+        "(filter and comparison), ring_ms (rotations), rotations (their number).");
     module.def("ranks_of_pes", ranks_of_pes, py::arg("pes"), py::arg("ranks"),
                "uint32 [P]: the MPI rank of each PE of a ring.");
     module.def("ranks_of_nodes", ranks_of_torus, py::arg("nodes"), py::arg("ranks"),
                "uint32 [nodes]: the MPI rank of each node of a 3-D torus of nodes = (I, J, K).");
     module.def("link_ends", link_ends, py::arg("nodes"),
-               "uint32 [nodes, 6]: the node at the end of each link of a 3-D torus: +x, -x, +y, -y, +z, -z.");
-    module.def("machines", all_machines, "All machines, as a list of dicts. None: no limit, or unknown.");
+               "uint32 [nodes, 6]: the node at the other end of each link +x, -x, +y, -y, +z, -z of each node of a 3-D "
+               "torus of "
+               "nodes = (I, J, K).");
+    module.def("machines", all_machines,
+               "Returns all machines, as a list of dicts. A value of None: no limit, or unknown.");
     module.def("reference", reference_image, py::arg("scene"), py::arg("size"), py::arg("bounces") = 8,
-               py::arg("threads") = 2, "float64 [size, size, 3]: the image of the double-precision reference.");
+               py::arg("threads") = 2,
+               "float64 [size, size, 3]: linear red, green and blue of the image of the double-precision reference.");
 }
 
 }  // namespace raya

@@ -14,7 +14,8 @@
 
 namespace {
 
-// The path of this shared object: raya's other modules are in its folder, not in that of the Python interpreter.
+// Returns the path of this shared object. raya's other modules are in the same folder, not in that of the Python
+// interpreter.
 std::filesystem::path own_file() {
     Dl_info info{};
     ::dladdr(reinterpret_cast<void*>(&own_file), &info);
@@ -25,17 +26,18 @@ std::filesystem::path own_file() {
 
 PYBIND11_MODULE(_engine, module) {
     using namespace raya;
-    set_own_file(own_file());
+    set_program_file(own_file());
     set_verbosity(kErrorsOnly);  // warnings become Python warnings instead
-    auto& refused = pybind11::register_exception<UserError>(module, "InputError", PyExc_ValueError);
-    refused.doc() = "Invalid input or options.";
-    pybind11::register_exception<TorusDeadlock>(module, "Deadlock", refused).doc() =
+    auto& input_error = pybind11::register_exception<UserError>(module, "InputError", PyExc_ValueError);
+    input_error.doc() = "Invalid input or options.";
+    pybind11::register_exception<TorusDeadlock>(module, "Deadlock", input_error).doc() =
         "The torus is deadlocked: its buffers are too short for its packets.";
-    pybind11::register_exception<DoesNotFit>(module, "DoesNotFit", refused).doc() =
+    pybind11::register_exception<DoesNotFit>(module, "DoesNotFit", input_error).doc() =
         "A part of the scene does not fit into the memory of a PE or node.";
     pybind11::register_exception<DeviceError>(module, "DeviceError", PyExc_RuntimeError).doc() =
         "The OpenCL device was not found or failed.";
-    module.attr("STATUS_WORDS") = std::uint32_t{RAYA_STATUS_WORDS};  // sent by each node to the host in each superstep
+    // Number of words that each node sends to the host in each superstep.
+    module.attr("STATUS_WORDS") = std::uint32_t{RAYA_STATUS_WORDS};
     module.attr("__version__") = raya_version();
     add_scenes(module);
     add_renders(module);

@@ -18,8 +18,8 @@ namespace {
 
 const Load& load_of(const Render& r) { return r.report.load; }
 
-const RingResult& ring_of(const Render& r, const char* what) {
-    if (!r.ring) throw py::value_error(fmt::format("{}: only for ring machines; this render used a torus", what));
+const RingResult& ring_of(const Render& r, const char* property) {
+    if (!r.ring) throw py::value_error(fmt::format("{}: only for ring machines; this render used a torus", property));
     return *r.ring;
 }
 
@@ -52,10 +52,11 @@ py::array cost_of(const py::object& self) {
 
 // Returns a dict {name of the phase: figure(phase)}.
 template <class Figure>
-py::dict by_phase(const py::object& self, const char* what, Figure figure) {
-    py::dict all;
-    for (const Phase& phase : ring_of(*self.cast<Result>(), what).phases) all[phase.name.c_str()] = figure(phase);
-    return all;
+py::dict by_phase(const py::object& self, const char* property, Figure figure) {
+    py::dict figures;
+    for (const Phase& phase : ring_of(*self.cast<Result>(), property).phases)
+        figures[phase.name.c_str()] = figure(phase);
+    return figures;
 }
 
 py::dict costs_of(const py::object& self) {
@@ -72,9 +73,9 @@ constexpr const char* kEvents[RAYA_EVENTS] = {"primary",       "primary_hits", "
                                               "highlights",    "walks",        "steps",        "discarded"};
 
 py::dict events_of(const Result& r) {
-    py::dict all;
-    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) all[kEvents[event]] = r->report.events[event];
-    return all;
+    py::dict counts;
+    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) counts[kEvents[event]] = r->report.events[event];
+    return counts;
 }
 
 double events_ms(const std::map<std::string, std::uint64_t>& events) {
@@ -103,18 +104,20 @@ std::string repr_text(const Result& r) {
 double device_seconds(const Result& r) { return r->ring ? trace_seconds(*r->ring) : r->torus->render_s; }
 
 void add_result(py::module_& module) {
-    ResultClass result(module, "Result", "The image, counts and measurements of one render.");
+    ResultClass result(module, "Result", "The image of a render, its counts and its measurements.");
     result.def_property_readonly("image", image_of, "float32 [H, W, 3]: linear red, green, blue; row 0 is the top.")
         .def_property_readonly(
             "png", [](const Result& r) { return py::bytes(plain_png(r->image())); }, "bytes: an 8-bit PNG, sRGB.")
         .def_property_readonly(
             "hash", [](const Result& r) { return r->report.image.hash; }, "str: hash of the pixels' bits.")
         .def_property_readonly("mask", mask_of, "bool [H, W]: the supersampled pixels; None without supersampling.")
-        .def_property_readonly("cost", cost_of,
-                               "uint64 [H, W]: modelled cycles of each pixel in all phases. ValueError unless rendered "
-                               "with cost=True.")
+        .def_property_readonly(
+            "cost", cost_of,
+            "uint64 [H, W]: modelled cycles of each pixel, summed over all phases. Raises ValueError "
+            "if not rendered with cost=True.")
         .def_property_readonly("costs", costs_of,
-                               "The cost in each phase: {'trace': uint64 [H, W], 'supersample': ...}.")
+                               "dict: modelled cycles of each pixel in each phase: {'trace': uint64 [H, W], "
+                               "'supersample': ...}. Raises ValueError if not rendered with cost=True.")
         .def_property_readonly(
             "loads",
             [](const py::object& self) {
@@ -124,7 +127,7 @@ void add_result(py::module_& module) {
             "uint64 [P]: modelled cycles of each PE or node.")
         .def_property_readonly(
             "imbalance", [](const Result& r) { return load_of(*r).imbalance; },
-            "u = (max - mean) / mean of the loads (Kohata & Ito 1993, Fig. 8).")
+            "Imbalance u = (max - mean) / mean of the loads (Kohata & Ito 1993, Fig. 8).")
         .def_property_readonly(
             "speedup", [](const Result& r) { return load_of(*r).speedup; }, "Sum / max of the loads.")
         .def_property_readonly(
@@ -132,15 +135,16 @@ void add_result(py::module_& module) {
         .def_property_readonly("report", report_of, "dict: the JSON of raya render --report (docs/report.md).")
         .def_property_readonly(
             "job_words", [](const Result& r) { return ring_of(*r, "job_words").pe_memory.job_words; },
-            "32-bit words of the scene in each PE.")
+            "Number of 32-bit words that the scene takes in each PE.")
         .def_property_readonly(
             "accel_s", [](const Result& r) { return ring_of(*r, "accel_s").accel_s; },
-            "Measured seconds to build the grid or BVH.")
+            "Measured seconds that building the grid or BVH took.")
         .def_property_readonly(
             "render_s", [](const Result& r) { return r->report.measured.render_s; },
-            "Measured seconds from packed scene to image, without building kernels, grid or BVH.")
-        .def_property_readonly("device_s", device_seconds,
-                               "Measured seconds of tracing on the device; for a torus, of the whole render.")
+            "Measured seconds that rendering the packed scene took, without building kernels, grid or BVH.")
+        .def_property_readonly(
+            "device_s", device_seconds,
+            "Measured seconds that tracing on the device took; for a torus, seconds of the whole render.")
         .def_property_readonly("events", events_of, "dict: the count of each event (kernels/README.md).")
         .def("__repr__", repr_text);
     add_torus_results(module, result);
@@ -164,12 +168,12 @@ Result render_shared(const Scene& scene, const py::object& progress, py::kwargs 
 }
 
 py::dict device_dict(const DeviceInfo& info) {
-    py::dict all;
-    all["name"] = info.name;
-    all["platform"] = info.platform;
-    all["version"] = info.version;
-    all["driver"] = info.driver;
-    return all;
+    py::dict fields;
+    fields["name"] = info.name;
+    fields["platform"] = info.platform;
+    fields["version"] = info.version;
+    fields["driver"] = info.driver;
+    return fields;
 }
 
 }  // namespace
@@ -177,14 +181,17 @@ py::dict device_dict(const DeviceInfo& info) {
 void add_renders(py::module_& module) {
     add_result(module);
     py::class_<PythonSession>(module, "Session",
-                              "An open device with the programs built for it.\n\n"
+                              "An open device with the OpenCL programs built for it.\n\n"
                               "device: as in raya render --device; default: a GPU, else a CPU. Raises DeviceError.")
         .def(py::init<const std::string&>(), py::arg("device") = "")
         .def_property_readonly(
             "device", [](const PythonSession& s) { return device_dict(s.info()); },
-            "dict: name, platform, version, driver, as reported by OpenCL.")
-        .def("render", render_in, py::arg("scene"), py::arg("progress") = py::none(), "raya.render() on this device.");
-    module.def("t805_ms", events_ms, py::arg("events"), "Modelled ms of one T805 for events = {name: count}.");
+            "dict: name, platform, version and driver of the device, as reported by OpenCL.")
+        .def("render", render_in, py::arg("scene"), py::arg("progress") = py::none(),
+             "Renders a scene on this device; see raya.render().");
+    module.def("t805_ms", events_ms, py::arg("events"),
+               "Modelled ms that one T805 takes for the given events. events: {name: count}, as Result.events. Raises "
+               "ValueError for an unknown name.");
     module.def("render", render_shared, py::arg("scene"), py::arg("progress") = py::none());
 }
 

@@ -72,19 +72,23 @@ std::size_t job_words(const Scene& scene) {
 void save(const Scene& scene, const std::filesystem::path& path) { write_whole_file(path, write_nff(scene)); }
 
 void add_generators(py::module_& module) {
-    py::module_ g = module.def_submodule("generate", "Generated scenes, as by raya generate.");
-    g.def("balls", generate_balls, py::arg("level") = 4,
-          "SPD's sphereflake: 1 + 9 + ... + 9^level spheres, level 0..6.");
-    g.def("lattice", generate_lattice, py::arg("size") = 12, "SPD's lattice: (size + 1)^3 spheres, cylinders; 1..64.");
-    g.def("gears", generate_gears, py::arg("size") = 4, "size^3 gear wheels, size 1..16.");
-    g.def("uniform", generate_uniform, py::arg("count"), py::arg("voxels"),
-          "count spheres, 1..1000000, distributed evenly over voxels = (x, y, z) of a cube.");
-    g.def("random", generate_random, py::arg("count"), py::arg("seed") = 1,
-          "count spheres at random positions in a cube.");
-    g.def(
+    py::module_ generators = module.def_submodule("generate", "Functions that generate scenes, as raya generate does.");
+    generators.def("balls", generate_balls, py::arg("level") = 4,
+                   "SPD's sphereflake: 9^0 + ... + 9^level spheres. level: 0..6.");
+    generators.def("lattice", generate_lattice, py::arg("size") = 12,
+                   "SPD's lattice: (size + 1)^3 spheres connected by cylinders. size: 1..64.");
+    generators.def("gears", generate_gears, py::arg("size") = 4, "size^3 gear wheels. size: 1..16.");
+    generators.def(
+        "uniform", generate_uniform, py::arg("count"), py::arg("voxels"),
+        "count spheres (1..1000000) in a cube that is divided into x * y * z voxels. Each voxel contains floor(n) or "
+        "ceil(n) spheres, n = count / (x * y * z). voxels: (x, y, z).");
+    generators.def("random", generate_random, py::arg("count"), py::arg("seed") = 1,
+                   "count spheres (1..1000000) with random centres in the cube [-1, 1]^3.");
+    generators.def(
         "cluster", [](std::uint64_t seed) { return generate_cluster(seed); }, py::arg("seed") = 1,
-        "Seven spheres above a floor, with load and imbalance as in Kohata & Ito's figures.");
-    g.def("centre", generate_centre, "scenes/centre.nff.");
+        "Seven random spheres above a floor. Averaged over many seeds, load and imbalance match Kohata & Ito's "
+        "figures.");
+    generators.def("centre", generate_centre, "The scene of scenes/centre.nff.");
 }
 
 }  // namespace
@@ -93,16 +97,17 @@ void add_scenes(py::module_& module) {
     py::class_<Scene>(module, "Scene", "An immutable scene: objects, surfaces, lights and a view.")
         .def_readonly("name", &Scene::name)
         .def_property_readonly(
-            "width", [](const Scene& s) { return s.view.width; }, "Pixels.")
+            "width", [](const Scene& s) { return s.view.width; }, "Width of the image in pixels.")
         .def_property_readonly(
-            "height", [](const Scene& s) { return s.view.height; }, "Pixels.")
-        .def_property_readonly("objects", &Scene::object_count, "Spheres, planes, polygons and cones.")
+            "height", [](const Scene& s) { return s.view.height; }, "Height of the image in pixels.")
+        .def_property_readonly("objects", &Scene::object_count, "Number of spheres, planes, polygons and cones.")
         .def_property_readonly(
-            "lights", [](const Scene& s) { return s.lights.size(); }, "Lights.")
+            "lights", [](const Scene& s) { return s.lights.size(); }, "Number of lights.")
         .def_property_readonly(
-            "eye", [](const Scene& s) { return point_of(s.view.from); }, "(x, y, z), scene units.")
+            "eye", [](const Scene& s) { return point_of(s.view.from); }, "[x, y, z]: the eye, scene units.")
         .def_property_readonly(
-            "at", [](const Scene& s) { return point_of(s.view.at); }, "(x, y, z): the target of the view, scene units.")
+            "at", [](const Scene& s) { return point_of(s.view.at); },
+            "[x, y, z]: the point that the eye looks at, scene units.")
         .def_property_readonly(
             "nff", [](const Scene& s) { return write_nff(s); }, "str: the scene as NFF.")
         .def("save", save, py::arg("path"), "Writes an NFF file atomically. Raises ValueError.")
@@ -112,17 +117,27 @@ void add_scenes(py::module_& module) {
                 s.name = name;
                 return s;
             },
-            py::arg("name"))
+            py::arg("name"), "Returns the scene with another name.")
         .def("with_view", with_view,
-             "The scene with another camera, background or lights: from_, at, up, angle, background, light, as in raya "
-             "render. Raises ValueError.")
-        .def("random_view", random_view, py::arg("seed"),
-             "The scene from a random place at the same distance, 5 to 75 degrees above the target.")
-        .def("turned", turned_scene, py::arg("degrees"), "The scene with the eye rotated around the target.")
-        .def("without_lights", without_lights, "The scene without lights, and so without shadow rays.")
-        .def("scattered", scattered, py::arg("seed"), "The spheres at random centres in the cube [-1, 1]^3.")
-        .def("moved_within", moved_within, "Each sphere moved into the voxel of its centre, of 4x4x4 voxels.")
-        .def("touching_walls", touching_walls, "The outermost spheres moved until they touch the cube's sides.")
+             "Returns the scene with another camera, background or lights. Keyword arguments: the options from_, at, "
+             "up, "
+             "angle, background and light of raya render. Raises ValueError.")
+        .def(
+            "random_view", random_view, py::arg("seed"),
+            "Returns the scene seen from a random eye: at the same distance from the target, 5 to 75 degrees above it.")
+        .def("turned", turned_scene, py::arg("degrees"), "Returns the scene with the eye rotated around the target.")
+        .def("without_lights", without_lights,
+             "Returns the scene without lights, for which the kernels trace no shadow rays.")
+        .def("scattered", scattered, py::arg("seed"),
+             "Returns the scene with a random centre for each sphere. Every sphere lies in the cube [-1, 1]^3.")
+        .def("moved_within", moved_within,
+             "Returns the scene with each sphere moved so that it lies inside the voxel that contains its centre. The "
+             "cube "
+             "[-1, 1]^3 has 4 x 4 x 4 voxels; radii must be less than half a voxel's side.")
+        .def("touching_walls", touching_walls,
+             "Returns the scene with six spheres moved: for each face of the cube [-1, 1]^3, the sphere nearest to the "
+             "face "
+             "moves until it touches the face.")
         .def(
             "__eq__", [](const Scene& a, const Scene& b) { return a == b; }, py::is_operator())
         .def("__repr__",
@@ -137,9 +152,12 @@ void add_scenes(py::module_& module) {
     module.def("load", loaded, py::arg("path"), py::arg("strict") = false,
                "Reads an NFF file. Skips unknown content with a warning unless strict. Raises ValueError with file, "
                "line and reason.");
-    module.def("example", example, py::arg("name"),
-               "An embedded scene: centre, spheres, mirrors, glass, polygons, cones, planes. Raises ValueError.");
-    module.def("job_words", job_words, py::arg("scene"), "32-bit words of a scene in each PE of the SPA.");
+    module.def(
+        "example", example, py::arg("name"),
+        "Returns one of the embedded scenes. name: 'centre', 'spheres', 'mirrors', 'glass', 'polygons', 'cones' or "
+        "'planes'. Raises ValueError.");
+    module.def("job_words", job_words, py::arg("scene"),
+               "Number of 32-bit words that the scene takes in each PE of the SPA.");
     module.def(
         "parse", [](const std::string& text, const std::string& name) { return parse_nff(text, name); },
         py::arg("text"), py::arg("name") = "scene", "Parses NFF text. Raises ValueError.");

@@ -21,7 +21,8 @@
 namespace raya {
 namespace {
 
-// Saves Python's signal handlers and restores them in the destructor, because drivers (LLVM in PoCL) install their own.
+// Saves Python's signal handlers and restores them in the destructor, because drivers replace signal handlers (LLVM in
+// PoCL does).
 class SignalHandlers {
   public:
     SignalHandlers() {
@@ -71,14 +72,14 @@ RenderCommand parse_options(CLI::App& program, const py::dict& options) {
         check_files(*render);
         check_render(*render, command);
     });
-    std::vector<std::string> words = {"render"};  // arguments of the command line
-    for (const std::string& word : option_arguments(options)) words.push_back(word);
-    parse_arguments(program, words);
+    std::vector<std::string> arguments = {"render"};
+    for (const std::string& argument : option_arguments(options)) arguments.push_back(argument);
+    parse_arguments(program, arguments);
     return command;
 }
 
-// If the option `name` has the value True, removes it from `options` and returns true. For `cost` and `packets`: a text
-// names a file, while True requests only the arrays in the Result.
+// If the option `name` has the value True, removes the option from `options` and returns true. Used for `cost` and
+// `packets`: True stores the arrays in the Result; a text names the file to which they are written.
 bool takes_true(py::dict& options, const char* name) {
     if (!options.contains(name) || options[name].ptr() != Py_True) return false;
     options.attr("pop")(name);
@@ -94,20 +95,20 @@ PixelSubset pixels_of(py::dict& options) {
 }
 
 // Parses the arguments of `raya study` and returns the settings as JSON, for raya.lab. If the arguments request help,
-// prints it and raises SystemExit, because the program raya would exit.
+// prints the help and raises SystemExit, because the program raya would exit.
 std::string study_settings(const std::vector<std::string>& arguments) {
     CLI::App program("", "raya");
     program.formatter(std::make_shared<HelpFormatter>());
     std::string settings;
     add_study_command(program, [&settings](const std::string& json) { settings = json; });
     program.parse_complete_callback([&program] { check_files(*program.get_subcommands().front()); });
-    add_verbosity_options(program, Ranks::alone());
+    add_verbosity_options(program, Ranks::single());
     set_verbosity(kDefaultVerbosity);
-    std::vector<std::string> words = {"study"};
-    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<std::string> command_line = {"study"};
+    command_line.insert(command_line.end(), arguments.begin(), arguments.end());
     int code = 0;
     try {
-        parse_arguments(program, words);
+        parse_arguments(program, command_line);
     } catch (const CLI::ParseError& error) {
         code = program.exit(error);
     } catch (const UserError&) {
@@ -142,19 +143,19 @@ PythonSession& PythonSession::shared(const std::string& device) {
 
 std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict& given, const py::object& progress) {
     py::dict options(given.attr("copy")());
-    const bool keeps_costs = takes_true(options, "cost"), keeps_packets = takes_true(options, "packets");
+    const bool stores_costs = takes_true(options, "cost"), stores_packets = takes_true(options, "packets");
     const PixelSubset pixels = pixels_of(options);
     CLI::App program;
     RenderCommand command = parse_options(program, options);
     command.pixels = pixels;
     command.render.scene = scene.name;
-    command.record_costs = keeps_costs || !command.cost.empty();
-    command.keep_packets = keeps_packets;
-    command.summary = command.prints = false;
-    command.progress = [&progress](double share) {
+    command.record_costs = stores_costs || !command.cost.empty();
+    command.keep_packets = stores_packets;
+    command.summary = command.prints_profile = false;
+    command.progress = [&progress](double fraction) {
         const py::gil_scoped_acquire python;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        if (!progress.is_none()) progress(share);
+        if (!progress.is_none()) progress(fraction);
     };
     const py::gil_scoped_release free;
     const std::lock_guard lock(mutex_);

@@ -14,7 +14,7 @@
 
 namespace raya {
 
-/// An open device with the programs built for it. Renders from several threads run one after another.
+/// An open device with the OpenCL programs built for it. Renders from several threads run one after another.
 class PythonSession {
   public:
     /// Opens the device that `device` selects, as the option --device. Throws DeviceError.
@@ -22,12 +22,12 @@ class PythonSession {
 
     const DeviceInfo& info() const { return session_.device(); }
 
-    /// Renders with the keyword arguments of raya.render(). Releases the interpreter lock meanwhile. An exception
-    /// raised by a Python signal handler ends the render. `progress`: None, or a function that is called with the
-    /// completed fraction, 0..1. Throws UserError, DeviceError.
+    /// Renders with the keyword arguments of raya.render(). Releases Python's global interpreter lock (GIL) during the
+    /// render. An exception raised by a Python signal handler ends the render. `progress`: None, or a function that is
+    /// called with the completed fraction, 0..1. Throws UserError, DeviceError.
     std::shared_ptr<Render> render(const Scene& scene, const py::dict& options, const py::object& progress);
 
-    /// The session for renders without a session argument; one for each value of `device`.
+    /// Returns the session of renders without a session argument. There is one such session for each value of `device`.
     static PythonSession& shared(const std::string& device);
 
   private:
@@ -36,14 +36,14 @@ class PythonSession {
     std::mutex mutex_;
 };
 
-/// Holder of a render in the Python class Result.
+/// Smart pointer that holds a render in the Python class Result.
 using Result = std::shared_ptr<Render>;
 using ResultClass = py::class_<Render, Result>;
 
 /// Adds the members for renders on a torus to the Python class Result.
 void add_torus_results(py::module_& module, ResultClass& result);
 
-// Each adds the functions and classes of one source file to the Python module.
+// Each of these functions adds the functions and classes of one source file to the Python module.
 void add_scenes(py::module_& module);
 void add_renders(py::module_& module);
 void add_loads(py::module_& module);

@@ -17,8 +17,8 @@
 namespace raya {
 namespace {
 
-const TorusResult& torus_of(const Render& r, const char* what) {
-    if (!r.torus) throw py::value_error(fmt::format("{}: only for a torus; this render used a ring machine", what));
+const TorusResult& torus_of(const Render& r, const char* property) {
+    if (!r.torus) throw py::value_error(fmt::format("{}: only for a torus; this render used a ring machine", property));
     return *r.torus;
 }
 
@@ -41,20 +41,20 @@ py::array links_of(const py::object& self, std::vector<std::uint64_t> TorusResul
 
 py::dict supersteps_of(const Result& r) {
     const std::vector<Superstep>& steps = torus_of(*r, "supersteps").supersteps;
-    py::dict all;
+    py::dict arrays;
     const auto add = [&](const char* name, std::uint64_t Superstep::*figure) {
         std::vector<std::uint64_t> values;
         for (const Superstep& step : steps) values.push_back(step.*figure);
-        all[name] = copy_of(values);
+        arrays[name] = copy_of(values);
     };
     add("cycles", &Superstep::max_node_cycles);
     add("link_words", &Superstep::max_link_words);
     add("live", &Superstep::live);
-    return all;
+    return arrays;
 }
 
-// The times of the root node, as in torus_time(): its processor time, for computation and for all messages that it
-// sends or receives over its links, and the time of its busiest link.
+// Modelled times of the root node, as in torus_time(): the time of its processor, which computes and handles all
+// messages over the root's links, and the time of the root's busiest link.
 py::dict root_times(const Result& r) {
     const TorusResult& result = torus_of(*r, "root");
     const raya_torus& torus = r->torus_settings->torus;
@@ -68,10 +68,10 @@ py::dict root_times(const Result& r) {
                   t805_message_cycles(result.link_packets[in], result.link_words[in]);
         link_ms = std::max(link_ms, t805_link_ms(result.link_words[out], result.link_words[in]));
     }
-    py::dict all;
-    all["processor_ms"] = t805_ms(cycles);
-    all["link_ms"] = link_ms;
-    return all;
+    py::dict times;
+    times["processor_ms"] = t805_ms(cycles);
+    times["link_ms"] = link_ms;
+    return times;
 }
 
 double work_ms(const Result& r) {
@@ -85,11 +85,11 @@ py::dict node_memory(const Result& r) {
     const std::uint32_t links = links_of_node(r->torus_settings->torus);
     const std::uint64_t scene = result.node_bytes - node_bytes(0, result.buffers, links);
     const std::uint32_t shortest = raya_min_queue(r->lights, r->torus_settings->bounces);
-    py::dict all;
-    all["scene"] = scene;
-    all["shortest"] = scene + node_bytes(0, buffers_for(shortest), links);
-    all["used"] = result.node_bytes;
-    return all;
+    py::dict bytes;
+    bytes["scene"] = scene;
+    bytes["shortest"] = scene + node_bytes(0, buffers_for(shortest), links);
+    bytes["used"] = result.node_bytes;
+    return bytes;
 }
 
 const History& history_of(const Render& r) {
@@ -97,26 +97,26 @@ const History& history_of(const Render& r) {
     return *r.history;
 }
 
-// The default machine with the given parameters changed: message_cycles, word_cycles, one_way, both_ways (bytes/s),
-// buffer (messages).
+// Returns the default machine with the given parameters changed: message_cycles, word_cycles, one_way, both_ways
+// (bytes/s), buffer (messages).
 AsyncMachine async_machine(const py::kwargs& changes) {
-    AsyncMachine m;
+    AsyncMachine machine;
     for (const auto& [key, value] : changes) {
         const std::string name = py::str(key);
         if (name == "message_cycles")
-            m.message_cycles = value.cast<std::uint32_t>();
+            machine.message_cycles = value.cast<std::uint32_t>();
         else if (name == "word_cycles")
-            m.word_cycles = value.cast<std::uint32_t>();
+            machine.word_cycles = value.cast<std::uint32_t>();
         else if (name == "one_way")
-            m.one_way = value.cast<double>();
+            machine.one_way = value.cast<double>();
         else if (name == "both_ways")
-            m.both_ways = value.cast<double>();
+            machine.both_ways = value.cast<double>();
         else if (name == "buffer")
-            m.buffer = value.cast<std::uint32_t>();
+            machine.buffer = value.cast<std::uint32_t>();
         else
             throw py::type_error(fmt::format("unknown parameter of the machine: {}", name));
     }
-    return m;
+    return machine;
 }
 
 double simulated_ms(const Result& r, const py::kwargs& changes) {
@@ -150,35 +150,41 @@ void add_torus_results(py::module_& module, ResultClass& result) {
     PYBIND11_NUMPY_DTYPE(PacketRow, superstep, source, destination, kind, words, pixel);
     module.attr("PACKET_KINDS") = py::make_tuple("", "primary", "reflected", "refracted", "shadow", "return");
     result
-        .def_property_readonly("root", root_times,
-                               "{'processor_ms', 'link_ms'}: modelled ms of the torus's root, and of its busiest link.")
-        .def_property_readonly("work_ms", work_ms, "Modelled ms: total computation of all nodes of the torus.")
+        .def_property_readonly(
+            "root", root_times,
+            "dict: modelled ms of the torus's root: 'processor_ms' of its processor, 'link_ms' of its "
+            "busiest link.")
+        .def_property_readonly("work_ms", work_ms, "Modelled ms of computation, summed over all nodes of the torus.")
         .def_property_readonly(
             "node_memory", node_memory,
-            "Bytes of the fullest node: {'scene': its part of the scene, 'shortest': with the shortest buffers that "
-            "work, 'used': with the buffers of this render}.")
+            "dict: bytes of memory of the node with the most objects' words: 'scene' for its part of the scene alone, "
+            "'shortest' including the shortest possible buffers, 'used' including the buffers of this render.")
         .def_property_readonly("packets", packets_of,
                                "Structured array of the packets between nodes: superstep, source, destination, kind "
                                "(index of PACKET_KINDS), words, pixel. Empty unless rendered with packets=True.")
         .def_property_readonly(
             "link_words", [](const py::object& self) { return links_of(self, &TorusResult::link_words); },
-            "uint64 [nodes, 6]: words over each link: +x, -x, +y, -y, +z, -z.")
+            "uint64 [nodes, 6]: number of 32-bit words that each node sends over each of its links +x, -x, +y, -y, +z, "
+            "-z.")
         .def_property_readonly(
             "link_packets", [](const py::object& self) { return links_of(self, &TorusResult::link_packets); },
-            "uint64 [nodes, 6]: messages over each link.")
+            "uint64 [nodes, 6]: number of packets that each node sends over each link.")
         .def_property_readonly(
             "copied_words", [](const Result& r) { return torus_of(*r, "copied_words").copied_words; },
-            "Total words of the scene in all nodes of the torus.")
+            "Number of 32-bit words that all nodes together copy to local memory in each kernel launch; 0 if the "
+            "kernels read "
+            "the scene in global memory.")
         .def_property_readonly("supersteps", supersteps_of,
-                               "{'cycles', 'link_words', 'live': uint64 [S]} of each superstep: cycles of the busiest "
-                               "node, words over the busiest link, and packets in flight at the end.")
+                               "dict of arrays uint64 [S], one number per superstep: 'cycles' of the busiest node, "
+                               "'link_words' sent over the busiest link, 'live': packets in flight at the end.")
         .def_property_readonly(
             "step_cycles", [](const py::object& self) { return steps_array(self, &Render::cycles, 1); },
-            "uint64 [S, nodes]: cycles of each node in each superstep; with packets=True.")
+            "uint64 [S, nodes]: cycles of each node in each superstep. Empty unless rendered with packets=True.")
         .def_property_readonly(
             "step_link_words",
             [](const py::object& self) { return steps_array(self, &Render::link_words, RAYA_LINKS); },
-            "uint64 [S, nodes, 6]: words over each link in each superstep; with packets=True.")
+            "uint64 [S, nodes, 6]: number of words that each node sends over each link in each superstep. Empty unless "
+            "rendered with packets=True.")
         .def("simulate", simulated_ms,
              "Modelled ms of the torus without supersteps, with changed message_cycles, word_cycles, one_way, "
              "both_ways (bytes/s, 0: no time) or buffer (messages); requires async_=True.")

@@ -18,9 +18,10 @@
 namespace raya {
 namespace {
 
-constexpr double kDefaultTimeoutS = 600;  // time limit of waits for other ranks; RAYA_RANK_TIMEOUT overrides it
+constexpr double kDefaultTimeoutS = 600;  // time limit of each wait for other ranks, unless RAYA_RANK_TIMEOUT is set
 
-std::optional<std::uint32_t> number_in(const char* text) {
+// Returns empty unless the whole text is a decimal number.
+std::optional<std::uint32_t> parsed_count(const char* text) {
     std::uint32_t value = 0;
     if (text == nullptr || *text == '\0') return {};
     const char* end = text + std::strlen(text);
@@ -31,47 +32,47 @@ std::optional<std::uint32_t> number_in(const char* text) {
 double rank_timeout_s() {
     const char* text = std::getenv("RAYA_RANK_TIMEOUT");
     if (text == nullptr) return kDefaultTimeoutS;
-    const std::optional<std::uint32_t> seconds = number_in(text);
+    const std::optional<std::uint32_t> seconds = parsed_count(text);
     if (!seconds || *seconds == 0)
         throw UserError(fmt::format("RAYA_RANK_TIMEOUT={}: must be a whole number of seconds, 1 or more", text));
     return *seconds;
 }
 
-// The deadline is necessary: MPI_Init_thread may block forever if another process ends before it calls
-// MPI_Init_thread.
+// Loads raya_mpi.so and starts MPI. The deadline ends this process if MPI_Init_thread blocks forever, which may happen
+// if another process ends before its own call of MPI_Init_thread.
 std::unique_ptr<Transport> open_transport(const Launch& launch) {
     const double limit_s = rank_timeout_s();
-    const std::uint32_t count = launch.count.value_or(0);
+    const std::string processes = launch.count ? std::to_string(*launch.count) : "several";  // not all launchers say
     try {
-        auto* const open = reinterpret_cast<OpenMpi*>(module_function(kMpiModule, kOpenMpi));
-        const std::string text = fmt::format(
+        auto* const open_mpi = reinterpret_cast<OpenMpi*>(module_function(kMpiModule, kOpenMpi));
+        const std::string timeout_message = fmt::format(
             "raya: rank 0 has waited {:g} s for all of {} ranks to start; remedy: look for a process that hangs or has "
             "ended, or raise the limit with RAYA_RANK_TIMEOUT=SECONDS\n",
-            limit_s, count);
-        const Deadline deadline(limit_s, launch.rank == 0 ? text : "", kExitDeviceError);
-        return std::unique_ptr<Transport>(open(limit_s));
+            limit_s, processes);
+        const Deadline deadline(limit_s, launch.rank == 0 ? timeout_message : "", kExitDeviceError);
+        return std::unique_ptr<Transport>(open_mpi(limit_s));
     } catch (const ModuleError& error) {
         throw UserError(
             fmt::format("started as one of {} processes, but raya cannot load its MPI module: {}; remedy: install "
                         "libopenmpi-dev or libmpich-dev and build again, or start raya without mpirun",
-                        count, error.what()));
+                        processes, error.what()));
     }
 }
 
-std::uint32_t usable_cores() {
+std::uint32_t count_usable_cores() {
     cpu_set_t mask;
     CPU_ZERO(&mask);
     return ::sched_getaffinity(0, sizeof mask, &mask) == 0 ? static_cast<std::uint32_t>(CPU_COUNT(&mask)) : 1;
 }
 
-void share_cores(const Ranks& ranks) {
-    const auto cores = static_cast<std::uint32_t>(::sysconf(_SC_NPROCESSORS_ONLN));
-    const std::uint32_t threads = threads_of_rank(usable_cores(), cores, ranks.ranks_on_host());
+void limit_pocl_threads(const Ranks& ranks) {
+    const auto host_cores = static_cast<std::uint32_t>(::sysconf(_SC_NPROCESSORS_ONLN));
+    const std::uint32_t threads = threads_of_rank(count_usable_cores(), host_cores, ranks.ranks_on_host());
     ::setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 0);
 }
 
 // Returns the version of raya and a hash of the embedded files (kernels).
-std::string build_text() {
+std::string build_id() {
     std::size_t hash = 0;
     for (const auto& [path, text] : embedded_files()) hash = 31 * hash + std::hash<std::string>()(path + text);
     return fmt::format("{} ({:016x})", name_and_version(), hash);
@@ -79,16 +80,17 @@ std::string build_text() {
 
 }  // namespace
 
-std::optional<Launch> launch_from(const std::function<const char*(const char*)>& variable) {
-    struct Names {
+std::optional<Launch> launch_from(const std::function<const char*(const char*)>& get_variable) {
+    struct VariableNames {
         const char *rank, *count;
     };
-    // In this order: Open MPI; MPICH, Intel MPI and Slurm's pmi2; PMIx of Slurm and others.
-    constexpr Names kLaunchers[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
-                                    {"PMI_RANK", "PMI_SIZE"},
-                                    {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}};
-    for (const Names& names : kLaunchers)
-        if (const auto rank = number_in(variable(names.rank))) return Launch{*rank, number_in(variable(names.count))};
+    // Open MPI; MPICH, Intel MPI and Slurm's pmi2; PMIx (Slurm and others).
+    constexpr VariableNames kLaunchers[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
+                                            {"PMI_RANK", "PMI_SIZE"},
+                                            {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}};
+    for (const VariableNames& names : kLaunchers)
+        if (const auto rank = parsed_count(get_variable(names.rank)))
+            return Launch{*rank, parsed_count(get_variable(names.count))};
     return {};
 }
 
@@ -108,30 +110,31 @@ std::unique_ptr<Ranks> open_ranks() {
             "MPI",
             *launch->count, library, ranks->count()));
     }
-    if (!ranks->many()) {
+    if (!ranks->has_several()) {
         ranks->close(0);
         return nullptr;
     }
-    share_cores(*ranks);
+    limit_pocl_threads(*ranks);
     return ranks;
 }
 
 void check_same_program(Ranks& ranks, const std::vector<std::string>& arguments) {
-    std::string own = build_text();
-    for (const std::string& argument : arguments) own += "\n" + argument;
-    std::string first = own;
-    ranks.broadcast(first);
-    if (own == first) return;
-    const std::string version = own.substr(0, own.find('\n')), other = first.substr(0, first.find('\n'));
-    throw UserError(
-        version != other
-            ? fmt::format("this rank is {}, rank 0 is {}; start the same program everywhere", version, other)
-            : "this rank was started with other arguments than rank 0; use the same for all ranks");
+    std::string own_text = build_id();
+    for (const std::string& argument : arguments) own_text += "\n" + argument;
+    std::string rank_0_text = own_text;
+    ranks.broadcast(rank_0_text);
+    if (own_text == rank_0_text) return;
+    const auto first_line = [](const std::string& text) { return text.substr(0, text.find('\n')); };
+    const std::string own_version = first_line(own_text), rank_0_version = first_line(rank_0_text);
+    throw UserError(own_version != rank_0_version
+                        ? fmt::format("this rank is {}, rank 0 is {}; start the same program everywhere", own_version,
+                                      rank_0_version)
+                        : "this rank was started with other arguments than rank 0; use the same for all ranks");
 }
 
-std::uint32_t threads_of_rank(std::uint32_t usable, std::uint32_t cores, std::uint32_t ranks_of_host) {
-    if (usable < cores) return std::max(1u, usable);
-    return std::max(1u, cores / ranks_of_host);
+std::uint32_t threads_of_rank(std::uint32_t usable_cores, std::uint32_t host_cores, std::uint32_t ranks_of_host) {
+    if (usable_cores < host_cores) return std::max(1u, usable_cores);
+    return std::max(1u, host_cores / ranks_of_host);
 }
 
 }  // namespace raya

@@ -1,6 +1,6 @@
-// MPI transport, in a module that raya loads only if an MPI launcher has started it, so that other runs do not load
-// MPI's libraries. Waits poll their requests instead of calling MPI_Wait, which has no time limit and would not notice
-// that another rank has failed.
+// MPI transport: raya_mpi.so. raya loads this module only if an MPI launcher has started raya, so that other runs do
+// not load MPI's libraries. Waits poll their requests instead of calling MPI_Wait, which has no time limit and would
+// not notice that another rank has failed.
 #define OMPI_SKIP_MPICXX  // leaves out the C++ bindings, which MPI-3 has removed
 #define MPICH_SKIP_MPICXX
 #include <fmt/core.h>
@@ -24,11 +24,11 @@
 namespace raya {
 namespace {
 
-// Maximum bytes of an MPI message, whose length is an int. Longer messages are split.
+// Maximum number of bytes in an MPI message. Longer messages are split, because MPI's message length is an int.
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 30;
 constexpr int kFailureTag = 1;
 
-void check(int result, const char* call) {
+void check_mpi(int result, const char* call) {
     if (result == MPI_SUCCESS) return;
     std::array<char, MPI_MAX_ERROR_STRING> text{};
     int length = 0;
@@ -53,15 +53,14 @@ class MpiTransport final : public Transport {
   public:
     explicit MpiTransport(double limit_s) : limit_s_(limit_s) {
         int provided = 0;
-        check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
-        // Separate communicators for data and for reports of failures.
-        for (MPI_Comm* comm : {&comm_, &failures_}) {
-            check(MPI_Comm_dup(MPI_COMM_WORLD, comm), "MPI_Comm_dup");
-            check(MPI_Comm_set_errhandler(*comm, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+        check_mpi(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
+        for (MPI_Comm* comm : {&data_comm_, &failure_comm_}) {
+            check_mpi(MPI_Comm_dup(MPI_COMM_WORLD, comm), "MPI_Comm_dup");
+            check_mpi(MPI_Comm_set_errhandler(*comm, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
         }
         ::prctl(PR_SET_TIMERSLACK, 1);  // 1 ns: by default Linux may extend each sleep by 50 us
-        MPI_Comm_rank(comm_, &rank_);
-        MPI_Comm_size(comm_, &count_);
+        MPI_Comm_rank(data_comm_, &rank_);
+        MPI_Comm_size(data_comm_, &count_);
         spin_s_ = ranks_of_host() > ::sysconf(_SC_NPROCESSORS_ONLN) ? 30e-6 : 300e-6;
         std::array<char, HOST_NAME_MAX + 1> name{};
         ::gethostname(name.data(), name.size() - 1);
@@ -76,15 +75,16 @@ class MpiTransport final : public Transport {
 
     void broadcast(std::span<std::byte> bytes) override {
         for_pieces(bytes, [&](std::span<std::byte> piece) {
-            check(MPI_Ibcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, 0, comm_, &next_request()),
-                  "MPI_Ibcast");
+            check_mpi(
+                MPI_Ibcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, 0, data_comm_, &next_request()),
+                "MPI_Ibcast");
             wait();
         });
     }
 
-    void all_gather(std::span<const std::byte> own, std::span<std::byte> all,
+    void all_gather(std::span<const std::byte> own_bytes, std::span<std::byte> all_bytes,
                     std::span<const std::size_t> sizes) override {
-        if (all.size() > INT_MAX) throw std::length_error("all_gather: more than 2^31 bytes");
+        if (all_bytes.size() > INT_MAX) throw std::length_error("all_gather: more than 2^31 bytes");
         std::vector<int> counts, starts;
         int end = 0;
         for (const std::size_t size : sizes) {
@@ -92,43 +92,45 @@ class MpiTransport final : public Transport {
             starts.push_back(end);
             end += counts.back();
         }
-        check(MPI_Iallgatherv(own.data(), static_cast<int>(own.size()), MPI_BYTE, all.data(), counts.data(),
-                              starts.data(), MPI_BYTE, comm_, &next_request()),
-              "MPI_Iallgatherv");
+        check_mpi(MPI_Iallgatherv(own_bytes.data(), static_cast<int>(own_bytes.size()), MPI_BYTE, all_bytes.data(),
+                                  counts.data(), starts.data(), MPI_BYTE, data_comm_, &next_request()),
+                  "MPI_Iallgatherv");
         wait();
     }
 
-    // MPI keeps the order of messages with the same sender, receiver and tag, so the pieces arrive in order.
-    void start(std::span<const Outgoing> out, std::span<const Incoming> in) override {
-        for (const Incoming& m : in)
+    // The pieces of a message arrive in order, because MPI keeps the order of messages with equal sender, receiver and
+    // tag.
+    void start(std::span<const OutgoingMessage> out, std::span<const IncomingMessage> in) override {
+        for (const IncomingMessage& m : in)
             for_pieces(m.bytes, [&](std::span<std::byte> piece) {
-                check(MPI_Irecv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, static_cast<int>(m.from), m.tag,
-                                comm_, &next_request()),
-                      "MPI_Irecv");
+                check_mpi(MPI_Irecv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, static_cast<int>(m.sender),
+                                    m.tag, data_comm_, &next_request()),
+                          "MPI_Irecv");
             });
-        for (const Outgoing& m : out)
+        for (const OutgoingMessage& m : out)
             for_pieces(m.bytes, [&](std::span<const std::byte> piece) {
-                check(MPI_Isend(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, static_cast<int>(m.to), m.tag,
-                                comm_, &next_request()),
-                      "MPI_Isend");
+                check_mpi(MPI_Isend(piece.data(), static_cast<int>(piece.size()), MPI_BYTE,
+                                    static_cast<int>(m.receiver), m.tag, data_comm_, &next_request()),
+                          "MPI_Isend");
             });
     }
 
     void wait() override {
-        if (!complete(requests_, limit_s_)) throw RankFailure(timeout_text(), kExitDeviceError);
+        if (!complete_within(limit_s_, requests_)) throw RankFailure(timeout_text(), kExitDeviceError);
         requests_.clear();
     }
 
     void report_failure(const std::string& text, int code) override {
-        // Rank 0 has this time to end all ranks. It increases with the rank, so that if several ranks fail and rank 0
-        // does not react, only the first of them continues and aborts the others.
+        // Time that rank 0 has to end all ranks; after this time the caller aborts them. The time increases with the
+        // rank, so that if several ranks fail and rank 0 does not react, only the lowest of them aborts.
         const double timeout_s = 4 + failure_delay_s(rank());
         std::string message = fmt::format("{} {}", code, text);
         std::vector<MPI_Request> sent(1);
         const int size = static_cast<int>(message.size());
-        if (MPI_Isend(message.data(), size, MPI_BYTE, 0, kFailureTag, failures_, sent.data()) != MPI_SUCCESS) return;
+        if (MPI_Isend(message.data(), size, MPI_BYTE, 0, kFailureTag, failure_comm_, sent.data()) != MPI_SUCCESS)
+            return;
         const Clock::time_point start = Clock::now();
-        complete(sent, timeout_s);
+        complete_within(timeout_s, sent);
         // Normally rank 0 ends this process during the sleep.
         std::this_thread::sleep_for(std::chrono::duration<double>(timeout_s - seconds_since(start)));
     }
@@ -162,7 +164,8 @@ class MpiTransport final : public Transport {
     int ranks_of_host() const {
         MPI_Comm host = MPI_COMM_NULL;
         int ranks = 1;
-        check(MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &host), "MPI_Comm_split_type");
+        check_mpi(MPI_Comm_split_type(data_comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &host),
+                  "MPI_Comm_split_type");
         MPI_Comm_size(host, &ranks);
         MPI_Comm_free(&host);
         return ranks;
@@ -170,25 +173,27 @@ class MpiTransport final : public Transport {
 
     std::string timeout_text() const {
         return fmt::format(
-            "rank {} on {}: has waited for the other ranks for {:g} s; remedy: look for one that hangs, or raise the "
+            "rank {} on {}: has waited for the other ranks for {:g} s; remedy: look for a rank that hangs, or raise "
+            "the "
             "limit with RAYA_RANK_TIMEOUT=SECONDS",
             rank_, host_, limit_s_);
     }
 
     MPI_Request& next_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }
 
-    // Waits until all requests are complete; returns false after `limit_s` seconds. Ranks may share cores, so the wait
-    // polls without sleeping only for the time of a typical message (spin_s_), and then sleeps between polls. It sleeps
-    // rather than yields, because the scheduler prefers a thread that wakes up to computing threads, but does not
-    // prefer a thread that yields.
-    bool complete(std::vector<MPI_Request>& requests, double limit_s) {
+    // Waits until all requests are complete; returns false if they are not after `limit_s` seconds. Ranks may share
+    // cores, so the wait polls without sleeping only for spin_s_ seconds and then sleeps between polls. It does not
+    // call sched_yield, because the scheduler prefers a thread that wakes up from a sleep to computing threads, but
+    // does not prefer a thread that yields.
+    bool complete_within(double limit_s, std::vector<MPI_Request>& requests) {
         constexpr auto kSleep = std::chrono::microseconds(20);
         const Clock::time_point start = Clock::now();
         for (;;) {
-            int done = 0;
-            check(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE),
-                  "MPI_Testall");
-            if (done) return true;
+            int all_complete = 0;
+            check_mpi(
+                MPI_Testall(static_cast<int>(requests.size()), requests.data(), &all_complete, MPI_STATUSES_IGNORE),
+                "MPI_Testall");
+            if (all_complete) return true;
             const double elapsed_s = seconds_since(start);
             if (elapsed_s < spin_s_) continue;
             if (rank_ == 0) receive_failure();
@@ -200,19 +205,19 @@ class MpiTransport final : public Transport {
     void receive_failure() {
         int available = 0;
         MPI_Status status;
-        check(MPI_Iprobe(MPI_ANY_SOURCE, kFailureTag, failures_, &available, &status), "MPI_Iprobe");
+        check_mpi(MPI_Iprobe(MPI_ANY_SOURCE, kFailureTag, failure_comm_, &available, &status), "MPI_Iprobe");
         if (!available) return;
         int size = 0;
         MPI_Get_count(&status, MPI_BYTE, &size);
         std::string message(static_cast<std::size_t>(size), ' ');
-        MPI_Recv(message.data(), size, MPI_BYTE, status.MPI_SOURCE, kFailureTag, failures_, MPI_STATUS_IGNORE);
+        MPI_Recv(message.data(), size, MPI_BYTE, status.MPI_SOURCE, kFailureTag, failure_comm_, MPI_STATUS_IGNORE);
         const std::size_t space = message.find(' ');
         throw RankFailure(message.substr(space + 1), std::atoi(message.c_str()));
     }
 
     const double limit_s_;
-    double spin_s_ = 0;  // seconds for which a wait polls before it sleeps
-    MPI_Comm comm_ = MPI_COMM_NULL, failures_ = MPI_COMM_NULL;
+    double spin_s_ = 0;  // time for which a wait polls before it sleeps; shorter if ranks share cores
+    MPI_Comm data_comm_ = MPI_COMM_NULL, failure_comm_ = MPI_COMM_NULL;
     int rank_ = 0, count_ = 1;
     std::string host_, library_;
     std::vector<MPI_Request> requests_;

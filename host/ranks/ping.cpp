@@ -13,12 +13,12 @@ namespace {
 
 constexpr std::uint64_t kMaxPingBytes = 4 << 20;
 
-// The transport does not send empty messages, so the shortest message has one byte.
+// Lengths of the messages. The shortest has one byte, because the transport does not send empty messages.
 constexpr std::uint64_t kMessageBytes[] = {1,        64,        1 << 10, 4 << 10,      16 << 10,
                                            64 << 10, 256 << 10, 1 << 20, kMaxPingBytes};
-constexpr std::uint64_t kGatherBytes[] = {136, 1088, 8704, 69632};  // bytes: the status of 1, 8, 64 and 512 torus nodes
+constexpr std::uint64_t kGatherBytes[] = {136, 1088, 8704, 69632};  // status words of 1, 8, 64 and 512 torus nodes
 
-// Short messages are repeated more often. All messages together amount to at most 1 GB.
+// Short messages are repeated more often. All messages together have at most 1 GB.
 int repetitions_of(std::uint64_t bytes) { return bytes <= (64 << 10) ? 300 : 20; }
 
 template <class Call>
@@ -37,18 +37,18 @@ MessageTime message_time(Ranks& ranks, std::uint32_t partner, std::uint64_t byte
     std::vector<std::byte> block(bytes);
     if (ranks.rank() != 0 && ranks.rank() != partner) return {bytes, 0};
     const double round_trip_s = minimum_seconds(repetitions_of(bytes), [&] {
-        if (ranks.first()) ranks.send(partner, std::span<const std::byte>(block));
-        ranks.receive(ranks.first() ? partner : 0, std::span(block));
-        if (!ranks.first()) ranks.send(0, std::span<const std::byte>(block));
+        if (ranks.is_first()) ranks.send(partner, std::span<const std::byte>(block));
+        ranks.receive(ranks.is_first() ? partner : 0, std::span(block));
+        if (!ranks.is_first()) ranks.send(0, std::span<const std::byte>(block));
     });
     return {bytes, round_trip_s / 2};
 }
 
 MessageTime gather_time(Ranks& ranks, std::uint64_t bytes) {
-    const std::vector<std::byte> own(bytes);
+    const std::vector<std::byte> block(bytes);
     const std::vector<std::size_t> sizes(ranks.count(), bytes);
-    return {bytes,
-            minimum_seconds(repetitions_of(bytes), [&] { ranks.all_gather(std::span<const std::byte>(own), sizes); })};
+    return {bytes, minimum_seconds(repetitions_of(bytes),
+                                   [&] { ranks.all_gather(std::span<const std::byte>(block), sizes); })};
 }
 
 Json json_of(const std::vector<MessageTime>& times) {
@@ -60,7 +60,8 @@ Json json_of(const std::vector<MessageTime>& times) {
 }  // namespace
 
 // Minimises the sum of ((alpha + beta b) / t - 1)^2 over the messages (b bytes, t seconds), by solving the two linear
-// equations "partial derivative = 0". If a parameter would be negative, it is 0 and only the other one is fitted.
+// equations "partial derivative = 0". If the solution has a negative alpha or beta, sets that parameter to 0 and fits
+// only the other parameter.
 Network fitted_network(std::span<const MessageTime> times) {
     double ones = 0, b = 0, bb = 0, y = 0, by = 0;  // sums of 1/t^2, b/t^2, b^2/t^2, 1/t, b/t
     for (const MessageTime& time : times) {
@@ -72,17 +73,17 @@ Network fitted_network(std::span<const MessageTime> times) {
         by += bytes * w;
     }
     const double determinant = ones * bb - b * b;
-    const Network both{(y * bb - by * b) / determinant, (by * ones - y * b) / determinant};
-    if (both.alpha_s < 0) return {0, by / bb};
-    if (both.beta_s < 0) return {y / ones, 0};
-    return both;
+    const Network solution{(y * bb - by * b) / determinant, (by * ones - y * b) / determinant};
+    if (solution.alpha_s < 0) return {0, by / bb};
+    if (solution.beta_s < 0) return {y / ones, 0};
+    return solution;
 }
 
 // The number of threads is POCL_MAX_PTHREAD_COUNT, which open_ranks() has set.
-RankPlace own_place(const std::string& host) {
+RankPlace place_of_this_process(const std::string& host) {
     const auto cores = static_cast<std::uint32_t>(std::max(1L, ::sysconf(_SC_NPROCESSORS_ONLN)));
-    const char* const value = std::getenv("POCL_MAX_PTHREAD_COUNT");
-    const int threads = value != nullptr ? std::atoi(value) : 0;
+    const char* const pocl_threads = std::getenv("POCL_MAX_PTHREAD_COUNT");
+    const int threads = pocl_threads != nullptr ? std::atoi(pocl_threads) : 0;
     return {host, threads > 0 ? static_cast<std::uint32_t>(threads) : cores, cores};
 }
 
@@ -90,18 +91,19 @@ PingReport ping(Ranks& ranks) {
     PingReport report;
     report.library = ranks.library();
     const std::vector<std::string> hosts = ranks.gather(ranks.host());
-    const RankPlace own = own_place("");
-    const std::vector<std::uint32_t> threads = ranks.all_gather(own.threads), cores = ranks.all_gather(own.cores);
+    const RankPlace own_place = place_of_this_process("");
+    const std::vector<std::uint32_t> threads = ranks.all_gather(own_place.threads),
+                                     cores = ranks.all_gather(own_place.cores);
     for (std::size_t rank = 0; rank < hosts.size(); ++rank)
         report.ranks.push_back({hosts[rank], threads[rank], cores[rank]});
     report.partner = 1;
-    for (std::uint32_t rank = ranks.first() ? ranks.count() - 1 : 0; rank > 0; --rank)
+    for (std::uint32_t rank = ranks.is_first() ? ranks.count() - 1 : 0; rank > 0; --rank)
         if (hosts[rank] != hosts[0]) report.partner = rank;
     ranks.broadcast(report.partner);
     for (const std::uint64_t bytes : kMessageBytes)
         report.messages.push_back(message_time(ranks, report.partner, bytes));
     for (const std::uint64_t bytes : kGatherBytes) report.gathers.push_back(gather_time(ranks, bytes));
-    if (ranks.first()) report.network = fitted_network(report.messages);
+    if (ranks.is_first()) report.network = fitted_network(report.messages);
     return report;
 }
 

@@ -1,5 +1,5 @@
-// Message times between ranks, measured by a ping-pong over the transport that renders use, and a linear network model
-// that is fitted to them.
+// Message times between ranks, measured by a ping-pong over the same transport as a render's messages, and a linear
+// network model that is fitted to the times.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -11,9 +11,9 @@
 
 namespace raya {
 
-/// One-way time of a message. The minimum of many measurements, as other load can only increase the time.
+/// One-way time of a message: the minimum of many measurements, because other load can only increase the time.
 struct MessageTime {
-    std::uint64_t bytes = 0;
+    std::uint64_t bytes = 0;  // length of the message
     double seconds = 0;
 };
 
@@ -25,28 +25,28 @@ struct Network {
     double seconds(double bytes) const { return alpha_s + beta_s * bytes; }
 };
 
-/// Fits alpha and beta, both >= 0, by least squares of the relative errors, so that short messages have as much weight
-/// as long ones. Requires at least two different lengths and positive times.
+/// Fits alpha and beta, both >= 0, by least squares of the relative errors of the times, so that short messages have as
+/// much weight as long ones. Requires at least two different lengths and positive times.
 Network fitted_network(std::span<const MessageTime> times);
 
-/// Host of a rank, and the processors that the rank uses.
+/// Host of a rank, and numbers of its threads and cores.
 struct RankPlace {
     std::string host;
-    std::uint32_t threads = 0;  // number of threads of its CPU device
+    std::uint32_t threads = 0;  // number of threads of the rank's OpenCL CPU device
     std::uint32_t cores = 0;    // number of cores of the host
 };
 
-/// Returns the place of this process; `host`: the host's name.
-RankPlace own_place(const std::string& host);
+/// `host`: name of this process's host.
+RankPlace place_of_this_process(const std::string& host);
 
 /// Result of ping().
 struct PingReport {
-    std::string library;
-    std::vector<RankPlace> ranks;
-    std::uint32_t partner = 0;          // rank that rank 0 exchanges messages with: the first on another host, or 1
-    std::vector<MessageTime> messages;  // messages between rank 0 and the partner
-    std::vector<MessageTime> gathers;   // all-gather, `bytes` per rank, as at the end of a torus superstep
-    Network network;                    // fitted to the messages
+    std::string library;                // name and version of the MPI library
+    std::vector<RankPlace> ranks;       // [rank]
+    std::uint32_t partner = 0;          // lowest rank on another host than rank 0; 1 if there is none
+    std::vector<MessageTime> messages;  // times of messages between rank 0 and the partner
+    std::vector<MessageTime> gathers;   // times of all-gathers of `bytes` bytes per rank, as in a torus superstep
+    Network network;                    // fitted to `messages`
 
     Json json() const;
 };

@@ -21,10 +21,11 @@ class SingleRankTransport final : public Transport {
     std::string host() const override { return {}; }
     std::string library() const override { return {}; }
     void broadcast(std::span<std::byte>) override {}
-    void all_gather(std::span<const std::byte> own, std::span<std::byte> all, std::span<const std::size_t>) override {
-        std::copy(own.begin(), own.end(), all.begin());
+    void all_gather(std::span<const std::byte> own_bytes, std::span<std::byte> all_bytes,
+                    std::span<const std::size_t>) override {
+        std::copy(own_bytes.begin(), own_bytes.end(), all_bytes.begin());
     }
-    void start(std::span<const Outgoing>, std::span<const Incoming>) override {}
+    void start(std::span<const OutgoingMessage>, std::span<const IncomingMessage>) override {}
     void wait() override {}
     void poll_failures() override {}
     void report_failure(const std::string&, int) override {}
@@ -32,75 +33,76 @@ class SingleRankTransport final : public Transport {
     void close() override {}
 };
 
-std::uint64_t bytes_of(std::span<const Outgoing> out) {
+std::uint64_t total_bytes(std::span<const OutgoingMessage> out) {
     std::uint64_t bytes = 0;
-    for (const Outgoing& message : out) bytes += message.bytes.size();
+    for (const OutgoingMessage& message : out) bytes += message.bytes.size();
     return bytes;
 }
 
 constexpr int kClockRequests = 16;
 
-// Answers kClockRequests requests of a rank with this rank's time.
-void answer_clock_requests(Ranks& ranks, std::uint32_t rank, const std::function<std::uint64_t()>& now) {
+// Answers kClockRequests requests of the rank `requester` with this rank's time.
+void answer_clock_requests(Ranks& ranks, std::uint32_t requester, const std::function<std::uint64_t()>& now) {
     for (int i = 0; i < kClockRequests; ++i) {
         char request = 0;
-        ranks.receive(rank, std::span(&request, 1));
+        ranks.receive(requester, std::span(&request, 1));
         const std::uint64_t time = now();
-        ranks.send(rank, std::span(&time, 1));
+        ranks.send(requester, std::span(&time, 1));
     }
 }
 
 // Requests rank 0's time kClockRequests times, and returns the clock offset with the minimum uncertainty.
 RankClock request_clock(Ranks& ranks, const std::function<std::uint64_t()>& now) {
-    RankClock best{0, UINT64_MAX};
+    RankClock best_clock{0, UINT64_MAX};
     for (int i = 0; i < kClockRequests; ++i) {
         const char request = 1;
         std::uint64_t time = 0;
         const std::uint64_t before = now();
         ranks.send(0, std::span(&request, 1));
         ranks.receive(0, std::span(&time, 1));
-        const std::uint64_t half = (now() - before) / 2;
-        if (half < best.uncertainty_ns) best = {static_cast<std::int64_t>(time - (before + half)), half};
+        const std::uint64_t half_trip_ns = (now() - before) / 2;
+        if (half_trip_ns < best_clock.uncertainty_ns)
+            best_clock = {static_cast<std::int64_t>(time - (before + half_trip_ns)), half_trip_ns};
     }
-    return best;
+    return best_clock;
 }
 
 }  // namespace
 
-Ranks& Ranks::alone() {
-    static Ranks only(std::make_unique<SingleRankTransport>());
-    return only;
+Ranks& Ranks::single() {
+    static Ranks single_rank(std::make_unique<SingleRankTransport>());
+    return single_rank;
 }
 
 Ranks::Ranks(std::unique_ptr<Transport> transport)
     : transport_(std::move(transport)), rank_(transport_->rank()), count_(transport_->count()) {
-    find_host();
+    find_ranks_of_host();
 }
 
-void Ranks::find_host() {
+void Ranks::find_ranks_of_host() {
     constexpr std::size_t kMaxNameBytes = 256;
-    std::array<char, kMaxNameBytes> own{};
-    host().copy(own.data(), kMaxNameBytes);
-    const std::vector<std::array<char, kMaxNameBytes>> hosts = all_gather(own);
+    std::array<char, kMaxNameBytes> own_host{};
+    host().copy(own_host.data(), kMaxNameBytes);
+    const std::vector<std::array<char, kMaxNameBytes>> hosts = all_gather(own_host);
     for (std::uint32_t rank = 0; rank < count_; ++rank)
-        if (hosts[rank] == own) host_ranks_.push_back(rank);
+        if (hosts[rank] == own_host) host_ranks_.push_back(rank);
     ranks_on_host_ = static_cast<std::uint32_t>(host_ranks_.size());
     rank_on_host_ =
         static_cast<std::uint32_t>(std::find(host_ranks_.begin(), host_ranks_.end(), rank_) - host_ranks_.begin());
 }
 
 void Ranks::broadcast(std::string& text) {
-    std::vector<char> letters(text.begin(), text.end());
-    broadcast(letters);
-    text.assign(letters.begin(), letters.end());
+    std::vector<char> characters(text.begin(), text.end());
+    broadcast(characters);
+    text.assign(characters.begin(), characters.end());
 }
 
 std::vector<std::string> Ranks::gather(const std::string& text) {
-    const std::vector<std::size_t> sizes = all_sizes(text.size());
-    const std::vector<char> letters = gather(std::span<const char>(text), sizes);
+    const std::vector<std::size_t> sizes = sizes_of_all_ranks(text.size());
+    const std::vector<char> characters = gather(std::span<const char>(text), sizes);
     std::vector<std::string> texts;
-    auto begin = letters.begin();
-    for (std::size_t rank = 0; rank < (first() ? sizes.size() : 0); ++rank) {
+    auto begin = characters.begin();
+    for (std::size_t rank = 0; rank < (is_first() ? sizes.size() : 0); ++rank) {
         const auto end = begin + static_cast<std::ptrdiff_t>(sizes[rank]);
         texts.emplace_back(begin, end);
         begin = end;
@@ -109,41 +111,42 @@ std::vector<std::string> Ranks::gather(const std::string& text) {
 }
 
 template <class Call>
-void Ranks::timed(Call&& call) {
+void Ranks::measure_wait(Call&& call) {
     const Clock::time_point start = Clock::now();
     call();
     traffic_.waiting_s += seconds_since(start);
 }
 
 void Ranks::broadcast_bytes(std::span<std::byte> bytes) {
-    traffic_.messages += many() && first();
-    traffic_.bytes += many() && first() ? bytes.size() : 0;
-    timed([&] { transport_->broadcast(bytes); });
+    traffic_.messages += has_several() && is_first();
+    traffic_.bytes += has_several() && is_first() ? bytes.size() : 0;
+    measure_wait([&] { transport_->broadcast(bytes); });
 }
 
-void Ranks::gather_bytes(std::span<const std::byte> own, std::span<std::byte> all, std::span<const std::size_t> sizes) {
-    traffic_.messages += many();
-    traffic_.bytes += many() ? own.size() : 0;
-    timed([&] { transport_->all_gather(own, all, sizes); });
+void Ranks::gather_bytes(std::span<const std::byte> own_bytes, std::span<std::byte> all_bytes,
+                         std::span<const std::size_t> sizes) {
+    traffic_.messages += has_several();
+    traffic_.bytes += has_several() ? own_bytes.size() : 0;
+    measure_wait([&] { transport_->all_gather(own_bytes, all_bytes, sizes); });
 }
 
-std::vector<std::size_t> Ranks::all_sizes(std::size_t own) { return all_gather(own); }
+std::vector<std::size_t> Ranks::sizes_of_all_ranks(std::size_t own_size) { return all_gather(own_size); }
 
-void Ranks::start(std::span<const Outgoing> out, std::span<const Incoming> in) {
+void Ranks::start(std::span<const OutgoingMessage> out, std::span<const IncomingMessage> in) {
     traffic_.messages += out.size();
-    traffic_.bytes += bytes_of(out);
+    traffic_.bytes += total_bytes(out);
     transport_->start(out, in);
 }
 
 void Ranks::wait() {
-    timed([&] { transport_->wait(); });
+    measure_wait([&] { transport_->wait(); });
 }
 
 void Ranks::wait_for_first_on_host() {
     const char done = 1;
     char received = 0;
-    std::vector<Outgoing> out;
-    std::vector<Incoming> in;
+    std::vector<OutgoingMessage> out;
+    std::vector<IncomingMessage> in;
     if (rank_on_host_ == 0)
         for (std::uint32_t i = 1; i < ranks_on_host_; ++i)
             out.push_back({host_ranks_[i], kHostTag, std::as_bytes(std::span(&done, 1))});
@@ -154,7 +157,7 @@ void Ranks::wait_for_first_on_host() {
 }
 
 int Ranks::fail(const std::string& text, int code) {
-    if (!many()) {
+    if (!has_several()) {
         print_log(fmt::format("raya: {}\n", text));
         return code;
     }
@@ -164,7 +167,7 @@ int Ranks::fail(const std::string& text, int code) {
 int Ranks::fail(const RankFailure& failure) { return abort_all(failure.what(), failure.code); }
 
 int Ranks::abort_all(const std::string& message, int code) {
-    if (!first()) transport_->report_failure(message, code);
+    if (!is_first()) transport_->report_failure(message, code);
     suppress_interrupt_message();  // mpirun also ends this rank, by a signal
     print_log(fmt::format("raya: {}\n", message));
     transport_->abort(code);
@@ -178,7 +181,7 @@ int Ranks::close(int code) {
 }
 
 RankClock rank_clock(Ranks& ranks, const std::function<std::uint64_t()>& now) {
-    if (!ranks.first()) return request_clock(ranks, now);
+    if (!ranks.is_first()) return request_clock(ranks, now);
     for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) answer_clock_requests(ranks, rank, now);
     return {};
 }

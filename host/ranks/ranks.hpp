@@ -18,8 +18,8 @@ namespace raya {
 template <class T>
 concept Sendable = std::is_trivially_copyable_v<T>;
 
-/// Messages and bytes that a rank has sent, and the time that it has waited for others. A broadcast counts as one
-/// message of rank 0, an all-gather as one message of each rank.
+/// Numbers of messages and bytes that a rank has sent, and the time for which it has waited in communication calls. A
+/// broadcast counts as one message of rank 0, an all-gather as one message of each rank.
 struct RankTraffic {
     std::uint64_t messages = 0, bytes = 0;
     double waiting_s = 0;
@@ -34,15 +34,15 @@ struct RankTraffic {
 class Ranks {
   public:
     /// Returns the single rank of a program that was started without a launcher.
-    static Ranks& alone();
+    static Ranks& single();
 
     /// Collective: determines which ranks run on the same host.
     explicit Ranks(std::unique_ptr<Transport> transport);
 
     std::uint32_t rank() const { return rank_; }
     std::uint32_t count() const { return count_; }
-    bool first() const { return rank_ == 0; }  // rank 0 reads, prints and writes
-    bool many() const { return count_ > 1; }
+    bool is_first() const { return rank_ == 0; }  // rank 0 reads, prints and writes
+    bool has_several() const { return count_ > 1; }
     std::uint32_t rank_on_host() const { return rank_on_host_; }    // index of this rank among those of its host
     std::uint32_t ranks_on_host() const { return ranks_on_host_; }  // number of ranks of this host
     std::string host() const { return transport_->host(); }
@@ -64,54 +64,55 @@ class Ranks {
 
     /// Collective: returns the elements of all ranks, concatenated in the order of ranks.
     template <Sendable T>
-    std::vector<T> all_gather(std::span<const T> own) {
-        return all_gather(own, all_sizes(own.size()));
+    std::vector<T> all_gather(std::span<const T> own_elements) {
+        return all_gather(own_elements, sizes_of_all_ranks(own_elements.size()));
     }
     template <Sendable T>
-    std::vector<T> all_gather(const T& own) {
-        return all_gather(std::span(&own, 1), std::vector<std::size_t>(count_, 1));
+    std::vector<T> all_gather(const T& own_element) {
+        return all_gather(std::span(&own_element, 1), std::vector<std::size_t>(count_, 1));
     }
-    /// As above, if the number of elements of each rank is known: sizes[rank].
+    /// As above; sizes[rank] is the number of elements of each rank.
     template <Sendable T>
-    std::vector<T> all_gather(std::span<const T> own, std::vector<std::size_t> sizes) {
-        std::size_t all = 0;
-        for (std::size_t& size : sizes) all += std::exchange(size, size * sizeof(T));
-        std::vector<T> gathered(all);
-        gather_bytes(std::as_bytes(own), std::as_writable_bytes(std::span(gathered)), sizes);
+    std::vector<T> all_gather(std::span<const T> own_elements, std::vector<std::size_t> sizes) {
+        std::size_t total_elements = 0;
+        for (std::size_t& size : sizes) total_elements += std::exchange(size, size * sizeof(T));
+        std::vector<T> gathered(total_elements);
+        gather_bytes(std::as_bytes(own_elements), std::as_writable_bytes(std::span(gathered)), sizes);
         return gathered;
     }
-    /// Collective: as all_gather(), but only rank 0 gets the elements; returns empty in other ranks. For large data.
+    /// Collective: returns the elements of all ranks in rank 0, and an empty vector in other ranks. For large data.
     template <Sendable T>
-    std::vector<T> gather(std::span<const T> own, const std::vector<std::size_t>& sizes) {
-        if (!first()) {
-            send(0, own);
+    std::vector<T> gather(std::span<const T> own_elements, const std::vector<std::size_t>& sizes) {
+        if (!is_first()) {
+            send(0, own_elements);
             return {};
         }
-        std::vector<T> gathered(own.begin(), own.end());
+        std::vector<T> gathered(own_elements.begin(), own_elements.end());
         for (std::uint32_t rank = 1; rank < count_; ++rank) {
             gathered.resize(gathered.size() + sizes[rank]);
             receive(rank, std::span(gathered).last(sizes[rank]));
         }
         return gathered;
     }
+    /// Collective: returns the texts of all ranks in rank 0, and an empty vector in other ranks.
     std::vector<std::string> gather(const std::string& text);
 
-    /// Sends elements to one rank, which must receive the same number.
+    /// Sends elements to a rank, which must receive the same number of elements.
     template <Sendable T>
-    void send(std::uint32_t to, std::span<const T> values) {
-        const Outgoing out{to, kPlainTag, std::as_bytes(values)};
+    void send(std::uint32_t receiver, std::span<const T> values) {
+        const OutgoingMessage out{receiver, kDataTag, std::as_bytes(values)};
         start({&out, 1}, {});
         wait();
     }
     template <Sendable T>
-    void receive(std::uint32_t from, std::span<T> values) {
-        const Incoming in{from, kPlainTag, std::as_writable_bytes(values)};
+    void receive(std::uint32_t sender, std::span<T> values) {
+        const IncomingMessage in{sender, kDataTag, std::as_writable_bytes(values)};
         start({}, {&in, 1});
         wait();
     }
 
     /// Starts several non-blocking messages, and waits for them (see Transport).
-    void start(std::span<const Outgoing> out, std::span<const Incoming> in);
+    void start(std::span<const OutgoingMessage> out, std::span<const IncomingMessage> in);
     void wait();
 
     /// Throws RankFailure in rank 0 if another rank has failed. To be called during long computations.
@@ -129,8 +130,8 @@ class Ranks {
 
     const RankTraffic& traffic() const { return traffic_; }
 
-    /// Reports an error of this rank and ends all ranks with that exit code. The error is printed once. With a single
-    /// rank, prints the error and returns the code.
+    /// Prints an error of this rank once, and ends all ranks with exit code `code`. With a single rank, prints the
+    /// error and returns the code.
     int fail(const std::string& text, int code);
 
     /// As above, for a failure that another rank has reported.
@@ -141,15 +142,16 @@ class Ranks {
 
   private:
     int abort_all(const std::string& message, int code);
-    static constexpr int kPlainTag = 0, kHostTag = 1;
+    static constexpr int kDataTag = 0, kHostTag = 1;
 
     void broadcast_bytes(std::span<std::byte> bytes);
-    void gather_bytes(std::span<const std::byte> own, std::span<std::byte> all, std::span<const std::size_t> sizes);
-    std::vector<std::size_t> all_sizes(std::size_t own);
-    void find_host();
+    void gather_bytes(std::span<const std::byte> own_bytes, std::span<std::byte> all_bytes,
+                      std::span<const std::size_t> sizes);
+    std::vector<std::size_t> sizes_of_all_ranks(std::size_t own_size);
+    void find_ranks_of_host();
     void wait_for_first_on_host();
     template <class Call>
-    void timed(Call&& call);
+    void measure_wait(Call&& call);
 
     std::unique_ptr<Transport> transport_;
     std::uint32_t rank_, count_;
@@ -158,7 +160,7 @@ class Ranks {
     RankTraffic traffic_;
 };
 
-/// Clock offset of a rank: its time plus offset_ns is rank 0's time, with an error of at most uncertainty_ns.
+/// Clock offset of a rank: the rank's time plus offset_ns is rank 0's time, with an error of at most uncertainty_ns.
 struct RankClock {
     std::int64_t offset_ns = 0;
     std::uint64_t uncertainty_ns = 0;

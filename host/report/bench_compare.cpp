@@ -24,7 +24,7 @@ const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wante
 }
 
 /// Returns the change of a rate in percent.
-double change(double before, double now) { return 100 * (now / before - 1); }
+double percent_change(double before, double now) { return 100 * (now / before - 1); }
 
 std::string percent(double value) { return fmt::format("{:+.1f} %", value); }
 
@@ -39,33 +39,35 @@ std::vector<std::string> joined(std::vector<std::string> first, const std::vecto
 
 std::string rate(double value) { return fmt::format("{:.1f}", value); }
 
-/// Returns the verdict on a row that both runs have, and counts it in `sum`.
-std::string verdict(BenchComparison& sum, const BenchMeasurement& before, const BenchMeasurement& now,
+/// Returns the verdict on a row that both runs have, and counts the row in `comparison`.
+std::string verdict(BenchComparison& comparison, const BenchMeasurement& before, const BenchMeasurement& now,
                     double tolerance) {
-    const double best = change(before.best_rate(), now.best_rate());
-    const double median = change(before.median_rate(), now.median_rate());
-    ++sum.compared;
+    const double best = percent_change(before.best_rate(), now.best_rate());
+    const double median = percent_change(before.median_rate(), now.median_rate());
+    ++comparison.compared;
     if (now.hash != before.hash) {
-        ++sum.other_images;
+        ++comparison.other_images;
         return fmt::format("OTHER IMAGE: {}, was {}", now.hash.substr(0, 8), before.hash.substr(0, 8));
     }
     if (std::max(best, median) < -tolerance) {
-        ++sum.slower;
+        ++comparison.slower;
         return "SLOWER";
     }
     return std::min(best, median) > tolerance ? "faster" : "as before";
 }
 
-/// Adds a remark if the two texts differ.
-void add_difference(BenchComparison& sum, const char* what, const std::string& before, const std::string& now) {
+/// Adds a remark and a warning if the texts of the two runs differ.
+void add_difference(BenchComparison& comparison, const char* property, const std::string& before,
+                    const std::string& now) {
     if (before == now) return;
-    sum.remarks.push_back(fmt::format("another {}: {}, the baseline's is {}", what, now, before));
-    sum.text += "warning: " + sum.remarks.back() + "\n";
+    comparison.remarks.push_back(fmt::format("another {}: {}, the baseline's is {}", property, now, before));
+    comparison.text += "warning: " + comparison.remarks.back() + "\n";
 }
 
-/// `before`, `now`: null if the run does not have the row.
+/// Returns the JSON of a row. `before`, `now`: the row in the baseline and in this run; null if the run does not have
+/// it.
 Json row_json(const BenchMeasurement* before, const BenchMeasurement* now, const std::string& verdict_text) {
-    Json json = measured_json(now != nullptr ? *now : *before);
+    Json json = row_key_json(now != nullptr ? *now : *before);
     json["mrays_per_s"] = now != nullptr ? rates_json(*now) : Json{};
     json["mrays_per_s_was"] = before != nullptr ? rates_json(*before) : Json{};
     json["verdict"] = verdict_text;
@@ -80,35 +82,37 @@ int rows_in_common(const BenchReport& baseline, const BenchReport& now) {
 }
 
 BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& now, double tolerance) {
-    BenchComparison sum;
-    add_difference(sum, "device", baseline.platform + " " + baseline.device, now.platform + " " + now.device);
-    add_difference(sum, "driver", baseline.version + ", " + baseline.driver, now.version + ", " + now.driver);
-    add_difference(sum, "version of raya", baseline.raya, now.raya);
+    BenchComparison comparison;
+    add_difference(comparison, "device", baseline.platform + " " + baseline.device, now.platform + " " + now.device);
+    add_difference(comparison, "driver", baseline.version + ", " + baseline.driver, now.version + ", " + now.driver);
+    add_difference(comparison, "version of raya", baseline.raya, now.raya);
     std::vector<std::vector<std::string>> table = {{"kernel", "scene", "size", "format", "lanes", "group",
                                                     "best Mrays/s", "was", "change", "median", "was", "change", ""}};
     for (const BenchMeasurement& row : now.rows) {
         const BenchMeasurement* before = find_row(baseline.rows, row);
-        const std::string text = before == nullptr ? "not in the baseline" : verdict(sum, *before, row, tolerance);
-        sum.rows.push_back(row_json(before, &row, text));
+        const std::string verdict_text =
+            before == nullptr ? "not in the baseline" : verdict(comparison, *before, row, tolerance);
+        comparison.rows.push_back(row_json(before, &row, verdict_text));
         if (before == nullptr) {
-            table.push_back(
-                joined(key_cells(row), {rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", "-", text}));
+            table.push_back(joined(key_cells(row),
+                                   {rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", "-", verdict_text}));
             continue;
         }
-        table.push_back(joined(key_cells(row), {rate(row.best_rate()), rate(before->best_rate()),
-                                                percent(change(before->best_rate(), row.best_rate())),
-                                                rate(row.median_rate()), rate(before->median_rate()),
-                                                percent(change(before->median_rate(), row.median_rate())), text}));
+        table.push_back(
+            joined(key_cells(row), {rate(row.best_rate()), rate(before->best_rate()),
+                                    percent(percent_change(before->best_rate(), row.best_rate())),
+                                    rate(row.median_rate()), rate(before->median_rate()),
+                                    percent(percent_change(before->median_rate(), row.median_rate())), verdict_text}));
     }
     for (const BenchMeasurement& row : baseline.rows) {
         if (find_row(now.rows, row) != nullptr) continue;
-        const std::string text = "in the baseline alone";
-        sum.rows.push_back(row_json(&row, nullptr, text));
+        const std::string verdict_text = "in the baseline alone";
+        comparison.rows.push_back(row_json(&row, nullptr, verdict_text));
         table.push_back(
-            joined(key_cells(row), {"-", rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", text}));
+            joined(key_cells(row), {"-", rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", verdict_text}));
     }
-    sum.text += text_table(table);
-    return sum;
+    comparison.text += text_table(table);
+    return comparison;
 }
 
 }  // namespace raya

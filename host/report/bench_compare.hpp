@@ -8,12 +8,12 @@
 namespace raya {
 
 struct BenchComparison {
-    std::string text;                    // warnings, then a table with the rows of both runs
+    std::string text;                    // for the terminal: warnings, and a table with the rows of both runs
     int compared = 0;                    // number of rows that both runs have
-    int slower = 0;                      // number of these that are slower by more than the tolerance
-    int other_images = 0;                // number of these with another image hash
-    Json rows = Json::array();           // rows of both runs: key, rates now and before, verdict
-    std::vector<std::string> remarks{};  // differences of device, driver or version
+    int slower = 0;                      // number of compared rows that are slower by more than the tolerance
+    int other_images = 0;                // number of compared rows with different image hashes
+    Json rows = Json::array();           // rows of both runs: key, rates of both runs, verdict
+    std::vector<std::string> remarks{};  // the warnings: differences of device, driver or version
     bool failed() const { return slower + other_images > 0; }
 };
 
@@ -21,9 +21,9 @@ struct BenchComparison {
 int rows_in_common(const BenchReport& baseline, const BenchReport& now);
 
 /// Compares `now` with `baseline`. A row counts as slower if both its best and its median rate are lower by more than
-/// `tolerance` percent: other programs disturb only one of them, a slower kernel affects both. A different image is a
-/// failure regardless of the rates. A different device, driver or version of raya gives a warning. Rows that only one
-/// run has are listed.
+/// `tolerance` percent. A slower kernel lowers both rates, whereas other programs often lower only one. A different
+/// image is a failure regardless of the rates. A different device, driver or version of raya causes a warning. The
+/// table also lists rows that only one run has.
 BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& now, double tolerance);
 
 }  // namespace raya

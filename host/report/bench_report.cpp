@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Json row_json(const BenchMeasurement& row) {
-    Json json = measured_json(row);
+    Json json = row_key_json(row);
     json["rays"] = row.rays;
     json["mrays_per_s"] = rates_json(row);
     json["ms"] = {{"best", 1e3 * row.best_s}, {"median", 1e3 * row.median_s}};
@@ -61,19 +61,19 @@ BenchReport report_of(const Json& json) {
                        .rows = {}};
     for (const Json& row : json.at("rows").elements()) report.rows.push_back(row_of(row));
     if (report.rows.empty()) throw JsonError("the report has no measurements");
-    std::set<std::string> measured;
+    std::set<std::string> keys;
     for (const BenchMeasurement& row : report.rows) {
         const std::string name = fmt::format("row {} of {} lanes", row.format, row.lanes);
         if (!is_valid_time(row.best_s) || !is_valid_time(row.median_s) || row.rays == 0)
             throw JsonError(name + ": rays and times must be positive");
-        if (!measured.insert(measured_json(row).dump()).second) throw JsonError(name + " occurs twice");
+        if (!keys.insert(row_key_json(row).dump()).second) throw JsonError(name + " occurs twice");
     }
     return report;
 }
 
 }  // namespace
 
-Json measured_json(const BenchMeasurement& row) {
+Json row_key_json(const BenchMeasurement& row) {
     return {{"kernel", row.kernel}, {"scene", row.scene}, {"size", row.size},       {"array", row.array},
             {"format", row.format}, {"lanes", row.lanes}, {"group", row.group_size}};
 }
@@ -92,23 +92,23 @@ Json to_json(const BenchReport& report) {
                    {"driver", report.driver}}},
                  {"rows", rows}};
     Json builds = Json::array();
-    for (const BenchBuild& one : report.builds)
-        builds.push_back({{"kernel", one.kernel},
-                          {"variant", one.variant},
-                          {"format", one.format},
-                          {"lanes", one.lanes},
-                          {"build_s", one.build_s},
-                          {"first_launch_s", one.launch_s},
-                          {"binary_bytes", one.binary_bytes},
-                          {"build_options", one.build_options}});
+    for (const BenchBuild& build : report.builds)
+        builds.push_back({{"kernel", build.kernel},
+                          {"variant", build.variant},
+                          {"format", build.format},
+                          {"lanes", build.lanes},
+                          {"build_s", build.build_s},
+                          {"first_launch_s", build.launch_s},
+                          {"binary_bytes", build.binary_bytes},
+                          {"build_options", build.build_options}});
     if (!report.builds.empty()) json["builds"] = builds;
     if (!report.compared.is_null()) json["compared"] = report.compared;
     return json;
 }
 
 BenchReport read_bench_report(const fs::path& path) {
-    const JsonSource from{input_name(path), "make a baseline with: raya bench --report " + path.string()};
-    return read_json(json_text(path, from), from, report_of);
+    const JsonSource source{input_name(path), "make a baseline with: raya bench --report " + path.string()};
+    return read_json(json_text(path, source), source, report_of);
 }
 
 }  // namespace raya

@@ -11,19 +11,20 @@
 
 namespace raya {
 
-/// Measurement of one kernel with one set of options: a row of the report. Two rows are comparable if measured_json()
+/// Measurement of one kernel with one set of options: a row of the report. Two rows are comparable if row_key_json()
 /// is equal for both.
 struct BenchMeasurement {
     std::string kernel, scene;  // scene: file name without folder
     std::string size;           // pixels, "512x512"
-    std::string array;          // PEs, mapping, bounces, grid: "256 PEs, cyclic:16, 8 bounces, accel none"
+    std::string array;          // machine settings: "256 PEs, cyclic:16, 8 bounces, accel none"
     std::string format;
     std::uint32_t lanes = 0, group_size = 0;
-    std::uint64_t rays = 0;           // number of rays of one image
-    double best_s = 0, median_s = 0;  // per image, > 0: kernel time on the device, or host time of a whole render
-    int samples = 0;                  // number of samples
-    std::string hash, build_options = {};  // image hash; options passed to the compiler
-    std::optional<Roofline> roofline{};    // one row, of the best sample; empty: the peak was not measured
+    std::uint64_t rays = 0;              // number of rays of one image
+    double best_s = 0, median_s = 0;     // seconds per image, > 0: kernel time on the device, or host time of a render
+    int samples = 0;                     // number of samples
+    std::string hash;                    // image hash
+    std::string build_options = {};      // options passed to the compiler
+    std::optional<Roofline> roofline{};  // one row, of the best sample; empty: the peak was not measured
 
     double best_rate() const { return static_cast<double>(rays) / best_s * 1e-6; }  // Mrays/s
     double median_rate() const { return static_cast<double>(rays) / median_s * 1e-6; }
@@ -33,30 +34,33 @@ struct BenchMeasurement {
 struct BenchBuild {
     std::string kernel, variant, format;  // kernel file, renderer variant, number format
     std::uint32_t lanes = 0;
-    double build_s = 0, launch_s = 0;  // build_s: compilation; launch_s: first launches
+    double build_s = 0;   // time of compilation
+    double launch_s = 0;  // time of the first launch of each kernel
     std::size_t binary_bytes = 0;
     std::string build_options{};
 };
 
 struct BenchReport {
-    std::string raya;  // version
+    std::string raya;  // version of raya
     std::string device, platform, version, driver;
     std::vector<BenchMeasurement> rows;
     std::vector<BenchBuild> builds{};  // with --build; `rows` is then empty
-    Json compared{};                   // result of compare_bench() with the baseline's name; null: none
+    Json compared{};                   // result of compare_bench() and the baseline's name; null: no comparison
 };
 
-/// JSON members of a row: measured_json() those that identify it, rates_json() its rates in Mrays/s.
-Json measured_json(const BenchMeasurement& row);
+/// Returns the JSON members that identify a row.
+Json row_key_json(const BenchMeasurement& row);
+
+/// Returns the JSON object with the rates of a row in Mrays/s.
 Json rates_json(const BenchMeasurement& row);
 
 /// Value of the member "kind", which identifies the report.
 inline constexpr const char* kBenchReportKind = "raya bench";
 
-/// Returns the report; "kind" is the first member.
+/// Returns the report as JSON; "kind" is the first member.
 Json to_json(const BenchReport& report);
 
-/// Reads a report without its rooflines and comparison. Throws UserError with file, reason and remedy if the file
+/// Reads a report; ignores its rooflines and comparison. Throws UserError with file, reason and remedy if the file
 /// cannot be read, is not a report of raya bench, or has an invalid row.
 BenchReport read_bench_report(const std::filesystem::path& path);
 

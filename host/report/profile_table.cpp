@@ -24,16 +24,16 @@ std::string build_line(double build_s, const std::vector<ProgramBuild>& builds) 
 
 std::string profile_table(double build_s, const std::vector<ProgramBuild>& builds,
                           const std::vector<LabelSummary>& commands) {
-    double all = 0;
-    for (const LabelSummary& c : commands) all += number(c.total_ns);
+    double total_ns = 0;  // of all commands
+    for (const LabelSummary& c : commands) total_ns += number(c.total_ns);
     std::vector<std::vector<std::string>> rows = {{"label", "kind", "launches", "total ms", "share %", "min ms",
                                                    "mean ms", "max ms", "queue->submit ms", "submit->start ms", "MB",
                                                    "GB/s"}};
     for (const LabelSummary& c : commands) {
         const double total = number(c.total_ns);
         rows.push_back({c.label, c.kind, std::to_string(c.launches), ms(total),
-                        fmt::format("{:.1f}", all > 0 ? 100 * total / all : 0), ms(number(c.min_ns)), ms(c.mean_ns),
-                        ms(number(c.max_ns)), ms(mean(c.submit_ns, c)), ms(mean(c.start_ns, c)),
+                        fmt::format("{:.1f}", total_ns > 0 ? 100 * total / total_ns : 0), ms(number(c.min_ns)),
+                        ms(c.mean_ns), ms(number(c.max_ns)), ms(mean(c.submit_ns, c)), ms(mean(c.start_ns, c)),
                         c.bytes > 0 ? fmt::format("{:.3f}", 1e-6 * number(c.bytes)) : "-",
                         c.bytes > 0 && c.total_ns > 0 ? fmt::format("{:.3f}", number(c.bytes) / total) : "-"});
     }

@@ -1,4 +1,4 @@
-// Number and times of device commands, summed by label, as a table and as JSON.
+// Number and times of device commands, summed by label, as a text table and as JSON.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,12 +10,13 @@
 namespace raya {
 
 /// Returns a line about builds, which are not device commands, then a table with a row for each label and kind of
-/// command. Columns: number of launches; total, fraction of all, minimum, mean and maximum of the times from start to
-/// end; mean times from queueing to submission and from submission to start; bytes.
+/// command. Columns: number of launches; total, percentage of all commands' total, minimum, mean and maximum of the
+/// times from start to end; mean times from queueing to submission and from submission to start; megabytes and GB/s.
 std::string profile_table(double build_s, const std::vector<ProgramBuild>& builds,
                           const std::vector<LabelSummary>& commands);
 
-/// `waits`: include the mean times from queueing to submission and to start, and the bytes transferred.
+/// Returns the table as JSON. `waits`: include the mean times from queueing to submission and from submission to start,
+/// and the bytes transferred.
 Json commands_json(const std::vector<LabelSummary>& commands, bool waits);
 Json builds_json(const std::vector<ProgramBuild>& builds);
 

@@ -87,7 +87,7 @@ Json accel_json(const std::optional<AccelSummary>& a) {
             {"apart", a->separate}};
 }
 
-// Operations of all events, by the modelled PEs' instruction budget.
+// Returns the numbers of operations of all events, according to the instruction budget of the modelled PEs.
 Json budget_json(const EventCounts& events) {
     const Operations sum = operations_of(events);
     return {{"multiply_accumulates", sum.multiply_accumulates},

@@ -24,8 +24,8 @@ struct Antialiasing {
     std::string points;             // points of supersampling: "axes" or "diagonals"
     double threshold = 0;           // threshold of supersampling, 0..1
     std::uint64_t recomputed = 0;   // number of pixels supersampled
-    double recomputed_share = 0;    // fraction of all pixels that is supersampled
-    std::uint32_t band_pixels = 0;  // pixels of a PE in one transfer
+    double recomputed_share = 0;    // supersampled pixels / all pixels
+    std::uint32_t band_pixels = 0;  // number of pixels that a PE sends in one transfer
 };
 
 /// Conversion of linear colours to the values of an 8-bit image.
@@ -42,9 +42,9 @@ struct ProgramBuild {
 };
 
 struct RenderReport {
-    std::string raya;  // version
+    std::string raya;  // version of raya
     std::string scene;
-    std::vector<std::string> warnings;  // as printed on stderr
+    std::vector<std::string> warnings;  // the warnings on stderr
     std::vector<NffRemark> skipped;     // entities of the scene file that were skipped
 
     Json view;  // camera and lights after applying command-line options (view_json() in scene_report.hpp)
@@ -61,8 +61,8 @@ struct RenderReport {
 
     struct {
         std::string name, topology;
-        std::string mapping;              // "cyclic" or "column"; others with parameters: "grid:16x16"
-        std::optional<std::string> fold;  // fold of a mapping with slots
+        std::string mapping;              // "cyclic", "column", "rows", "blocks"; or with parameters: "grid:16x16"
+        std::optional<std::string> fold;  // of a mapping with slots
         std::string format;
         std::uint32_t pes = 0;
         std::optional<std::uint32_t> offset;  // p of a mapping with slots
@@ -80,13 +80,13 @@ struct RenderReport {
 
     EventCounts events{};
     std::optional<std::uint64_t> requests;            // pixel requests, if dynamic scheduling was simulated
-    Load load;                                        // sum of all phases
-    std::vector<std::pair<std::string, Load>> loads;  // name and load of each phase
+    Load load;                                        // sum of the loads of all phases
+    std::vector<std::pair<std::string, Load>> loads;  // [phase]: name, load
     std::optional<Antialiasing> antialias;
     std::optional<AccelSummary> accel;  // empty: no accelerator
     Communication communication;
     std::optional<ModelledTime> modelled;  // empty: the machine's rates are unknown
-    std::optional<TorusReport> torus;      // torus machine only; replaces the four members above
+    std::optional<TorusReport> torus;      // torus machine only; replaces antialias, accel, communication and modelled
 
     std::vector<Json> ranks;  // device, times and messages of each MPI rank; empty for one rank
 
@@ -95,7 +95,7 @@ struct RenderReport {
         std::vector<LabelSummary> commands;
         std::vector<ProgramBuild> builds{};  // only with --profile, like `roofline`
         std::optional<Roofline> roofline{};
-        double earlier_s = 0;  // part of render_s spent by earlier runs whose checkpoint this run resumed
+        double earlier_s = 0;  // part of render_s that earlier runs spent, whose checkpoint this run resumed
     } measured;
 };
 
@@ -108,7 +108,8 @@ std::uint64_t ray_count(const EventCounts& events);
 /// Returns the number of intersection tests of all kinds.
 std::uint64_t test_count(const EventCounts& events);
 
-/// docs/report.md documents the members. Later versions may add members, but do not remove or change them.
+/// Returns the report as JSON. docs/report.md documents the members. Later versions may add members, but do not remove
+/// or change them.
 Json to_json(const RenderReport& report);
 
 /// Returns the summary for the terminal: rays, load imbalance u, efficiency, times.

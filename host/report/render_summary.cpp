@@ -43,7 +43,7 @@ std::string model_line(const RenderReport& r) {
                        time_text(t.image_ms), time_text(t.total_ms), r.machine.name);
 }
 
-// PEs and mapping, or nodes and voxels.
+// Returns PEs and mapping of the ring, or nodes and voxels of the torus.
 std::string machine_text(const RenderReport& r) {
     if (r.torus) return torus_machine_text(*r.torus);
     return fmt::format("{}, {} mapping{}", counted(r.machine.pes, "PE"), r.machine.mapping,
@@ -79,20 +79,21 @@ std::string memory_line(const RenderReport& r) {
                        r.torus ? torus_memory_text(*r.torus) : "");
 }
 
-// Messages of the ranks, and the longest time that one waited for others.
+// Returns a line with the messages of all ranks, and the longest time that a rank waited for others.
 std::string ranks_line(const RenderReport& r) {
     if (r.ranks.empty()) return {};
-    double waiting = 0;
+    double max_waiting_s = 0;
     std::uint64_t messages = 0, bytes = 0;
     std::set<std::string> hosts;
     for (const Json& rank : r.ranks) {
-        waiting = std::max(waiting, rank.at("waiting_s").number());
+        max_waiting_s = std::max(max_waiting_s, rank.at("waiting_s").number());
         messages += rank.at("messages_sent").integer();
         bytes += rank.at("bytes_sent").integer();
         hosts.insert(rank.at("host").text());
     }
     return fmt::format("ranks   {} on {}; {}, {} sent; longest wait for others {:.3f} s\n", r.ranks.size(),
-                       counted(hosts.size(), "host"), counted(messages, "message"), required_size_text(bytes), waiting);
+                       counted(hosts.size(), "host"), counted(messages, "message"), required_size_text(bytes),
+                       max_waiting_s);
 }
 
 }  // namespace
@@ -111,8 +112,8 @@ std::string summary_text(const RenderReport& r) {
     text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {} on {} ({})\n", r.measured.build_s,
                         r.measured.render_s, rate_text(static_cast<double>(rays) / r.measured.render_s), r.device.name,
                         counted(r.device.lanes, "lane"));
-    const bool by_file = r.device.tuned != "defaults" && r.device.tuned != "options";
-    if (by_file && !r.device.tuned.empty()) text += fmt::format("tuned   {}\n", r.device.tuned);
+    const bool tuned_by_file = r.device.tuned != "defaults" && r.device.tuned != "options";
+    if (tuned_by_file && !r.device.tuned.empty()) text += fmt::format("tuned   {}\n", r.device.tuned);
     text += ranks_line(r);
     text += fmt::format("image   {} ({})\n", r.image.file, r.image.hash);
     return text;

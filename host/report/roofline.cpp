@@ -15,7 +15,7 @@ double as_double(std::uint64_t count) { return static_cast<double>(count); }
 
 double per_second(double count, double seconds) { return seconds > 0 ? count / seconds : 0; }
 
-// Returns the seconds that the operations take at the peak rates of multiply-adds, divisions and square roots in the
+// Returns the time of the operations, in seconds, at the peak rates of multiply-adds, divisions and square roots in the
 // number format.
 double seconds_in_format(const KernelWork& w, const DevicePeak& peak) {
     return as_double(w.operations) / peak.multiply_per_s + as_double(w.divisions) / peak.divide_per_s +
@@ -26,10 +26,10 @@ RooflineRow row_of(const KernelWork& work, double seconds, const DevicePeak& pea
     RooflineRow row{.work = work, .seconds = seconds};
     const double operations = as_double(work.all_operations()), bytes = as_double(work.bytes);
     row.intensity = bytes > 0 ? operations / bytes : 0;
-    const double computing = operations / peak.fp32_per_s, moving = bytes / peak.copy_bytes_per_s;
-    row.bound = computing >= moving ? Bound::kCompute : Bound::kBandwidth;
-    row.share = std::max(computing, moving) / seconds;
-    if (operations > 0) row.of_format = seconds_in_format(work, peak) / seconds;
+    const double compute_s = operations / peak.fp32_per_s, copy_s = bytes / peak.copy_bytes_per_s;
+    row.bound = compute_s >= copy_s ? Bound::kCompute : Bound::kBandwidth;
+    row.roof_fraction = std::max(compute_s, copy_s) / seconds;
+    if (operations > 0) row.format_fraction = seconds_in_format(work, peak) / seconds;
     return row;
 }
 
@@ -39,9 +39,9 @@ bool is_known(const DevicePeak& p) {
 
 const char* bound_name(Bound bound) { return bound == Bound::kCompute ? "compute" : "bandwidth"; }
 
-std::string hundredths(double share) { return fmt::format("{:.2f}", 100 * share); }
+std::string percent_text(double fraction) { return fmt::format("{:.2f}", 100 * fraction); }
 
-// Returns "-" for a value of 0.
+// Returns `text`, or "-" if the value is 0.
 std::string cell(double value, const std::string& text) { return value > 0 ? text : "-"; }
 
 std::vector<std::string> cells_of(const RooflineRow& r) {
@@ -55,8 +55,8 @@ std::vector<std::string> cells_of(const RooflineRow& r) {
             cell(bytes, fmt::format("{:.3f}", 1e-9 * per_second(bytes, r.seconds))),
             cell(r.intensity, fmt::format("{:.3g}", r.intensity)),
             bound_name(r.bound),
-            hundredths(r.share),
-            r.of_format ? hundredths(*r.of_format) : "-"};
+            percent_text(r.roof_fraction),
+            r.format_fraction ? percent_text(*r.format_fraction) : "-"};
 }
 
 std::string peak_lines(const DevicePeak& p) {
@@ -78,16 +78,18 @@ std::string format_remark(const DevicePeak& p) {
         "format  the time of the same operations at the rates of " + p.format + ", in % of the kernel's time";
     if (p.format == "fp32") return text + "\n";
     return text +
-           "; each takes many instructions;\n"
-           "        above 100 % if most are cheaper: comparisons, and spheres that the fp32 filter rejects\n";
+           "; each operation takes many instructions;\n"
+           "        above 100 % if most operations are cheaper: comparisons, and spheres that the fp32 filter "
+           "rejects\n";
 }
 
-// Returns the kernel's bound and its fraction of the roof.
+// Returns a line with the kernel's bound and the percentage of the roof that it achieves.
 std::string verdict(const RooflineRow& r, const DevicePeak& p) {
     const bool compute = r.bound == Bound::kCompute;
-    std::string line = fmt::format("roof    {}: {} bound, {:.2f} % of {}", r.work.label, bound_name(r.bound),
-                                   100 * r.share, compute ? "the fp32 multiply-add rate" : "the copy bandwidth");
-    if (r.of_format) line += fmt::format(", {:.2f} % of {}'s own rates", 100 * *r.of_format, p.format);
+    std::string line =
+        fmt::format("roof    {}: {} bound, {:.2f} % of {}", r.work.label, bound_name(r.bound), 100 * r.roof_fraction,
+                    compute ? "the fp32 multiply-add rate" : "the copy bandwidth");
+    if (r.format_fraction) line += fmt::format(", {:.2f} % of {}'s own rates", 100 * *r.format_fraction, p.format);
     return line + "\n";
 }
 
@@ -148,8 +150,8 @@ Json roofline_json(const Roofline& roofline) {
                         {"bytes_per_s", per_second(as_double(r.work.bytes), r.seconds)},
                         {"operations_per_byte", r.intensity},
                         {"bound", bound_name(r.bound)},
-                        {"share_of_roof", r.share},
-                        {"share_of_format", r.of_format ? Json(*r.of_format) : Json()}});
+                        {"share_of_roof", r.roof_fraction},
+                        {"share_of_format", r.format_fraction ? Json(*r.format_fraction) : Json()}});
     }
     return rows;
 }

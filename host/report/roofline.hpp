@@ -17,17 +17,17 @@
 
 namespace raya {
 
-/// Work of all launches of a kernel, which have the same label.
+/// Total work of all launches of a kernel. The launches have the same label.
 struct KernelWork {
     std::string label;
     std::uint64_t rays = 0;        // number of rays traced or generated
-    std::uint64_t operations = 0;  // without divisions and square roots
+    std::uint64_t operations = 0;  // number of operations except divisions and square roots
     std::uint64_t divisions = 0, roots = 0;
-    std::uint64_t bytes = 0;  // minimum read and written
+    std::uint64_t bytes = 0;  // minimum number of bytes that the kernel must read and write
     std::uint64_t all_operations() const { return operations + divisions + roots; }
 };
 
-/// Returns the rays and operations of these events. The caller sets `bytes`.
+/// Returns the rays and operations of these events. The caller must set `bytes`.
 KernelWork work_of(const std::string& label, const EventCounts& events);
 
 enum class Bound { kCompute, kBandwidth };
@@ -35,21 +35,20 @@ enum class Bound { kCompute, kBandwidth };
 /// One kernel's rate compared with the device's peak.
 struct RooflineRow {
     KernelWork work;
-    double seconds = 0;                 // sum over all launches, each from start to end
-    double intensity = 0;               // operations per byte
-    Bound bound = Bound::kCompute;      // what limits the rate at this intensity
-    double share = 0;                   // achieved rate over the roof; 1: as fast as the device's peak
-    std::optional<double> of_format{};  // time at the format's peak rates over `seconds`; empty: unknown
+    double seconds = 0;                       // total time of all launches, from start to end of each
+    double intensity = 0;                     // operations per byte
+    Bound bound = Bound::kCompute;            // what limits the rate at this intensity
+    double roof_fraction = 0;                 // achieved rate divided by the roof; 1: as fast as the device's peak
+    std::optional<double> format_fraction{};  // time at the format's peak rates divided by `seconds`; empty: unknown
 };
 
 struct Roofline {
     DevicePeak peak{};
     std::vector<RooflineRow> rows{};
-    std::string unavailable{};  // reason for having no rows and no peak
+    std::string unavailable{};  // reason why there is no roofline; empty: there is one
 };
 
-/// Returns a row for each work whose label is that of a kernel in `commands` with time > 0; no rows if the peak is
-/// unknown.
+/// Returns a row for each kernel of `works` that `commands` contains with a time > 0; no rows if the peak is unknown.
 Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
                   const std::vector<LabelSummary>& commands);
 

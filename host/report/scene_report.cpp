@@ -12,23 +12,23 @@
 namespace raya {
 namespace {
 
-std::uint64_t patches_of(const Scene& scene) {
+std::uint64_t count_patches(const Scene& scene) {
     return std::ranges::count_if(scene.polygons, [](const Polygon& p) { return !p.normals.empty(); });
 }
 
-std::uint64_t vertices_of(const Scene& scene) {
+std::uint64_t count_vertices(const Scene& scene) {
     std::uint64_t vertices = 0;
     for (const Polygon& p : scene.polygons) vertices += p.vertices.size();
     return vertices;
 }
 
-std::uint64_t checkers_of(const Scene& scene) {
+std::uint64_t count_checkers(const Scene& scene) {
     return std::ranges::count_if(scene.surfaces, [](const Surface& s) { return s.checker.has_value(); });
 }
 
 Json objects_json(const Scene& s) {
     return {{"all", s.object_count()},       {"spheres", s.spheres.size()}, {"planes", s.planes.size()},
-            {"polygons", s.polygons.size()}, {"patches", patches_of(s)},    {"vertices", vertices_of(s)},
+            {"polygons", s.polygons.size()}, {"patches", count_patches(s)}, {"vertices", count_vertices(s)},
             {"cones", s.cones.size()}};
 }
 
@@ -55,7 +55,7 @@ Json need_json(const AccelNeed& n) {
             {"fits", n.refusal.empty()},
             {"job_words", n.words},
             {"job_bytes", 4 * n.words},
-            {"accel_words", n.made.words},
+            {"accel_words", n.summary.words},
             {"pe_memory_used_bytes", n.pe_bytes},
             {"missing_bytes", n.missing_bytes},
             {"refusal", n.refusal.empty() ? Json() : Json(n.refusal)}};
@@ -70,9 +70,9 @@ Json machine_json(const MachineNeeds& m) {
 }
 
 template <class T>
-Json list_json(const std::vector<T>& list, Json (*one)(const T&)) {
+Json list_json(const std::vector<T>& list, Json (*element_json)(const T&)) {
     Json json = Json::array();
-    for (const T& element : list) json.push_back(one(element));
+    for (const T& element : list) json.push_back(element_json(element));
     return json;
 }
 
@@ -82,19 +82,19 @@ Json remark_json(const NffRemark& remark) {
 
 std::string objects_text(const Scene& s) {
     std::vector<std::string> kinds;
-    const auto add = [&](std::uint64_t count, const std::string& one, const std::string& many) {
-        if (count > 0) kinds.push_back(counted(count, one, many));
+    const auto add = [&](std::uint64_t count, const std::string& singular, const std::string& plural) {
+        if (count > 0) kinds.push_back(counted(count, singular, plural));
     };
     add(s.spheres.size(), "sphere", "spheres");
     add(s.planes.size(), "plane", "planes");
-    const std::uint64_t patches = patches_of(s);
+    const std::uint64_t patches = count_patches(s);
     add(s.polygons.size() - patches, "polygon", "polygons");
     add(patches, "patch", "patches");
     add(s.cones.size(), "cone", "cones");
     std::string text = fmt::format("{}: {}", counted(s.object_count(), "object"), fmt::join(kinds, ", "));
-    if (!s.polygons.empty()) text += fmt::format(" ({} vertices)", vertices_of(s));
+    if (!s.polygons.empty()) text += fmt::format(" ({} vertices)", count_vertices(s));
     text += "; " + counted(s.surfaces.size(), "surface");
-    if (checkers_of(s) > 0) text += fmt::format(", {} with a checker", checkers_of(s));
+    if (count_checkers(s) > 0) text += fmt::format(", {} with a checker", count_checkers(s));
     return text;
 }
 
@@ -176,7 +176,7 @@ Json to_json(const SceneReport& r) {
     json["skipped"] = list_json(r.skipped, remark_json);
     json["objects"] = objects_json(s);
     json["surfaces"] = s.surfaces.size();
-    json["checkers"] = checkers_of(s);
+    json["checkers"] = count_checkers(s);
     json["view"] = view_json(s);
     json["resolution"] = {{"width", s.view.width}, {"height", s.view.height}};
     json["extent"] = extent_json(r);

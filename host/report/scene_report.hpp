@@ -27,24 +27,25 @@ struct FormatFit {
 struct AccelNeed {
     std::string accel;                // value of --accel; "voxels" on the torus
     bool is_default = false;          // `accel` is the machine's default for this scene
-    std::uint64_t words = 0;          // of 4 bytes: job with accelerator, or fullest node
-    AccelSummary made;                // figures of the grid or BVH
-    std::uint64_t pe_bytes = 0;       // needed, with rays, pixels and buffers; the minimum if it does not fit
-    std::uint64_t missing_bytes = 0;  // 0: the scene fits
+    std::uint64_t words = 0;          // number of 4-byte words of job and accelerator, or of the fullest node
+    AccelSummary summary;             // figures of the grid or BVH
+    std::uint64_t pe_bytes = 0;       // memory needed, including rays, pixels and buffers; the minimum if the scene
+                                      // does not fit
+    std::uint64_t missing_bytes = 0;  // pe_bytes minus the memory of a PE; 0: the scene fits
     std::string refusal;              // error message of a render; empty: none
 };
 
-/// Memory needs of a machine's PEs.
+/// Memory that the PEs of a machine need for the scene.
 struct MachineNeeds {
     std::string machine, format;
     std::uint32_t pes = 0;
-    std::optional<std::uint64_t> memory_bytes;  // of a PE; empty: no limit
-    std::vector<AccelNeed> needs;
-    std::string refusal;  // error message for the options on this machine; `needs` is then empty
+    std::optional<std::uint64_t> memory_bytes;  // memory of a PE; empty: no limit
+    std::vector<AccelNeed> needs;               // one for each accelerator
+    std::string refusal;  // error message if the machine refuses the options, and `needs` is empty; empty: none
 };
 
 struct SceneReport {
-    std::string raya;  // version
+    std::string raya;  // version of raya
     std::string file;
     Scene scene;
     Imath::Box3d box;  // bounding box of the finite objects
@@ -54,7 +55,8 @@ struct SceneReport {
     std::vector<MachineNeeds> machines;
 };
 
-/// docs/report.md documents the members. Later versions may add members, but do not remove or change them.
+/// Returns the report as JSON. docs/report.md documents the members. Later versions may add members, but do not remove
+/// or change them.
 Json to_json(const SceneReport& report);
 
 /// Returns the text for the terminal: objects, camera, lights, extent, formats, and a table of machines.
@@ -62,8 +64,9 @@ std::string summary_text(const SceneReport& report);
 
 Json vector_json(const Vec3& v);
 
-/// Returns camera, background, and lights with the colours that they emit, as the values of --from, --at, --up,
-/// --angle, --background and --light that reproduce the image.
+/// Returns camera, background, and lights with their emitted colours. The values are those of --from, --at, --up,
+/// --angle,
+/// --background and --light that reproduce the image.
 Json view_json(const Scene& scene);
 
 }  // namespace raya

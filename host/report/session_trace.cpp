@@ -21,6 +21,7 @@ class DeviceTimes {
     DeviceTimes(const ClockOffset& offset, std::uint64_t begin)
         : shift_(offset.offset_ns - static_cast<std::int64_t>(begin)) {}
 
+    // Returns the later of the converted time `device_ns` and the time `not_before`.
     std::uint64_t at(std::uint64_t device_ns, std::uint64_t not_before) {
         const std::int64_t shifted = static_cast<std::int64_t>(device_ns) + shift_;
         if (shifted >= static_cast<std::int64_t>(not_before)) return static_cast<std::uint64_t>(shifted);
@@ -36,7 +37,7 @@ class DeviceTimes {
 
 Json arguments_of(const CommandRecord& c) {
     Json json = {{"kind", c.kind}};
-    json[c.kind == "kernel" ? "kernel" : "buffer"] = c.object;
+    json[c.kind == "kernel" ? "kernel" : "buffer"] = c.target_name;
     if (c.kind == "kernel") {
         json["groups"] = c.groups;
         json["group_size"] = c.group_size;
@@ -51,7 +52,8 @@ Json arguments_of(const CommandRecord& c) {
     return json;
 }
 
-// Returns the first track without a slice at time `start`; adds a track if there is none.
+// Returns the number of the first track in which no slice is open at time `start`; adds a track if there is none.
+// `busy_until`: [track - 1]: end of the track's last slice.
 std::uint32_t free_track(TraceFile& trace, std::uint32_t process, std::vector<std::uint64_t>& busy_until,
                          std::uint64_t start) {
     const auto found =

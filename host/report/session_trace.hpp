@@ -1,4 +1,4 @@
-// Adds measured times to a trace file. The host's spans and the device's commands appear as two processes.
+// Adds measured times to a trace file: the host's spans as one process, the device's commands as another.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,21 +8,21 @@
 
 namespace raya {
 
-/// MPI rank of the processes. `named`: prefix their names with the rank, if there are several ranks.
+/// MPI rank to which the trace's processes belong.
 struct TraceRank {
     std::uint32_t number = 0;
-    bool named = false;
+    bool named = false;  // the names of the processes begin with the rank, because there are several ranks
 };
 
-/// Adds one track with the host's spans. `begin`: host_clock_ns() at the start of the trace; no step starts earlier.
+/// Adds one track with the host's spans. `begin`: host_clock_ns() at the start of the trace; no span starts earlier.
 void add_host_spans(TraceFile& trace, const std::vector<HostSpan>& spans, std::uint64_t begin,
                     const TraceRank& rank = {});
 
-/// Adds a slice for each command from start to end, with its four times on the device's clock, its bytes, and details
-/// of kernel launches. The command queue is in order, so one track contains all slices; only commands whose reported
-/// times overlap are put in further tracks. Times that are out of order or before `begin` are moved to the nearest
-/// valid time. The metadata contains their number and the offset between the clocks. For a device that does not time
-/// its commands, adds only a remark to the metadata.
+/// Adds a slice from start to end for each command. Its arguments are the command's four times on the device's clock,
+/// its bytes, or for kernels the launch's groups and arguments. The command queue is in order, so one track contains
+/// all slices, except commands whose reported times overlap: they are in further tracks. Times that are out of order or
+/// before `begin` are moved to the nearest valid time. The metadata contains the number of moved times and the offset
+/// between the clocks. For a device that does not time its commands, the function adds only a remark to the metadata.
 void add_device_commands(TraceFile& trace, const std::string& device, const Profile& profile, const ClockOffset& offset,
                          std::uint64_t begin, const TraceRank& rank = {});
 

@@ -21,7 +21,7 @@ constexpr std::array<Kind, RAYA_KINDS - 1> kKinds = {{{RAYA_KIND_PRIMARY, "prima
                                                       {RAYA_KIND_SHADOW, "shadow"},
                                                       {RAYA_KIND_RETURN, "return"}}};
 
-std::string sides(const std::array<std::uint32_t, 3>& s) { return fmt::format("{}x{}x{}", s[0], s[1], s[2]); }
+std::string dimensions_text(const std::array<std::uint32_t, 3>& s) { return fmt::format("{}x{}x{}", s[0], s[1], s[2]); }
 
 }  // namespace
 
@@ -68,22 +68,21 @@ Json torus_time_json(const TorusTime& time) {
 }
 
 Json t805_budget_json(const EventCounts& events, const PacketCharge& packets) {
-    const Operations shared = operations_of(events);
+    const Operations operations = operations_of(events);
     std::uint64_t additions = 0, multiplications = 0, words = 0;
     for (std::size_t event = 0; event < events.size(); ++event) {
         const T805Work& work = t805_work()[event];
         additions += events[event] * work.additions;
         multiplications += events[event] * work.multiplications;
-        words += events[event] * packets.words_of(work.makes);
+        words += events[event] * packets.words_of(work.creates);
     }
-    return {{"additions", additions},        {"multiplications", multiplications},
-            {"divisions", shared.divisions}, {"roots", shared.roots},
-            {"moves", shared.moves},         {"packet_words", words},
-            {"branches", shared.branches}};
+    return {{"additions", additions},         {"multiplications", multiplications}, {"divisions", operations.divisions},
+            {"roots", operations.roots},      {"moves", operations.moves},          {"packet_words", words},
+            {"branches", operations.branches}};
 }
 
 std::string torus_machine_text(const TorusReport& t) {
-    return fmt::format("{} nodes, {}, {} voxels", sides(t.nodes), t.links, sides(t.voxels));
+    return fmt::format("{} nodes, {}, {} voxels", dimensions_text(t.nodes), t.links, dimensions_text(t.voxels));
 }
 
 std::string torus_lines(const TorusReport& t) {

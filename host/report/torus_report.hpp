@@ -19,17 +19,17 @@ struct TorusReport {
     std::string links;                               // "torus3d" or "torus2d"
     std::string inject;                              // "root" or "all": nodes that generate primary rays
     std::string link_exchange;                       // how the device transfers packets: "copies" or "kernel"
-    std::string link_origin;                         // its source: "options", "measured", "defaults", "FILE, DATE"
-    PacketCharge packets;                            // modelled message sizes
-    std::uint64_t returns = 0;                       // returns charged as messages
-    std::uint64_t discarded = 0;                     // primary rays that nodes generated and discarded
+    std::string link_origin;      // source of link_exchange: "options", "measured", "defaults" or "FILE, DATE"
+    PacketCharge packets;         // modelled message sizes
+    std::uint64_t returns = 0;    // number of returns that are charged as messages
+    std::uint64_t discarded = 0;  // number of primary rays that nodes generated and discarded
     std::uint64_t supersteps = 0;
     std::uint64_t live_max = 0;                             // maximum number of packets at a superstep's end
-    std::array<std::uint64_t, RAYA_KINDS> made{}, ended{};  // packets of each kind (kernels/shared/packet.h)
-    std::uint64_t hops = 0;                                 // link traversals of messages
+    std::array<std::uint64_t, RAYA_KINDS> made{}, ended{};  // [kind]: number of packets (kernels/shared/packet.h)
+    std::uint64_t hops = 0;                                 // number of times that a message crossed a link
 
     struct {
-        std::uint64_t count = 0;      // unidirectional links between different nodes
+        std::uint64_t count = 0;      // number of unidirectional links between different nodes
         std::uint64_t max_bytes = 0;  // bytes over the busiest link
         std::uint64_t total_bytes = 0;
         std::array<std::uint64_t, RAYA_LINKS> by_direction{};  // bytes over +x, -x, +y, -y, +z, -z links
@@ -39,21 +39,23 @@ struct TorusReport {
         }
     } link;
 
-    std::uint32_t queue = 0;      // capacity of a node's queue, packets
-    std::uint32_t box = 0;        // capacity of each of its outboxes and inboxes, packets
-    std::uint64_t queue_max = 0;  // maximum number of packets in a queue
-    std::uint64_t copies = 0;     // duplicates of objects that are in several voxels
+    std::uint32_t queue = 0;      // capacity of a node's queue in packets
+    std::uint32_t box = 0;        // capacity of an outbox or inbox in packets
+    std::uint64_t queue_max = 0;  // maximum number of packets in a node's queue
+    std::uint64_t copies = 0;     // number of additional copies of objects that are in several voxels
     TorusTime modelled;
 };
 
+/// Returns member "torus" of the render report.
 Json torus_json(const TorusReport& report);
 
+/// Returns member "modelled_ms" of the render report.
 Json torus_time_json(const TorusTime& time);
 
 /// Returns what one return packet contains: "rays" (the colour of a ray) or "terms" (one term of it).
 const char* returns_name(const PacketCharge& packets);
 
-/// Returns the total operations of all counted events on a T805 (host/model/t805.hpp).
+/// Returns the numbers of operations of all counted events on T805s (host/model/t805.hpp).
 Json t805_budget_json(const EventCounts& events, const PacketCharge& packets);
 
 /// Returns the part of the summary's first line with nodes, links and voxels.

@@ -36,7 +36,8 @@ void TraceFile::name_track(TraceTrack track, const std::string& name) {
     open_[track];
 }
 
-// Returns true and counts `events` events as added if they do not exceed the limit; otherwise counts them as dropped.
+// Returns true and counts `events` events as written if they do not exceed the limit; otherwise returns false and
+// counts them as left out.
 bool TraceFile::reserve(std::size_t events) {
     const bool fits = events <= max_events_ - events_;
     (fits ? events_ : left_out_) += events;
@@ -58,7 +59,7 @@ void TraceFile::slice(TraceTrack track, const std::string& name, std::uint64_t s
     while (!ends.empty() && ends.back() <= start) ends.pop_back();
     std::uint64_t& last = last_start_[track];
     if (end < start || start < last || (!ends.empty() && end > ends.back()))
-        throw std::logic_error(fmt::format("trace: slice '{}' from {} to {} overlaps another one", name, start, end));
+        throw std::logic_error(fmt::format("trace: slice '{}' from {} to {} overlaps another slice", name, start, end));
     last = start;
     ends.push_back(end);
     add(fmt::format(R"({{"ph":"X","name":{},"pid":{},"tid":{},"ts":{},"dur":{},"args":{}}})", json_text(name),
@@ -66,7 +67,7 @@ void TraceFile::slice(TraceTrack track, const std::string& name, std::uint64_t s
                     arguments.is_null() ? "{}" : json_text(arguments)));
 }
 
-void TraceFile::counter(std::uint32_t process, const std::string& name, std::uint64_t at,
+void TraceFile::counter(std::uint32_t process, const std::string& name, std::uint64_t at_ns,
                         const std::vector<std::pair<std::string, double>>& values) {
     if (!reserve(1)) return;
     Json arguments = Json::object();
@@ -74,23 +75,23 @@ void TraceFile::counter(std::uint32_t process, const std::string& name, std::uin
         if (!std::isfinite(value)) throw std::logic_error(fmt::format("trace: counter '{}' is {}", name, value));
         arguments[series] = value;
     }
-    add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{}}})", json_text(name), process, microseconds(at),
-                    json_text(arguments)));
+    add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{}}})", json_text(name), process,
+                    microseconds(at_ns), json_text(arguments)));
 }
 
-void TraceFile::flow(const std::string& name, TraceTrack from, std::uint64_t from_at, TraceTrack to,
-                     std::uint64_t to_at) {
+void TraceFile::flow(const std::string& name, TraceTrack from, std::uint64_t from_ns, TraceTrack to,
+                     std::uint64_t to_ns) {
     check_named(from);
     check_named(to);
-    if (to_at < from_at) throw std::logic_error(fmt::format("trace: flow '{}' goes back in time", name));
+    if (to_ns < from_ns) throw std::logic_error(fmt::format("trace: flow '{}' goes back in time", name));
     if (!reserve(2)) return;
     ++flows_;
-    const auto end = [&](const char* phase, TraceTrack track, std::uint64_t at) {
+    const auto add_end = [&](const char* phase, TraceTrack track, std::uint64_t at_ns) {
         add(fmt::format(R"({{"ph":{},"cat":"flow","name":{},"id":{},"pid":{},"tid":{},"ts":{}}})", phase,
-                        json_text(name), flows_, track.process, track.thread, microseconds(at)));
+                        json_text(name), flows_, track.process, track.thread, microseconds(at_ns)));
     };
-    end(R"("s")", from, from_at);
-    end(R"("f","bp":"e")", to, to_at);
+    add_end(R"("s")", from, from_ns);
+    add_end(R"("f","bp":"e")", to, to_ns);
 }
 
 void TraceFile::add(const Part& part) {
@@ -112,7 +113,8 @@ std::string TraceFile::tail() const {
 
 std::string TraceFile::finish(bool compressed) const {
     std::string_view names = names_, text = text_;
-    (text.empty() ? names : text).remove_suffix(text.empty() && names.empty() ? 0 : 2);  // no comma after the last
+    (text.empty() ? names : text)
+        .remove_suffix(text.empty() && names.empty() ? 0 : 2);  // no comma after the last event
     const std::string first = head(), last = tail();
     if (!compressed) return fmt::format("{}{}{}{}", first, names, text, last);
     GzipText file;
@@ -122,17 +124,17 @@ std::string TraceFile::finish(bool compressed) const {
 }
 
 std::vector<TracedPe> traced_pes(const std::vector<std::uint64_t>& loads, std::size_t max_count) {
-    const std::size_t pes = loads.size(), all = std::min(max_count, pes);
+    const std::size_t pes = loads.size(), selected = std::min(max_count, pes);
     std::vector<std::uint32_t> by_load(pes);
     std::iota(by_load.begin(), by_load.end(), 0u);
     std::stable_sort(by_load.begin(), by_load.end(), [&](auto a, auto b) { return loads[a] > loads[b]; });
     std::map<std::uint32_t, std::string> chosen;
-    for (std::size_t i = 0; i < (all + 3) / 4; ++i) chosen[by_load[i]] = "busiest";
+    for (std::size_t i = 0; i < (selected + 3) / 4; ++i) chosen[by_load[i]] = "busiest";
     std::stable_sort(by_load.begin(), by_load.end(), [&](auto a, auto b) { return loads[a] < loads[b]; });
-    for (std::size_t i = 0; i < all / 4; ++i) chosen.try_emplace(by_load[i], "idlest");
-    const std::size_t others = all - std::min(all, chosen.size());
+    for (std::size_t i = 0; i < selected / 4; ++i) chosen.try_emplace(by_load[i], "idlest");
+    const std::size_t others = selected - std::min(selected, chosen.size());
     for (std::size_t i = 0; i < others; ++i) chosen.try_emplace(static_cast<std::uint32_t>(i * pes / others), "");
-    for (std::uint32_t pe = 0; chosen.size() < all; ++pe) chosen.try_emplace(pe, "");
+    for (std::uint32_t pe = 0; chosen.size() < selected; ++pe) chosen.try_emplace(pe, "");
     std::vector<TracedPe> traced;
     for (const auto& [pe, remark] : chosen) traced.push_back({pe, remark});
     return traced;

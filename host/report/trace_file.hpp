@@ -1,8 +1,8 @@
 // Writes a trace in Chrome's Trace Event Format (JSON), which Perfetto and chrome://tracing display.
 //
-// The format requires: processes and tracks are integers, and records before all events name them; times are
-// microseconds, here with three decimals; two slices of a track are nested or disjoint; both ends of a flow are in
-// slices.
+// The format requires: the identifiers of processes and tracks are integers, and records before all events give their
+// names; times are microseconds (TraceFile writes three decimals); two slices of a track are nested or disjoint; both
+// ends of a flow are in slices.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace raya {
 /// Processes of a raya trace in display order: host and device of rank 0, the modelled machine, then host and device of
 /// the other ranks.
 enum TraceProcess : std::uint32_t { kTraceHost = 1, kTraceDevice = 2, kTraceMachine = 3 };
-inline constexpr std::uint32_t kTraceProcesses = 3;  // process numbers per rank
+inline constexpr std::uint32_t kTraceProcesses = 3;  // number of processes per rank
 
 /// A track: a row of slices in the display.
 struct TraceTrack {
@@ -30,16 +30,16 @@ struct TraceTrack {
 
 inline std::uint64_t nanoseconds(double ms) { return static_cast<std::uint64_t>(std::llround(ms * 1e6)); }
 
-/// All times are nanoseconds since the start of the trace. The functions throw std::logic_error for a track without a
-/// name, and for a slice that ends before it starts or partly overlaps another one. The text is kept in memory, about
-/// 150 bytes per event.
+/// A trace in memory, about 150 bytes per event. All times are nanoseconds since the start of the trace. The functions
+/// throw std::logic_error for a track without a name, and for a slice that ends before it starts or partly overlaps
+/// another slice of its track.
 class TraceFile {
   public:
-    /// `max_events`: maximum number of events: slices, counters and ends of flows. Further events are dropped and
-    /// counted.
+    /// `max_events`: maximum number of events (slices, counters and ends of flows). Further events are counted, but not
+    /// written.
     explicit TraceFile(std::size_t max_events) : max_events_(max_events) {}
 
-    /// Processes and tracks are displayed in the order of their numbers.
+    /// Names a process or a track. The display is in the order of their numbers.
     void name_process(std::uint32_t process, const std::string& name);
     void name_track(TraceTrack track, const std::string& name);
 
@@ -47,12 +47,12 @@ class TraceFile {
     void slice(TraceTrack track, const std::string& name, std::uint64_t start, std::uint64_t end,
                const Json& arguments = {});
 
-    /// Sets the values of the series of counter `name` from time `at` on.
-    void counter(std::uint32_t process, const std::string& name, std::uint64_t at,
+    /// Sets the values of counter `name` from time `at_ns` on: [series]: name, value.
+    void counter(std::uint32_t process, const std::string& name, std::uint64_t at_ns,
                  const std::vector<std::pair<std::string, double>>& values);
 
-    /// Adds an arrow from the slice at `from_at` on track `from` to the slice at `to_at` on track `to`.
-    void flow(const std::string& name, TraceTrack from, std::uint64_t from_at, TraceTrack to, std::uint64_t to_at);
+    /// Adds an arrow from the slice at time `from_ns` on track `from` to the slice at time `to_ns` on track `to`.
+    void flow(const std::string& name, TraceTrack from, std::uint64_t from_ns, TraceTrack to, std::uint64_t to_ns);
 
     /// Member "otherData" of the trace.
     Json& metadata() { return metadata_; }
@@ -66,7 +66,8 @@ class TraceFile {
     Part part() const { return {names_, text_, events_, left_out_}; }
     void add(const Part& part);
 
-    std::size_t events() const { return events_; }
+    std::size_t events() const { return events_; }  // number of events in the trace
+    /// Returns the number of events that exceeded the maximum.
     std::size_t left_out() const { return left_out_; }
 
     /// Returns the contents of the file, compressed with gzip if `compressed`.
@@ -80,19 +81,22 @@ class TraceFile {
     std::string tail() const;
 
     std::size_t max_events_, events_ = 0, left_out_ = 0, flows_ = 0;
-    std::map<TraceTrack, std::vector<std::uint64_t>> open_;  // end times of each track's open slices
+    std::map<TraceTrack, std::vector<std::uint64_t>>
+        open_;  // [track]: end times of the open slices, outer slices first
     std::map<TraceTrack, std::uint64_t> last_start_;
     std::string names_, text_;
     Json metadata_ = Json::object();
 };
 
+/// A PE that the trace contains.
 struct TracedPe {
     std::uint32_t pe = 0;
     std::string remark;  // "busiest", "idlest" or empty
 };
 
-/// Returns at most `max_count` PEs, sorted by number; all PEs if there are no more. A quarter of them are the busiest,
-/// a quarter the idlest (of equal loads, the lower numbers), and the others are evenly spaced from PE 0 on.
+/// Selects `max_count` PEs, or all if there are not more, and returns them sorted by number. A quarter of them are the
+/// busiest PEs, a quarter the idlest; of PEs with equal loads, those with lower numbers are selected. The others are
+/// evenly spaced from PE 0 on. `loads`: [PE].
 std::vector<TracedPe> traced_pes(const std::vector<std::uint64_t>& loads, std::size_t max_count);
 
 /// Returns a name such as "PE 17 (busiest)". `kind`: "PE" or "node".

@@ -36,10 +36,10 @@ MovesOfSides smoothing_moves(const Antialias& antialias, const raya_mapping& map
     return exchange_moves(mapping, antialias.exchange, antialias.method == AntialiasMethod::kSupersample);
 }
 
-SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share) {
+SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t pixels) {
     SmoothingCycles cycles;
-    if (method == AntialiasMethod::kFilter) cycles.filter = filter_cycles(share);
-    if (method == AntialiasMethod::kSupersample) cycles.compare = compare_cycles(share);
+    if (method == AntialiasMethod::kFilter) cycles.filter = filter_cycles(pixels);
+    if (method == AntialiasMethod::kSupersample) cycles.compare = compare_cycles(pixels);
     return cycles;
 }
 

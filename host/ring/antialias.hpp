@@ -1,4 +1,4 @@
-// Anti-aliasing methods, applied to the image after the first pass (Kohata & Ito 1993).
+// Anti-aliasing methods, which are applied to the image after the first pass (Kohata & Ito 1993).
 #pragma once
 #include <string>
 
@@ -24,19 +24,19 @@ struct Antialias {
 /// Returns "none", "filter" or "supersample".
 std::string antialias_name(AntialiasMethod method);
 
-/// Throws UserError if the method needs neighbours and the mapping is dynamic or random: then a pixel's neighbours are
-/// not on PEs at fixed, small distances.
+/// Throws UserError if the method needs neighbours and the mapping is dynamic or random. With such a mapping the
+/// neighbours of a PE's pixels are not on PEs at a few fixed distances on the ring.
 void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool dynamic);
 
 /// Returns "axes" or "diagonals". `points`: RAYA_POINTS_AXES or RAYA_POINTS_DIAGONALS.
 std::string points_name(raya_u32 points);
 
-/// Number of ring or bus moves that bring the neighbours' pixels from each side to every PE, if each move carries a
-/// PE's whole share. The filter processes the sides one by one, as its rounded sums depend on their order;
+/// Returns, for each side, the number of ring or bus moves that bring the neighbours' pixels to every PE, if each move
+/// carries a PE's whole share. The filter processes the sides one by one, as its rounded sums depend on their order;
 /// supersampling compares all sides in any order.
 MovesOfSides smoothing_moves(const Antialias& antialias, const raya_mapping& mapping);
 
-/// Modelled cycles of the method's arithmetic on neighbours, for a PE that owns `share` pixels.
-SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share);
+/// Returns the modelled cycles of the method's arithmetic on neighbours, for a PE that owns `pixels` pixels.
+SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t pixels);
 
 }  // namespace raya

@@ -29,6 +29,7 @@ inline std::uint32_t rank_of_pe(std::uint32_t pes, std::uint32_t ranks, std::uin
     return static_cast<std::uint32_t>(((pe + 1) * ranks - 1) / pes);
 }
 
+/// Returns the segment of this rank.
 inline PeSegment own_segment(std::uint32_t pes, const Ranks& ranks) {
     return segment_of(pes, ranks.count(), ranks.rank());
 }
@@ -38,44 +39,49 @@ struct PeWords {
     std::size_t pe = 0, pitch = 0, offset = 0, rows = 1;
 };
 
-/// PE numbers are those of the whole ring. All ranks must make the same calls. Each rank counts all transfers, but its
-/// buffers hold only the PEs of its own segment.
+/// The bus between host and PEs. PE numbers are those of the whole ring. All ranks must make the same calls. Each rank
+/// counts all transfers, but its buffers hold only the PEs of its own segment.
 class Bus {
   public:
-    Bus(Session& session, Communication& counted, std::uint32_t pes, Ranks& ranks = Ranks::alone())
-        : session_(session), counted_(counted), ranks_(ranks), pes_(pes), segment_(own_segment(pes, ranks)) {}
+    Bus(Session& session, Communication& communication, std::uint32_t pes, Ranks& ranks = Ranks::single())
+        : session_(session),
+          communication_(communication),
+          ranks_(ranks),
+          pes_(pes),
+          segment_(own_segment(pes, ranks)) {}
 
-    /// Sends words from the host to all PEs, by writing them to the device buffer `to`. The PEs copy them into their
-    /// memories at the start of a kernel.
-    void broadcast(Buffer<std::uint32_t>& to, std::span<const std::uint32_t> words);
+    /// Sends words from the host to all PEs, by writing them to the device buffer `target`. The PEs copy them into
+    /// their memories at the start of a kernel.
+    void broadcast(Buffer<std::uint32_t>& target, std::span<const std::uint32_t> words);
 
-    /// Sends `words` words of each row from one PE to another. `own` and `blocks` must be different buffers, and
-    /// from.rows must equal to.rows.
-    void send(const Buffer<float>& own, PeWords from, Buffer<float>& blocks, PeWords to, std::size_t words);
+    /// Sends `words` words of each row from one PE (`source`, in `pe_memory`) to another (`target`, in `blocks`). The
+    /// two buffers must be different, and source.rows must equal target.rows.
+    void send(const Buffer<float>& pe_memory, PeWords source, Buffer<float>& blocks, PeWords target, std::size_t words);
 
-    /// Broadcasts `words` words of each row of one PE to all others. Each device has one buffer `all_blocks`, with
+    /// Broadcasts `words` words of each row of one PE to all other PEs. Each device has one buffer `all_blocks`, with
     /// space for the words of every PE of the ring.
-    void broadcast_from(const Buffer<float>& own, PeWords from, Buffer<float>& all_blocks, PeWords to,
+    void broadcast_from(const Buffer<float>& pe_memory, PeWords source, Buffer<float>& all_blocks, PeWords target,
                         std::size_t words);
 
-    /// Counts one gather. Its data may be read by several calls of gather().
-    void begin_gather() { counted_.gathers += 1; }
+    /// Counts one gather. Several calls of gather() may read its data.
+    void begin_gather() { communication_.gathers += 1; }
 
-    /// Reads the blocks of this rank's PEs. `words`: number of words to count: those of pixels in the blocks of all
-    /// ranks, without padding.
-    void gather(const Buffer<float>& blocks, std::span<float> to, std::uint64_t words);
+    /// Reads the blocks of this rank's PEs into `target`, and counts `words` words: those of the pixels in the blocks
+    /// of all ranks, without padding.
+    void gather(const Buffer<float>& blocks, std::span<float> target, std::uint64_t words);
 
   private:
     /// copy() copies between device buffers; read() and write() transfer [row][words] to and from the host.
-    /// `first_of_blocks`: number of the first PE in `blocks`.
-    void copy(const char* label, const Buffer<float>& own, const PeWords& from, Buffer<float>& blocks,
-              const PeWords& to, std::size_t words, std::size_t first_of_blocks);
-    std::vector<float> read(const char* label, const Buffer<float>& own, const PeWords& from, std::size_t words);
-    void write(const char* label, Buffer<float>& blocks, const PeWords& to, std::span<const float> words,
-               std::size_t first_of_blocks);
+    /// `first_block_pe`: number of the first PE whose words are in `blocks`.
+    void copy(const char* label, const Buffer<float>& pe_memory, const PeWords& source, Buffer<float>& blocks,
+              const PeWords& target, std::size_t words, std::size_t first_block_pe);
+    std::vector<float> read(const char* label, const Buffer<float>& pe_memory, const PeWords& source,
+                            std::size_t words);
+    void write(const char* label, Buffer<float>& blocks, const PeWords& target, std::span<const float> words,
+               std::size_t first_block_pe);
 
     Session& session_;
-    Communication& counted_;
+    Communication& communication_;
     Ranks& ranks_;
     std::uint32_t pes_;
     PeSegment segment_;
@@ -87,13 +93,13 @@ class Bus {
 class Ring {
   public:
     /// Allocates the blocks of this rank's segment on the device, [PE][rows][row_words], with undefined contents.
-    /// `pes`: number of PEs of the whole ring. All sizes must be > 0. `counted` counts the rotations of all PEs.
-    Ring(Session& session, Communication& counted, std::uint32_t pes, std::size_t rows, std::size_t row_words,
-         Ranks& ranks = Ranks::alone());
+    /// `pes`: number of PEs of the whole ring. All sizes must be > 0. `communication` counts the rotations of all PEs.
+    Ring(Session& session, Communication& communication, std::uint32_t pes, std::size_t rows, std::size_t row_words,
+         Ranks& ranks = Ranks::single());
 
-    /// Fills each PE's block from its own memory `own`, [PE][rows][own_words]: copies the words of each row from
-    /// `begin` on, at most row_words of them. Not counted, because no data moves between PEs.
-    void load(const Buffer<float>& own, std::size_t own_words, std::size_t begin);
+    /// Fills each PE's block from its own memory `pe_memory`, [PE][rows][memory_row_words]: copies the words of each
+    /// row from `begin` on, at most row_words of them. Not counted, because no data moves between PEs.
+    void load(const Buffer<float>& pe_memory, std::size_t memory_row_words, std::size_t begin);
 
     /// Every PE sends its block to the next PE in the direction, with wrap-around at the end of the ring.
     void rotate(RingDirection direction);
@@ -110,16 +116,16 @@ class Ring {
     void send_block(RingDirection direction);
     void receive_block(RingDirection direction);
     /// Copies `blocks` blocks. `first` and `at` are the indices of the first source and destination block.
-    void move(const char* label, const Buffer<float>& from, std::size_t first, Buffer<float>& to, std::size_t at,
+    void move(const char* label, const Buffer<float>& source, std::size_t first, Buffer<float>& target, std::size_t at,
               std::size_t blocks);
 
     Session& session_;
-    Communication& counted_;
+    Communication& communication_;
     Ranks& ranks_;
     PeSegment segment_;
     std::size_t pes_, rows_, row_words_, block_words_;
-    Buffer<float> front_, back_;
-    std::vector<float> outgoing_, incoming_;  // block sent to, and block received from, another rank
+    Buffer<float> front_, back_;              // current blocks; destination of a rotation
+    std::vector<float> outgoing_, incoming_;  // block to send to another rank; block received from another rank
 };
 
 }  // namespace raya

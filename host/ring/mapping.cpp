@@ -11,10 +11,10 @@ namespace {
 
 // Returns the divisor of `side` that is nearest to `wanted`; the smaller one in a tie.
 std::uint32_t nearest_divisor(std::uint32_t side, std::uint32_t wanted) {
-    const auto away = [&](std::uint32_t d) { return d < wanted ? wanted - d : d - wanted; };
+    const auto distance = [&](std::uint32_t d) { return d < wanted ? wanted - d : d - wanted; };
     std::uint32_t nearest = 1;
     for (std::uint32_t d = 2; d <= side; ++d)
-        if (side % d == 0 && away(d) < away(nearest)) nearest = d;
+        if (side % d == 0 && distance(d) < distance(nearest)) nearest = d;
     return nearest;
 }
 
@@ -27,13 +27,13 @@ void check_tiles(const raya_mapping& m) {
 }
 
 void check_pes(const MappingRule& rule, const raya_mapping& m) {
-    const std::uint32_t pixels = m.width * m.height, own = rule.pes().value_or(m.pes);
-    if (own > pixels && rule.pes())
+    const std::uint32_t pixels = m.width * m.height, required_pes = rule.pes().value_or(m.pes);
+    if (required_pes > pixels && rule.pes())
         throw UserError(fmt::format("--mapping {}: {} PEs: must be 1..{}, at most one for each pixel",
-                                    mapping_text(rule), own, pixels));
-    if (own != m.pes)
-        throw UserError(fmt::format("--pes {} with --mapping {}: this grid has {} PEs; omit --pes, or use {}", m.pes,
-                                    mapping_text(rule), own, own));
+                                    mapping_text(rule), required_pes, pixels));
+    if (required_pes != m.pes)
+        throw UserError(fmt::format("--pes {} with --mapping {}: this mapping has {} PEs; omit --pes, or use {}", m.pes,
+                                    mapping_text(rule), required_pes, required_pes));
     if (m.pes < 1 || m.pes > pixels)
         throw UserError(fmt::format("--pes {}: must be 1..{}, at most one for each pixel", m.pes, pixels));
 }

@@ -13,7 +13,7 @@
 
 namespace raya {
 
-/// The blocks that have arrived, one in every PE.
+/// Blocks that have arrived, one in every PE.
 struct Arrival {
     Buffer<float>& blocks;   // [PE][3][band]
     raya_u32 side;           // side of the neighbours that the blocks contain: RAYA_LEFT..RAYA_BELOW
@@ -21,30 +21,32 @@ struct Arrival {
     std::uint32_t begin;     // index of the block's first pixel in the share of PE (i + distance) mod P
 };
 
-/// Each move carries a band of at most `band` pixels of each PE. If a PE's memory can hold a second share (see
-/// PeMemory), the band is the whole share; otherwise the bands of the share are moved one after another.
+/// Exchanges neighbours' pixels. Each move carries a band: at most `band` pixels of each PE. If a PE's memory can hold
+/// a second share (see PeMemory), the band is the whole share; otherwise the bands of the share are moved one after
+/// another.
 class NeighbourExchange {
   public:
-    /// `capacity`: pixels in each PE's memory; `band`: 1..capacity.
+    /// `capacity`: number of pixels in each PE's memory; `band`: number of pixels in a band, 1..capacity.
     NeighbourExchange(Session& session, Communication& counted, const raya_mapping& mapping, std::uint32_t capacity,
-                      std::uint32_t band, ExchangeMethod method = ExchangeMethod::kRing, Ranks& ranks = Ranks::alone());
+                      std::uint32_t band, ExchangeMethod method = ExchangeMethod::kRing,
+                      Ranks& ranks = Ranks::single());
 
     std::uint32_t band() const { return band_; }
 
     /// Moves every pixel to the PEs that need it as a neighbour on one of `sides`, and calls `arrived` after each
-    /// arrival of blocks that contain such neighbours. `own`: pixels of this rank's PEs, [PE][3][capacity]. The order
-    /// of the sides is unspecified.
-    void visit(const Buffer<float>& own, std::initializer_list<raya_u32> sides,
+    /// arrival of blocks that contain such neighbours. `pixels`: pixels of this rank's PEs, [PE][3][capacity]. The
+    /// order of the sides is unspecified.
+    void visit(const Buffer<float>& pixels, std::initializer_list<raya_u32> sides,
                const std::function<void(const Arrival&)>& arrived);
 
   private:
     using Arrived = std::function<void(const Arrival&)>;
 
-    void exchange_by_rotation(const Buffer<float>& own, raya_u32 side, std::uint32_t begin, const Arrived& arrived);
-    void exchange_by_transfers(const Buffer<float>& own, raya_u32 side, std::uint32_t begin, const Arrived& arrived);
-    void exchange_by_broadcast(const Buffer<float>& own, std::initializer_list<raya_u32> sides, std::uint32_t begin,
+    void exchange_by_rotation(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin, const Arrived& arrived);
+    void exchange_by_transfers(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin, const Arrived& arrived);
+    void exchange_by_broadcast(const Buffer<float>& pixels, std::initializer_list<raya_u32> sides, std::uint32_t begin,
                                const Arrived& arrived);
-    std::size_t pixels_from(std::uint32_t begin) const;
+    std::size_t band_pixels(std::uint32_t begin) const;
 
     std::uint32_t pes_, capacity_, band_;
     ExchangeMethod method_;

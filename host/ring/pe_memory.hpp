@@ -1,5 +1,5 @@
-// Plan of a PE's memory: what it must hold, and how many of the PE's pixels fit at a time. A PE of the ring machine can
-// access only its own memory.
+// Plan of a PE's memory: its contents, and the number of the PE's pixels that fit at a time. A PE of the ring machine
+// can access only its own memory.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,12 +11,12 @@ namespace raya {
 
 /// Contents of the memory of each PE. A word has 4 bytes.
 struct PeMemory {
-    std::uint64_t job_words = 0;     // words of the job, which are broadcast to all PEs
-    std::uint64_t tree_words = 0;    // state of one ray tree: the modelled PE traces one ray at a time
-    std::uint32_t block_pixels = 0;  // traced pixels that are not gathered yet, 3 words each
-    std::uint32_t sum_pixels = 0;    // filter sums, 3 words each
-    std::uint32_t band_pixels = 0;   // pixels received from another PE, 3 words each
-    std::uint32_t marks = 0;         // supersampling flags of pixels, one byte each
+    std::uint64_t job_words = 0;   // number of words of the job, which are broadcast to all PEs
+    std::uint64_t tree_words = 0;  // number of words of one ray tree's state: the modelled PE traces one ray at a time
+    std::uint32_t block_pixels = 0;  // number of traced pixels that are not gathered yet, 3 words each
+    std::uint32_t sum_pixels = 0;    // number of filter sums, 3 words each
+    std::uint32_t band_pixels = 0;   // number of pixels received from another PE, 3 words each
+    std::uint32_t marks = 0;         // number of marks for supersampling, one byte each
 
     std::uint64_t bytes() const {
         return 4 * (job_words + tree_words + 3ull * (block_pixels + sum_pixels + band_pixels)) + marks;
@@ -28,15 +28,15 @@ struct PeDemand {
     std::string scene;            // name of the scene, for messages
     std::uint64_t job_words = 0;  // see PeMemory
     std::uint32_t bounces = 0;
-    std::uint32_t share = 0;  // maximum number of pixels that a PE owns
+    std::uint32_t share_pixels = 0;  // maximum number of pixels that a PE owns
     AntialiasMethod antialias = AntialiasMethod::kNone;
 };
 
-/// Without anti-aliasing, block_pixels is the whole share if that fits, else as many pixels as fit; the image is then
-/// gathered block by block. (The paper's run on one PE, 256 x 256 pixels with 32 KB, requires this.) With
-/// anti-aliasing, each PE holds its whole share with sums or marks, and band_pixels is as large as fits, reduced so
-/// that all bands have about the same length. Throws DoesNotFit, with the required and available bytes and a remedy, if
-/// not even one pixel of the block or band fits.
+/// Without anti-aliasing, block_pixels is the whole share if the share fits. Otherwise it is the number of pixels that
+/// fit, and the image is gathered block by block. (The paper's run on one PE, 256 x 256 pixels with 32 KB, requires
+/// this.) With anti-aliasing, each PE holds its whole share with sums or marks, and band_pixels is the number of pixels
+/// that fit, reduced so that all bands have about the same length. Throws DoesNotFit, with the required and available
+/// bytes and a remedy, if not even one pixel of the block or band fits.
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand);
 
 }  // namespace raya

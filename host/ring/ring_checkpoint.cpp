@@ -1,4 +1,4 @@
-// Checkpoints of a ring render: traces the image in bands, saves the state between them, and resumes it.
+// Checkpoints of a ring render: traces the image in bands, saves the state between bands, and resumes the render.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -15,16 +15,16 @@ namespace raya {
 namespace {
 
 constexpr std::uint32_t kFirstBands = 64;        // the first band is 1 / kFirstBands of a share
-constexpr std::uint32_t kMinPixelsPerLane = 16;  // of the first band: with fewer, lanes would be idle
+constexpr std::uint32_t kMinPixelsPerLane = 16;  // in the first band; with fewer pixels some lanes would be idle
 
 std::string words_hash(const std::vector<std::uint32_t>& words) {
     return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
 }
 
-// Returns the length of the next band, scaled so that it takes `aim` seconds, but between half and four times the
-// length `band` of the last one, which took `seconds`.
-std::uint32_t next_band(std::uint32_t band, double seconds, double aim) {
-    const double factor = std::clamp(aim / std::max(seconds, 1e-6), 0.5, 4.0);
+// Returns the length of the next band. `band`: length of the last band, which took `seconds`. The new length is scaled
+// so that the band takes `target_s` seconds, but is between half and four times the last length.
+std::uint32_t next_band(std::uint32_t band, double seconds, double target_s) {
+    const double factor = std::clamp(target_s / std::max(seconds, 1e-6), 0.5, 4.0);
     return static_cast<std::uint32_t>(std::clamp(band * factor, 1.0, 1e9));
 }
 
@@ -105,7 +105,7 @@ void RingRenderer::save_checkpoint(std::uint32_t pass, PixelRange range, RingRes
     s.pass = pass;
     s.window = range.block;
     s.next = range.begin;
-    s.share = (pass + 1.0 * range.begin / share_) / static_cast<double>(counters_.size());
+    s.fraction = (pass + 1.0 * range.begin / share_pixels_) / static_cast<double>(counters_.size());
     checkpointing_->save(s, state_settings());
 }
 
@@ -113,9 +113,10 @@ void RingRenderer::resume(RingResult& result) {
     resumed_.reset();
     earlier_s_ = 0;
     if (checkpointing_ == nullptr) return;
-    if (ranks_.many()) throw UserError("a render on several ranks cannot save checkpoints; start raya without mpirun");
-    const std::uint32_t at_once = settings_.kernels.lanes * settings_.kernels.group_size;
-    band_ = std::max(share_ / kFirstBands, kMinPixelsPerLane * at_once);
+    if (ranks_.has_several())
+        throw UserError("a render on several ranks cannot save checkpoints; start raya without mpirun");
+    const std::uint32_t lanes_per_pe = settings_.kernels.lanes * settings_.kernels.group_size;
+    band_ = std::max(share_pixels_ / kFirstBands, kMinPixelsPerLane * lanes_per_pe);
     if (!checkpointing_->resume) return;
     prepare_memory(result);
     resumed_ = checkpointing_->resume(state_settings(), host_state(result));

@@ -13,20 +13,20 @@
 namespace raya {
 namespace {
 
-/// Calls move(PE, pixel, to) for the pixels in `range` of the share of every PE of the segment. The arguments are the
-/// index of the PE in the segment, the index of the pixel in the PE's device buffer, and the index of the pixel in the
-/// image. Neighbouring PEs often own neighbouring columns, so the runs of kTogether PEs are interleaved for memory
-/// locality.
-template <class Move>
-void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange range, Move&& move) {
-    constexpr std::uint32_t kTogether = 16;
-    for (std::uint32_t first = 0; first < segment.count; first += kTogether) {
-        const std::uint32_t pes = std::min(kTogether, segment.count - first);
-        std::array<raya_share, kTogether> shares{};
+/// Calls visit(PE, pixel, image pixel) for the pixels in `range` of the share of every PE of the segment. The arguments
+/// are the index of the PE in the segment, the index of the pixel in the PE's device buffer, and the index of the pixel
+/// in the image. Neighbouring PEs often own neighbouring columns, so the runs of kInterleavedPes PEs are interleaved
+/// for memory locality.
+template <class Visit>
+void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange range, Visit&& visit) {
+    constexpr std::uint32_t kInterleavedPes = 16;
+    for (std::uint32_t first = 0; first < segment.count; first += kInterleavedPes) {
+        const std::uint32_t pes = std::min(kInterleavedPes, segment.count - first);
+        std::array<raya_share, kInterleavedPes> shares{};
         for (std::uint32_t i = 0; i < pes; ++i) shares[i] = raya_share_of(m, segment.first + first + i);
         std::uint32_t pixels = 0;
         for (std::uint32_t k = range.begin; k < range.end; k += pixels) {
-            std::array<raya_pixel_run, kTogether> runs{};
+            std::array<raya_pixel_run, kInterleavedPes> runs{};
             pixels = range.end - k;
             for (std::uint32_t i = 0; i < pes; ++i) {
                 const std::uint32_t size = raya_share_size(shares[i]);
@@ -39,7 +39,7 @@ void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange 
                 const std::size_t row = std::size_t{runs[i].pixel.row} * m.width;
                 std::uint32_t column = runs[i].pixel.column;
                 for (std::uint32_t j = 0; j < pixels; ++j) {
-                    move(first + i, k - range.block + j, row + column);
+                    visit(first + i, k - range.block + j, row + column);
                     column += runs[i].step;
                     if (column >= m.width) column -= m.width;
                 }
@@ -48,7 +48,7 @@ void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange 
     }
 }
 
-Image black(const raya_mapping& m) {
+Image black_image(const raya_mapping& m) {
     return {static_cast<int>(m.width), static_cast<int>(m.height),
             std::vector<float>(3 * std::size_t{m.width} * m.height)};
 }
@@ -67,26 +67,26 @@ void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, cons
         device.platform, device.name, traced, pixels));
 }
 
-// Adds the event counts of all ranks to those of the phase and to those of the whole render.
-void add_events(const std::vector<EventCounts>& of_ranks, EventCounts& phase, EventCounts& all) {
-    for (const EventCounts& events : of_ranks)
+// Adds the event counts of all ranks to the counts of the phase and of the whole render.
+void add_events(const std::vector<EventCounts>& rank_events, EventCounts& phase_events, EventCounts& all_events) {
+    for (const EventCounts& events : rank_events)
         for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
-            phase[event] += events[event];
-            all[event] += events[event];
+            phase_events[event] += events[event];
+            all_events[event] += events[event];
         }
 }
 
 }  // namespace
 
-// Sends each rank's elements, `of_pe` per PE, to rank 0. Rank 0 calls take(segment, elements) for one rank after
+// Sends each rank's elements, `per_pe` per PE, to rank 0. Rank 0 calls take(segment, elements) for one rank after
 // another, including itself.
 template <class T, class Take>
-void RingRenderer::collect(std::vector<T>& own, std::size_t of_pe, const Take& take) {
-    if (!ranks_.first()) return ranks_.send(0, std::span<const T>(own));
+void RingRenderer::collect(std::vector<T>& own, std::size_t per_pe, const Take& take) {
+    if (!ranks_.is_first()) return ranks_.send(0, std::span<const T>(own));
     take(pes_, own);
     for (std::uint32_t rank = 1; rank < ranks_.count(); ++rank) {
         const PeSegment pes = segment_of(settings_.mapping.pes, ranks_.count(), rank);
-        own.resize(of_pe * pes.count);
+        own.resize(per_pe * pes.count);
         ranks_.receive(rank, std::span(own));
         take(pes, own);
     }
@@ -96,7 +96,7 @@ void RingRenderer::collect(std::vector<T>& own, std::size_t of_pe, const Take& t
 // the first access to new memory is slow. trace() calls this function while the device traces.
 void RingRenderer::prepare_memory(RingResult& result) {
     const SpanLog::Span span = session_.span("prepare memory");
-    if (result.image.rgb.empty() && ranks_.first()) result.image = black(settings_.mapping);
+    if (result.image.rgb.empty() && ranks_.is_first()) result.image = black_image(settings_.mapping);
     place_gathered(result);
     gathered_.resize(pixels_.size());
 }
@@ -110,7 +110,7 @@ void RingRenderer::gather(PixelRange range, RingResult& result) {
         owned += share > range.begin ? std::min(share, range.end) - range.begin : 0;
     }
     bus_.gather(pixels_, gathered_, 3 * owned);
-    if (ranks_.many())
+    if (ranks_.has_several())
         collect(gathered_, std::size_t{3} * window_,
                 [&](const PeSegment& pes, std::span<const float> pixels) { place(pes, range, pixels, result); });
     else
@@ -127,11 +127,11 @@ void RingRenderer::place(const PeSegment& pes, PixelRange range, std::span<const
     const std::size_t window = window_;
     const float* const colours = pixels.data();
     float* const image = result.image.rgb.data();
-    for_each_pixel(settings_.mapping, pes, range, [=](std::size_t pe, std::size_t pixel, std::size_t to) {
+    for_each_pixel(settings_.mapping, pes, range, [=](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
         const float* const red = colours + 3 * pe * window + pixel;
-        image[3 * to] = *red;
-        image[3 * to + 1] = red[window];
-        image[3 * to + 2] = red[2 * window];
+        image[3 * image_pixel] = *red;
+        image[3 * image_pixel + 1] = red[window];
+        image[3 * image_pixel + 2] = red[2 * window];
     });
 }
 
@@ -143,26 +143,28 @@ void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
         collect(cycles, window_, [&](const PeSegment& pes, std::span<const std::uint64_t> counted) {
-            for_each_pixel(settings_.mapping, pes, range, [&](std::size_t pe, std::size_t pixel, std::size_t to) {
-                const std::uint64_t cost = counted[pe * window_ + pixel];
-                result.phases[i].recorded_cost->cycles[to] = cost;
-                if (counters_.size() > 1) result.all.recorded_cost->cycles[to] += cost;
-            });
+            for_each_pixel(settings_.mapping, pes, range,
+                           [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
+                               const std::uint64_t cost = counted[pe * window_ + pixel];
+                               result.phases[i].recorded_cost->cycles[image_pixel] = cost;
+                               if (counters_.size() > 1) result.all.recorded_cost->cycles[image_pixel] += cost;
+                           });
         });
     }
 }
 
 void RingRenderer::collect_marks(RingResult& result) {
     const SpanLog::Span span = session_.span("collect marks");
-    if (ranks_.first()) result.mask = black(settings_.mapping);
+    if (ranks_.is_first()) result.mask = black_image(settings_.mapping);
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
     collect(marks, window_, [&](const PeSegment& pes, std::span<const std::uint8_t> marked) {
-        const PixelRange all{0, 0, share_};
-        for_each_pixel(settings_.mapping, pes, all, [&](std::size_t pe, std::size_t pixel, std::size_t to) {
+        const PixelRange all{0, 0, share_pixels_};
+        for_each_pixel(settings_.mapping, pes, all, [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
             const std::uint8_t mark = marked[pe * window_ + pixel];
             result.recomputed += mark;
-            std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to), 3, static_cast<float>(mark));
+            std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * image_pixel), 3,
+                        static_cast<float>(mark));
         });
     });
 }
@@ -170,9 +172,9 @@ void RingRenderer::collect_marks(RingResult& result) {
 void RingRenderer::collect_events(RingResult& result) {
     const SpanLog::Span span = session_.span("collect events");
     const auto cycles = cycles_of_events();
-    std::vector<std::uint64_t> all(settings_.mapping.pes);
+    std::vector<std::uint64_t> sum_loads(settings_.mapping.pes);
     for (std::size_t i = 0; i < counters_.size(); ++i) {
-        std::vector<std::uint64_t> counted(counters_[i].events.size()), loads(pes_.count), of_all;
+        std::vector<std::uint64_t> counted(counters_[i].events.size()), loads(pes_.count), all_loads;
         session_.read("read counters", counters_[i].events, counted);
         EventCounts events{};
         for (std::size_t n = 0; n < counted.size(); ++n) {
@@ -182,13 +184,13 @@ void RingRenderer::collect_events(RingResult& result) {
         }
         if (i == 0) check_all_traced(events, settings_.mapping, pes_, session_.device());
         add_events(ranks_.all_gather(events), result.phases[i].events, result.all.events);
-        collect(loads, 1, [&](const PeSegment&, std::span<const std::uint64_t> of_rank) {
-            of_all.insert(of_all.end(), of_rank.begin(), of_rank.end());
+        collect(loads, 1, [&](const PeSegment&, std::span<const std::uint64_t> rank_loads) {
+            all_loads.insert(all_loads.end(), rank_loads.begin(), rank_loads.end());
         });
-        std::transform(of_all.begin(), of_all.end(), all.begin(), all.begin(), std::plus<>());
-        if (ranks_.first()) result.phases[i].load = load_of(std::move(of_all));
+        std::transform(all_loads.begin(), all_loads.end(), sum_loads.begin(), sum_loads.begin(), std::plus<>());
+        if (ranks_.is_first()) result.phases[i].load = load_of(std::move(all_loads));
     }
-    if (ranks_.first()) result.all.load = load_of(std::move(all));
+    if (ranks_.is_first()) result.all.load = load_of(std::move(sum_loads));
 }
 
 }  // namespace raya

@@ -13,25 +13,26 @@
 namespace raya {
 namespace {
 
-// Returns true if PEs should copy the job's words into local memory. Each PE then copies them in each launch. This does
-// not pay if an accelerator reads only few of many words. Returns false if the words do not fit, or if the copying loop
-// could exceed the device's limit of loop iterations.
+// Returns true if PEs should copy the job's words into local memory. Each PE then copies them in each launch, which
+// does not pay if a kernel with an accelerator reads only a few of many words. Returns false if the words do not fit,
+// or if the copying loop could exceed the device's limit of loop iterations.
 bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel) {
     constexpr std::size_t kMaxCopiedBytes = 64 * 1024;
     constexpr std::size_t kMaxCopiedWords = 4096;
     if (device.max_loop_iterations > 0 && job.words().size() > kMaxCopiedWords) return false;
-    const std::size_t bytes = 4 * job.words().size() + 32;  // 32: padding to whole rows, and the work-group's own data
+    // 32 bytes for padding to a multiple of 16 bytes, and for the work-group's own data.
+    const std::size_t bytes = 4 * job.words().size() + 32;
     return bytes <= (accel != AccelKind::kNone ? std::min(kMaxCopiedBytes, device.local_memory_bytes)
                                                : device.local_memory_bytes);
 }
 
-constexpr std::size_t kTestsPerRay = 20;  // approximate, with an accelerator
+constexpr std::size_t kTestsPerRay = 20;  // approximate number of object tests of a ray with an accelerator
 
 // Returns the maximum work of a launch, in tests and traversal steps of a lane's rays, so that the device does not
-// exceed its limit of loop iterations. `step`: maximum work by which a lane may exceed its limit, which it checks only
-// after each ray and its shadow rays. The constants convert work to iterations. Measured with the images of `raya
+// exceed its limit of loop iterations. A lane checks its limit only after each ray and its shadow rays, so it may
+// exceed the limit by the work `step`. The constants convert work to iterations. Measured with the images of `raya
 // verify` on llvmpipe: 12 iterations per test were too few and 16 enough. A BVH step has one iteration for each of
-// sixteen boxes and some more. kIterationsPerLaunch is for the loop that copies words.
+// sixteen boxes and a few more. kIterationsPerLaunch is for the loop that copies words.
 double max_launch_work(AccelKind accel, double step, const DeviceInfo& device) {
     constexpr double kIterationsPerTest = 24, kIterationsPerStep = 96, kIterationsPerLaunch = 8192;
     if (device.max_loop_iterations == 0) return 1u << 31;
@@ -39,20 +40,21 @@ double max_launch_work(AccelKind accel, double step, const DeviceInfo& device) {
     return std::max(1.0, (device.max_loop_iterations - kIterationsPerLaunch) / iterations - step);
 }
 
-PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
+PackedJob pack_in_span(const Session& session, const Scene& scene, const RingSettings& settings,
+                       const LengthScale& scale) {
     const SpanLog::Span span = session.span("pack scene");
     return pack_for_ring(scene, settings, scale);
 }
 
 RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSettings& settings) {
     const LengthScale scale = length_scale(scene, settings.format);
-    RingJob all{packed(session, scene, settings, scale), {}, 0, scale, scene.object_count()};
-    if (settings.accel.kind == AccelKind::kNone) return all;
+    RingJob job{pack_in_span(session, scene, settings, scale), {}, 0, scale, scene.object_count()};
+    if (settings.accel.kind == AccelKind::kNone) return job;
     const SpanLog::Span span = session.span("divide scene");
     const Clock::time_point start = Clock::now();
-    all.accel = append_accel(all.job, settings);
-    all.accel_s = seconds_since(start);
-    return all;
+    job.accel = append_accel(job.job, settings);
+    job.accel_s = seconds_since(start);
+    return job;
 }
 
 // The members of a RingJob other than the job's words, as they are sent to other ranks.
@@ -79,11 +81,11 @@ PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::
     return {.scene = scene,
             .job_words = job_words,
             .bounces = settings.bounces,
-            .share = largest_share(settings.mapping),
+            .share_pixels = largest_share(settings.mapping),
             .antialias = settings.antialias.method};
 }
 
-RingSettings checked(RingSettings settings, const DeviceInfo& device) {
+RingSettings checked_settings(RingSettings settings, const DeviceInfo& device) {
     check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
     settings.kernels =
         chosen(settings.kernels, device,
@@ -124,14 +126,14 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones(),
-            .more = settings.kernels.more};
+            .tuning = settings.kernels.tuning};
 }
 
 PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
     PackedJob job = pack_job(scene, job_settings(settings, scale));
-    raya_job on_ring = job.header();
-    on_ring.mapping = settings.mapping;
-    job.set_header(on_ring);
+    raya_job header = job.header();
+    header.mapping = settings.mapping;
+    job.set_header(header);
     return job;
 }
 
@@ -142,22 +144,23 @@ AccelSummary append_accel(PackedJob& job, const RingSettings& settings) {
 }
 
 RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks) {
-    if (!ranks.first()) {
-        RingFigures f;
+    if (!ranks.is_first()) {
+        RingFigures figures;
         std::vector<std::uint32_t> words;
-        ranks.broadcast(f);
+        ranks.broadcast(figures);
         ranks.broadcast(words);
         const auto header = record_at<raya_job>(words, 0);
-        return {PackedJob(header, std::move(words), f.has_patches), f.accel, f.accel_s, f.scale, f.objects};
+        return {PackedJob(header, std::move(words), figures.has_patches), figures.accel, figures.accel_s, figures.scale,
+                figures.objects};
     }
-    RingJob all = pack_ring_job(session, scene, settings);
-    if (!ranks.many()) return all;
+    RingJob job = pack_ring_job(session, scene, settings);
+    if (!ranks.has_several()) return job;
     const SpanLog::Span span = session.span("send scene");
-    RingFigures f{all.accel, all.accel_s, all.scale, all.objects, all.job.has_patches()};
-    std::vector<std::uint32_t> words = all.job.words();
-    ranks.broadcast(f);
+    RingFigures figures{job.accel, job.accel_s, job.scale, job.objects, job.job.has_patches()};
+    std::vector<std::uint32_t> words = job.job.words();
+    ranks.broadcast(figures);
     ranks.broadcast(words);
-    return all;
+    return job;
 }
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// Preparation of a render on a ring machine: its settings, the settings that raya chooses, and the packed scene.
+// Preparation of a render on a ring machine: the user's settings, the settings that raya chooses, and the packed scene.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -20,18 +20,20 @@ namespace raya {
 
 struct RingSettings {
     Machine machine;
-    std::optional<DynamicPlan> dynamic;  // dynamic distribution: its loads are simulated from the pixels' costs
+    std::optional<DynamicPlan> dynamic;  // dynamic distribution, whose loads are simulated from the pixels' costs
     raya_mapping mapping{};              // image size, number of PEs, and owner of each pixel
     std::uint32_t bounces = 8;
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
-    bool record_costs = false;  // record the cost of each pixel, 8 bytes on the host; implied by `dynamic`
+    bool record_costs = false;  // record each pixel's cost, which takes 8 bytes on the host; implied by `dynamic`
     Accel accel;
     KernelChoice kernels;
-    std::uint64_t device_pixels = 1 << 22;  // pixels of all PEs on the device at a time, 20 bytes each; anti-aliased
-                                            // images are held as a whole
-    std::uint32_t work_per_launch = 0;      // limit in tests and traversal steps of a lane's rays; 0: about one second
+    // Maximum number of pixels of all PEs that the device holds at a time, 20 bytes each. With anti-aliasing the device
+    // holds all pixels.
+    std::uint64_t device_pixels = 1 << 22;
+    // Limit in tests and traversal steps of a lane's rays; 0: chosen so that a launch takes about one second.
+    std::uint32_t work_per_launch = 0;
 };
 
 JobSettings job_settings(const RingSettings& settings, const LengthScale& scale);
@@ -41,16 +43,16 @@ JobSettings job_settings(const RingSettings& settings, const LengthScale& scale)
 PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::uint64_t job_words);
 
 /// Returns the settings with the number of lanes and the group size chosen for the device. Throws UserError if the
-/// kernels cannot be built with these settings; no scene has been packed and no memory allocated by then.
-RingSettings checked(RingSettings settings, const DeviceInfo& device);
+/// kernels cannot be built with these settings. Call it before packing the scene, so that raya fails early.
+RingSettings checked_settings(RingSettings settings, const DeviceInfo& device);
 
 /// Returns the work limits of a launch. A launch should take at most about a second, so that progress is shown, Ctrl-C
 /// takes effect and no GPU watchdog ends it, and it must not exceed the loop iterations that the device allows.
-/// `objects`, `lights`: their numbers in the scene; `pes`: number of PEs on this device.
+/// `objects`, `lights`: numbers of objects and lights of the scene; `pes`: number of PEs on this device.
 LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
                        std::size_t lights, std::uint32_t pes, const DeviceInfo& device);
 
-/// `accel`: summary of the accelerator that settings.accel has selected.
+/// Returns the kernel options for the packed job. `accel`: summary of the accelerator that settings.accel selects.
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
                              const DeviceInfo& device);
 
@@ -58,9 +60,9 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
 struct RingJob {
     PackedJob job;
     AccelSummary accel;
-    double accel_s = 0;  // measured build time of the accelerator
+    double accel_s = 0;  // measured build time of the accelerator, seconds
     LengthScale scale;
-    std::uint64_t objects = 0;
+    std::uint64_t objects = 0;  // number of objects of the scene
 };
 
 /// Packs a scene for the ring machine, with its mapping but without an accelerator.

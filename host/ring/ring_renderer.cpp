@@ -21,9 +21,9 @@ PeSegment checked_segment(const raya_mapping& m, const Ranks& ranks) {
     return own_segment(m.pes, ranks);
 }
 
-// Returns the number of pixels of each PE that the device holds at a time. For large images this is only a part (a
-// window) of a PE's block, to save memory on device and host; anti-aliasing needs all pixels on the device. The result
-// must be the same in all ranks, so it is computed from the maximum number of PEs of a rank.
+// Returns the number of pixels of each PE that the device holds at a time. For large images the device holds only a
+// part (a window) of each PE's block, to save memory on device and host. Anti-aliasing needs all pixels on the device.
+// The result must be the same in all ranks, so it is computed from the maximum number of PEs of a rank.
 std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings, std::uint32_t ranks) {
     if (settings.antialias.method != AntialiasMethod::kNone) return memory.block_pixels;
     const std::uint32_t pes = (settings.mapping.pes + ranks - 1) / ranks;  // maximum number of PEs of a rank
@@ -36,10 +36,10 @@ std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks)
     : session_(session),
       ranks_(ranks),
-      settings_(checked(settings, session.device())),
+      settings_(checked_settings(settings, session.device())),
       pes_(checked_segment(settings_.mapping, ranks)),
       job_(make_ring_job(session, scene, settings_, ranks)),
-      share_(largest_share(settings_.mapping)),
+      share_pixels_(largest_share(settings_.mapping)),
       memory_(plan_pe_memory(settings_.machine, pe_demand(settings_, scene.name, job_.job.words().size()))),
       window_(device_window(memory_, settings_, ranks.count())),
       bus_(session, communication_, settings_.mapping.pes, ranks),
@@ -97,11 +97,12 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const RingChec
     prepare(result);
     bus_.broadcast(broadcast_, job_.job.words());
     resume(result);
-    for (std::uint32_t block = 0; block < share_; block += memory_.block_pixels) render_block(block, result, progress);
+    for (std::uint32_t block = 0; block < share_pixels_; block += memory_.block_pixels)
+        render_block(block, result, progress);
     place_gathered(result);
     if (contrast_) collect_marks(result);
     collect_events(result);
-    if (settings_.dynamic && ranks_.first()) simulate_schedule(result);
+    if (settings_.dynamic && ranks_.is_first()) simulate_schedule(result);
     result.render_s = earlier_s_ + seconds_since(started_);
     result.earlier_s = earlier_s_;
     result.traffic = ranks_.traffic() - before;
@@ -112,7 +113,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const RingChec
 
 // Renders one block, the pixels of each PE's share that fit its memory at a time, one device window after another.
 void RingRenderer::render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress) {
-    const std::uint32_t end = std::min(share_, block + memory_.block_pixels);
+    const std::uint32_t end = std::min(share_pixels_, block + memory_.block_pixels);
     if (resumed_ && resumed_->window >= end) return;
     if (!resumed_) bus_.begin_gather();
     for (std::uint32_t window = block; window < end; window += window_) {
@@ -130,14 +131,14 @@ void RingRenderer::render_block(std::uint32_t block, RingResult& result, const P
 void RingRenderer::prepare(RingResult& result) {
     const SpanLog::Span span = session_.span("prepare");
     const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
-    std::optional<CostImage> none;
-    if (records_costs() && ranks_.first())
-        none = CostImage{settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
-    if (counters_.size() > 1) result.all.recorded_cost = none;
+    std::optional<CostImage> empty_costs;
+    if (records_costs() && ranks_.is_first())
+        empty_costs = CostImage{settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
+    if (counters_.size() > 1) result.all.recorded_cost = empty_costs;
     for (PassCounters& counters : counters_) {
         Phase phase;
         phase.name = result.phases.empty() ? kTracePass : kSupersamplePass;
-        phase.recorded_cost = none;
+        phase.recorded_cost = empty_costs;
         result.phases.push_back(std::move(phase));
         tracer_->clear(counters);
     }
@@ -148,7 +149,7 @@ void RingRenderer::trace(PixelRange range, RingResult& result, const ProgressCal
     const double passes = static_cast<double>(counters_.size());
     const auto report = [&](double done) {
         ranks_.poll_failures();
-        if (progress) progress((range.begin + done * (range.end - range.begin)) / share_ / passes);
+        if (progress) progress((range.begin + done * (range.end - range.begin)) / share_pixels_ / passes);
     };
     trace_in_bands(0, range, result, [&](PixelRange band) {
         range = band;
@@ -160,10 +161,10 @@ void RingRenderer::trace(PixelRange range, RingResult& result, const ProgressCal
 void RingRenderer::supersample(RingResult& result, const ProgressCallback& progress) {
     const SpanLog::Span span = session_.span(kSupersamplePass);
     if (!resumed_ || resumed_->pass == 0) contrast_->apply(pixels_, *exchange_);
-    PixelRange range{0, 0, share_};
+    PixelRange range{0, 0, share_pixels_};
     const auto report = [&](double done) {
         ranks_.poll_failures();
-        if (progress) progress((1 + (range.begin + done * (range.end - range.begin)) / share_) / 2);
+        if (progress) progress((1 + (range.begin + done * (range.end - range.begin)) / share_pixels_) / 2);
     };
     trace_in_bands(1, range, result, [&](PixelRange band) {
         range = band;
@@ -188,7 +189,7 @@ void RingRenderer::describe(RingResult& result) {
     result.pe_memory = memory_;
     if (settings_.accel.kind != AccelKind::kNone) result.accel = job_.accel;
     result.words_local = tracer_->options().words_local;
-    result.parts_here = pes_.count;
+    result.parts_of_rank = pes_.count;
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;
     result.build_options = tracer_->build_options();

@@ -27,7 +27,7 @@ class RingRenderer {
     /// Packs the scene, checks that it fits a PE's memory, builds the kernels and allocates the device memory for the
     /// PEs of this rank. Only rank 0 uses `scene`. Throws UserError if the scene does not fit, a setting is out of
     /// range or there are more ranks than PEs, and DeviceError.
-    RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks = Ranks::alone());
+    RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks = Ranks::single());
 
     /// Renders one image. May be called repeatedly. In ranks other than 0 the result covers only this rank and has no
     /// image. With `checkpointing`, which requires a single rank, the image is traced in bands, and a checkpoint may be
@@ -35,12 +35,13 @@ class RingRenderer {
     /// the sums over all runs.
     RingResult render(const ProgressCallback& progress = {}, const RingCheckpointing* checkpointing = nullptr);
 
-    /// The power of two by which the scene's lengths are multiplied.
+    /// Returns the power of two by which the scene's lengths are multiplied.
     const LengthScale& scale() const { return job_.scale; }
 
   private:
     bool records_costs() const { return settings_.record_costs || settings_.dynamic.has_value(); }
-    bool polls_failures() const { return ranks_.many() && ranks_.first(); }  // failures of other ranks
+    /// Returns true if this rank checks for failures of other ranks.
+    bool polls_failures() const { return ranks_.has_several() && ranks_.is_first(); }
     void build();
     void build_exchange(KernelOptions options);
     void prepare(RingResult& result);
@@ -59,7 +60,7 @@ class RingRenderer {
     void place_gathered(RingResult& result);
     void place(const PeSegment& pes, PixelRange range, std::span<const float> pixels, RingResult& result) const;
     template <class T, class Take>
-    void collect(std::vector<T>& own, std::size_t of_pe, const Take& take);
+    void collect(std::vector<T>& own, std::size_t per_pe, const Take& take);
     void collect_costs(PixelRange range, RingResult& result);
     void collect_marks(RingResult& result);
     void collect_events(RingResult& result);
@@ -71,9 +72,10 @@ class RingRenderer {
     RingSettings settings_;  // with lanes and group size chosen
     PeSegment pes_;          // PEs of this rank
     RingJob job_;
-    std::uint32_t share_ = 0;  // maximum number of pixels that a PE owns
+    std::uint32_t share_pixels_ = 0;  // maximum number of pixels that a PE owns
     PeMemory memory_;
-    std::uint32_t window_ = 0;  // pixels of each PE on the device at a time: its block (PeMemory) or a part of it
+    // Number of pixels of each PE on the device at a time: a block (PeMemory) or a part of a block.
+    std::uint32_t window_ = 0;
     Communication communication_;
     Bus bus_;
     double build_s_ = 0;

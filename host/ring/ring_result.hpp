@@ -27,7 +27,7 @@ inline constexpr const char *kTracePass = "trace", *kSupersamplePass = "supersam
 struct Phase {
     std::string name;  // kTracePass, kSupersamplePass
     EventCounts events{};
-    Load load;                               // modelled cycles of each PE, from its own counters
+    Load load;                               // modelled cycles of each PE, from the PE's counters
     std::optional<CostImage> recorded_cost;  // only with RingSettings::record_costs
 
     /// Modelled cycles of each pixel. Throws std::logic_error if they were not recorded.
@@ -36,17 +36,17 @@ struct Phase {
 
 struct RingResult {
     Image image;
-    std::vector<Phase> phases;              // the first pass, and supersampling if selected
-    Phase all;                              // sums over the phases; without costs if there is one phase (see cost())
-    Image mask;                             // 1 for supersampled pixels, else 0; empty without supersampling
-    std::uint64_t recomputed = 0;           // number of supersampled pixels
+    std::vector<Phase> phases;     // the first pass, and supersampling if selected
+    Phase all;                     // sums over the phases; has no costs if there is only one phase (see cost())
+    Image mask;                    // 1 for supersampled pixels, else 0; empty without supersampling
+    std::uint64_t recomputed = 0;  // number of supersampled pixels
     std::optional<std::uint64_t> requests;  // number of requests in a simulated dynamic distribution
     Communication communication;
     LengthScale scale;
     PeMemory pe_memory;
     std::optional<AccelSummary> accel;  // summary of the grid or BVH
-    bool words_local = true;            // each launch copied the job's words into local memory
-    std::uint32_t parts_here = 0;       // number of PEs of this rank
+    bool words_local = true;            // in each launch the PEs copied the job's words into local memory
+    std::uint32_t parts_of_rank = 0;    // number of PEs of this rank
     RankTraffic traffic;                // traffic of this rank during the render
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints have the byte order of memory");
 
-constexpr std::size_t kHashLetters = 32;
+constexpr std::size_t kHashDigits = 32;
 
 class Writer {
   public:
@@ -69,16 +69,16 @@ void for_each_vector(State& state, const Each& each) {
 }
 
 Json header_of(const RingState& s, const StateSettings& settings) {
-    Json of = Json::object();
-    for (const auto& [name, value] : settings) of[name] = value;
-    return {{"of", of},         {"pass", s.pass},       {"window", s.window},       {"next", s.next},
-            {"share", s.share}, {"seconds", s.seconds}, {"passes", s.passes.size()}};
+    Json saved_settings = Json::object();
+    for (const auto& [name, value] : settings) saved_settings[name] = value;
+    return {{"of", saved_settings}, {"pass", s.pass},       {"window", s.window},       {"next", s.next},
+            {"share", s.fraction},  {"seconds", s.seconds}, {"passes", s.passes.size()}};
 }
 
 // Throws UserError for the first setting that differs. Hashes are last, so that a named option is reported if possible.
-void check_settings(const Json& of, const StateSettings& settings) {
+void check_settings(const Json& saved_settings, const StateSettings& settings) {
     for (const auto& [name, value] : settings) {
-        const std::string& saved = of.at(name).text();
+        const std::string& saved = saved_settings.at(name).text();
         if (saved == value) continue;
         if (name.starts_with("another")) throw UserError("was rendered with " + name);
         if (value == "yes" || value == "no")
@@ -91,30 +91,30 @@ void check_settings(const Json& of, const StateSettings& settings) {
 
 std::string state_bytes(const RingState& state, const StateSettings& settings) {
     const std::string header = header_of(state, settings).dump();
-    Writer to(fmt::format("{}{}\n", kStateMagic, header));
-    to.put_raw(&state.communication, sizeof state.communication);
-    for_each_vector(state, [&](const auto& values) { to.put(values); });
-    return to.finish();
+    Writer writer(fmt::format("{}{}\n", kStateMagic, header));
+    writer.put_raw(&state.communication, sizeof state.communication);
+    for_each_vector(state, [&](const auto& values) { writer.put(values); });
+    return writer.finish();
 }
 
 RingState read_state(std::string_view bytes, const StateSettings& settings, RingState state) {
     if (!bytes.starts_with(kStateMagic)) throw UserError("not a checkpoint of this version of raya");
-    if (bytes.size() < kStateMagic.size() + kHashLetters ||
-        bytes_hash(bytes.substr(0, bytes.size() - kHashLetters)) != bytes.substr(bytes.size() - kHashLetters))
+    if (bytes.size() < kStateMagic.size() + kHashDigits ||
+        bytes_hash(bytes.substr(0, bytes.size() - kHashDigits)) != bytes.substr(bytes.size() - kHashDigits))
         throw UserError("damaged");
-    bytes = bytes.substr(kStateMagic.size(), bytes.size() - kStateMagic.size() - kHashLetters);
+    bytes = bytes.substr(kStateMagic.size(), bytes.size() - kStateMagic.size() - kHashDigits);
     const std::size_t end = bytes.find('\n');
     const Json header = Json::parse(std::string(bytes.substr(0, end)), {"damaged header"});
     check_settings(header.at("of"), settings);
     state.pass = static_cast<std::uint32_t>(header.at("pass").integer(1));
     state.window = static_cast<std::uint32_t>(header.at("window").integer(UINT32_MAX));
     state.next = static_cast<std::uint32_t>(header.at("next").integer(UINT32_MAX));
-    state.share = header.at("share").number();
+    state.fraction = header.at("share").number();
     state.seconds = header.at("seconds").number();
     if (header.at("passes").integer() != state.passes.size()) throw UserError("damaged");
-    Reader from(bytes.substr(end + 1));
-    from.take_raw(&state.communication, sizeof state.communication);
-    for_each_vector(state, [&](auto& values) { from.take(values); });
+    Reader reader(bytes.substr(end + 1));
+    reader.take_raw(&state.communication, sizeof state.communication);
+    for_each_vector(state, [&](auto& values) { reader.take(values); });
     return state;
 }
 

@@ -21,10 +21,10 @@ struct RingState {
     };
 
     std::uint32_t pass = 0;    // current pass: 0 trace, 1 supersample
-    std::uint32_t window = 0;  // index of the first pixel of each PE's share that is on the device
-    std::uint32_t next = 0;    // index of the first pixel of each PE's share that this pass has not traced
-    double share = 0;          // fraction of the render that is complete, 0..1
-    double seconds = 0;        // measured time of all runs so far
+    std::uint32_t window = 0;  // index, in each PE's share, of the first pixel that is on the device
+    std::uint32_t next = 0;    // index, in each PE's share, of the first pixel that this pass has not traced
+    double fraction = 0;       // completed fraction of the render, 0..1
+    double seconds = 0;        // measured time of all runs so far, seconds
     Communication communication;
     std::vector<float> image;   // the image so far
     std::vector<float> pixels;  // pixels on the device
@@ -33,19 +33,20 @@ struct RingState {
     std::vector<std::uint64_t> all_costs;
 };
 
-/// Names and values of all settings that determine the state. read_state() compares them to reject the checkpoint of a
-/// different render. A name is an option, or a text that can follow "was rendered with". The value of a flag is "yes"
-/// or "no".
+/// Names and values of all settings that determine the state. read_state() compares them, so that it rejects the
+/// checkpoint of a different render. A name is an option, or a text that can follow "was rendered with". The value of a
+/// flag is "yes" or "no".
 using StateSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// First bytes of a checkpoint.
 inline constexpr std::string_view kStateMagic = "raya state 2\n";
 
+/// Returns the bytes of a checkpoint file.
 std::string state_bytes(const RingState& state, const StateSettings& settings);
 
 /// Reads a checkpoint. The vectors of `shape` must have the sizes of this render. Throws UserError, whose text does not
-/// contain the file's name, if the bytes are not a checkpoint, are damaged, or belong to a different render; then the
-/// text contains the first setting that differs.
+/// contain the file's name, if the bytes are not a checkpoint, are damaged, or belong to a different render. In the
+/// last case the text contains the first setting that differs.
 RingState read_state(std::string_view bytes, const StateSettings& settings, RingState shape);
 
 /// Callbacks for the checkpoints of a render.

@@ -1,3 +1,4 @@
+// The modelled run of a ring machine in a trace file.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -24,17 +25,18 @@ class RingTimeline {
         for (const TracedPe& p : pes_) trace.name_track(track_of(p), traced_pe_name("PE", p));
     }
 
-    // Adds a slice of `ms` milliseconds to the tracks of all PEs. If `times` > 1, the slice contains that many
-    // rotations of equal duration.
-    void together(const std::string& name, double ms, const Json& arguments, std::uint64_t times = 1) {
+    // Adds a phase that all PEs spend in the same way: a slice of `ms` milliseconds on each track. If `rotations` > 1,
+    // the slice contains that many rotations of equal duration.
+    void add_common_phase(const std::string& name, double ms, const Json& arguments, std::uint64_t rotations = 1) {
         const double begin = now_ms_;
         phase(name, ms, arguments);
         for (const TracedPe& p : pes_) {
             trace_.slice(track_of(p), name, nanoseconds(begin), nanoseconds(now_ms_));
-            const double each = ms / static_cast<double>(times);
-            const auto at = [&](std::uint64_t n) { return nanoseconds(begin + each * static_cast<double>(n)); };
-            for (std::uint64_t i = 0; times > 1 && i < times; ++i)
-                trace_.slice(track_of(p), "rotation", at(i), i + 1 < times ? at(i + 1) : nanoseconds(now_ms_));
+            const double each_ms = ms / static_cast<double>(rotations);
+            const auto time_of = [&](std::uint64_t n) { return nanoseconds(begin + each_ms * static_cast<double>(n)); };
+            for (std::uint64_t i = 0; rotations > 1 && i < rotations; ++i)
+                trace_.slice(track_of(p), "rotation", time_of(i),
+                             i + 1 < rotations ? time_of(i + 1) : nanoseconds(now_ms_));
         }
     }
 
@@ -42,10 +44,10 @@ class RingTimeline {
     void compute(const std::string& name, const Load& load) {
         const double begin = now_ms_;
         const auto busiest = std::max_element(load.per_pe.begin(), load.per_pe.end()) - load.per_pe.begin();
-        const Json about = {
+        const Json arguments = {
             {"u", load.imbalance}, {"mean_cycles", load.mean}, {"max_cycles", load.max}, {"busiest", busiest}};
         trace_.counter(kTraceMachine, "u", nanoseconds(begin), {{"u", load.imbalance}});
-        phase(name, cycle_ms_ * static_cast<double>(load.max), about);
+        phase(name, cycle_ms_ * static_cast<double>(load.max), arguments);
         const std::string wait = fmt::format("wait for PE {}", busiest);
         for (const TracedPe& p : pes_) {
             const std::uint64_t cycles = load.per_pe[p.pe];
@@ -57,7 +59,7 @@ class RingTimeline {
     }
 
     // Adds a tracing phase with a counter of live rays. A PE of this machine traces one ray at a time, so the number of
-    // live rays is the number of PEs that are tracing. The counter has at most kMaxPoints points after the first.
+    // live rays is the number of PEs that are tracing. The counter has at most kMaxPoints points after the first point.
     void trace_rays(const std::string& name, const Load& load) {
         constexpr std::size_t kMaxPoints = 512;
         std::vector<std::uint64_t> ends = load.per_pe;
@@ -91,7 +93,7 @@ class RingTimeline {
 
 // Returns, for each PE, one side's quarter of the cycles cycles_of(pixels of its share). The quarters of the four sides
 // add up to all cycles exactly.
-Load quarter(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_t), std::uint32_t side) {
+Load quarter_load(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_t), std::uint32_t side) {
     std::vector<std::uint64_t> cycles;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
         const std::uint64_t all = cycles_of(raya_share_size(raya_share_of(m, pe)));
@@ -100,27 +102,28 @@ Load quarter(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_t), s
     return load_of(std::move(cycles));
 }
 
-// Names of one move, and of the number of all moves of a side.
+// Names of a move, and of the number of moves of a side.
 struct MoveNames {
-    const char *one, *all;
+    const char *move, *moves;
 };
 constexpr std::array<MoveNames, 3> kMoves = {  // in the order of ExchangeMethod
     {{"rotate", "rotations"}, {"send over the bus", "transfers"}, {"broadcast from each PE", "broadcasts"}}};
 
-void add_smoothing(RingTimeline& line, const RingSettings& s, const RingResult& r, double communication_ms) {
+void add_smoothing(RingTimeline& timeline, const RingSettings& s, const RingResult& r, double communication_ms) {
     const bool filter = s.antialias.method == AntialiasMethod::kFilter;
     const MoveNames& names = kMoves[static_cast<std::size_t>(s.antialias.exchange)];
-    const MovesOfSides of_sides = smoothing_moves(s.antialias, s.mapping);
-    const auto all = static_cast<double>(std::max<std::uint64_t>(1, sum_of(of_sides)));
+    const MovesOfSides moves_of_sides = smoothing_moves(s.antialias, s.mapping);
+    const auto all_moves = static_cast<double>(std::max<std::uint64_t>(1, sum_of(moves_of_sides)));
     const std::uint64_t bands = (r.pe_memory.block_pixels + r.pe_memory.band_pixels - 1) / r.pe_memory.band_pixels;
     for (std::uint32_t side = 0; side < RAYA_SIDES; ++side) {
-        const std::uint64_t moves = of_sides[side] * bands;
+        const std::uint64_t moves = moves_of_sides[side] * bands;
         if (moves > 0)
-            line.together(fmt::format("{}, for neighbours {}", names.one, kSides[side]),
-                          communication_ms * static_cast<double>(of_sides[side]) / all, {{names.all, moves}},
-                          s.antialias.exchange == ExchangeMethod::kRing ? moves : 1);
-        line.compute(fmt::format("{} {}", filter ? "filter" : "compare", kSides[side]),
-                     quarter(s.mapping, filter ? filter_cycles : compare_cycles, side));
+            timeline.add_common_phase(fmt::format("{}, for neighbours {}", names.move, kSides[side]),
+                                      communication_ms * static_cast<double>(moves_of_sides[side]) / all_moves,
+                                      {{names.moves, moves}},
+                                      s.antialias.exchange == ExchangeMethod::kRing ? moves : 1);
+        timeline.compute(fmt::format("{} {}", filter ? "filter" : "compare", kSides[side]),
+                         quarter_load(s.mapping, filter ? filter_cycles : compare_cycles, side));
     }
 }
 
@@ -138,13 +141,13 @@ void add_ring_machine(TraceFile& trace, const RingSettings& settings, const Ring
                  : fmt::format("left out: {} has no modelled time, as its rates are unknown", settings.machine.name);
         return;
     }
-    RingTimeline line(trace, settings.machine, traced_pes(result.all.load.per_pe, pes));
-    line.together("broadcast", time->objects_ms, {{"words", c.broadcast_words}});
-    line.trace_rays(result.phases[0].name, result.phases[0].load);
+    RingTimeline timeline(trace, settings.machine, traced_pes(result.all.load.per_pe, pes));
+    timeline.add_common_phase("broadcast", time->objects_ms, {{"words", c.broadcast_words}});
+    timeline.trace_rays(result.phases[0].name, result.phases[0].load);
     if (settings.antialias.method != AntialiasMethod::kNone)
-        add_smoothing(line, settings, result, time->communication_ms);
-    if (result.phases.size() > 1) line.trace_rays(result.phases[1].name, result.phases[1].load);
-    line.together("gather", time->image_ms, {{"words", c.gather_words}});
+        add_smoothing(timeline, settings, result, time->communication_ms);
+    if (result.phases.size() > 1) timeline.trace_rays(result.phases[1].name, result.phases[1].load);
+    timeline.add_common_phase("gather", time->image_ms, {{"words", c.gather_words}});
     trace.metadata()["machine"] = {{"name", settings.machine.name},
                                    {"modelled_ms", time->total_ms},
                                    {"pes", settings.mapping.pes},

@@ -30,9 +30,9 @@ std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya
             const raya_pixel pixel = {row, column};
             if (!raya_has_neighbour(mapping, pixel, side)) continue;
             const raya_pixel adjacent = raya_neighbour(pixel, side);
-            const std::uint32_t from = raya_owner(mapping, adjacent.row, adjacent.column);
-            const std::uint32_t to = raya_owner(mapping, row, column);
-            found[from >= to ? from - to : from + (mapping.pes - to)] = true;
+            const std::uint32_t neighbour_owner = raya_owner(mapping, adjacent.row, adjacent.column);
+            const std::uint32_t owner = raya_owner(mapping, row, column);
+            found[neighbour_owner >= owner ? neighbour_owner - owner : neighbour_owner + (mapping.pes - owner)] = true;
         }
     std::vector<std::uint32_t> distances;
     for (std::uint32_t d = 0; d < mapping.pes; ++d)
@@ -42,21 +42,21 @@ std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya
 
 std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances) {
     if (distances.empty()) return {};
-    // Downward rotations fetch the blocks at the first `down` distances, upward rotations the others. A block at
-    // distance d arrives after d downward or P - d upward rotations. Tries every split.
-    std::size_t down = 0;
+    // Downward rotations fetch the blocks at the first `down_count` distances, upward rotations the blocks at the other
+    // distances. A block at distance d arrives after d downward or P - d upward rotations. The loop tries every split.
+    std::size_t down_count = 0;
     std::uint64_t min_rotations = std::numeric_limits<std::uint64_t>::max();
     for (std::size_t n = 0; n <= distances.size(); ++n) {
         const std::uint64_t downwards = n ? distances[n - 1] : 0,
                             upwards = n < distances.size() ? pes - distances[n] : 0;
         if (downwards + upwards < min_rotations) {
             min_rotations = downwards + upwards;
-            down = n;
+            down_count = n;
         }
     }
-    const auto split = distances.begin() + static_cast<std::ptrdiff_t>(down);
+    const auto split = distances.begin() + static_cast<std::ptrdiff_t>(down_count);
     std::vector<Leg> legs;
-    if (down) legs.push_back({RingDirection::kDown, {distances.begin(), split}});
+    if (down_count > 0) legs.push_back({RingDirection::kDown, {distances.begin(), split}});
     if (split != distances.end()) legs.push_back({RingDirection::kUp, {}});
     for (auto d = distances.end(); d != split;) legs.back().stops.push_back(pes - *--d);
     return legs;

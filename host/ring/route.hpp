@@ -1,4 +1,5 @@
-// Routes of neighbours' pixels over ring or bus: which PEs own the neighbours, and how many moves bring them.
+// Routes of neighbours' pixels over ring or bus: the PEs that own the neighbours, and the number of moves that bring
+// the pixels.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,8 +17,8 @@ enum class RingDirection { kDown, kUp };
 /// the block of PE (i + s) mod P; after s upward rotations, that of PE (i - s) mod P.
 struct Leg {
     RingDirection direction = RingDirection::kDown;
-    std::vector<std::uint32_t> stops;  // numbers of rotations after which the blocks are used, ascending; 0: each PE's
-                                       // own block
+    std::vector<std::uint32_t> stops;  // numbers of rotations after which the PEs use the blocks, ascending; 0: each
+                                       // PE uses its own block
 
     std::uint32_t rotations() const { return stops.empty() ? 0 : stops.back(); }
 };
@@ -31,11 +32,11 @@ std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya
 /// with the minimum number of rotations.
 std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances);
 
-/// How neighbours' pixels are exchanged. The ring moves data of all PEs at the same time, the bus data of one PE at a
-/// time (Kohata & Ito 1993, section on the array).
+/// Methods of exchanging neighbours' pixels. The ring moves data of all PEs at the same time; the bus moves data of one
+/// PE at a time (Kohata & Ito 1993, section on the array).
 enum class ExchangeMethod {
     kRing,      // rotations of all blocks; the paper's anti-aliasing
-    kBus,       // transfers to each PE from the PEs that own its neighbours
+    kBus,       // transfers to each PE from the PEs that own the neighbours of its pixels
     kBroadcast  // broadcasts from one PE after another
 };
 
@@ -45,9 +46,9 @@ std::string exchange_name(ExchangeMethod method);
 /// [side]: number of rotations, transfers or broadcasts, which take place one after another.
 using MovesOfSides = std::array<std::uint64_t, RAYA_SIDES>;
 
-/// Returns the moves that bring to every PE the whole shares that contain its neighbours on each side. `together`: the
-/// sides may be processed in any order, so that one series of broadcasts serves all sides; it is counted for the first
-/// side that needs it.
+/// Returns the moves that bring to every PE the whole shares that contain the neighbours of its pixels on each side.
+/// `together`: the sides may be processed in any order, so that one series of broadcasts serves all sides. The series
+/// is counted for the first side that needs it.
 MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool together);
 
 /// Returns the sum over all sides.

@@ -27,18 +27,19 @@ void check_mapping(const CostImage& image, const raya_mapping& mapping) {
         throw std::invalid_argument("the mapping has another size than the cost image");
 }
 
-/// Returns the owner of each slot, [row][slot]. `unsheared` must have an offset of 0, so that columns are slots.
-std::vector<std::uint32_t> owners_of_slots(const raya_mapping& unsheared) {
+/// Returns the owner of each slot, [row][slot]. `without_offset` must have an offset of 0, so that columns are slots.
+std::vector<std::uint32_t> owners_of_slots(const raya_mapping& without_offset) {
     std::vector<std::uint32_t> owners;
-    owners.reserve(std::size_t{unsheared.width} * unsheared.height);
-    for (std::uint32_t row = 0; row < unsheared.height; ++row)
-        for (std::uint32_t slot = 0; slot < unsheared.width; ++slot) owners.push_back(raya_owner(unsheared, row, slot));
+    owners.reserve(std::size_t{without_offset.width} * without_offset.height);
+    for (std::uint32_t row = 0; row < without_offset.height; ++row)
+        for (std::uint32_t slot = 0; slot < without_offset.width; ++slot)
+            owners.push_back(raya_owner(without_offset, row, slot));
     return owners;
 }
 
 /// Adds the PEs' loads with the given offset to `per_pe`. `owners`: [row][slot].
-void add_sheared(const CostImage& image, const std::vector<std::uint32_t>& owners, std::uint32_t offset,
-                 std::vector<std::uint64_t>& per_pe) {
+void add_loads_of_offset(const CostImage& image, const std::vector<std::uint32_t>& owners, std::uint32_t offset,
+                         std::vector<std::uint64_t>& per_pe) {
     const std::uint64_t* costs = image.cycles.data();
     const std::uint32_t* owner = owners.data();
     std::uint64_t first = 0;  // column of slot 0 in this row: (row x offset) mod W
@@ -52,16 +53,16 @@ void add_sheared(const CostImage& image, const std::vector<std::uint32_t>& owner
 }
 
 /// Adds the costs of each PE's static part to `busy`. Returns a flag for each pixel of the image: true if it is in a
-/// static part. `share`: fraction of each PE's pixels.
-std::vector<bool> do_static_part(const CostImage& image, const raya_mapping& start, double share,
-                                 std::vector<std::uint64_t>& busy) {
+/// static part. `fraction`: fraction of each PE's pixels that is in the static part.
+std::vector<bool> add_static_costs(const CostImage& image, const raya_mapping& start, double fraction,
+                                   std::vector<std::uint64_t>& busy) {
     std::vector<bool> done(image.cycles.size());
-    if (share == 0) return done;
+    if (fraction == 0) return done;
     for (std::uint32_t pe = 0; pe < start.pes; ++pe) {
-        const raya_share own = raya_share_of(start, pe);
-        const auto pixels = static_cast<std::uint32_t>(share * raya_share_size(own));
+        const raya_share share = raya_share_of(start, pe);
+        const auto pixels = static_cast<std::uint32_t>(fraction * raya_share_size(share));
         for (std::uint32_t k = 0; k < pixels; ++k) {
-            const raya_pixel pixel = raya_pixel_of(start, own, k);
+            const raya_pixel pixel = raya_pixel_of(start, share, k);
             const std::size_t at = std::size_t{pixel.row} * image.width + pixel.column;
             busy[pe] += image.cycles[at];
             done[at] = true;
@@ -89,11 +90,11 @@ std::vector<std::uint64_t> chunks_of(const CostImage& image, const std::vector<b
 
 /// Assigns each chunk to the PE that becomes idle first. `busy`: finishing time of each PE, in and out.
 void assign_chunks(const std::vector<std::uint64_t>& chunks, std::uint64_t overhead, std::vector<std::uint64_t>& busy) {
-    using Free = std::pair<std::uint64_t, std::uint32_t>;  // time at which it becomes idle, PE; the lowest PE in a tie
-    std::vector<Free> all;
+    using IdleTime = std::pair<std::uint64_t, std::uint32_t>;  // time at which a PE becomes idle, PE number
+    std::vector<IdleTime> all;
     all.reserve(busy.size());
     for (std::uint32_t pe = 0; pe < busy.size(); ++pe) all.emplace_back(busy[pe], pe);
-    std::priority_queue<Free, std::vector<Free>, std::greater<>> idle(std::greater<>{}, std::move(all));
+    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle(std::greater<>{}, std::move(all));
     for (const std::uint64_t cost : chunks) {
         const std::uint32_t pe = idle.top().second;
         idle.pop();
@@ -104,7 +105,8 @@ void assign_chunks(const std::vector<std::uint64_t>& chunks, std::uint64_t overh
 }  // namespace
 
 std::string dynamic_text(const DynamicPlan& plan) {
-    if (plan.static_share > 0) return fmt::format("hybrid:{},{},{}", plan.chunk, plan.overhead, plan.static_share);
+    if (plan.static_fraction > 0)
+        return fmt::format("hybrid:{},{},{}", plan.chunk, plan.overhead, plan.static_fraction);
     return plan.overhead > 0 ? fmt::format("dynamic:{},{}", plan.chunk, plan.overhead)
                              : fmt::format("dynamic:{}", plan.chunk);
 }
@@ -130,7 +132,7 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
     for (const std::uint32_t offset : offsets) {
         if (offset >= image.width) throw std::invalid_argument("an offset must be 0..W-1");
         per_pe.assign(pes, 0);
-        add_sheared(image, owners, offset, per_pe);
+        add_loads_of_offset(image, owners, offset, per_pe);
         Load load = load_of(std::move(per_pe));
         imbalances.push_back(load.imbalance);
         per_pe = std::move(load.per_pe);  // reuses the memory for the next offset
@@ -140,9 +142,10 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
 
 Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, const DynamicPlan& plan) {
     check_mapping(image, start);
-    if (!is_plan(plan)) throw std::invalid_argument("a plan's chunk, overhead or static share is out of its range");
+    if (!is_valid_plan(plan))
+        throw std::invalid_argument("a plan's chunk, overhead or static fraction is out of its range");
     std::vector<std::uint64_t> busy(start.pes);
-    const auto done = do_static_part(image, start, plan.static_share, busy);
+    const auto done = add_static_costs(image, start, plan.static_fraction, busy);
     const auto chunks = chunks_of(image, done, plan.chunk);
     assign_chunks(chunks, plan.overhead, busy);
     return {load_of(std::move(busy)), chunks.size()};

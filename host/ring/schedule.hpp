@@ -25,7 +25,7 @@ std::string dynamic_text(const DynamicPlan& plan);
 struct Schedule {
     Load load;  // finishing time of each PE in cycles, including the overhead of requests. load.speedup is sum / max
                 // of these times, a measure of balance; speedup() is the gain over one PE
-    std::uint64_t requests = 0;  // number of requests that were answered with pixels
+    std::uint64_t requests = 0;  // number of requests to which the host answered with pixels
 };
 
 // The functions below throw std::invalid_argument if cycles.size() is not W H, if the mapping is for another image
@@ -40,12 +40,12 @@ Load static_load(const CostImage& image, const raya_mapping& mapping);
 std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t pes, std::uint32_t fold,
                                          const std::vector<std::uint32_t>& offsets);
 
-/// Simulates list scheduling. Each PE first renders its static part: the first floor(static_share x n) of the n pixels
-/// that it owns under `start`. The other pixels, in scan-line order, are divided into chunks of plan.chunk pixels; the
-/// last chunk may be smaller. The PE that becomes idle first (in a tie, the one with the lowest number) takes the next
-/// chunk, which costs it the overhead of a request plus the costs of the pixels. If static_share is 0, only the image
-/// size and the number of PEs of `start` are used; if it is 1, the result is that of static_load(). Time: O(pixels + P
-/// + chunks log P).
+/// Simulates list scheduling. Each PE first renders its static part: the first floor(static_fraction x n) of the n
+/// pixels that it owns under `start`. The other pixels, in scan-line order, are divided into chunks of plan.chunk
+/// pixels; the last chunk may be smaller. The PE that becomes idle first (in a tie, the one with the lowest number)
+/// takes the next chunk, which costs it the overhead of a request plus the costs of the pixels. If static_fraction is
+/// 0, only the image size and the number of PEs of `start` are used; if it is 1, the result is that of static_load().
+/// Time: O(pixels + P + chunks log P).
 Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, const DynamicPlan& plan);
 
 /// Returns the sum of all pixels' costs, without overhead.
@@ -54,8 +54,9 @@ std::uint64_t total_cycles(const CostImage& image);
 /// Returns the finishing time of the last PE, cycles.
 std::uint64_t makespan(const Schedule& schedule);
 
-/// Returns total_cycles() / makespan(): the speed-up over a single PE that renders all pixels without requests. At most
-/// Schedule::load.speedup, whose numerator includes the overhead. P if the makespan is 0, as in Load.
+/// Returns total_cycles() / makespan(): the speed-up over a single PE that renders all pixels without requests. The
+/// result is at most Schedule::load.speedup, whose numerator includes the overhead. Returns P if the makespan is 0, as
+/// in Load.
 double speedup(const Schedule& schedule, const CostImage& image);
 
 /// Returns a lower bound, in cycles, of the makespan of every distribution of whole pixels over P PEs: max(ceil(total /

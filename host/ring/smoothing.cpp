@@ -9,8 +9,8 @@ RingFilter::RingFilter(Kernels& kernels, const ExchangeSetup& setup)
       add_neighbours_(kernels.get<AddNeighboursKernel>()),
       take_means_(kernels.get<TakeMeansKernel>()),
       sums_(setup.session.buffer<float>("filter sums", 3ull * setup.pes.count * setup.capacity)) {
-    Buffer<float> none = setup.session.buffer<float>("no blocks", 3);
-    add_neighbours("warm-up", {none, RAYA_LEFT, 0, 0}, 0, 0);
+    Buffer<float> no_blocks = setup.session.buffer<float>("no blocks", 3);
+    add_neighbours("warm-up", {no_blocks, RAYA_LEFT, 0, 0}, 0, 0);
     setup.session.launch("warm-up", take_means_, setup.pes.count, setup.group_size, setup.broadcast,
                          Uint<"capacity">{0}, Uint<"first_pe">{0}, sums_);
 }
@@ -48,8 +48,8 @@ RingContrast::RingContrast(Kernels& kernels, const ExchangeSetup& setup, float t
       threshold_(threshold),
       mark_contrasts_(kernels.get<MarkContrastsKernel>()),
       marks_(setup.session.buffer<std::uint8_t>("marks", std::size_t{setup.pes.count} * setup.capacity)) {
-    Buffer<float> none = setup.session.buffer<float>("no blocks", 3);
-    mark_contrasts("warm-up", {none, RAYA_LEFT, 0, 0}, 0, 0, none);
+    Buffer<float> no_blocks = setup.session.buffer<float>("no blocks", 3);
+    mark_contrasts("warm-up", {no_blocks, RAYA_LEFT, 0, 0}, 0, 0, no_blocks);
 }
 
 void RingContrast::apply(const Buffer<float>& pixels, NeighbourExchange& exchange) {

@@ -15,7 +15,7 @@ struct ExchangeSetup {
     Session& session;
     Buffer<std::uint32_t> broadcast;  // the job's words
     PeSegment pes;                    // PEs on the device
-    std::uint32_t capacity = 0;       // pixels in the memory of each PE
+    std::uint32_t capacity = 0;       // number of pixels in the memory of each PE
     std::uint32_t group_size = 1;
 };
 
@@ -31,8 +31,8 @@ class RingFilter {
     /// pixels, because PoCL compiles a kernel at its first launch.
     RingFilter(Kernels& kernels, const ExchangeSetup& setup);
 
-    /// Replaces every pixel by the mean of its 3 x 3 neighbourhood. `pixels`: [PE][3][capacity]; the object is
-    /// exchanged for another buffer of the same shape.
+    /// Replaces every pixel by the mean of its 3 x 3 neighbourhood. `pixels`: [PE][3][capacity]; afterwards the handle
+    /// refers to another buffer of the same shape.
     void apply(Buffer<float>& pixels, NeighbourExchange& exchange);
 
   private:

@@ -7,11 +7,11 @@
 namespace raya {
 namespace {
 
-// Returns the work of the next launch, so that it takes about `aim` seconds. `work`: work of the last launch, which
-// took `seconds`; `max`: maximum. The work grows at most by a factor of kMaxGrowth.
-std::uint32_t next_work(std::uint32_t work, std::uint32_t max, double seconds, double aim) {
+// Returns the work with which the next launch takes about `target_s` seconds. `work`: work of the last launch, which
+// took `seconds`; `max`: maximum of the result. The work grows at most by a factor of kMaxGrowth.
+std::uint32_t next_work(std::uint32_t work, std::uint32_t max, double seconds, double target_s) {
     constexpr double kMaxGrowth = 4;
-    const double growth = seconds * kMaxGrowth > aim ? aim / seconds : kMaxGrowth;
+    const double growth = seconds * kMaxGrowth > target_s ? target_s / seconds : kMaxGrowth;
     return static_cast<std::uint32_t>(std::clamp(growth * work, 1.0, 1.0 * max));
 }
 
@@ -46,16 +46,16 @@ void Tracer::clear(PassCounters& counters) {
 
 void Tracer::warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                      PassCounters& counters) {
-    begin("warm-up", 0);
+    reset_progress("warm-up", 0);
     launch("warm-up", job, {}, RAYA_POINTS_OWN, 1, marks, pixels, counters);
 }
 
 void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                    const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                    const ProgressCallback& progress, const std::function<void()>& meanwhile) {
-    const double aim = progress ? 0.5 : 1.0;  // seconds
+    const double target_s = progress ? 0.5 : 1.0;
     std::uint32_t work = progress ? work_.with_progress : work_.first;
-    begin(label, range.begin);
+    reset_progress(label, range.begin);
     for (bool first = true, done = false; !done; first = false) {
         work = guard_.begin(session_, label, work, progress_, saved_trees_, pixels, counters.cycles, counters.events);
         const Clock::time_point start = Clock::now();
@@ -65,22 +65,23 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
             meanwhile();
         }
         const State state = read_state(label);
-        if (state.cut) {
+        if (state.truncated) {
             guard_.restore_state(session_, label,
                                  "fewer tests of a ray (--accel bvh or grid), other --lanes or --group", progress_,
                                  saved_trees_, pixels, counters.cycles, counters.events);
             continue;
         }
         done = state.done;
-        work = next_work(work, work_.max, seconds_since(start), aim);
+        work = next_work(work, work_.max, seconds_since(start), target_s);
         if (!progress) continue;
-        const double all = 1.0 * pes_.count * (range.end - range.begin), begun = 1.0 * pes_.count * range.begin;
-        progress(done ? 1.0 : (static_cast<double>(state.taken) - begun) / all);
+        const double all_pixels = 1.0 * pes_.count * (range.end - range.begin),
+                     first_pixels = 1.0 * pes_.count * range.begin;
+        progress(done ? 1.0 : (static_cast<double>(state.next_pixels) - first_pixels) / all_pixels);
     }
 }
 
 // Writes the buffer instead of filling it, because Oclgrind reports filled buffers as uninitialised.
-void Tracer::begin(const std::string& label, std::uint32_t pixel) {
+void Tracer::reset_progress(const std::string& label, std::uint32_t pixel) {
     session_.write(label, progress_, std::vector<raya_trace_progress>(pes_.count, {pixel, 0, 0}));
 }
 
@@ -90,8 +91,8 @@ Tracer::State Tracer::read_state(const std::string& label) {
     State state{.done = true};
     for (const raya_trace_progress& pe : pes) {
         state.done &= pe.left == 0;
-        state.taken += pe.next;
-        state.cut |= pe.cut > 0;
+        state.next_pixels += pe.next;
+        state.truncated |= pe.cut > 0;
     }
     return state;
 }
@@ -100,7 +101,7 @@ void Tracer::launch(const std::string& label, const Buffer<std::uint32_t>& job, 
                     std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                     PassCounters& counters) {
     session_.launch(label, kernel_, pes_.count, options_.group_size, job, Uint<"word_count">{cl_uint(job.size())},
-                    Uint<"block">{range.block}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
+                    Uint<"window_start">{range.block}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
                     Uint<"points">{points}, Uint<"first_pe">{pes_.first}, Uint<"work">{work}, marks,
                     LocalMemory<raya_trace_progress>{1},
                     LocalMemory<std::uint32_t>{options_.words_local ? (job.size() + 3) / 4 * 4 : 4}, pixels,

@@ -14,7 +14,7 @@
 
 namespace raya {
 
-/// Counters of one pass.
+/// Counters of one pass over the image (tracing or supersampling).
 struct PassCounters {
     Buffer<std::uint64_t> cycles;  // [PE][capacity]: modelled cycles of each pixel
     Buffer<std::uint64_t> events;  // [PE][L][RAYA_EVENTS]; L: work-items of a PE
@@ -27,21 +27,22 @@ struct PixelRange {
 };
 
 /// Limits of the work of one lane in one launch, in tests and traversal steps of its rays: `first` for the first
-/// launch, or `with_progress` if progress is shown. Later launches are scaled to take one second, or half a second if
-/// progress is shown, with `max` as the maximum.
+/// launch, or `with_progress` if progress is shown. The work of later launches is scaled so that a launch takes one
+/// second, or half a second if progress is shown, but is at most `max`.
 struct LaunchWork {
     std::uint32_t first = 0, with_progress = 0, max = 0;
 };
 
-using TraceKernel = DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::uint32_t>&, Uint<"word_count">,
-                                    Uint<"block">, Uint<"capacity">, Uint<"end">, Uint<"points">, Uint<"first_pe">,
-                                    Uint<"work">, const Buffer<std::uint8_t>&, LocalMemory<raya_trace_progress>,
-                                    LocalMemory<std::uint32_t>, Buffer<float>&, Buffer<std::uint64_t>&,
-                                    Buffer<std::uint64_t>&, Buffer<raya_trace_progress>&, Buffer<std::uint32_t>&>;
+using TraceKernel =
+    DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::uint32_t>&, Uint<"word_count">, Uint<"window_start">,
+                    Uint<"capacity">, Uint<"end">, Uint<"points">, Uint<"first_pe">, Uint<"work">,
+                    const Buffer<std::uint8_t>&, LocalMemory<raya_trace_progress>, LocalMemory<std::uint32_t>,
+                    Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&, Buffer<raya_trace_progress>&,
+                    Buffer<std::uint32_t>&>;
 
 class Tracer {
   public:
-    /// `pes`: PEs on this device; `capacity`: pixels of each PE in the device buffers.
+    /// `pes`: PEs on this device; `capacity`: number of pixels of each PE in the device buffers.
     Tracer(Kernels& kernels, const PeSegment& pes, std::uint32_t capacity, const LaunchWork& work);
 
     /// Allocates the counters of a pass.
@@ -53,10 +54,11 @@ class Tracer {
     void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                  PassCounters& counters);
 
-    /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; supersampling points only of marked
-    /// pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of work,
-    /// so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Calls `meanwhile` on the
-    /// host while the first launch runs. Throws DeviceError if the device ends loops early even in the smallest launch.
+    /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; traces supersampling points only of
+    /// marked pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of
+    /// work, so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Calls `meanwhile` on
+    /// the host while the first launch runs. Throws DeviceError if the device ends loops early even in the smallest
+    /// launch.
     void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                const ProgressCallback& progress = {}, const std::function<void()>& meanwhile = {});
@@ -68,11 +70,12 @@ class Tracer {
     /// Launches the kernel for those pixels of the range that have not been traced.
     void launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                 std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
-    void begin(const std::string& label, std::uint32_t pixel);  // index in each PE's share
+    /// Sets the next pixel of every PE to index `pixel` of its share.
+    void reset_progress(const std::string& label, std::uint32_t pixel);
     struct State {
         bool done = false;
-        std::uint64_t taken = 0;  // sum over all PEs: index of the next pixel of the share to trace
-        bool cut = false;         // the device has ended loops early, so results are wrong
+        std::uint64_t next_pixels = 0;  // sum, over all PEs, of the index of the next pixel to trace in the share
+        bool truncated = false;         // the device has ended loops early, so results are wrong
     };
     State read_state(const std::string& label);
 

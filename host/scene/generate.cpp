@@ -13,33 +13,36 @@
 namespace raya {
 namespace {
 
-constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // parts per unit to which coordinates are rounded
+constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // arguments `parts` of rounded()
 
 void check_count(const char* kind, int count) {
     if (count < 1 || count > kMaxSpheres)
         throw UserError(fmt::format("{}: {} spheres: must be 1..{}", kind, count, kMaxSpheres));
 }
 
-/// A view of the cube [-1, 1]^3 towards one of its corners; the cube fills most of the image.
+/// Returns a view of the cube [-1, 1]^3 from outside one of its corners. The cube fills most of the image.
 View view_of_cube() { return {{2.6, 3.4, 1.9}, {0, 0, -0.1}, {0, 0, 1}, 36, 0, 512, 512}; }
 
-/// Adds `count` spheres in the box with corner `low` and the given sides, each in its own cell of a k^3 grid.
-void fill_box(Scene& scene, const Vec3& low, const Vec3& sides, std::int64_t count, SplitMix& random) {
+/// Adds `count` spheres in the box with the lower corner `low_corner` and the given sides. Divides the box into k^3
+/// cells; each sphere lies in a different cell.
+void fill_box(Scene& scene, const Vec3& low_corner, const Vec3& sides, std::int64_t count, SplitMix& random) {
     std::int64_t k = 1;
     while (k * k * k < count) ++k;
     const Vec3 cell = sides / static_cast<double>(k);
-    const double half = std::min({cell.x, cell.y, cell.z}) / 2;
+    const double max_radius = std::min({cell.x, cell.y, cell.z}) / 2;
     for (std::int64_t i = 0; i < count; ++i) {
-        const std::int64_t at = i * k * k * k / count;
+        const std::int64_t cell_index = i * k * k * k / count;
         const Vec3 corner =
-            low +
-            Vec3(static_cast<double>(at % k), static_cast<double>(at / k % k), static_cast<double>(at / k / k)) * cell;
-        const double radius = half * random.uniform(0.5, 0.9);
-        const double shift = 0.98 * (1 - radius / half);  // maximum offset from the cell's centre, in units of `half`
-        const auto place = [&](double side) {
-            return side / 2 + (side / 2 - half + half * shift) * random.uniform(-1, 1);
+            low_corner + Vec3(static_cast<double>(cell_index % k), static_cast<double>(cell_index / k % k),
+                              static_cast<double>(cell_index / k / k)) *
+                             cell;
+        const double radius = max_radius * random.uniform(0.5, 0.9);
+        // Maximum shift in a cubic cell, in units of `max_radius`.
+        const double max_shift = 0.98 * (1 - radius / max_radius);
+        const auto random_coordinate = [&](double side) {
+            return side / 2 + (side / 2 - max_radius + max_radius * max_shift) * random.uniform(-1, 1);
         };
-        const double x = place(cell.x), y = place(cell.y), z = place(cell.z);
+        const double x = random_coordinate(cell.x), y = random_coordinate(cell.y), z = random_coordinate(cell.z);
         scene.spheres.push_back({rounded(corner + Vec3(x, y, z), kMillionths), rounded(radius, kMillionths),
                                  static_cast<int>(scene.spheres.size() % 4)});
     }
@@ -47,17 +50,17 @@ void fill_box(Scene& scene, const Vec3& low, const Vec3& sides, std::int64_t cou
 
 struct SphereRing {
     int count;
-    double distance;  // distance of the centres from the z axis
-    double height;    // z of the centres
-    double radius;    // of a sphere
-    double first;     // azimuth of the first sphere, in full turns
+    double distance;       // distance of the centres from the z axis
+    double height;         // z of the centres
+    double radius;         // radius of each sphere
+    double first_azimuth;  // azimuth of the first sphere, in full turns
     int first_surface;
-    int surface_count;  // number of surfaces, which are assigned cyclically
+    int surface_count;  // number of surfaces, which are assigned to the spheres cyclically
 };
 
 void add_ring(Scene& scene, const SphereRing& ring) {
     for (int i = 0; i < ring.count; ++i) {
-        const double azimuth = 2 * std::numbers::pi * (ring.first + static_cast<double>(i) / ring.count);
+        const double azimuth = 2 * std::numbers::pi * (ring.first_azimuth + static_cast<double>(i) / ring.count);
         const Vec3 centre(rounded(ring.distance * std::cos(azimuth), kTenThousandths),
                           rounded(ring.distance * std::sin(azimuth), kTenThousandths), ring.height);
         scene.spheres.push_back({centre, ring.radius, ring.first_surface + i % ring.surface_count});
@@ -83,10 +86,11 @@ bool touches(const Sphere& sphere, const std::vector<Sphere>& others) {
 Scene generate_uniform(int count, std::array<int, 3> voxels) {
     check_count("uniform", count);
     std::int64_t total = 1;
-    for (const int along : voxels) {
-        if (along < 1 || along > kMaxVoxelsPerAxis)
-            throw UserError(fmt::format("uniform: {} voxels along an axis: must be 1..{}", along, kMaxVoxelsPerAxis));
-        total *= along;
+    for (const int axis_voxels : voxels) {
+        if (axis_voxels < 1 || axis_voxels > kMaxVoxelsPerAxis)
+            throw UserError(
+                fmt::format("uniform: {} voxels along an axis: must be 1..{}", axis_voxels, kMaxVoxelsPerAxis));
+        total *= axis_voxels;
     }
     if (total > kMaxVoxels) throw UserError(fmt::format("uniform: {} voxels: at most {}", total, kMaxVoxels));
 
@@ -101,10 +105,10 @@ Scene generate_uniform(int count, std::array<int, 3> voxels) {
     const Vec3 sides(2.0 / voxels[0], 2.0 / voxels[1], 2.0 / voxels[2]);
     SplitMix random(static_cast<std::uint64_t>(count));
     for (std::int64_t voxel = 0; voxel < total; ++voxel) {
-        const std::int64_t share = (voxel + 1) * count / total - voxel * count / total;
-        const Vec3 place(static_cast<double>(voxel % voxels[0]), static_cast<double>(voxel / voxels[0] % voxels[1]),
-                         static_cast<double>(voxel / voxels[0] / voxels[1]));
-        fill_box(scene, Vec3(-1) + place * sides, sides, share, random);
+        const std::int64_t spheres = (voxel + 1) * count / total - voxel * count / total;
+        const Vec3 position(static_cast<double>(voxel % voxels[0]), static_cast<double>(voxel / voxels[0] % voxels[1]),
+                            static_cast<double>(voxel / voxels[0] / voxels[1]));
+        fill_box(scene, Vec3(-1) + position * sides, sides, spheres, random);
     }
     share_surfaces(scene);
     return scene;
@@ -125,10 +129,10 @@ Scene generate_random(int count, std::uint64_t seed) {
         scene.surfaces.push_back(
             {rounded({red, green, blue}, kMillionths), 0.9 - specular, specular, i % 3 == 0 ? 0.0 : 30.0, 0, 1, {}});
     }
-    const double filling = std::cbrt(0.05 * 8 / (count * 4 / 3.0 * std::numbers::pi));
+    const double mean_radius = std::cbrt(0.05 * 8 / (count * 4 / 3.0 * std::numbers::pi));
     for (int i = 0; i < count; ++i) {
         const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
-        const double radius = std::min(0.6, filling * random.uniform(0.5, 1.5));
+        const double radius = std::min(0.6, mean_radius * random.uniform(0.5, 1.5));
         const int surface = static_cast<int>(random.next() % kSurfaces);
         scene.spheres.push_back({rounded({x, y, z}, kMillionths), rounded(radius, kMillionths), surface});
     }
@@ -160,7 +164,7 @@ Scene generate_centre() {
 }
 
 Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
-    constexpr int kMaxRedraws = 200;  // maximum number of redraws of a sphere that touches another one
+    constexpr int kMaxRedraws = 200;  // maximum number of redraws of a sphere that touches another sphere
     enum { kGlass, kMirror, kMatt, kFloor };
     Scene scene;
     scene.name = fmt::format("cluster{}.nff", seed);
@@ -186,27 +190,29 @@ Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
     return scene;
 }
 
-Scene scattered(const Scene& even, std::uint64_t seed) {
-    const Scene random = generate_random(static_cast<int>(even.spheres.size()), seed);
-    Scene scene = even;
-    for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
-        Sphere& sphere = scene.spheres[i];
+Scene scattered(const Scene& scene, std::uint64_t seed) {
+    const Scene random = generate_random(static_cast<int>(scene.spheres.size()), seed);
+    Scene moved = scene;
+    for (std::size_t i = 0; i < moved.spheres.size(); ++i) {
+        Sphere& sphere = moved.spheres[i];
         for (int axis = 0; axis < 3; ++axis)
             sphere.centre[axis] = std::clamp(random.spheres[i].centre[axis], -1 + sphere.radius, 1 - sphere.radius);
     }
-    return scene;
+    return moved;
 }
 
 Scene moved_within(const Scene& scene) {
-    constexpr double kVoxel = 2.0 / kObjectSides;
-    constexpr double kGap = kVoxel / 16;  // upper bound of the margin by which hit regions (host/accel) exceed a sphere
+    constexpr double kVoxel = 2.0 / kObjectSides;  // side of a voxel
+    // Upper bound of the distance by which a hit region (host/accel) exceeds its sphere.
+    constexpr double kGap = kVoxel / 16;
     Scene moved = scene;
     for (Sphere& sphere : moved.spheres)
         for (int axis = 0; axis < 3; ++axis) {
-            double& at = sphere.centre[axis];
-            const double low = -1 + kVoxel * std::clamp(std::floor((at + 1) / kVoxel), 0.0, kObjectSides - 1.0);
+            double& coordinate = sphere.centre[axis];
+            const double voxel_low =
+                -1 + kVoxel * std::clamp(std::floor((coordinate + 1) / kVoxel), 0.0, kObjectSides - 1.0);
             const double margin = std::min(sphere.radius + kGap, kVoxel / 2);
-            at = std::clamp(at, low + margin, low + kVoxel - margin);
+            coordinate = std::clamp(coordinate, voxel_low + margin, voxel_low + kVoxel - margin);
         }
     return moved;
 }
@@ -214,10 +220,10 @@ Scene moved_within(const Scene& scene) {
 Scene touching_walls(Scene scene) {
     for (int axis = 0; axis < 3; ++axis)
         for (const double side : {-1.0, 1.0}) {
-            const auto reach = [&](const Sphere& sphere) { return side * sphere.centre[axis] + sphere.radius; };
+            const auto extent = [&](const Sphere& sphere) { return side * sphere.centre[axis] + sphere.radius; };
             Sphere& outermost =
                 *std::max_element(scene.spheres.begin(), scene.spheres.end(),
-                                  [&](const Sphere& a, const Sphere& b) { return reach(a) < reach(b); });
+                                  [&](const Sphere& a, const Sphere& b) { return extent(a) < extent(b); });
             outermost.centre[axis] = side * (1 - outermost.radius);
         }
     return scene;

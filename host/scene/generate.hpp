@@ -1,5 +1,5 @@
-// Scene generators. A scene depends only on the arguments, not on the platform: coordinates are rounded to decimal
-// digits, which also keeps the files short. Equal surfaces are stored once (share_surfaces()).
+// Scene generators. A generated scene depends only on the arguments, not on the platform, because coordinates are
+// rounded to decimal digits. Equal surfaces are stored once (share_surfaces()).
 #pragma once
 #include <array>
 #include <cmath>
@@ -16,27 +16,27 @@ inline constexpr int kMaxSpheres = 1'000'000;  // of generate_uniform() and gene
 inline constexpr int kMaxVoxelsPerAxis = 256;  // of generate_uniform()
 inline constexpr int kMaxVoxels = 1'048'576;   // of generate_uniform()
 
-/// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six). This keeps files short
-/// and makes them equal on all platforms, although sines and cosines differ in the last bits.
+/// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six). Rounding keeps files
+/// short. It makes them equal on all platforms although sines and cosines differ there in the last bits.
 inline double rounded(double x, double parts = 1e9) { return std::round(x * parts) / parts + 0.0; }
 inline Vec3 rounded(const Vec3& v, double parts = 1e9) {
     return {rounded(v.x, parts), rounded(v.y, parts), rounded(v.z, parts)};
 }
 
-/// SPD's `balls`, the sphereflake: nine spheres of a third of its radius touch every sphere, down to recursion depth
-/// `level`. 9^0 + ... + 9^level spheres above one square polygon, three lights. The spheres are those of SPD 3.9 (E.
-/// Haines), in the same order. Throws UserError unless 0 <= level <= 6.
+/// SPD's `balls`, the sphereflake: every sphere is touched by nine spheres with a third of its radius, down to
+/// recursion depth `level`. The scene has 9^0 + ... + 9^level spheres above one square polygon, and three lights. The
+/// spheres are those of SPD 3.9 (E. Haines), in the same order. Throws UserError unless 0 <= level <= 6.
 Scene generate_balls(int level);
 
 /// SPD's `lattice` in the cube [0, 1]^3: (size + 1)^3 mirroring spheres, connected by 3 size (size + 1)^2 matt
-/// cylinders along the axes, six lights. The objects are those of SPD (A. Costa, E. Haines) for the size factor `size`,
-/// in the same order. Throws UserError unless 1 <= size <= 64.
+/// cylinders parallel to the axes, and six lights. The objects are those of SPD (A. Costa, E. Haines) for the size
+/// factor `size`, in the same order. Throws UserError unless 1 <= size <= 64.
 Scene generate_lattice(int size);
 
-/// size^3 gear wheels in the cube [-1, 1]^3 above one square polygon, in layers whose wheels mesh with their
-/// neighbours; brass, steel, glass and enamel, five lights. A wheel consists of two outlines of 144 vertices and 144
-/// quadrilaterals. Size 4 has as many polygons as SPD's `gears` (E. Haines): 9,345, or 36,610 triangles; the shape of
-/// the wheels is different. Throws UserError unless 1 <= size <= 16.
+/// size^3 gear wheels of brass, steel, glass and enamel in the cube [-1, 1]^3 above one square polygon, and five
+/// lights. The wheels form horizontal layers. Within a layer, each wheel meshes with its neighbours. A wheel consists
+/// of two outlines of 144 vertices and 144 quadrilaterals. Size 4 has as many polygons as SPD's `gears` (E. Haines):
+/// 9,345, or 36,610 triangles; its wheels have a different shape. Throws UserError unless 1 <= size <= 16.
 Scene generate_gears(int size);
 
 /// `count` matt spheres in the cube [-1, 1]^3, distributed evenly over v = x * y * z voxels: every voxel contains
@@ -56,34 +56,34 @@ Scene generate_centre();
 
 /// Parameters of generate_cluster(); lengths in scene units. The defaults were found by a search, see scenes/README.md.
 struct ClusterShape {
-    int glass = 3, mirrors = 1, matt = 3;  // number of spheres of each material
-    double radius = 1.6;                   // radius of the cylinder around the z axis that contains the centres
+    int glass = 3, mirrors = 1, matt = 3;  // numbers of spheres of each material
+    double radius = 1.6;                   // radius of the cylinder around the z axis that contains all centres
     double height = 2.1;                   // maximum distance between a sphere and the floor
-    double smallest = 0.4, largest = 0.7;  // radii of spheres
+    double smallest = 0.4, largest = 0.7;  // minimum and maximum radius of a sphere
     double checker = 2.35;                 // side of the floor's squares
     double angle_degrees = 20;             // vertical angle of the view
     int spheres() const { return glass + mirrors + matt; }
 };
 
-/// A cluster of random spheres above a checkered floor, one light. A sphere that touches another one is drawn again, up
-/// to a maximum number of tries. Averaged over many seeds, load and imbalance match Kohata & Ito's figures. 256 x 256
-/// pixels.
+/// A cluster of random spheres above a checkered floor, one light. A sphere that touches another sphere is drawn again,
+/// up to a maximum number of times. Averaged over many seeds, load and imbalance match Kohata & Ito's figures. 256 x
+/// 256 pixels.
 Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape = {});
 
 inline constexpr std::uint32_t kObjectSides = 4;  // voxels along each axis of the cube
 
-/// Returns a copy of `even`, a scene in the cube [-1, 1]^3, in which each sphere has a random centre, clamped so that
-/// the sphere stays inside the cube. Radii and surfaces do not change.
-Scene scattered(const Scene& even, std::uint64_t seed);
+/// Returns a copy of `scene`, which lies in the cube [-1, 1]^3, in which each sphere has a random centre, clamped so
+/// that the sphere stays inside the cube. Radii and surfaces do not change.
+Scene scattered(const Scene& scene, std::uint64_t seed);
 
 /// Divides the cube [-1, 1]^3 into 4 x 4 x 4 voxels and moves each sphere so that it lies inside the voxel of its
-/// centre, 1/16 of a voxel's side or more away from the voxel's faces; if that is impossible, the sphere is centred in
-/// the voxel. Along each axis, a sphere moves by at most its radius plus that distance. Radii must be less than half a
-/// voxel's side.
+/// centre, at least 1/16 of a voxel's side away from the voxel's faces. A sphere that is too large for this is centred
+/// in the voxel. Along each axis, a sphere moves by at most its radius plus 1/16 of a voxel's side. Radii must be less
+/// than half a voxel's side.
 Scene moved_within(const Scene& scene);
 
-/// For each face of the cube [-1, 1]^3, moves the sphere nearest to it outwards until it touches the face, so that the
-/// cube is the bounding box of the scene.
+/// For each face of the cube [-1, 1]^3, moves the sphere nearest to the face until the sphere touches the face, so that
+/// the cube becomes the bounding box of the scene.
 Scene touching_walls(Scene scene);
 
 }  // namespace raya

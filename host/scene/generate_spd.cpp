@@ -1,4 +1,4 @@
-// Scenes of the SPD programs (E. Haines): balls, lattice, and gears with wheels of a different shape.
+// Scenes of the SPD programs (E. Haines): balls and lattice as in SPD, gears with wheels of a different shape.
 #include <fmt/core.h>
 
 #include <array>
@@ -13,18 +13,18 @@
 namespace raya {
 namespace {
 
-/// Returns the directions from a sphere with axis +z to the nine smaller spheres that touch it, in SPD's order. They
-/// are the directions to the twelve neighbours in a dense sphere packing, without the lower three: three groups, a
-/// third of a turn apart, each with one direction upwards and two in the equatorial plane.
+/// Returns the directions from a sphere with axis +z to the nine smaller spheres that touch it, in SPD's order: the
+/// directions to the twelve neighbours in a dense sphere packing, without the three downward ones. The nine directions
+/// form three groups, a third of a turn apart. Each group has one upward direction and two in the equatorial plane.
 std::array<Vec3, 9> nine_directions() {
     std::array<Vec3, 9> directions;
     const double upper = std::sqrt(2.0 / 3.0), outward = std::sqrt(1.0 / 3.0);
     for (std::size_t group = 0; group < 3; ++group) {
         const double azimuth = std::numbers::pi * (1.0 / 4 + 2.0 / 3 * static_cast<double>(group));
-        const double before = azimuth - std::numbers::pi / 6, after = azimuth + std::numbers::pi / 6;
+        const double left_azimuth = azimuth - std::numbers::pi / 6, right_azimuth = azimuth + std::numbers::pi / 6;
         directions[3 * group] = Vec3(outward * std::cos(azimuth), outward * std::sin(azimuth), upper);
-        directions[3 * group + 1] = Vec3(std::cos(before), std::sin(before), 0);
-        directions[3 * group + 2] = Vec3(std::cos(after), std::sin(after), 0);
+        directions[3 * group + 1] = Vec3(std::cos(left_azimuth), std::sin(left_azimuth), 0);
+        directions[3 * group + 2] = Vec3(std::cos(right_azimuth), std::sin(right_azimuth), 0);
     }
     return directions;
 }
@@ -47,7 +47,7 @@ void add_flake(Scene& scene, int level, const Vec3& centre, double radius, const
     }
 }
 
-/// Number of teeth of a wheel. A multiple of four, so that wheels that mesh on one side mesh on all four sides.
+/// Number of teeth of a wheel. It is a multiple of four, so that wheels that mesh on one side mesh on all four sides.
 constexpr int kTeeth = 24;
 
 struct Corner {
@@ -55,16 +55,17 @@ struct Corner {
     double radius;  // as a multiple of the radius of the pitch circle
 };
 
-/// The outline of a tooth, counter-clockwise: foot, flank, tip, tip, flank, foot. At the pitch circle the tooth is
-/// narrower than half a pitch, and it is shorter than the gaps are deep, so that meshing wheels do not touch.
+/// The outline of a tooth, counter-clockwise: foot, flank, tip, tip, flank, foot. Meshing wheels do not touch, because
+/// at the pitch circle a tooth is narrower than half a pitch, and because a tooth is shorter than the gap that it
+/// enters.
 constexpr std::array<Corner, 6> kTooth{
     {{-0.32, 0.9}, {-0.235, 1}, {-0.12, 1.075}, {0.12, 1.075}, {0.235, 1}, {0.32, 0.9}}};
 
-/// A view of the cube [-1, 1]^3 from above one of its vertical edges.
+/// Returns a view of the cube [-1, 1]^3 from above, towards one of its vertical edges.
 View view_of_wheels() { return {{2.4, 3.2, 3.0}, {0, 0, -0.15}, {0, 0, 1}, 36, 0, 512, 512}; }
 
-/// Brass, steel, glass and red enamel.
-std::vector<Surface> finishes() {
+/// Returns the surfaces of the wheels: brass, steel, glass and red enamel.
+std::vector<Surface> wheel_surfaces() {
     return {{{0.85, 0.65, 0.25}, 0.7, 0.3, 30, 0, 1, {}},
             {{0.75, 0.8, 0.85}, 0.4, 0.6, 100, 0, 1, {}},
             {{0.75, 0.95, 0.85}, 0.2, 0.1, 100, 0.7, 1.1, {}},
@@ -76,7 +77,7 @@ struct Wheel {
     Vec3 centre;
     double radius;     // radius of the pitch circle
     double thickness;  // length along the axis
-    double turned;     // angle of its first tooth from the x axis, in pitches
+    double turn;       // angle of the first tooth from the x axis, in pitches
     int surface;
 };
 
@@ -85,7 +86,7 @@ std::vector<Vec3> outline(const Wheel& wheel, double height) {
     std::vector<Vec3> corners;
     for (int tooth = 0; tooth < kTeeth; ++tooth)
         for (const Corner& corner : kTooth) {
-            const double angle = 2 * std::numbers::pi * (tooth + wheel.turned + corner.turn) / kTeeth;
+            const double angle = 2 * std::numbers::pi * (tooth + wheel.turn + corner.turn) / kTeeth;
             const double radius = wheel.radius * corner.radius;
             corners.emplace_back(rounded(wheel.centre.x + radius * std::cos(angle)),
                                  rounded(wheel.centre.y + radius * std::sin(angle)), height);
@@ -93,7 +94,7 @@ std::vector<Vec3> outline(const Wheel& wheel, double height) {
     return corners;
 }
 
-/// Adds the upper and lower face and a quadrilateral for each edge between them. All fronts face outwards.
+/// Adds the upper face, the lower face, and a quadrilateral for each of their edges. All fronts face outwards.
 void add_wheel(Scene& scene, const Wheel& wheel) {
     const std::vector<Vec3> upper = outline(wheel, rounded(wheel.centre.z + wheel.thickness / 2));
     const std::vector<Vec3> lower = outline(wheel, rounded(wheel.centre.z - wheel.thickness / 2));
@@ -109,9 +110,9 @@ void add_wheel(Scene& scene, const Wheel& wheel) {
 // a sphere, at 0.99 of half the sphere's radius from the centre, and ends at the same depth inside the next sphere.
 constexpr double kSphereRadius = 1.0 / 4, kCylinderRadius = 1.0 / 16, kCylinderStart = 0.99 / 8;
 
-/// A view from near the middle of an upper edge, diagonally down through the cube. The eye is half a lattice distance
-/// away from a column and from a layer of spheres, so that it is outside all objects. SPD's own view is known only for
-/// size 12.
+/// Returns a view from near the middle of an upper edge, diagonally down through the cube. The eye is half a lattice
+/// distance away from a column and from a layer of spheres, so the eye is outside all objects. SPD's own view
+/// is known only for size 12.
 View view_of_lattice(int size) {
     const double x = (size / 2 + 0.5) / size, z = 1 - 0.5 / size;
     return {rounded({x, 1, z}), rounded({x, -1, z - 2}), {0.2, 1, 0}, 60, 0, 512, 512};
@@ -123,11 +124,11 @@ void add_node(Scene& scene, int size, const std::array<int, 3>& node) {
     scene.spheres.push_back({rounded(centre), rounded(kSphereRadius * distance), 0});
     for (int axis = 0; axis < 3; ++axis) {
         if (node[static_cast<std::size_t>(axis)] == size) continue;
-        Vec3 from = centre, to = centre;
-        from[axis] += kCylinderStart * distance;
-        to[axis] += (1 - kCylinderStart) * distance;
+        Vec3 base = centre, apex = centre;
+        base[axis] += kCylinderStart * distance;
+        apex[axis] += (1 - kCylinderStart) * distance;
         const double radius = rounded(kCylinderRadius * distance);
-        scene.cones.push_back({rounded(from), radius, rounded(to), radius, 1 + axis});
+        scene.cones.push_back({rounded(base), radius, rounded(apex), radius, 1 + axis});
     }
 }
 
@@ -156,7 +157,7 @@ Scene generate_gears(int size) {
     scene.background = {0.078, 0.361, 0.753};
     scene.view = view_of_wheels();
     scene.lights = {{{4, 3, 5}, {}}, {{1, 6, 3}, {}}, {{-4, 2, 6}, {}}, {{5, -2, 2}, {}}, {{0, 0, 8}, {}}};
-    scene.surfaces = finishes();
+    scene.surfaces = wheel_surfaces();
     const int ground = static_cast<int>(scene.surfaces.size());
     scene.surfaces.push_back({{0.85, 0.8, 0.7}, 0.9, 0, 0, 0, 1, {}});
     scene.polygons = {{{{12, 12, -1.2}, {-12, 12, -1.2}, {-12, -12, -1.2}, {12, -12, -1.2}}, {}, ground}};
@@ -165,8 +166,8 @@ Scene generate_gears(int size) {
         for (int y = 0; y < size; ++y)
             for (int z = 0; z < size; ++z) {
                 const Vec3 centre = Vec3(-1) + (Vec3(x, y, z) + Vec3(0.5)) * distance;
-                const double turned = (x + y) % 2 == 0 ? 0 : 0.5;  // half a pitch: teeth face the neighbours' gaps
-                add_wheel(scene, {centre, distance / 2, 0.4 * distance, turned, (x + 2 * y + z) % ground});
+                const double turn = (x + y) % 2 == 0 ? 0 : 0.5;  // pitches; 0.5: teeth face the gaps of the neighbours
+                add_wheel(scene, {centre, distance / 2, 0.4 * distance, turn, (x + 2 * y + z) % ground});
             }
     share_surfaces(scene);
     return scene;
@@ -180,9 +181,9 @@ Scene generate_lattice(int size) {
     scene.background = {0.078, 0.361, 0.753};
     scene.view = view_of_lattice(size);
     for (int axis = 0; axis < 3; ++axis)
-        for (const double place : {2, -1}) {
+        for (const double coordinate : {2, -1}) {
             Vec3 position(0.5);
-            position[axis] = place;
+            position[axis] = coordinate;
             scene.lights.push_back({position, {}});
         }
     scene.surfaces = {{{0.9, 0.9, 0.9}, 0.5, 0.5, 3.0827, 0, 0, {}}};

@@ -11,12 +11,13 @@
 namespace raya {
 namespace {
 
-// Margins as exponents of two. kMinMargin: minimum margin to the format's lower limits of a scene that is not scaled.
-// kPlaneMargin: margin above the largest length of a scaled scene with planes, which extend to the horizon.
+// Margins as exponents of two. kMinMargin: minimum margin between the lengths of an unscaled scene and the format's
+// lower limits. kPlaneMargin: margin between the largest length of a scaled scene with planes and the format's upper
+// limit, because planes extend to the horizon.
 constexpr double kMinMargin = 2, kPlaneMargin = 6;
 
-/// Calls visit(length) for each length that must not be flushed to 0, because the job has its square or kernels divide
-/// by it.
+/// Calls visit(length) for each length that must not be flushed to 0, because the job stores the square of the length
+/// or because kernels divide by the length.
 template <class Visit>
 void for_each_small_length(const Scene& scene, Visit&& visit) {
     for (const Sphere& s : scene.spheres) visit(std::abs(s.radius));
@@ -34,23 +35,24 @@ double largest_length(const Scene& scene) {
     return largest;
 }
 
-/// The margins between the lengths of a scene at scale 1 and the limits of a format, as exponents of two; negative if a
-/// limit is exceeded. `above`: to the upper limit; `below`: to the nearer of the two lower limits.
-struct ScaleRange {
-    double above, below;
+/// The margins between the lengths of an unscaled scene and the limits of a format, as exponents of two. A margin is
+/// negative if its limit is exceeded.
+struct ScaleMargins {
+    double to_upper;  // to the upper limit
+    double to_lower;  // to the nearer of the two lower limits
 };
 
-ScaleRange margins_of(const LengthScale& scale, const NumberFormat& format) {
-    const double smallest = smallest_number(format);
+ScaleMargins margins_of(const LengthScale& scale, const NumberFormat& format) {
+    const double smallest_of_format = smallest_number(format);
     return {std::log2(farthest_hit(format) / (4 * scale.largest)),
-            std::min(std::log2(scale.smallest / std::sqrt(smallest)),
-                     std::log2(std::ldexp(scale.largest, -format.fraction_bits - 1) / smallest))};
+            std::min(std::log2(scale.smallest / std::sqrt(smallest_of_format)),
+                     std::log2(std::ldexp(scale.largest, -format.fraction_bits - 1) / smallest_of_format))};
 }
 
-int exponent_for(const ScaleRange& margins, bool has_planes) {
-    if (margins.above >= 0 && margins.below >= kMinMargin) return 0;
-    return static_cast<int>(
-        std::floor(std::min((margins.above - margins.below + 1) / 2, margins.above - (has_planes ? kPlaneMargin : 0))));
+int exponent_for(const ScaleMargins& margins, bool has_planes) {
+    if (margins.to_upper >= 0 && margins.to_lower >= kMinMargin) return 0;
+    return static_cast<int>(std::floor(
+        std::min((margins.to_upper - margins.to_lower + 1) / 2, margins.to_upper - (has_planes ? kPlaneMargin : 0))));
 }
 
 [[noreturn]] void refuse(const Scene& scene, const LengthScale& scale, const NumberFormat& format) {
@@ -75,8 +77,8 @@ LengthScale length_scale(const Scene& scene, const NumberFormat& format) {
     scale.exponent = exponent_for(margins_of(scale, format), !scene.planes.empty());
     scale.min_visible = std::ldexp(std::sqrt(smallest_number(format)), -scale.exponent);
     for_each_small_length(scene, [&](double length) { scale.vanishing += length < scale.min_visible; });
-    const bool has_others = !scene.polygons.empty() || !scene.planes.empty();
-    if (scale.vanishing == lengths && lengths > 0 && !has_others) refuse(scene, scale, format);
+    const bool has_flat_objects = !scene.polygons.empty() || !scene.planes.empty();
+    if (scale.vanishing == lengths && lengths > 0 && !has_flat_objects) refuse(scene, scale, format);
     return scale;
 }
 

@@ -4,14 +4,11 @@
 //     v / from x y z / at x y z / up x y z / angle degrees / hither distance / resolution width height
 //     b r g b                               background; black by default
 //     l x y z [r g b]                       light
-//     f r g b Kd Ks Shine T ior             surface of the objects that follow; before the first f: white, Kd = 1
-//     s x y z radius                        sphere
-//     p n, then n times x y z               polygon
-//     pp n, then n times x y z nx ny nz     patch: polygon with a normal at each vertex
-//     c x y z radius, x y z radius          cone or cylinder from base to apex, without caps
-//     #raya plane nx ny nz d                infinite plane: points p with n.p = d
-//     #raya checker r g b r g b size        checker for the next plane, polygon or patch
-//     # anything else                       comment
+//     f r g b Kd Ks Shine T ior             surface of the objects that follow; objects before the first f: white, Kd =
+//     1 s x y z radius                        sphere p n, then n times x y z               polygon pp n, then n times x
+//     y z nx ny nz     patch: polygon with a normal at each vertex c x y z radius, x y z radius          cone or
+//     cylinder from base to apex, without caps #raya plane nx ny nz d                infinite plane: points p with n.p
+//     = d #raya checker r g b r g b size        checker for the next plane, polygon or patch # anything else comment
 //
 // An entity starts on a new line. Its numbers may span several lines, except after `#raya`. All six parts of `v` are
 // required, in any order. The value of `hither` is ignored.
@@ -28,12 +25,12 @@ namespace raya {
 
 /// A remark on a part of a file that the reader has left out or changed. Equal remarks are stored once and counted.
 struct NffRemark {
-    std::string what;  // "polygon without area, left out"
-    std::uint64_t count = 0;
-    int line = 0;  // line of the first occurrence
+    std::string what;         // "polygon without area, left out"
+    std::uint64_t count = 0;  // number of equal remarks
+    int line = 0;             // line of the first occurrence
 };
 
-/// Adds a remark, or increments the count of an equal one.
+/// Adds a remark, or increments the count of the equal remark if there is one.
 void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line);
 
 /// Returns the remark as text: "FILE:LINE: polygon without area, left out (3 in all)".
@@ -45,11 +42,11 @@ std::string remark_text(const std::string& file, const NffRemark& remark);
 /// If `remarks` is not null, parse_nff() tolerates the following deviations and adds a remark for each: it leaves out
 /// objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
 /// with a normal of 0 into polygons, and skips entities of other NFF dialects (la, lf, tt, ...) and a mail header.
-/// Prose, and a file without view or objects, remain errors.
+/// Prose remains an error, and so does a file without view or objects.
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks = nullptr);
 
-/// Reads and parses a file; "-" is stdin, which has the name "stdin". Throws UserError as parse_nff() does, and
-/// UserError "NAME: reason" if the file cannot be read.
+/// Reads and parses a file; "-" reads from stdin, which is named "stdin" in messages. Throws UserError as parse_nff()
+/// does, and UserError "NAME: reason" if the file cannot be read.
 Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remarks = nullptr);
 
 /// Returns a scene as NFF text. Numbers have the minimum number of digits that round-trip, so parse_nff() of the text

@@ -22,7 +22,8 @@ bool reads_as_keyword(std::string_view token) {
                        [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-/// Returns true if a dot or slash occurs before the last character: `wood.ppm`, but not the last word of a sentence.
+/// Returns true if a dot or slash occurs before the last character, as in `wood.ppm`. A dot at the end may end a
+/// sentence.
 bool reads_as_file(std::string_view token) {
     return token.substr(0, token.size() - 1).find_first_of("./") != token.npos;
 }
@@ -91,17 +92,17 @@ Header mail_header(std::string_view text) {
 }
 
 void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line) {
-    const auto same =
+    const auto equal_remark =
         std::find_if(remarks.begin(), remarks.end(), [&](const NffRemark& known) { return known.what == what; });
-    if (same == remarks.end())
+    if (equal_remark == remarks.end())
         remarks.push_back({what, 1, line});
     else
-        ++same->count;
+        ++equal_remark->count;
 }
 
 std::string remark_text(const std::string& file, const NffRemark& remark) {
-    const std::string all = remark.count > 1 ? fmt::format(" ({} in all)", remark.count) : "";
-    return fmt::format("{}:{}: {}{}", file, remark.line, remark.what, all);
+    const std::string total = remark.count > 1 ? fmt::format(" ({} in all)", remark.count) : "";
+    return fmt::format("{}:{}: {}{}", file, remark.line, remark.what, total);
 }
 
 }  // namespace raya

@@ -58,8 +58,8 @@ class NffWriter {
             line("l {}{}", text_of(light.position), light.colour ? after_blank(*light.colour) : "");
     }
 
-    /// Writes an `f` if it differs from the last one, and the surface's checker, if any: `#raya checker` applies only
-    /// to the next object.
+    /// Writes an `f` if it differs from the last `f`. Always writes the surface's checker, if it has one, because
+    /// `#raya checker` applies only to the next object.
     void write_surface(int index, bool flat) {
         const Surface& s = scene_.surfaces.at(static_cast<std::size_t>(index));
         const std::string fill = fmt::format("f {} {} {} {} {} {}", text_of(s.colour), s.diffuse, s.specular, s.shine,

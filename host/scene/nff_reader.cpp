@@ -19,7 +19,7 @@ namespace raya {
 namespace {
 
 constexpr int kMaxResolution = 16384;  // pixels
-constexpr double kMaxShare = 100;      // for Kd, Ks, T: above 1 is unphysical, above 100 probably a typing error
+constexpr double kMaxWeight = 100;  // of Kd, Ks and T; values above 1 are unphysical, above 100 probably typing errors
 constexpr int kMaxVertices = 1'000'000'000;
 
 class NffReader {
@@ -47,8 +47,8 @@ class NffReader {
   private:
     [[noreturn]] void refuse(std::string_view reason) const { tokens_.refuse(tokens_.entity_line(), reason); }
 
-    /// Handles an object that cannot be traced as given. In strict mode throws UserError with `reason`; otherwise adds
-    /// the remark `what`, and the caller leaves the object out or repairs it.
+    /// Reports an object that cannot be traced as given. In strict mode throws UserError with `reason`. Otherwise adds
+    /// the remark `what`; the caller then leaves the object out or repairs it.
     void remark_or_refuse(std::string_view reason, const std::string& what) {
         if (!remarks_) refuse(reason);
         add_remark(*remarks_, what, tokens_.entity_line());
@@ -68,10 +68,10 @@ class NffReader {
         return colour;
     }
 
-    double read_share(std::string_view what) {
-        const double share = tokens_.take_number(what);
-        if (share < 0 || share > kMaxShare) refuse(fmt::format("{} is {}: must be 0..{}", what, share, kMaxShare));
-        return share;
+    double read_weight(std::string_view what) {
+        const double weight = tokens_.take_number(what);
+        if (weight < 0 || weight > kMaxWeight) refuse(fmt::format("{} is {}: must be 0..{}", what, weight, kMaxWeight));
+        return weight;
     }
 
     void read_entity() {
@@ -121,7 +121,7 @@ class NffReader {
                 view.height = tokens_.take_integer("the height", 1, kMaxResolution);
             }
         }
-        if (const std::string fault = view_error(view); !fault.empty()) refuse(fault);
+        if (const std::string reason = view_error(view); !reason.empty()) refuse(reason);
         has_view_ = true;
     }
 
@@ -150,10 +150,10 @@ class NffReader {
     void read_surface() {
         Surface surface;
         surface.colour = read_colour("the colour");
-        surface.diffuse = read_share("Kd");
-        surface.specular = read_share("Ks");
+        surface.diffuse = read_weight("Kd");
+        surface.specular = read_weight("Ks");
         surface.shine = tokens_.take_number("Shine");
-        surface.transmittance = read_share("T");
+        surface.transmittance = read_weight("T");
         surface.refraction = tokens_.take_number("the index of refraction");
         if (surface.shine < 0) refuse(fmt::format("Shine is {}: must not be negative", surface.shine));
         if (surface.transmittance > 0 && surface.refraction <= 0)
@@ -162,7 +162,7 @@ class NffReader {
         scene_.surfaces.push_back(surface);
     }
 
-    /// Returns the surface of a plane or polygon: the current one, with the pending checker, if any.
+    /// Returns the surface of a plane or polygon: the current surface, with the pending checker if there is one.
     int take_flat_surface() {
         if (!checker_) return current_surface_;
         Surface surface = scene_.surfaces[static_cast<std::size_t>(current_surface_)];
@@ -187,8 +187,8 @@ class NffReader {
         const int min_count = remarks_ ? 0 : 3;
         const auto count =
             static_cast<std::size_t>(tokens_.take_integer("the number of vertices", min_count, kMaxVertices));
-        const std::size_t shortest = patch ? 12 : 6;  // minimum characters: one digit and one blank per number
-        if (count > tokens_.characters_left() / shortest + 2)
+        const std::size_t min_characters = patch ? 12 : 6;  // per vertex: one digit and one blank for each number
+        if (count > tokens_.characters_left() / min_characters + 2)
             refuse(fmt::format("the file is too short for a polygon of {} vertices", count));
         for (std::size_t i = 0; i < count; ++i) {
             polygon.vertices.push_back(read_vector("a vertex"));
@@ -252,10 +252,10 @@ class NffReader {
     }
 
     void read_plane() {
-        const Vec3 given = read_vector("the normal");
-        Plane plane{unit_vector(given), read_length("the distance"), 0};
+        const Vec3 file_normal = read_vector("the normal");
+        Plane plane{unit_vector(file_normal), read_length("the distance"), 0};
         if (plane.normal == Vec3(0)) refuse("the normal of the plane is zero");
-        if (plane.normal != given) plane.distance /= given.length();
+        if (plane.normal != file_normal) plane.distance /= file_normal.length();
         if (!(std::abs(plane.distance) <= kMaxSceneLength))
             refuse("the plane is too far from the origin: at most 1e30 with a normal of length 1");
         plane.surface = take_flat_surface();

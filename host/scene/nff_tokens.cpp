@@ -26,8 +26,8 @@ struct ParsedNumber {
     std::errc error{};
 };
 
-/// Parses the number at the start of a text. Uses std::from_chars, which ignores the locale. It rejects a leading '+',
-/// which scanf, and so other NFF readers, accept; hence the '+' is removed first.
+/// Parses the number at the start of a text with std::from_chars, which ignores the locale. Removes a leading '+'
+/// first, because std::from_chars rejects it, while scanf and therefore other NFF readers accept it.
 ParsedNumber parsed_number(std::string_view text) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     ParsedNumber number;

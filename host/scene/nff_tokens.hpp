@@ -9,11 +9,12 @@ namespace raya {
 /// Maximum magnitude of colours, exponents and other numbers that are not lengths.
 inline constexpr double kMaxNumber = 1e9;
 
-/// Maximum magnitude of lengths. Products of four lengths must not overflow a double; the packer scales lengths into
-/// the range of the number format.
+/// Maximum magnitude of lengths, so that products of four lengths do not overflow a double. The packer scales lengths
+/// into the range of the number format.
 inline constexpr double kMaxSceneLength = 1e30;
 
-inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8; some editors write it
+// The byte order mark of UTF-8, which some editors write at the start of a file.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// A run of characters without white space. At the end of the file `text` is empty.
 struct NffToken {
@@ -33,8 +34,8 @@ class NffTokens {
     /// Returns the next token without taking it.
     const NffToken& peek() const { return next_; }
 
-    /// Takes the keyword of the next entity. It must be the first token of a line. An entity that starts with `#raya`
-    /// must end on the same line.
+    /// Takes the keyword of the next entity. The keyword must be the first token of a line. An entity that starts with
+    /// `#raya` must end on the same line.
     std::string_view take_keyword();
 
     /// Takes the name after `#raya`, or the name of a part of `v`; `what` describes it in messages.

@@ -17,12 +17,12 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 void drop_repeats(Polygon& polygon) {
-    const Polygon given = std::exchange(polygon, {{}, {}, polygon.surface});
-    const std::size_t count = given.vertices.size();
+    const Polygon original = std::exchange(polygon, {{}, {}, polygon.surface});
+    const std::size_t count = original.vertices.size();
     for (std::size_t i = 0; i < count; ++i) {
-        if (given.vertices[i] == given.vertices[(i + count - 1) % count]) continue;
-        polygon.vertices.push_back(given.vertices[i]);
-        if (!given.normals.empty()) polygon.normals.push_back(given.normals[i]);
+        if (original.vertices[i] == original.vertices[(i + count - 1) % count]) continue;
+        polygon.vertices.push_back(original.vertices[i]);
+        if (!original.normals.empty()) polygon.normals.push_back(original.normals[i]);
     }
 }
 
@@ -41,33 +41,33 @@ OutlineCheck clean_outline(Polygon& polygon) {
     const std::vector<Vec3>& vertices = polygon.vertices;
     if (vertices.size() < 3) return {OutlineFault::kNoArea, "has fewer than three different vertices"};
 
-    double size = 0, reach = 0;
+    double size = 0, largest = 0;  // longest side of the bounding box; largest coordinate
     Vec3 mean(0);
     for (const Vec3& v : vertices) {
         for (int axis = 0; axis < 3; ++axis) {
             size = std::max(size, std::abs(v[axis] - vertices[0][axis]));
-            reach = std::max(reach, std::abs(v[axis]));
+            largest = std::max(largest, std::abs(v[axis]));
         }
         mean += (v - vertices[0]) / static_cast<double>(vertices.size());
     }
     if (size < kMinSceneLength) return {OutlineFault::kNoArea, fmt::format("is smaller than {}", kMinSceneLength)};
 
-    // Upper bound of the doubled area that rounding errors alone can give to collinear vertices.
-    const double no_area = 1e-12 * size * size + 8 * kEpsilon * reach * size;
+    // Upper bound of the doubled area that collinear vertices can have because of rounding errors.
+    const double max_error = 1e-12 * size * size + 8 * kEpsilon * largest * size;
     const Vec3 normal = newell_normal(vertices);
-    for (std::size_t i = 2; normal.length() <= no_area && i < vertices.size(); ++i)
-        if ((vertices[i - 1] - vertices[0]).cross(vertices[i] - vertices[0]).length() > no_area)
+    for (std::size_t i = 2; normal.length() <= max_error && i < vertices.size(); ++i)
+        if ((vertices[i - 1] - vertices[0]).cross(vertices[i] - vertices[0]).length() > max_error)
             return {OutlineFault::kCrosses, "crosses or retraces itself, so that its signed area is 0"};
-    if (normal.length() <= no_area) return {OutlineFault::kNoArea, "has no area"};
+    if (normal.length() <= max_error) return {OutlineFault::kNoArea, "has no area"};
 
-    double off = 0;
+    double off_plane = 0;  // maximum distance of a vertex from the plane
     for (const Vec3& v : vertices)
-        off = std::max(off, std::abs((v - vertices[0] - mean).dot(normal) / normal.length()));
-    if (off > kFlatness * size)
+        off_plane = std::max(off_plane, std::abs((v - vertices[0] - mean).dot(normal) / normal.length()));
+    if (off_plane > kFlatness * size)
         return {OutlineFault::kNotFlat,
                 fmt::format("is not flat: a vertex lies {:.3g} off its plane, more than {:.3g} ({} of its size); cut "
                             "it into triangles",
-                            off, kFlatness * size, kFlatness)};
+                            off_plane, kFlatness * size, kFlatness)};
     return {};
 }
 

@@ -7,18 +7,17 @@
 namespace raya {
 
 /// Shorter lengths are treated as 0, because products of four lengths must not underflow a double. Scenes may use any
-/// unit: length_scale.hpp handles lengths that are too small for a number format compared with the scene's largest
-/// length.
+/// unit of length; length_scale.hpp handles lengths that are too small for a number format.
 inline constexpr double kMinSceneLength = 1e-30;
 
 /// Maximum distance of a vertex from the plane of its polygon, relative to the polygon's size (the longest side of its
-/// bounding box). Vertices with six digits deviate by about 1e-5. 1e-3 is one pixel of a polygon that spans 1,000
-/// pixels.
+/// bounding box). The limit 1e-3 is one pixel of a polygon that spans 1,000 pixels. Rounding of the vertices to six
+/// digits causes only about 1e-5.
 inline constexpr double kFlatness = 1e-3;
 
 enum class OutlineFault { kNone, kNoArea, kCrosses, kNotFlat };
 
-/// The defect of an outline. `reason` completes a sentence that begins with "the polygon".
+/// Result of the check of an outline. `reason` completes a sentence that begins with "the polygon".
 struct OutlineCheck {
     OutlineFault fault = OutlineFault::kNone;
     std::string reason;
@@ -32,7 +31,8 @@ OutlineCheck clean_outline(Polygon& polygon);
 /// scene does not change it; also returns the zero vector unchanged.
 Vec3 unit_vector(const Vec3& v);
 
-/// Returns why a view is invalid, for example "'from' and 'at' are the same point", or empty if it is valid.
+/// Returns the reason why a view is invalid, for example "'from' and 'at' are the same point", or an empty string if
+/// the view is valid.
 std::string view_error(const View& view);
 
 /// Returns true if all components are in 0..kMaxNumber.

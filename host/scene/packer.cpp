@@ -13,12 +13,12 @@
 namespace raya {
 namespace {
 
-// The words of a job, in one number format and with one length scale.
+// The words of a job, with the number format and the length scale of its numbers.
 struct JobWords : std::vector<std::uint32_t> {
     NumberFormat format;
-    double unit;  // the length in the job of one scene unit: a power of two
+    double unit;  // job units per scene unit, a power of two
 
-    JobWords(const NumberFormat& of_numbers, double of_lengths) : format(of_numbers), unit(of_lengths) {}
+    JobWords(const NumberFormat& number_format, double job_unit) : format(number_format), unit(job_unit) {}
 };
 
 void put(JobWords& words, double value) {
@@ -27,7 +27,8 @@ void put(JobWords& words, double value) {
 void put(JobWords& words, const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) put(words, v[axis]);
 }
-// Lengths and positions, squares of lengths, and reciprocal lengths are scaled; put() appends dimensionless numbers.
+// The following functions scale: lengths and positions, squares of lengths, and reciprocal lengths. put() appends
+// dimensionless numbers, which are not scaled.
 template <class Value>
 void put_length(JobWords& words, const Value& value) {
     put(words, words.unit * value);
@@ -36,16 +37,19 @@ void put_square(JobWords& words, double value) { put(words, words.unit * words.u
 void put_per_length(JobWords& words, const Vec3& v) { put(words, v / words.unit); }
 void put_index(JobWords& words, std::size_t value) { words.push_back(static_cast<std::uint32_t>(value)); }
 
-void store(float (&to)[3], const Vec3& from, const NumberFormat& format) {
-    for (int axis = 0; axis < 3; ++axis) to[axis] = round_to_format(from[axis], format);
+void store(float (&field)[3], const Vec3& value, const NumberFormat& format) {
+    for (int axis = 0; axis < 3; ++axis) field[axis] = round_to_format(value[axis], format);
 }
 
-// The primary rays as a corner and two steps (kernels/README.md, Camera).
+// Writes the camera into the job: the eye, and the directions of primary rays as a corner and two steps
+// (kernels/README.md, Camera).
 void pack_camera(raya_job& job, const View& view, const JobSettings& settings) {
-    const bool corners = settings.sampling == Sampling::kCorners;
-    const auto samples = [&](std::uint32_t pixels) { return corners ? std::max(1.0, pixels - 1.0) : double(pixels); };
-    const auto first = [&](std::uint32_t pixels) { return corners ? (pixels == 1 ? 0.5 : 0.0) : 0.5; };
-    const double columns = samples(settings.image.width), rows = samples(settings.image.height);
+    const bool at_corners = settings.sampling == Sampling::kCorners;
+    const auto sample_count = [&](std::uint32_t pixels) {
+        return at_corners ? std::max(1.0, pixels - 1.0) : double(pixels);
+    };
+    const auto first_sample = [&](std::uint32_t pixels) { return at_corners ? (pixels == 1 ? 0.5 : 0.0) : 0.5; };
+    const double columns = sample_count(settings.image.width), rows = sample_count(settings.image.height);
     const Vec3 gaze = (view.at - view.from).normalized();
     const Vec3 right = gaze.cross(view.up).normalized(), top = right.cross(gaze);
     const double half_height = std::tan(view.angle_degrees * std::numbers::pi / 360);
@@ -54,8 +58,8 @@ void pack_camera(raya_job& job, const View& view, const JobSettings& settings) {
     store(job.column_step, step * right, settings.format);
     store(job.row_step, -step * top, settings.format);
     store(job.corner,
-          gaze + (first(settings.image.width) - columns / 2) * step * right -
-              (first(settings.image.height) - rows / 2) * step * top,
+          gaze + (first_sample(settings.image.width) - columns / 2) * step * right -
+              (first_sample(settings.image.height) - rows / 2) * step * top,
           settings.format);
 }
 
@@ -101,7 +105,7 @@ void pack_corners(JobWords& words, const Face& face) {
     }
 }
 
-// The shading normal as a linear function of the outline's coordinates.
+// Appends the shading normal as a linear function of the outline's coordinates.
 void pack_patch(JobWords& words, const Face& face, int axis) {
     const auto corner = [&](int i) { return outline_point(face.polygon->vertices[face.corners[i]], axis); };
     const auto normal = [&](int i) { return face.polygon->normals[face.corners[i]]; };
@@ -150,7 +154,7 @@ void pack_cone(JobWords& words, const Cone& c, const std::vector<std::uint32_t>&
     put_index(words, c.base_radius < 0 || c.apex_radius < 0 ? 1 : 0);
 }
 
-// All of the job but where its lists start.
+// Returns the job's header without the sizes and offsets of its lists, which pack_objects() adds.
 raya_job header_of(const Scene& scene, const JobSettings& settings) {
     raya_job job{};
     job.mapping = {settings.image.width, settings.image.height, 1, 0, RAYA_FOLD_CYCLIC};
@@ -163,33 +167,34 @@ raya_job header_of(const Scene& scene, const JobSettings& settings) {
     return job;
 }
 
-// Appends spheres, lights, planes, cones and polygons, and writes their numbers and offsets into the job.
+// Appends spheres, lights, planes, cones and polygons. Writes the number of each kind and the offset of its list into
+// the job's header.
 void pack_objects(JobWords& words, raya_job& job, const Scene& scene, const std::vector<Face>& faces,
                   const std::vector<std::uint32_t>& surface_at) {
-    const auto start = [&](const auto& list, std::uint32_t& count, std::uint32_t& at) {
+    const auto start_list = [&](const auto& list, std::uint32_t& count, std::uint32_t& at) {
         count = static_cast<std::uint32_t>(list.size());
         at = static_cast<std::uint32_t>(words.size());
     };
-    start(scene.spheres, job.objects.spheres, job.objects.spheres_at);
+    start_list(scene.spheres, job.objects.spheres, job.objects.spheres_at);
     for (const Sphere& s : scene.spheres) {
         put_length(words, s.centre);
         put_square(words, std::copysign(s.radius * s.radius, s.radius));
     }
     for (const Sphere& s : scene.spheres) words.push_back(surface_at[s.surface]);
-    start(scene.lights, job.lights, job.lights_at);
+    start_list(scene.lights, job.lights, job.lights_at);
     for (const Light& light : scene.lights) {
         put_length(words, light.position);
         put(words, light_colour(scene, light));
     }
-    start(scene.planes, job.objects.planes, job.objects.planes_at);
+    start_list(scene.planes, job.objects.planes, job.objects.planes_at);
     for (const Plane& p : scene.planes) {
         put(words, p.normal);
         put_length(words, p.distance);
         words.push_back(surface_at[p.surface]);
     }
-    start(scene.cones, job.objects.cones, job.objects.cones_at);
+    start_list(scene.cones, job.objects.cones, job.objects.cones_at);
     for (const Cone& c : scene.cones) pack_cone(words, c, surface_at);
-    start(faces, job.objects.polygons, job.objects.polygons_at);
+    start_list(faces, job.objects.polygons, job.objects.polygons_at);
     pack_faces(words, faces, surface_at);
 }
 

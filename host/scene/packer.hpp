@@ -19,10 +19,10 @@ namespace raya {
 template <class Record>
 inline constexpr std::size_t kWordsOf = sizeof(Record) / sizeof(std::uint32_t);
 
-/// Maximum number of words (4 GB) of a job or of a torus node's memory; 32-bit indices can address them.
+/// Maximum number of words (4 GB) of a job or of a torus node's memory, so that 32-bit indices can address them.
 inline constexpr std::size_t kMaxWords = std::size_t{1} << 30;
 
-/// Returns `words` rounded up to a multiple of four, as kernels read float4.
+/// Returns `words` rounded up to a multiple of four, because kernels read float4.
 constexpr std::size_t padded_to_rows(std::size_t words) { return (words + 3) / 4 * 4; }
 
 template <class Record>
@@ -31,15 +31,16 @@ using WordsOf = std::array<std::uint32_t, kWordsOf<Record>>;
 /// Reads the record that starts at words[at].
 template <class Record>
 Record record_at(std::span<const std::uint32_t> words, std::size_t at) {
-    WordsOf<Record> own;
-    std::copy_n(words.subspan(at, own.size()).begin(), own.size(), own.begin());
-    return std::bit_cast<Record>(own);
+    WordsOf<Record> record;
+    std::copy_n(words.subspan(at, record.size()).begin(), record.size(), record.begin());
+    return std::bit_cast<Record>(record);
 }
 
+/// Writes the record to words[at] and the following words.
 template <class Record>
 void put_record(std::span<std::uint32_t> words, std::size_t at, const Record& record) {
-    const auto own = std::bit_cast<WordsOf<Record>>(record);
-    std::copy(own.begin(), own.end(), words.subspan(at, own.size()).begin());
+    const auto record_words = std::bit_cast<WordsOf<Record>>(record);
+    std::copy(record_words.begin(), record_words.end(), words.subspan(at, record_words.size()).begin());
 }
 
 /// The position of the primary ray in a pixel (kernels/README.md, Camera).

@@ -13,8 +13,7 @@ using Vec2 = Imath::V2d;
 /// Returns twice the signed area of a triangle; > 0 if the triangle is counter-clockwise.
 double doubled_area(const Vec2& a, const Vec2& b, const Vec2& c) { return (b - a).cross(c - a); }
 
-/// Returns the vertices in the two coordinates other than dropped_axis(), mirrored if necessary so that they are
-/// counter-clockwise.
+/// Returns the vertices projected along dropped_axis(). Mirrors them if necessary so that they are counter-clockwise.
 std::vector<Vec2> flattened(const std::vector<Vec3>& vertices, const Vec3& normal) {
     const int axis = dropped_axis(normal);
     const int first = axis == 0 ? 1 : 0;
@@ -28,16 +27,16 @@ std::vector<Vec2> flattened(const std::vector<Vec3>& vertices, const Vec3& norma
     return flat;
 }
 
-/// Returns true if a corner (previous vertex, vertex, next vertex) is an ear: convex, with no other vertex of `rest` in
-/// its triangle. Vertices on the triangle's border count as inside, so that cutting off an ear never leaves a
-/// degenerate polygon. Vertices at the same position as one of the three are ignored: they occur where a cut joins a
-/// hole to the outline.
-bool is_ear(const std::vector<Vec2>& flat, const std::vector<int>& rest, const std::array<int, 3>& corner) {
-    const auto at = [&](int i) { return flat[static_cast<std::size_t>(i)]; };
-    const Vec2 a = at(corner[0]), b = at(corner[1]), c = at(corner[2]);
+/// Returns true if a corner (previous vertex, vertex, next vertex) is an ear: convex, with no other vertex of
+/// `remaining` in its triangle. Vertices on the triangle's border count as inside, so that cutting off an ear never
+/// leaves a degenerate polygon. Vertices at the same position as a vertex of the corner are ignored, because they occur
+/// where a cut joins a hole to the outline.
+bool is_ear(const std::vector<Vec2>& flat, const std::vector<int>& remaining, const std::array<int, 3>& corner) {
+    const auto vertex = [&](int i) { return flat[static_cast<std::size_t>(i)]; };
+    const Vec2 a = vertex(corner[0]), b = vertex(corner[1]), c = vertex(corner[2]);
     if (doubled_area(a, b, c) <= 0) return false;
-    for (const int i : rest) {
-        const Vec2 p = at(i);
+    for (const int i : remaining) {
+        const Vec2 p = vertex(i);
         if (p == a || p == b || p == c) continue;
         if (doubled_area(a, b, p) >= 0 && doubled_area(b, c, p) >= 0 && doubled_area(c, a, p) >= 0) return false;
     }
@@ -63,23 +62,23 @@ int dropped_axis(const Vec3& normal) {
 
 std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, const Vec3& normal) {
     const std::vector<Vec2> flat = flattened(vertices, normal);
-    std::vector<int> rest;
-    for (std::size_t i = 0; i < vertices.size(); ++i) rest.push_back(static_cast<int>(i));
+    std::vector<int> remaining;
+    for (std::size_t i = 0; i < vertices.size(); ++i) remaining.push_back(static_cast<int>(i));
     const auto corner = [&](std::size_t i) {
-        const std::size_t n = rest.size();
-        return std::array<int, 3>{rest[(i + n - 1) % n], rest[i], rest[(i + 1) % n]};
+        const std::size_t n = remaining.size();
+        return std::array<int, 3>{remaining[(i + n - 1) % n], remaining[i], remaining[(i + 1) % n]};
     };
     std::vector<std::array<int, 3>> triangles;
-    while (rest.size() >= 3) {
+    while (remaining.size() >= 3) {
         std::size_t ear = 1;  // default, also if there is no ear: triangle (0, 1, 2)
-        if (rest.size() > 3)
-            for (std::size_t i = 0; i < rest.size(); ++i)
-                if (is_ear(flat, rest, corner(i))) {
+        if (remaining.size() > 3)
+            for (std::size_t i = 0; i < remaining.size(); ++i)
+                if (is_ear(flat, remaining, corner(i))) {
                     ear = i;
                     break;
                 }
         triangles.push_back(corner(ear));
-        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
+        remaining.erase(remaining.begin() + static_cast<std::ptrdiff_t>(ear));
     }
     return triangles;
 }

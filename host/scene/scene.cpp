@@ -18,7 +18,7 @@ double shared_intensity(std::size_t lights) {
 
 using SurfaceKey = std::array<double, 16>;
 
-/// Returns all numbers of a surface. Equal surfaces have equal keys.
+/// Returns all numbers of a surface, so that equal surfaces have equal keys.
 SurfaceKey surface_key(const Surface& s) {
     const Checker c = s.checker.value_or(Checker{Colour(0), Colour(0), 0});
     return {s.colour.x, s.colour.y, s.colour.z, s.diffuse, s.specular, s.shine, s.transmittance, s.refraction,
@@ -28,17 +28,18 @@ SurfaceKey surface_key(const Surface& s) {
 }  // namespace
 
 void share_surfaces(Scene& scene) {
-    const std::vector<Surface> before = std::exchange(scene.surfaces, {});
-    std::map<SurfaceKey, int> numbers;
-    std::vector<int> known(before.size(), -1);  // new index of each old surface; -1: not used so far
-    const auto number_of = [&](std::size_t surface) {
-        if (known.at(surface) >= 0) return known[surface];
-        const auto [entry, added] = numbers.try_emplace(surface_key(before[surface]), static_cast<int>(numbers.size()));
-        if (added) scene.surfaces.push_back(before[surface]);
-        return known[surface] = entry->second;
+    const std::vector<Surface> old_surfaces = std::exchange(scene.surfaces, {});
+    std::map<SurfaceKey, int> index_of_key;
+    std::vector<int> new_index(old_surfaces.size(), -1);  // new index of each old surface; -1: none so far
+    const auto index_of = [&](std::size_t surface) {
+        if (new_index.at(surface) >= 0) return new_index[surface];
+        const auto [entry, added] =
+            index_of_key.try_emplace(surface_key(old_surfaces[surface]), static_cast<int>(index_of_key.size()));
+        if (added) scene.surfaces.push_back(old_surfaces[surface]);
+        return new_index[surface] = entry->second;
     };
     const auto renumber = [&](auto& objects) {
-        for (auto& object : objects) object.surface = number_of(static_cast<std::size_t>(object.surface));
+        for (auto& object : objects) object.surface = index_of(static_cast<std::size_t>(object.surface));
     };
     renumber(scene.spheres);
     renumber(scene.planes);

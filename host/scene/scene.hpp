@@ -50,7 +50,7 @@ struct Surface {
     bool operator==(const Surface&) const = default;
 };
 
-/// A sphere (`s`). In every object, `surface` is an index into Scene::surfaces.
+/// A sphere (`s` of NFF). The member `surface` of every object is an index into Scene::surfaces.
 struct Sphere {
     Vec3 centre;
     double radius = 1;  // < 0: only the inside is visible
@@ -86,9 +86,9 @@ struct Cone {
 };
 
 /// The contents of a scene file. Objects are numbered by kind, then by their order in the file: all spheres, then
-/// planes, polygons and cones. Of two hits at equal distance, that of the object with the lower number is used.
+/// planes, polygons and cones. If a ray hits two objects at equal distance, the object with the lower number counts.
 struct Scene {
-    std::string name;  // the file's name without folder, or a name given by the generator
+    std::string name;  // name of the file without folder, or a name chosen by the generator
     Colour background{0, 0, 0};
     View view;
     std::vector<Light> lights;
@@ -106,8 +106,8 @@ struct Scene {
 /// order in which the objects, by number, first use them.
 void share_surfaces(Scene& scene);
 
-/// Returns the colour of a light of this scene: its own, or white of intensity sqrt(n) / (2 n) for n lights (SPD, E.
-/// Haines).
+/// Returns the colour of a light of this scene: Light::colour, or if it is empty, white of intensity sqrt(n) / (2 n)
+/// for n lights (SPD, E. Haines).
 Colour light_colour(const Scene& scene, const Light& light);
 
 /// Returns the intensity of ambient light: sqrt(n) / (2 n) for n lights (SPD), or 1 without lights, so that the image

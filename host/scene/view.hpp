@@ -1,4 +1,4 @@
-// Rotation of the camera around its target, random views, and the bounding box of a scene.
+// Rotation of the eye around the point that it looks at, random views, and the bounding box of a scene.
 #pragma once
 #include <Imath/ImathBox.h>
 
@@ -9,18 +9,19 @@
 namespace raya {
 
 /// Rotates the eye by `degrees` around the axis through `at` along `up`, counter-clockwise when `up` points towards the
-/// observer. Height and distance stay the same. Full turns change no bit; quarter turns use exact sines and cosines.
+/// observer. The eye keeps its height and distance. Full turns change no bit; quarter turns use exact sines and
+/// cosines.
 View turned(View view, double degrees);
 
-inline constexpr double kLowestView = 5, kHighestView = 75;  // elevation above the target, degrees
+inline constexpr double kLowestView = 5, kHighestView = 75;  // elevations of the eye above `at`, degrees
 
 /// Returns the scene with a random eye at the same distance from `at`. The eye is uniformly distributed on the zone of
 /// the sphere around `at` between the elevations kLowestView and kHighestView above the plane perpendicular to `up`.
 /// The result depends only on the arguments, not on the platform: directions are rounded to six decimals.
 Scene random_view(Scene scene, std::uint64_t seed);
 
-/// Returns the axis-aligned bounding box of all spheres, polygons and cones, in scene units; empty (isEmpty()) if the
-/// scene has only planes.
+/// Returns the axis-aligned bounding box of all spheres, polygons and cones, in scene units; the box is empty
+/// (isEmpty()) if the scene has only planes.
 Imath::Box3d scene_box(const Scene& scene);
 
 }  // namespace raya

@@ -18,21 +18,21 @@ AsyncSimulation::AsyncSimulation(const raya_torus& torus, const History& history
       delivered_(history.messages.size()),
       nodes_(raya_nodes(torus)),
       channels_(nodes_.size() * RAYA_LINKS) {
-    for (std::uint32_t link = 0; link < channels_.size(); ++link) {
-        Channel& channel = channels_[link];
-        channel.start = link / RAYA_LINKS;
-        channel.end = raya_link_end(torus, channel.start, link % RAYA_LINKS);
-        channel.opposite = channel.end * RAYA_LINKS + (link % RAYA_LINKS ^ 1u);
+    for (std::uint32_t i = 0; i < channels_.size(); ++i) {
+        Channel& channel = channels_[i];
+        channel.start = i / RAYA_LINKS;
+        channel.end = raya_link_end(torus, channel.start, i % RAYA_LINKS);
+        channel.opposite = channel.end * RAYA_LINKS + (i % RAYA_LINKS ^ 1u);
     }
     for (std::uint32_t task = 0; task < history.tasks.size(); ++task)
-        if (history.tasks[task].cause == HistoryTask::kInjection)
+        if (history.tasks[task].cause == HistoryTask::kNoCause)
             nodes_[history.tasks[task].node].injection_tasks.push_back(task);
     result_.nodes.resize(nodes_.size());
     result_.links.resize(channels_.size());
 }
 
-void AsyncSimulation::schedule(double after, EventKind kind, std::uint32_t location, std::uint32_t version) {
-    events_.push({now_ + after, event_count_++, kind, location, version});
+void AsyncSimulation::schedule(double delay, EventKind kind, std::uint32_t location, std::uint32_t version) {
+    events_.push({now_ + delay, event_count_++, kind, location, version});
 }
 
 AsyncResult AsyncSimulation::run() {
@@ -52,7 +52,7 @@ void AsyncSimulation::handle(const Event& event) {
     const bool valid = event.kind == EventKind::kMessageDone ||
                        event.version == (event.kind == EventKind::kTaskDone ? nodes_[event.location].version
                                                                             : channels_[event.location].version);
-    if (!valid) return;  // obsolete: the event was rescheduled
+    if (!valid) return;  // the event is obsolete
     now_ = event.time;
     result_.finish_ms = now_ * kMsPerNs;
     if (event.kind == EventKind::kMessageDone) finish_job(event.location);

@@ -1,4 +1,5 @@
-// First the processors (communication task, main task), then the links (output threads, transfers, input threads).
+// The first functions implement the processors (communication task, main task), the others the links (output threads,
+// transfers, input threads).
 #include "host/torus/async_simulation.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ constexpr double kBytesPerWord = 4, kNsPerS = 1e9;
 
 }  // namespace
 
-// Adds a job of the communication task, which preempts the main task.
+// Adds a job of the communication task. The job preempts the main task.
 void AsyncSimulation::add_job(std::uint32_t node, const MessageJob& job) {
     nodes_[node].jobs.push_back(job);
     run_processor(node);
@@ -47,13 +48,13 @@ void AsyncSimulation::finish_job(std::uint32_t node) {
     n.jobs.pop_front();
     n.in_job = false;
     if (job.receiving)
-        receive(job.link, job.message);
+        receive(job.channel, job.message);
     else
-        begin_transfer(job.link);
+        begin_transfer(job.channel);
     run_processor(node);
 }
 
-// Starts the task of the first waiting ray, or, if none waits, the node's next task without a cause.
+// Starts the task of the first ray in the queue or, if the queue is empty, the node's next task without a cause.
 void AsyncSimulation::start_next_task(std::uint32_t node) {
     Node& n = nodes_[node];
     if (n.task != kNone || (n.queue.empty() && n.injection_tasks.empty())) return;
@@ -81,17 +82,17 @@ void AsyncSimulation::finish_task(std::uint32_t node) {
 // Sends the remaining messages of the current task until a port is full.
 void AsyncSimulation::send_outputs(std::uint32_t node) {
     Node& n = nodes_[node];
-    const std::span<const HistoryMessage> made = history_.sent_by(n.task);
-    while (n.sent < made.size()) {
+    const std::span<const HistoryMessage> messages = history_.sent_by(n.task);
+    while (n.sent < messages.size()) {
         const std::uint32_t message = history_.tasks[n.task].first_message + n.sent;
-        const std::uint32_t link = next_channel(node, message);
-        if (link == kNone) {
+        const std::uint32_t channel_index = next_channel(node, message);
+        if (channel_index == kNone) {
             ++n.sent;
             deliver(message);
             continue;
         }
         const std::uint32_t slots = class_of(message) == 1 ? machine_.entry_slots : 1;
-        if (!enqueue(link, {kNone, message, slots})) {
+        if (!enqueue(channel_index, {kNone, message, slots})) {
             n.blocked_since = now_;
             return;
         }
@@ -105,54 +106,54 @@ void AsyncSimulation::deliver(std::uint32_t message) {
     if (delivered_[message]) throw std::logic_error("async: a message arrives twice");
     delivered_[message] = true;
     ++result_.delivered;
-    if (task_of_message_[message] == HistoryTask::kInjection) return;
-    const std::uint32_t node = history_.messages[message].to;
+    if (task_of_message_[message] == HistoryTask::kNoCause) return;
+    const std::uint32_t node = history_.messages[message].destination;
     auto& queue = nodes_[node].queue;
     queue.push_back(message);
     result_.nodes[node].queue_max = std::max<std::uint64_t>(result_.nodes[node].queue_max, queue.size());
     start_next_task(node);
 }
 
-// Returns the channel by which the message leaves the node; kNone if the node is its destination.
+// Returns the channel by which the message leaves the node; kNone if the node is the message's destination.
 std::uint32_t AsyncSimulation::next_channel(std::uint32_t node, std::uint32_t message) const {
-    const std::uint32_t to = history_.messages[message].to;
-    if (node == to) return kNone;
+    const std::uint32_t destination = history_.messages[message].destination;
+    if (node == destination) return kNone;
     const std::uint32_t link =
-        class_of(message) == 0 ? raya_return_link(torus_, node) : raya_next_link(torus_, node, to);
+        class_of(message) == 0 ? raya_return_link(torus_, node) : raya_next_link(torus_, node, destination);
     return node * RAYA_LINKS + link;
 }
 
-// Puts the message into the output thread, or, if too few slots are free, adds it to the blocked messages and returns
-// false.
-bool AsyncSimulation::enqueue(std::uint32_t link, const BlockedMessage& from) {
-    const std::uint32_t cls = class_of(from.message);
-    Channel& channel = channels_[link];
-    if (channel.out[cls].size() + from.slots_needed > machine_.buffer) {
-        channel.blocked[cls].push_back(from);
+// Puts the message into the output thread of the channel. If too few slots are free, adds it to the blocked messages
+// instead and returns false.
+bool AsyncSimulation::enqueue(std::uint32_t channel_index, const BlockedMessage& blocked_message) {
+    const std::uint32_t message_class = class_of(blocked_message.message);
+    Channel& channel = channels_[channel_index];
+    if (channel.out[message_class].size() + blocked_message.slots_needed > machine_.buffer) {
+        channel.blocked[message_class].push_back(blocked_message);
         return false;
     }
-    channel.out[cls].push_back(from.message);
-    start_sending(link);
+    channel.out[message_class].push_back(blocked_message.message);
+    start_sending(channel_index);
     return true;
 }
 
 // Called when a slot of an output thread has become free: admits the first blocked message for which enough slots are
 // free. So a ray that stays in its ring can overtake a ray that waits to enter the ring.
-void AsyncSimulation::admit_blocked(std::uint32_t link, std::uint32_t cls) {
-    Channel& channel = channels_[link];
+void AsyncSimulation::admit_blocked(std::uint32_t channel_index, std::uint32_t message_class) {
+    Channel& channel = channels_[channel_index];
     for (;;) {
-        auto& blocked = channel.blocked[cls];
+        auto& blocked = channel.blocked[message_class];
         const auto fits = [&](const BlockedMessage& b) {
-            return channel.out[cls].size() + b.slots_needed <= machine_.buffer;
+            return channel.out[message_class].size() + b.slots_needed <= machine_.buffer;
         };
         const auto first = std::ranges::find_if(blocked, fits);
         if (first == blocked.end()) return;
         const BlockedMessage next = *first;
         blocked.erase(first);
-        channel.out[cls].push_back(next.message);
-        start_sending(link);
-        if (next.link != kNone) {
-            free_input(next.link, cls);
+        channel.out[message_class].push_back(next.message);
+        start_sending(channel_index);
+        if (next.channel != kNone) {
+            free_input(next.channel, message_class);
         } else {
             Node& n = nodes_[channel.start];
             result_.nodes[channel.start].port_ms += (now_ - n.blocked_since) * kMsPerNs;
@@ -164,31 +165,31 @@ void AsyncSimulation::admit_blocked(std::uint32_t link, std::uint32_t cls) {
 
 // Sends the first message of a class for which the input thread has a free slot. Returns have priority, because they
 // are short.
-void AsyncSimulation::start_sending(std::uint32_t link) {
-    Channel& channel = channels_[link];
+void AsyncSimulation::start_sending(std::uint32_t channel_index) {
+    Channel& channel = channels_[channel_index];
     if (channel.sending) return;
-    for (std::uint32_t cls = 0; cls < kClasses; ++cls) {
-        if (channel.out[cls].empty() || channel.input_occupied[cls]) continue;
-        channel.sending = channel.out[cls].front();
-        channel.sent_class = cls;
-        channel.input_occupied[cls] = true;
-        return add_job(channel.start, {link, *channel.sending, false});
+    for (std::uint32_t message_class = 0; message_class < kClasses; ++message_class) {
+        if (channel.out[message_class].empty() || channel.input_occupied[message_class]) continue;
+        channel.sending = channel.out[message_class].front();
+        channel.sent_class = message_class;
+        channel.input_occupied[message_class] = true;
+        return add_job(channel.start, {channel_index, *channel.sending, false});
     }
 }
 
-void AsyncSimulation::begin_transfer(std::uint32_t link) {
-    Channel& channel = channels_[link];
+void AsyncSimulation::begin_transfer(std::uint32_t channel_index) {
+    Channel& channel = channels_[channel_index];
     channel.transferring = true;
     channel.words_left = history_.messages[*channel.sending].words;
     channel.rate = 0;
     channel.transfer_start = now_;
-    set_rate(link);
+    set_rate(channel_index);
     if (channels_[channel.opposite].transferring) set_rate(channel.opposite);
 }
 
-// Updates the rate of the current transfer to the rate that is now available to this direction of the link.
-void AsyncSimulation::set_rate(std::uint32_t link) {
-    Channel& channel = channels_[link];
+// Sets the rate of the current transfer to the rate that is now available to the channel, and reschedules its end.
+void AsyncSimulation::set_rate(std::uint32_t channel_index) {
+    Channel& channel = channels_[channel_index];
     channel.words_left -= channel.rate * (now_ - channel.rate_since);
     channel.rate_since = now_;
     double ns = 0;
@@ -197,40 +198,40 @@ void AsyncSimulation::set_rate(std::uint32_t link) {
                        (kBytesPerWord * kNsPerS);
         ns = channel.words_left / channel.rate;
     }
-    schedule(std::max(0.0, ns), EventKind::kTransferDone, link, ++channel.version);
+    schedule(std::max(0.0, ns), EventKind::kTransferDone, channel_index, ++channel.version);
 }
 
-void AsyncSimulation::end_transfer(std::uint32_t link) {
-    Channel& channel = channels_[link];
-    const std::uint32_t message = *channel.sending, cls = channel.sent_class;
-    AsyncLink& use = result_.links[link];
-    use.busy_ms += (now_ - channel.transfer_start) * kMsPerNs;
-    ++use.messages;
-    use.words += history_.messages[message].words;
+void AsyncSimulation::end_transfer(std::uint32_t channel_index) {
+    Channel& channel = channels_[channel_index];
+    const std::uint32_t message = *channel.sending, message_class = channel.sent_class;
+    AsyncLink& link = result_.links[channel_index];
+    link.busy_ms += (now_ - channel.transfer_start) * kMsPerNs;
+    ++link.messages;
+    link.words += history_.messages[message].words;
     channel.transferring = false;
     channel.sending.reset();
-    channel.out[cls].pop_front();
+    channel.out[message_class].pop_front();
     if (channels_[channel.opposite].transferring) set_rate(channel.opposite);
-    add_job(channel.end, {link, message, true});
-    admit_blocked(link, cls);
-    start_sending(link);
+    add_job(channel.end, {channel_index, message, true});
+    admit_blocked(channel_index, message_class);
+    start_sending(channel_index);
 }
 
 // Called when the communication task has received a message: delivers or forwards the message.
-void AsyncSimulation::receive(std::uint32_t link, std::uint32_t message) {
-    const std::uint32_t node = channels_[link].end, on = next_channel(node, message);
-    if (on == kNone) {
+void AsyncSimulation::receive(std::uint32_t channel_index, std::uint32_t message) {
+    const std::uint32_t node = channels_[channel_index].end, next = next_channel(node, message);
+    if (next == kNone) {
         deliver(message);
-        return free_input(link, class_of(message));
+        return free_input(channel_index, class_of(message));
     }
-    const bool same_ring = on % RAYA_LINKS == link % RAYA_LINKS;
+    const bool same_ring = next % RAYA_LINKS == channel_index % RAYA_LINKS;
     const std::uint32_t slots = class_of(message) == 0 || same_ring ? 1 : machine_.entry_slots;
-    if (enqueue(on, {link, message, slots})) free_input(link, class_of(message));
+    if (enqueue(next, {channel_index, message, slots})) free_input(channel_index, class_of(message));
 }
 
-void AsyncSimulation::free_input(std::uint32_t link, std::uint32_t cls) {
-    channels_[link].input_occupied[cls] = false;
-    start_sending(link);
+void AsyncSimulation::free_input(std::uint32_t channel_index, std::uint32_t message_class) {
+    channels_[channel_index].input_occupied[message_class] = false;
+    start_sending(channel_index);
 }
 
 }  // namespace raya

@@ -1,5 +1,6 @@
-// Discrete-event simulator of the machine that async_machine.hpp describes. async_machine.cpp implements the event
-// loop, async_simulation.cpp the processors, links and threads.
+// Discrete-event simulator of the machine that async_machine.hpp describes. async_machine.cpp contains the event loop,
+// async_simulation.cpp the processors, links and threads. Channel RAYA_LINKS * n + l is link l of node n, in the
+// direction away from the node.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -21,59 +22,63 @@ class AsyncSimulation {
     AsyncResult run();
 
   private:
-    static constexpr std::uint32_t kNone = UINT32_MAX, kClasses = 2;  // message classes: 0 returns, 1 rays
+    static constexpr std::uint32_t kNone = UINT32_MAX;
+    static constexpr std::uint32_t kClasses = 2;  // number of message classes: class 0 is returns, class 1 rays
     static constexpr double kMsPerNs = 1e-6;
 
     enum class EventKind : std::uint8_t { kMessageDone, kTaskDone, kTransferDone };
     struct Event {
         double time = 0;           // ns
-        std::uint64_t number = 0;  // in the order of scheduling; orders events of equal time
+        std::uint64_t number = 0;  // index in the order of scheduling; orders events of equal time
         EventKind kind{};
-        std::uint32_t location = 0;  // index of a node (kMessageDone, kTaskDone) or of a channel
-        std::uint32_t version = 0;   // of the node or channel; if it has changed, the event is obsolete
+        std::uint32_t location = 0;  // node (kMessageDone, kTaskDone) or channel
+        std::uint32_t version =
+            0;  // of the node or channel at scheduling; if it has changed since, the event is obsolete
         bool operator>(const Event& other) const {
             return time != other.time ? time > other.time : number > other.number;
         }
     };
 
-    // A message that waits until an output thread has `slots_needed` free slots. It is in the input thread of channel
-    // `link`, or, if `link` is kNone, in the node's main task.
+    // A message that waits until an output thread has `slots_needed` free slots. The message is in the input thread of
+    // channel `channel`, or, if `channel` is kNone, in the node's main task.
     struct BlockedMessage {
-        std::uint32_t link = kNone, message = 0, slots_needed = 1;
+        std::uint32_t channel = kNone, message = 0, slots_needed = 1;
     };
 
     // One direction of a link: the output thread at its start, the transfer, and the input thread at its end.
     struct Channel {
-        std::uint32_t start = 0, end = 0, opposite = 0;  // nodes `start`, `end`; index of the opposite channel
+        std::uint32_t start = 0, end = 0, opposite = 0;  // node, node, channel
         std::array<std::deque<std::uint32_t>, kClasses> out{};
         std::array<std::vector<BlockedMessage>, kClasses> blocked{};
         std::array<bool, kClasses> input_occupied{};  // [class]: the input thread's slot is occupied
-        std::optional<std::uint32_t> sending{};       // from the sender's job until the transfer ends
+        std::optional<std::uint32_t>
+            sending{};  // message, from the start of the sender's job to the end of the transfer
         std::uint32_t sent_class = 0, version = 0;
         bool transferring = false;
         double words_left = 0, rate = 0, rate_since = 0, transfer_start = 0;  // words, words/ns, ns, ns
     };
 
-    // Work of the communication task for one message at one end of channel `link`.
+    // Work of the communication task for one message at one end of a channel.
     struct MessageJob {
-        std::uint32_t link = 0, message = 0;
+        std::uint32_t channel = 0, message = 0;
         bool receiving = false;
     };
 
     struct Node {
         std::deque<MessageJob> jobs{};
-        bool in_job = false;
+        bool in_job = false;                          // the processor works on jobs.front()
         std::deque<std::uint32_t> queue{};            // messages that wait for the main task
-        std::deque<std::uint32_t> injection_tasks{};  // tasks that no message causes
+        std::deque<std::uint32_t> injection_tasks{};  // tasks that no message causes and that have not started
         std::uint32_t task = kNone;                   // current task of the main task
-        std::uint32_t sent = 0;                       // sent messages of `task`; kNone until its computation ends
+        std::uint32_t sent = 0;  // number of messages of `task` that are sent; kNone until its computation ends
         bool computing = false;
-        double remaining = 0, remaining_since = 0;  // remaining computation at time `remaining_since`, ns
-        double blocked_since = 0;                   // when the main task began to wait for a port, ns
+        double remaining = 0,
+               remaining_since = 0;  // remaining computation time of `task` at time `remaining_since`, ns
+        double blocked_since = 0;    // time at which the main task began to wait for a port, ns
         std::uint32_t version = 0;
     };
 
-    void schedule(double after, EventKind kind, std::uint32_t location, std::uint32_t version);
+    void schedule(double delay, EventKind kind, std::uint32_t location, std::uint32_t version);
     void handle(const Event& event);
 
     // The processors.
@@ -91,14 +96,14 @@ class AsyncSimulation {
         return history_.messages[message].kind == RAYA_KIND_RETURN ? 0 : 1;
     }
     std::uint32_t next_channel(std::uint32_t node, std::uint32_t message) const;
-    bool enqueue(std::uint32_t link, const BlockedMessage& from);
-    void admit_blocked(std::uint32_t link, std::uint32_t cls);
-    void start_sending(std::uint32_t link);
-    void begin_transfer(std::uint32_t link);
-    void set_rate(std::uint32_t link);
-    void end_transfer(std::uint32_t link);
-    void receive(std::uint32_t link, std::uint32_t message);
-    void free_input(std::uint32_t link, std::uint32_t cls);
+    bool enqueue(std::uint32_t channel_index, const BlockedMessage& blocked_message);
+    void admit_blocked(std::uint32_t channel_index, std::uint32_t message_class);
+    void start_sending(std::uint32_t channel_index);
+    void begin_transfer(std::uint32_t channel_index);
+    void set_rate(std::uint32_t channel_index);
+    void end_transfer(std::uint32_t channel_index);
+    void receive(std::uint32_t channel_index, std::uint32_t message);
+    void free_input(std::uint32_t channel_index, std::uint32_t message_class);
 
     const raya_torus& torus_;
     const History& history_;

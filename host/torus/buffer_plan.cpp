@@ -15,16 +15,17 @@
 namespace raya {
 namespace {
 
-// Returns twice the length, or, if that does not fit a node although `tried` does, the longest queue that fits.
+// Returns the queue length to try after `tried`: twice `tried`, or the longest queue that fits a node if that is longer
+// than `tried` and shorter than twice `tried`.
 std::uint32_t next_queue(std::uint32_t tried, const QueueTrial& trial) {
     const auto fits = [&](std::uint32_t queue) { return trial.node_bytes(buffers_for(queue)) <= trial.node_memory; };
     const std::uint32_t next = std::min(2 * tried, trial.max_queue);
     if (!fits(tried) || fits(next)) return next;
-    const std::uint32_t longest = last_where(tried, next, fits);
+    const std::uint32_t longest = largest_where(tried, next, fits);
     return longest > tried ? longest : next;
 }
 
-// Maximum number of entries in a trial's object lists. So many entries take a fraction of a second.
+// Maximum number of entries in the object lists of a trial. A trial with so many entries takes a fraction of a second.
 constexpr std::uint64_t kMaxTrialEntries = std::uint64_t{1} << 24;
 
 std::uint64_t voxels_of(const Divisions& divisions) {
@@ -43,10 +44,11 @@ class PartitionTrial {
         const std::uint64_t voxels = voxels_of(tried.voxels);
         if (voxels > kMaxPartitionVoxels || objects_everywhere_ * voxels > kMaxTrialEntries) return {};
         try {
-            const Partition cut = partition(job_, format_, tried.voxels);
-            objects_everywhere_ = cut.objects.size() == cut.distinct * voxels ? cut.distinct : 0;
+            const Partition tried_partition = partition(job_, format_, tried.voxels);
+            const bool all_everywhere = tried_partition.objects.size() == tried_partition.distinct * voxels;
+            objects_everywhere_ = all_everywhere ? tried_partition.distinct : 0;
             // The assignment of voxels to nodes does not depend on the links.
-            tried.words = fullest_node_words(job_, cut, make_torus(nodes, Links::kTorus3d));
+            tried.words = fullest_node_words(job_, tried_partition, make_torus(nodes, Links::kTorus3d));
             return tried;
         } catch (const TooManyEntries&) {
             return {};
@@ -57,9 +59,9 @@ class PartitionTrial {
     const PackedJob& job_;
     const NumberFormat format_;
     const Divisions voxels_;
-    // Number of objects if the last trial registered every object in every voxel, else 0. Formats for which no error
-    // bound is known register every object in every voxel, for any number of voxels. Then more nodes do not help, and
-    // the lists become long.
+    // Number of objects if the last trial registered every object in every voxel, else 0. A partition for a format
+    // without an error bound does this for any number of voxels. Then more nodes do not help, and the lists become
+    // long.
     std::uint64_t objects_everywhere_ = 0;
 };
 
@@ -70,11 +72,11 @@ constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t)
 // `min_queue` must fit.
 std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t min_queue,
                             std::uint32_t max_queue) {
-    return last_where(min_queue, std::uint64_t{max_queue} + 1,
-                      [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; });
+    return largest_where(min_queue, std::uint64_t{max_queue} + 1,
+                         [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; });
 }
 
-// A scene divided among the nodes, with buffers, and the memory of a node.
+// A scene that is divided among the nodes, the buffers of a node, and the memory of a node.
 struct MemoryDemand {
     const std::string& scene;
     const NodeMemories& memories;
@@ -115,7 +117,7 @@ std::string node_text(const NodeMemories& memories, std::uint32_t number) {
     return fmt::format("node {} ({} with {})", number, voxels, counted(objects, "object"));
 }
 
-// Returns the nodes with the shortest side doubled, the first one in case of a tie.
+// Doubles the shortest side; if several sides are equally short, the first of them.
 std::array<std::uint32_t, 3> doubled(std::array<std::uint32_t, 3> nodes) {
     *std::min_element(nodes.begin(), nodes.end()) *= 2;
     return nodes;
@@ -123,10 +125,10 @@ std::array<std::uint32_t, 3> doubled(std::array<std::uint32_t, 3> nodes) {
 
 // Returns options such as "--nodes 16x16x8"; empty if the scene does not fit any machine of up to 65,536 nodes.
 std::string larger_machine(const MemoryDemand& demand, const NodeTrial& trial) {
-    const std::uint32_t* const own = demand.torus.nodes;
-    // A torus with sides I x J x 1 may be 2-D or 3-D. Assume 3-D, which needs at least as much memory.
-    const Links links = demand.torus.sides[2] != own[2] ? Links::kTorus2d : Links::kTorus3d;
-    std::array<std::uint32_t, 3> nodes = doubled({own[0], own[1], own[2]});
+    const std::uint32_t* const present_nodes = demand.torus.nodes;
+    // A torus with sides I x J x 1 may be 2-D or 3-D. 3-D is assumed, because it needs at least as much memory.
+    const Links links = demand.torus.sides[2] != present_nodes[2] ? Links::kTorus2d : Links::kTorus3d;
+    std::array<std::uint32_t, 3> nodes = doubled({present_nodes[0], present_nodes[1], present_nodes[2]});
     for (std::uint64_t count = 2 * demand.nodes(); count <= kMaxNodes; count *= 2, nodes = doubled(nodes)) {
         const std::uint32_t node_links = links_of_node(make_torus(nodes, links));
         const auto fits = [&](std::uint64_t words) {
@@ -157,16 +159,18 @@ std::string remedies(const MemoryDemand& demand, std::uint64_t words, std::uint3
 
 [[noreturn]] void throw_does_not_fit(const MemoryDemand& demand, std::uint32_t min_queue, const NodeTrial& trial) {
     const std::uint32_t fullest = fullest_node(demand.memories);
-    std::uint32_t fit = 0;
-    for (std::uint32_t node = 0; node < demand.nodes(); ++node) fit += demand.bytes(demand.words(node)) <= demand.limit;
+    std::uint32_t fitting = 0;
+    for (std::uint32_t node = 0; node < demand.nodes(); ++node)
+        fitting += demand.bytes(demand.words(node)) <= demand.limit;
     const std::uint64_t words = demand.words(fullest);
     throw NodesDoNotFit(
         fmt::format("{}: does not fit: {} of {} nodes can hold their voxels, {} cannot; {} needs {} and {} of "
                     "buffers, a node has {}; {}",
-                    demand.scene, fit, demand.nodes(), demand.nodes() - fit, node_text(demand.memories, fullest),
-                    required_size_text(4 * words), required_size_text(demand.bytes(0)),
-                    available_size_text(demand.limit), remedies(demand, words, min_queue, trial)),
-        demand.bytes(words), demand.limit, demand.nodes(), fit, fullest);
+                    demand.scene, fitting, demand.nodes(), demand.nodes() - fitting,
+                    node_text(demand.memories, fullest), required_size_text(4 * words),
+                    required_size_text(demand.bytes(0)), available_size_text(demand.limit),
+                    remedies(demand, words, min_queue, trial)),
+        demand.bytes(words), demand.limit, demand.nodes(), fitting, fullest);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// Sizes of the nodes' queues and mailboxes. Checks that they fit the memory of a node and of the device, suggests
-// remedies if they do not, and searches for a queue length with which a deadlocked machine completes.
+// Sizes of the nodes' queues and mailboxes. Checks that queues and mailboxes fit the memory of a node and of the
+// device, suggests remedies if they do not fit, and searches for a queue length with which a deadlocked machine
+// completes.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,37 +17,37 @@
 
 namespace raya {
 
-/// Returns a queue of `queue` packets, and mailboxes of a quarter of that, at least 1 packet.
+/// Returns a queue of `queue` packets, and mailboxes of a quarter as many packets, but at least 1.
 NodeBuffers buffers_for(std::uint32_t queue);
 
-/// Memory of a node in bytes: `words` scene words, the queue of rays, an outbox and an inbox of rays for each of
-/// `links` links, an inbox of returns for each link, and one outbox of returns, for the link towards the root. Returns
-/// that have reached the root are in the host's memory and not included.
+/// Returns the memory of a node in bytes: `words` scene words, the queue of rays, an outbox and an inbox of rays for
+/// each of `links` links, an inbox of returns for each link, and one outbox of returns, for the link towards the root.
+/// The returns that have reached the root are not included, because they are in the host's memory.
 std::uint64_t node_bytes(std::uint64_t words, const NodeBuffers& buffers, std::uint32_t links);
 
-/// Default capacity of a queue in packets: 8,192, or less for more than 2,048 nodes, so that all queues and mailboxes
-/// together take less than 6 GB.
+/// Returns the default capacity of a queue in packets: 8,192, or less for more than 2,048 nodes, so that all queues and
+/// mailboxes together take less than 6 GB.
 std::uint32_t default_queue(std::uint32_t nodes);
 
-/// Binary search: the largest number in [first, above) for which `holds` is true. `holds` must be monotonic (true up to
-/// some number, then false) and true for `first`.
+/// Returns the largest number in [first, end) for which `holds` is true, by binary search. `holds` must be true for
+/// `first` and for all numbers up to the result, and false for all others.
 template <class Holds>
-std::uint32_t last_where(std::uint64_t first, std::uint64_t above, const Holds& holds) {
-    while (above - first > 1) {
-        const std::uint64_t middle = first + (above - first) / 2;
-        (holds(static_cast<std::uint32_t>(middle)) ? first : above) = middle;
+std::uint32_t largest_where(std::uint64_t first, std::uint64_t end, const Holds& holds) {
+    while (end - first > 1) {
+        const std::uint64_t middle = first + (end - first) / 2;
+        (holds(static_cast<std::uint32_t>(middle)) ? first : end) = middle;
     }
     return static_cast<std::uint32_t>(first);
 }
 
-inline constexpr std::uint32_t kMaxQueue = 1u << 30;  // packets
+inline constexpr std::uint32_t kMaxQueue = 1u << 30;  // maximum capacity of a queue, packets
 
 /// Limits and callbacks of the search for a longer queue.
 struct QueueTrial {
     std::function<std::uint64_t(const NodeBuffers&)> node_bytes;  // memory that the fullest node needs, bytes
     std::uint64_t node_memory = UINT64_MAX;                       // memory of a node, bytes
     std::uint32_t max_queue = kMaxQueue;                          // longest queue to try, packets
-    std::function<bool(const NodeBuffers&)> fits_device;          // the device can hold the buffers of all nodes
+    std::function<bool(const NodeBuffers&)> fits_device;          // true: the device can hold the buffers of all nodes
     // Returns true if the machine completes an image without a deadlock. Throws DeviceError if allocating the buffers
     // fails although fits_device() returned true.
     std::function<bool(const NodeBuffers&)> completes;
@@ -56,29 +57,30 @@ struct QueueTrial {
 struct QueueSearchResult {
     std::uint32_t queue = 0;  // longest queue that was tried, packets
     bool completes = false;   // the machine completes an image with this queue
-    bool fits = false;        // the queue fits the memory of a node
+    bool fits = false;        // scene words and buffers of the fullest node fit its memory
     std::uint64_t bytes = 0;  // memory that the fullest node needs
 };
 
-/// Doubles the queue length, starting from `queue`, until the machine completes an image. Before it exceeds a node's
-/// memory, it tries the longest queue that fits.
+/// Doubles the queue length, starting from `queue`, until the machine completes an image. Tries the longest queue that
+/// fits a node's memory before any longer queue.
 QueueSearchResult find_longer_queue(std::uint32_t queue, const QueueTrial& trial);
 
-/// Text of the remedy for error messages: "--queue 74 is long enough (tried)".
+/// Returns the remedy for an error message: "--queue 74 is long enough (tried)".
 std::string queue_remedy(const QueueSearchResult& found);
 
 /// Result of dividing the same job among another number of nodes.
 struct NodeTrialResult {
-    std::uint64_t words = 0;  // scene words of the fullest node
-    Divisions voxels{};       // divisions of the bounding box
+    std::uint64_t words = 0;  // number of scene words of the fullest node
+    Divisions voxels{};       // numbers of voxels along x, y, z
 };
 using NodeTrial = std::function<std::optional<NodeTrialResult>(const std::array<std::uint32_t, 3>& nodes)>;
 
 /// Makes a trial that doubles `voxels` along each axis until every node has a voxel. The trial returns nullopt if the
-/// partition would be too large. It keeps a reference to `job`.
+/// partition would be too large. `job` must outlive the trial.
 NodeTrial make_node_trial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels);
 
-/// The scene or the buffers do not fit the nodes. `needed` is the memory that the fullest node needs.
+/// The scene or the buffers do not fit the nodes. `needed`: bytes that the fullest node needs; `memory`: bytes of a
+/// node.
 struct NodesDoNotFit : DoesNotFit {
     NodesDoNotFit(const std::string& message, std::uint64_t needed, std::uint64_t memory, std::uint32_t node_count,
                   std::uint32_t fitting_nodes, std::uint32_t fullest_node)
@@ -91,8 +93,8 @@ struct NodesDoNotFit : DoesNotFit {
 /// limit) together with the words of the fullest node, at most default_queue(). Mailboxes have the size that
 /// buffers_for() returns. Throws NodesDoNotFit if words and buffers exceed `memory_bytes`. The message states how many
 /// nodes fit, the voxels, objects and bytes of the fullest node, and a remedy: more memory, a shorter queue, or, if
-/// `trial` is given, a sufficient number of nodes. `trial` finds it in about a second. `min_queue`: maximum number of
-/// packets that the ray tree of a single primary ray needs. Throws UserError if 0 < `queue` < `min_queue`.
+/// `trial` is given, a sufficient number of nodes. The search with `trial` takes about a second. `min_queue`: maximum
+/// number of packets that the ray tree of a single primary ray needs. Throws UserError if 0 < `queue` < `min_queue`.
 NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
                          std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue,
                          const NodeTrial& trial = {});
@@ -105,7 +107,7 @@ struct DeviceMemory {
 /// Returns true if the queues and mailboxes of `nodes` nodes fit the device.
 bool fits_device(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceMemory& memory);
 
-/// Throws UserError if !fits_device(); the message states the longest queue that fits.
+/// Throws UserError if !fits_device(); the message states a queue length that fits.
 void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,
                          const std::string& device, const DeviceMemory& memory);
 

@@ -22,17 +22,17 @@ void append_contribution(std::vector<float>& colours, const raya_head& packet) {
     colours.push_back(packet.weight);
 }
 
-// Returns the number of work-groups of `group` work-items. A work-item gets at least about 16 pixels, or fewer if its
-// loops would otherwise exceed the device's limit of iterations.
-std::size_t groups_of(const Contributions& contributions, std::uint32_t group, const DeviceInfo& device) {
+// Returns the number of work-groups of `group_size` work-items. A work-item gets at least about 16 pixels, or fewer if
+// its loops would otherwise exceed the device's limit of iterations.
+std::size_t work_groups_for(const Contributions& contributions, std::uint32_t group_size, const DeviceInfo& device) {
     constexpr std::size_t kPixelsPerItem = 16, kMaxGroups = 4096;
     const std::vector<std::uint32_t>& starts = contributions.starts;
     const std::size_t pixels = starts.size() - 1;
-    std::size_t groups = std::min(kMaxGroups, pixels / (kPixelsPerItem * group) + 1);
+    std::size_t groups = std::min(kMaxGroups, pixels / (kPixelsPerItem * group_size) + 1);
     if (device.max_loop_iterations == 0) return groups;
     std::size_t max_count = 0;  // maximum number of contributions of a pixel
     for (std::size_t i = 0; i < pixels; ++i) max_count = std::max<std::size_t>(max_count, starts[i + 1] - starts[i]);
-    return std::max(groups, 2 * pixels * (max_count + 2) / (std::size_t{group} * device.max_loop_iterations) + 1);
+    return std::max(groups, 2 * pixels * (max_count + 2) / (std::size_t{group_size} * device.max_loop_iterations) + 1);
 }
 
 }  // namespace
@@ -44,7 +44,8 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
     sorted.starts.assign(std::size_t{pixels} + 1, 0);
     for (const raya_head& packet : returns) {
         if (packet.pixel >= pixels)
-            throw std::logic_error(fmt::format("a contribution to pixel {}, in an image of {}", packet.pixel, pixels));
+            throw std::logic_error(
+                fmt::format("a contribution to pixel {} of an image of {} pixels", packet.pixel, pixels));
         ++sorted.starts[packet.pixel + 1];
     }
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) sorted.starts[pixel + 1] += sorted.starts[pixel];
@@ -65,7 +66,7 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
 }
 
 Composer::Composer(Kernels& kernels)
-    : session_(kernels.session()), group_(kernels.options().group_size), compose_(kernels.get<ComposeKernel>()) {
+    : session_(kernels.session()), group_size_(kernels.options().group_size), compose_(kernels.get<ComposeKernel>()) {
     compose({{0, 0, 0, 0}, {0, 1}});  // PoCL compiles a kernel at its first launch
 }
 
@@ -76,15 +77,16 @@ std::vector<float> Composer::compose(const Contributions& contributions) {
     Buffer<std::uint32_t> starts =
         session_.buffer<std::uint32_t>("starts of contributions", contributions.starts.size());
     Buffer<float> image = session_.buffer<float>("image", 3ull * pixels);
-    Buffer<std::uint32_t> cut = session_.buffer<std::uint32_t>("loops cut", 1);
+    Buffer<std::uint32_t> cut_flag = session_.buffer<std::uint32_t>("loops cut", 1);
     session_.write("compose", colours, contributions.colours);
     session_.write("compose", starts, contributions.starts);
     std::uint32_t was_cut = 1;
-    for (std::size_t groups = groups_of(contributions, group_, session_.device()); was_cut; groups *= 2) {
-        session_.fill("compose", cut, 0);
-        session_.launch("compose", compose_, groups, group_, colours, starts, Uint<"pixels">{pixels}, image, cut);
-        session_.read("compose", cut, {&was_cut, 1});
-        if (was_cut && groups * group_ >= pixels)
+    for (std::size_t groups = work_groups_for(contributions, group_size_, session_.device()); was_cut; groups *= 2) {
+        session_.fill("compose", cut_flag, 0);
+        session_.launch("compose", compose_, groups, group_size_, colours, starts, Uint<"pixels">{pixels}, image,
+                        cut_flag);
+        session_.read("compose", cut_flag, {&was_cut, 1});
+        if (was_cut && groups * group_size_ >= pixels)
             throw truncated_loops_error("compose", session_.device().name, "fewer --bounces");
     }
     std::vector<float> pixels_of_image(3ull * pixels);

@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned kLightBits = 16;
 constexpr std::uint64_t kLights = std::uint64_t{1} << kLightBits;
 
-// Finaliser of SplitMix64 (Steele, Lea & Flood 2014), the hash function: distributes neighbouring pixels over the
+// Hash function: the finaliser of SplitMix64 (Steele, Lea & Flood 2014). It distributes neighbouring pixels over the
 // table.
 std::uint64_t hash_of(std::uint64_t x) {
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
@@ -21,8 +21,8 @@ std::uint64_t hash_of(std::uint64_t x) {
     return x ^ x >> 31;
 }
 
-void require(bool condition, std::size_t number, const char* what) {
-    if (!condition) throw std::logic_error(fmt::format("history: {} {}", what, number));
+void require(bool condition, std::size_t index, const char* fault) {
+    if (!condition) throw std::logic_error(fmt::format("history: {} {}", fault, index));
 }
 
 constexpr std::uint32_t kUnset = UINT32_MAX;
@@ -57,17 +57,17 @@ std::uint64_t RayNumbers::number_of(const RayId& id) {
 
 // Returns the slot of the ray, or the empty slot at which the caller must insert it.
 RayNumbers::Slot& RayNumbers::slot_of(std::uint64_t key, std::uint64_t light) {
-    std::size_t at = hash_of(key + hash_of(light));
-    for (;; ++at) {
-        Slot& slot = slots_[at & (slots_.size() - 1)];
+    std::size_t index = hash_of(key + hash_of(light));
+    for (;; ++index) {
+        Slot& slot = slots_[index & (slots_.size() - 1)];
         if (slot.key == 0 || (slot.key == key && slot.number_and_light % kLights == light)) return slot;
     }
 }
 
 void RayNumbers::grow() {
-    std::vector<Slot> old(2 * slots_.size());
-    old.swap(slots_);
-    for (const Slot& slot : old)
+    std::vector<Slot> old_slots(2 * slots_.size());
+    old_slots.swap(slots_);
+    for (const Slot& slot : old_slots)
         if (slot.key != 0) slot_of(slot.key, slot.number_and_light % kLights) = slot;
 }
 
@@ -77,11 +77,11 @@ std::span<const HistoryMessage> History::sent_by(std::size_t task) const {
 }
 
 std::vector<std::uint32_t> tasks_of_messages(const History& history) {
-    std::vector<std::uint32_t> caused(history.messages.size(), HistoryTask::kInjection);
+    std::vector<std::uint32_t> caused(history.messages.size(), HistoryTask::kNoCause);
     for (std::size_t t = 0; t < history.tasks.size(); ++t) {
         const std::uint32_t cause = history.tasks[t].cause;
-        if (cause == HistoryTask::kInjection) continue;
-        require(cause < caused.size() && caused[cause] == HistoryTask::kInjection, t,
+        if (cause == HistoryTask::kNoCause) continue;
+        require(cause < caused.size() && caused[cause] == HistoryTask::kNoCause, t,
                 "invalid or repeated cause of task");
         caused[cause] = static_cast<std::uint32_t>(t);
     }
@@ -97,15 +97,16 @@ void check_history(const History& history, std::uint32_t nodes) {
         require(tasks[t].first_message <= end && end <= messages.size(), t, "messages out of order in task");
         for (std::size_t m = tasks[t].first_message; m < end; ++m)
             require(messages[m].task == t, m, "wrong task of message");
-        require(tasks[t].cause == HistoryTask::kInjection || tasks[t].cause < tasks[t].first_message, t,
+        require(tasks[t].cause == HistoryTask::kNoCause || tasks[t].cause < tasks[t].first_message, t,
                 "the cause does not precede task");
     }
     const std::vector<std::uint32_t> caused = tasks_of_messages(history);
     for (std::size_t m = 0; m < messages.size(); ++m) {
-        const bool is_return = messages[m].kind == RAYA_KIND_RETURN, causes = caused[m] != HistoryTask::kInjection;
-        require(messages[m].to < nodes && messages[m].words > 0, m, "invalid destination or no words of message");
+        const bool is_return = messages[m].kind == RAYA_KIND_RETURN, causes = caused[m] != HistoryTask::kNoCause;
+        require(messages[m].destination < nodes && messages[m].words > 0, m,
+                "invalid destination or no words of message");
         require(causes != is_return, m, is_return ? "a task is caused by return" : "no task is caused by ray");
-        require(is_return ? messages[m].to == RAYA_ROOT : messages[m].to == tasks[caused[m]].node, m,
+        require(is_return ? messages[m].destination == RAYA_ROOT : messages[m].destination == tasks[caused[m]].node, m,
                 "wrong destination of message");
     }
 }
@@ -115,9 +116,9 @@ HistoryRecorder::RayProgress& HistoryRecorder::ray_of(std::uint64_t number) {
     return rays_[number];
 }
 
-std::uint32_t HistoryRecorder::destination_of(std::uint32_t node, const raya_head& packet) const {
+std::uint32_t HistoryRecorder::destination_of(std::uint32_t sender, const raya_head& packet) const {
     if (raya_state_kind(packet.state) == RAYA_KIND_RETURN) return RAYA_ROOT;
-    if (packet.voxel == RAYA_NO_VOXEL) return node;
+    if (packet.voxel == RAYA_NO_VOXEL) return sender;
     const raya_place v = raya_unpack_place(packet.voxel);
     const auto& n = torus_.nodes;
     return raya_node_of(torus_, v.at[0] % n[0], v.at[1] % n[1], v.at[2] % n[2]);
@@ -139,10 +140,10 @@ void HistoryRecorder::add(const NodeWork& work) {
     add_messages(work, first_task);
 }
 
-// Adds a task for each new primary ray. The node has already processed the ray, or the ray is still in the queue slot
-// in which it was created.
+// Adds a task for each new primary ray. The node has already processed such a ray, or the ray is still in the queue
+// slot in which it was created.
 void HistoryRecorder::add_injection_tasks(const NodeWork& work) {
-    std::vector<SentMessage> made;
+    std::vector<SentMessage> sent_messages;
     for (std::size_t slot = 0; slot < work.processed.size(); ++slot) {
         const raya_processed& t = work.processed[slot];
         const raya_head& queued = work.queue[slot].head;
@@ -151,16 +152,17 @@ void HistoryRecorder::add_injection_tasks(const NodeWork& work) {
         if (raya_state_kind(state) != RAYA_KIND_PRIMARY) continue;
         const std::uint64_t ray = numbers_.number_of(id_of(processed ? t.pixel : queued.pixel, 0, state));
         if (ray_of(ray).message != kUnset) continue;
-        const std::uint32_t to = processed ? work.node : destination_of(work.node, queued);
-        made.push_back({{.to = to, .words = words_of(RAYA_KIND_PRIMARY), .kind = RAYA_KIND_PRIMARY}, ray});
+        const std::uint32_t destination = processed ? work.node : destination_of(work.node, queued);
+        sent_messages.push_back(
+            {{.destination = destination, .words = words_of(RAYA_KIND_PRIMARY), .kind = RAYA_KIND_PRIMARY}, ray});
     }
-    std::uint64_t cycles = uncharged_cycles_[work.node] + work.injection_cycles, left = made.size();
-    for (SentMessage& ray : made) {
-        const std::uint64_t share = cycles / left--;
-        cycles -= share;
+    std::uint64_t cycles = uncharged_cycles_[work.node] + work.injection_cycles, remaining_rays = sent_messages.size();
+    for (SentMessage& ray : sent_messages) {
+        const std::uint64_t ray_cycles = cycles / remaining_rays--;
+        cycles -= ray_cycles;
         ray.message.task = checked_index(history_.tasks.size());
         history_.tasks.push_back(
-            {.node = work.node, .cycles = share, .first_message = checked_index(history_.messages.size())});
+            {.node = work.node, .cycles = ray_cycles, .first_message = checked_index(history_.messages.size())});
         append(ray);
     }
     uncharged_cycles_[work.node] = cycles;
@@ -178,27 +180,29 @@ void HistoryRecorder::add_processing_tasks(const NodeWork& work) {
     }
 }
 
-// Adds the packets that this superstep's tasks created or changed. A packet with RAYA_STATE_FRESH may also be an older
-// packet that waits for a link; then the task that last processed its ray precedes `first_task`.
+// Adds the packets that the tasks from `first_task` on created or changed. A packet with RAYA_STATE_FRESH may also be
+// an older packet that waits for a link; the task that last processed its ray then precedes `first_task`.
 void HistoryRecorder::add_messages(const NodeWork& work, std::size_t first_task) {
-    std::vector<SentMessage> made;
+    std::vector<SentMessage> sent_messages;
     for (const raya_packet& p : work.queue) {
         const raya_head& h = p.head;
         const std::uint32_t kind = raya_state_kind(h.state);
         if (kind == RAYA_KIND_NONE || !(h.state & RAYA_STATE_FRESH)) continue;
         if (kind == RAYA_KIND_RETURN && !(h.state & RAYA_STATE_CHARGED)) continue;
-        const RayId name = id_of(h.pixel, h.path, h.state);
-        const std::uint64_t ray = numbers_.number_of(name);
+        const RayId id = id_of(h.pixel, h.path, h.state);
+        const std::uint64_t ray = numbers_.number_of(id);
         const bool is_new = kind != RAYA_KIND_RETURN && kind != RAYA_KIND_PRIMARY && ray_of(ray).message == kUnset;
-        const std::uint32_t task = ray_of(is_new ? numbers_.number_of(name.parent()) : ray).task;
+        const std::uint32_t task = ray_of(is_new ? numbers_.number_of(id.parent()) : ray).task;
         if (task == kUnset || task < first_task) continue;
-        made.push_back({{task, destination_of(work.node, h), words_of(kind), static_cast<std::uint16_t>(kind)}, ray});
+        sent_messages.push_back(
+            {{task, destination_of(work.node, h), words_of(kind), static_cast<std::uint16_t>(kind)}, ray});
     }
-    std::ranges::stable_sort(made, {}, [](const SentMessage& sent) { return sent.message.task; });
-    std::size_t next = 0;
+    std::ranges::stable_sort(sent_messages, {}, [](const SentMessage& sent) { return sent.message.task; });
+    std::size_t next_message = 0;
     for (std::size_t task = first_task; task < history_.tasks.size(); ++task) {
         history_.tasks[task].first_message = checked_index(history_.messages.size());
-        for (; next < made.size() && made[next].message.task == task; ++next) append(made[next]);
+        for (; next_message < sent_messages.size() && sent_messages[next_message].message.task == task; ++next_message)
+            append(sent_messages[next_message]);
     }
 }
 

@@ -1,6 +1,6 @@
-// History of a render on the torus, without supersteps: the nodes' computations, the messages that they send, and the
-// message that starts each computation. None of these depends on timing, so a history can be replayed with any
-// schedule.
+// History of a render on the torus, without supersteps: the computations of the nodes, the messages that the
+// computations send, and the message that starts each computation. A history does not depend on timing, so it can be
+// replayed with any schedule.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -24,19 +24,20 @@ struct RayId {
     /// Returns the `tree_index` of the ray with this path (kernels/shared/packet.h) at this level, 0..31.
     static std::uint32_t tree_index_of(std::uint32_t path, std::uint32_t level);
 
-    /// Returns the ray whose hit generated this reflected, refracted or shadow ray. Undefined for a primary ray.
+    /// Returns the ray whose hit generated this ray. Undefined for a primary ray.
     RayId parent() const;
 };
 
-/// Numbers rays in the order of first use. The open-addressing hash table has 16 bytes per slot and doubles at a load
-/// factor of 2/3, so it takes 24 to 48 bytes per ray, and 1.5 times as much while it grows. There may be tens of
-/// millions of rays.
+/// Numbers rays in the order of first use. There may be tens of millions of rays. The open-addressing hash table has 16
+/// bytes per slot and doubles its size at a load factor of 2/3. So it takes 24 to 48 bytes per ray, and 1.5 times as
+/// much during a growth.
 class RayNumbers {
   public:
-    /// Returns the ray's number, or assigns the next one, from 0 on. Throws std::logic_error for an invalid id.
+    /// Returns the number of the ray. The first call for a ray assigns the next number, from 0 on. Throws
+    /// std::logic_error for an invalid id.
     std::uint64_t number_of(const RayId& id);
 
-    /// Returns the next number, for a packet that is never looked up.
+    /// Returns the next number, for a packet that will not be looked up again.
     std::uint64_t next_number() { return next_number_++; }
 
   private:
@@ -52,65 +53,69 @@ class RayNumbers {
     std::uint64_t next_number_ = 0;
 };
 
-/// A computation of one node that starts when its cause has arrived: the node processes one packet or generates one
+/// A computation of one node: the node processes one packet, which starts when the packet has arrived, or generates one
 /// primary ray.
 struct HistoryTask {
-    static constexpr std::uint32_t kInjection = UINT32_MAX;  // `cause` of a task that no message starts
+    static constexpr std::uint32_t kNoCause = UINT32_MAX;
 
     std::uint32_t node = 0;
-    std::uint32_t cause = kInjection;  // message whose arrival starts the task
-    std::uint64_t cycles = 0;          // modelled cycles of the computation
-    std::uint32_t first_message = 0;   // index of its first message; a task's messages are contiguous
+    std::uint32_t cause = kNoCause;   // message whose arrival starts the task; kNoCause: no message
+    std::uint64_t cycles = 0;         // modelled cycles of the computation
+    std::uint32_t first_message = 0;  // index of the first message that the task sends; its messages are contiguous
 };
 
-/// A packet that a task created or changed: a ray, sent to the node that processes it next, which may be the same node,
-/// or a return, sent to the root.
+/// A packet that a task created or changed. The task sends a ray to the node that processes the ray next, which may be
+/// the same node, and a return to the root.
 struct HistoryMessage {
-    std::uint32_t task = 0;  // task that sends the message at its end
-    std::uint32_t to = 0;    // destination node
-    std::uint16_t words = 0;
-    std::uint16_t kind = 0;  // RAYA_KIND_* of kernels/shared/packet.h
+    std::uint32_t task = 0;         // task that sends the message at the end of its computation
+    std::uint32_t destination = 0;  // node
+    std::uint16_t words = 0;        // number of words charged for the message
+    std::uint16_t kind = 0;         // RAYA_KIND_* of kernels/shared/packet.h
 };
 
-/// Messages are in the order of their tasks. A message precedes the messages of the task that it causes: tasks[t].cause
-/// < tasks[t].first_message. The tasks of a node that have no cause are in the order of execution.
+/// Messages are in the order of the tasks that send them. The cause of a task precedes the messages of the task:
+/// tasks[t].cause < tasks[t].first_message. The tasks of a node that have no cause are in the order of execution.
 struct History {
     std::vector<HistoryTask> tasks;
     std::vector<HistoryMessage> messages;
 
+    /// Returns the messages of a task.
     std::span<const HistoryMessage> sent_by(std::size_t task) const;
 };
 
-/// Throws std::logic_error unless tasks and messages are ordered as described at History, every ray causes one task, at
-/// its destination, and every return is sent to the root and causes no task.
+/// Throws std::logic_error unless tasks and messages are ordered as described at History, every ray causes one task at
+/// the ray's destination, and every return is sent to the root and causes no task.
 void check_history(const History& history, std::uint32_t nodes);
 
-/// Returns, for each message, the index of the task that it causes; HistoryTask::kInjection for a return.
+/// Returns [message]: index of the task that the message causes; HistoryTask::kNoCause for a return.
 std::vector<std::uint32_t> tasks_of_messages(const History& history);
 
-/// Records a history from the work of all nodes in every superstep (NodeWorkSink). Memory: 24 bytes for each ray and
-/// voxel that the ray visits, 12 bytes for each packet, and RayNumbers.
+/// Records a history from the work of all nodes in every superstep (NodeWorkSink). Takes 24 bytes for each voxel that a
+/// ray visits, 12 bytes for each packet, and the memory of RayNumbers.
 class HistoryRecorder {
   public:
-    /// `packets`: words charged for a message. The history omits returns that are part of another return and not
-    /// charged.
+    /// `packets`: numbers of words charged for messages. The history omits returns that are not charged because they
+    /// are part of another return.
     explicit HistoryRecorder(const raya_torus& torus, const PacketCharge& packets = {})
         : torus_(torus), packets_(packets), uncharged_cycles_(raya_nodes(torus)) {}
 
-    /// Throws std::logic_error for a packet that no task sent, or if the packets exceed 32-bit numbers.
+    /// Adds the work of a node in a superstep. Throws std::logic_error for a packet that no task sent, and if 32 bits
+    /// are too few to number tasks and messages.
     void add(const NodeWork& work);
 
-    /// Returns the history after check_history(). Must be called once, as the last call. The cycles of a node's tasks
-    /// sum to its cycles in the render. Injection cycles, including those of discarded rays, are divided equally among
-    /// the primary rays that the node generates in the superstep. A superstep without such a ray passes its injection
-    /// cycles on to the next one. Cycles that remain at the end become a separate task.
+    /// Checks the history with check_history() and returns it. Must be called once, as the last call. The sum of the
+    /// cycles of a node's tasks is the node's cycles in the render. Injection cycles, including those of discarded
+    /// rays, are divided equally among the primary rays that the node generates in the superstep. The injection cycles
+    /// of a superstep without such a ray are added to those of the next superstep. Cycles that remain at the end become
+    /// a separate task.
     History finish();
 
   private:
     struct SentMessage {
         HistoryMessage message;
-        std::uint64_t ray = 0;  // number of the ray; for a return, of the ray that it belongs to
+        std::uint64_t ray = 0;  // number of the ray; for a return, number of the ray whose contribution it carries
     };
+    /// Last message and last task of a ray so far; UINT32_MAX: none.
     struct RayProgress {
         std::uint32_t message = UINT32_MAX;  // last message that contained the ray
         std::uint32_t task = UINT32_MAX;     // last task that processed the ray
@@ -119,7 +124,7 @@ class HistoryRecorder {
     void add_injection_tasks(const NodeWork& work);
     void add_processing_tasks(const NodeWork& work);
     void add_messages(const NodeWork& work, std::size_t first_task);
-    std::uint32_t destination_of(std::uint32_t node, const raya_head& packet) const;
+    std::uint32_t destination_of(std::uint32_t sender, const raya_head& packet) const;
     std::uint16_t words_of(std::uint32_t kind) const;
     void append(const SentMessage& sent);
 

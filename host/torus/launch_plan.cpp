@@ -8,7 +8,9 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t divide_up(std::uint64_t count, std::uint64_t by) { return (count + by - 1) / by; }
+constexpr std::uint64_t divide_up(std::uint64_t count, std::uint64_t divisor) {
+    return (count + divisor - 1) / divisor;
+}
 
 std::vector<raya_voxel_memory> voxels_of(const raya_node& header, std::span<const std::uint32_t> words) {
     std::vector<raya_voxel_memory> voxels;
@@ -26,7 +28,7 @@ std::uint32_t max_corners(const raya_objects& objects, std::span<const std::uint
     return corners;
 }
 
-// Returns the units of work to generate all primary rays of a node: rows, and batches of their pixels
+// Returns the work to generate all primary rays of a node: the number of rows, and of batches of their pixels
 // (kernels/torus/pixel_rows.clh).
 std::uint64_t inject_work_of(const raya_node& header, bool root_injects, std::uint64_t batch) {
     const std::uint64_t width = header.job.mapping.width, height = header.job.mapping.height;
@@ -38,17 +40,18 @@ std::uint64_t inject_work_of(const raya_node& header, bool root_injects, std::ui
 
 }  // namespace
 
-LaunchPlan::LaunchPlan(const TorusSettings& settings, const NodeMemories& memories, const NodeShare& share,
-                       const NodeBuffers& buffers, const KernelOptions& options, const DeviceInfo& device)
-    : share_(share),
+LaunchPlan::LaunchPlan(const TorusSettings& settings, const NodeMemories& memories,
+                       const NodeDistribution& distribution, const NodeBuffers& buffers, const KernelOptions& options,
+                       const DeviceInfo& device)
+    : distribution_(distribution),
       buffers_(buffers),
       lanes_(options.lanes),
       group_size_(options.group_size),
       max_loop_iterations_(device.max_loop_iterations),
       work_per_launch_(settings.work_per_launch),
-      exact_(options.exact_divide && device.correctly_rounded_divide_sqrt) {
+      rounds_correctly_(options.exact_divide && device.correctly_rounded_divide_sqrt) {
     const bool root_injects = settings.inject == Injection::kRoot || raya_nodes(settings.torus) == 1;
-    for (std::uint32_t slot = 0; slot < share.nodes(); ++slot) {
+    for (std::uint32_t slot = 0; slot < distribution.nodes(); ++slot) {
         const auto words = std::span<const std::uint32_t>(memories.words).subspan(memories.starts[slot]);
         const auto header = record_at<raya_node>(words, 0);
         lights_ = header.job.lights;
@@ -68,35 +71,35 @@ void LaunchPlan::clear() {
 
 void LaunchPlan::update(const NodeStatus& status) {
     for (std::uint32_t slot = 0; slot < nodes_.size(); ++slot) {
-        const std::uint32_t node = share_.own_nodes()[slot];
+        const std::uint32_t node = distribution_.own_nodes()[slot];
         std::uint64_t packets = status.at(node, RAYA_STATUS_QUEUE);
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-            packets +=
-                status.at(node, RAYA_STATUS_INBOX + link) +
-                std::uint64_t{status.at(raya_link_end(share_.torus(), node, link ^ 1u), RAYA_STATUS_OUTBOX + link)};
+            packets += status.at(node, RAYA_STATUS_INBOX + link) +
+                       std::uint64_t{
+                           status.at(raya_link_end(distribution_.torus(), node, link ^ 1u), RAYA_STATUS_OUTBOX + link)};
         nodes_[slot].packets = std::min<std::uint64_t>(packets, buffers_.queue);
     }
 }
 
 LaunchBudget LaunchPlan::budget(const WorkUnit& unit, std::uint64_t max_work, std::uint64_t total_work) const {
-    // Numbers of ray-object tests in about a second: for a launch on two CPU cores, and for a node on one compute unit
-    // of a slow GPU.
+    // Numbers of ray-object tests that take about a second: of a launch on two CPU cores, and of a node on one compute
+    // unit of a slow GPU.
     constexpr double kTestsOfLaunch = 1e9, kTestsOfNode = 1e8;
-    constexpr double kFixedIterations = 4096;  // loop iterations that do not depend on the work
+    constexpr double kFixedIterations = 4096;  // number of loop iterations that do not depend on the work
     constexpr double kMaxWork = 1u << 31;
-    const auto whole = [&](double work) { return static_cast<std::uint32_t>(std::clamp(work, 1.0, kMaxWork)); };
-    const double launch_limit = unit.per_test * kTestsOfLaunch / lanes_;
-    double node_limit = unit.per_test * kTestsOfNode / lanes_, overrun = 0;
+    const auto whole_units = [&](double work) { return static_cast<std::uint32_t>(std::clamp(work, 1.0, kMaxWork)); };
+    const double launch_limit = unit.units_per_test * kTestsOfLaunch / lanes_;
+    double node_limit = unit.units_per_test * kTestsOfNode / lanes_, overrun_units = 0;
     if (const double units = (max_loop_iterations_ - kFixedIterations) / unit.iterations;
         max_loop_iterations_ > 0 && units < node_limit) {
         node_limit = units;
-        overrun = unit.overrun;
+        overrun_units = unit.overrun_units;
     }
     if (work_per_launch_ > 0) node_limit = work_per_launch_;
     if (static_cast<double>(max_work) <= node_limit && static_cast<double>(total_work) <= launch_limit)
-        return {whole(node_limit), true};
-    const double even_share = std::max(1.0, launch_limit / static_cast<double>(nodes_.size()));
-    return {whole(std::min(node_limit - overrun, even_share)), false};
+        return {whole_units(node_limit), true};
+    const double equal_part = std::max(1.0, launch_limit / static_cast<double>(nodes_.size()));
+    return {whole_units(std::min(node_limit - overrun_units, equal_part)), false};
 }
 
 LaunchBudget LaunchPlan::inject() {
@@ -106,10 +109,11 @@ LaunchBudget LaunchPlan::inject() {
         total_work += node.inject_work;
         node.packets = std::max<std::uint64_t>(node.packets, std::max(1u, buffers_.queue / 8));
     }
-    return budget({.iterations = 32, .per_test = 1.0 / 8}, max_work, total_work);
+    return budget({.iterations = 32, .units_per_test = 1.0 / 8}, max_work, total_work);
 }
 
-// In the worst case the packets of all lanes are in different voxels, which a work-item processes one after another.
+// Upper bound of the work of a node with `packets` packets. In the worst case the packets of all lanes are in different
+// voxels. A work-item processes such packets one after another.
 std::uint64_t LaunchPlan::trace_work(const Node& node, std::uint64_t packets) const {
     const std::uint64_t batches = divide_up(packets, lanes_);
     const std::uint64_t steps = std::min(packets, batches * std::min<std::uint64_t>(lanes_, node.voxels + 1));
@@ -124,15 +128,15 @@ LaunchBudget LaunchPlan::trace_voxel() const {
         total_work += work;
         batch_work = std::max(batch_work, trace_work(node, lanes_));
     }
-    // Loop iterations of a ray-object test, measured on llvmpipe with the ring's kernels. A sphere test takes
-    // iterations of the loops over batches, over hits and over spheres that the filter rejects. Refining quotients and
-    // roots takes a few more iterations, and each corner of a polygon three.
-    const double iterations = (exact_ ? 24 : 32) + 3.0 * max_corners_;
-    return budget({.iterations = iterations, .overrun = static_cast<double>(group_size_ * batch_work)}, max_work,
+    // Number of loop iterations of a ray-object test, measured on llvmpipe with the ring's kernels. A sphere test takes
+    // iterations of the loops over batches, over hits and over spheres that the filter rejects. The refinement of
+    // quotients and roots takes 8 more iterations, and each corner of a polygon takes 3.
+    const double iterations = (rounds_correctly_ ? 24 : 32) + 3.0 * max_corners_;
+    return budget({.iterations = iterations, .overrun_units = static_cast<double>(group_size_ * batch_work)}, max_work,
                   total_work);
 }
 
-constexpr double kIterationsOfMove = 8;  // loop iterations to move one batch of packets
+constexpr double kIterationsOfMove = 8;  // number of loop iterations to move one batch of packets
 
 LaunchBudget LaunchPlan::route() const {
     const std::uint64_t batches = divide_up(buffers_.queue, group_size_);
@@ -142,7 +146,7 @@ LaunchBudget LaunchPlan::route() const {
 LaunchBudget LaunchPlan::accept() const {
     const std::uint64_t link_batches = 1 + 2 * divide_up(buffers_.box, group_size_);
     const std::uint64_t batches = RAYA_LINKS * link_batches;
-    return budget({.iterations = kIterationsOfMove, .overrun = static_cast<double>(link_batches)}, batches,
+    return budget({.iterations = kIterationsOfMove, .overrun_units = static_cast<double>(link_batches)}, batches,
                   batches * nodes_.size());
 }
 

@@ -7,8 +7,8 @@
 namespace raya {
 namespace {
 
-// Fixed cost of a command, in bytes that could be copied in the same time: a few microseconds with PoCL.
-constexpr std::uint64_t kCommandBytes = 100'000;
+// Fixed cost of a command: the number of bytes that could be copied in the same time, a few microseconds with PoCL.
+constexpr std::uint64_t kCommandCostBytes = 100'000;
 
 raya_head head_at(const std::uint32_t* packet) {
     raya_head head;
@@ -20,17 +20,17 @@ raya_head head_at(const std::uint32_t* packet) {
 
 std::string link_name(std::uint32_t link) { return std::string(link % 2 == 0 ? "+" : "-") + "xyz"[link / 2]; }
 
-LinkExchange::LinkExchange(Session& session, const NodeShare& share, std::uint32_t capacity,
+LinkExchange::LinkExchange(Session& session, const NodeDistribution& distribution, std::uint32_t capacity,
                            const PacketClass& packet_class)
     : session_(session),
-      share_(share),
-      torus_(share.torus()),
-      nodes_(share.nodes()),
+      distribution_(distribution),
+      torus_(distribution.torus()),
+      nodes_(distribution.nodes()),
       capacity_(capacity),
       class_(packet_class),
       outboxes_(session.buffer<std::uint32_t>("outboxes", outbox_at(RAYA_LINKS, 0))),
       inboxes_(session.buffer<std::uint32_t>("inboxes", inbox_at(RAYA_LINKS, 0))),
-      sent_(session.buffer<std::uint32_t>("sent flags", std::size_t{RAYA_LINKS} * share.inboxes())),
+      sent_(session.buffer<std::uint32_t>("sent flags", std::size_t{RAYA_LINKS} * distribution.inboxes())),
       rank_links_(find_rank_links()) {}
 
 void LinkExchange::clear() {
@@ -38,7 +38,7 @@ void LinkExchange::clear() {
     sent_flags_.assign(outboxes, 0);
     device_flags_ = sent_flags_;
     session_.fill("clear mailboxes", sent_, 0);
-    // Clears only the packet counts: mailboxes are large, and most of their memory pages are never used.
+    // Clears only the packet counts, because mailboxes are large and most of their memory pages are never used.
     const Session::Blocks zeros{.pitch = 1}, boxes{.pitch = box_words(capacity_)};
     session_.copy_blocks("clear mailboxes", sent_, zeros, inboxes_, boxes, 1, sent_.size());
     session_.copy_blocks("clear mailboxes", sent_, zeros, outboxes_, boxes, 1, outboxes);
@@ -47,16 +47,17 @@ void LinkExchange::clear() {
     moved_ = 0;
 }
 
-void LinkExchange::use_kernel(const ExchangeKernel& kernel, std::uint32_t group, Buffer<std::uint32_t>& status) {
-    std::vector<std::uint32_t> ends;
+void LinkExchange::use_kernel(const ExchangeKernel& kernel, std::uint32_t group_size, Buffer<std::uint32_t>& status) {
+    std::vector<std::uint32_t> end_slots;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-        for (const std::uint32_t node : share_.own_nodes()) {
-            const bool stays = torus_.sides[link / 2] > 1 && !crosses_ranks(link, node);
-            ends.push_back(stays ? share_.slot_of(raya_link_end(torus_, node, link)) : RAYA_NO_SLOT);
+        for (const std::uint32_t node : distribution_.own_nodes()) {
+            const bool stays_on_device = torus_.sides[link / 2] > 1 && !crosses_ranks(link, node);
+            end_slots.push_back(stays_on_device ? distribution_.slot_of(raya_link_end(torus_, node, link))
+                                                : RAYA_NO_SLOT);
         }
     kernel_.emplace(
-        KernelTransfer{kernel, group, status, session_.buffer<std::uint32_t>("ends of links", ends.size())});
-    session_.write("scatter", kernel_->ends, ends);
+        KernelTransfer{kernel, group_size, status, session_.buffer<std::uint32_t>("ends of links", end_slots.size())});
+    session_.write("scatter", kernel_->end_slots, end_slots);
 }
 
 void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>& words) {
@@ -66,7 +67,7 @@ void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>
         count_transfers(status, link, words);
         if (!kernel_) copy_mailboxes(status, link);
     }
-    // The kernel sets the flags of its own transfers. If no link crosses ranks, these are all transfers.
+    // The kernel sets the flags of the transfers within this rank. Other transfers exist only if links cross ranks.
     if (!kernel_ || !rank_links_.empty()) write_sent_flags();
     if (kernel_) launch_kernel();
 }
@@ -76,7 +77,7 @@ void LinkExchange::count_transfers(const NodeStatus& status, std::uint32_t link,
     for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
         const std::uint32_t packets = status.at(node, class_.outbox_status + link);
         if (packets == 0 || inbox_occupied(status, link, node)) continue;
-        if (share_.has(node)) sent_flags_[std::size_t{link} * nodes_ + share_.slot_of(node)] = 1;
+        if (distribution_.has(node)) sent_flags_[std::size_t{link} * nodes_ + distribution_.slot_of(node)] = 1;
         const std::uint64_t messages = class_.charged_status ? status.at(node, *class_.charged_status) : packets;
         packets_[std::size_t{node} * RAYA_LINKS + link] += messages;
         words[std::size_t{node} * RAYA_LINKS + link] += messages * class_.charged_words;
@@ -88,18 +89,19 @@ void LinkExchange::copy_mailboxes(const NodeStatus& status, std::uint32_t link) 
     const std::size_t pitch = box_words(capacity_);
     for (const CopyRange& range : copy_ranges(status, link))
         session_.copy_blocks(class_.label + " " + link_name(link), outboxes_,
-                             {.pitch = pitch, .first = outbox_at(link, range.first)}, inboxes_,
-                             {.pitch = pitch, .first = inbox_at(link, range.first)}, box_words(range.packets),
-                             range.end - range.first);
+                             {.pitch = pitch, .first = outbox_at(link, range.first_slot)}, inboxes_,
+                             {.pitch = pitch, .first = inbox_at(link, range.first_slot)}, box_words(range.packets),
+                             range.end_slot - range.first_slot);
 }
 
 void LinkExchange::launch_kernel() {
     if (std::find(sent_flags_.begin(), sent_flags_.end(), 1u) == sent_flags_.end() && sent_flags_ == device_flags_)
         return;
-    session_.launch(class_.label, kernel_->kernel, std::size_t{RAYA_LINKS} * nodes_, kernel_->group, kernel_->ends,
-                    Uint<"nodes">{nodes_}, Uint<"inboxes_of_link">{share_.inboxes()}, Uint<"capacity">{capacity_},
-                    Uint<"packet_words">{class_.packet_words}, Uint<"outbox_status">{class_.outbox_status},
-                    Uint<"inbox_status">{class_.inbox_status}, outboxes_, inboxes_, sent_, kernel_->status);
+    session_.launch(class_.label, kernel_->kernel, std::size_t{RAYA_LINKS} * nodes_, kernel_->group_size,
+                    kernel_->end_slots, Uint<"nodes">{nodes_}, Uint<"inboxes_of_link">{distribution_.inboxes()},
+                    Uint<"capacity">{capacity_}, Uint<"packet_words">{class_.packet_words},
+                    Uint<"outbox_status">{class_.outbox_status}, Uint<"inbox_status">{class_.inbox_status}, outboxes_,
+                    inboxes_, sent_, kernel_->status);
     device_flags_ = sent_flags_;
 }
 
@@ -109,12 +111,12 @@ void LinkExchange::write_sent_flags() {
     device_flags_ = sent_flags_;
 }
 
-bool LinkExchange::inbox_occupied(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const {
-    return status.at(raya_link_end(torus_, node, link), class_.inbox_status + link) > 0;
+bool LinkExchange::inbox_occupied(const NodeStatus& status, std::uint32_t link, std::uint32_t sender) const {
+    return status.at(raya_link_end(torus_, sender, link), class_.inbox_status + link) > 0;
 }
 
-bool LinkExchange::crosses_ranks(std::uint32_t link, std::uint32_t node) const {
-    return share_.rank_of(raya_link_end(torus_, node, link)) != share_.rank_of(node);
+bool LinkExchange::crosses_ranks(std::uint32_t link, std::uint32_t sender) const {
+    return distribution_.rank_of(raya_link_end(torus_, sender, link)) != distribution_.rank_of(sender);
 }
 
 LinkExchange::LinkMessage& LinkExchange::message_for(std::vector<LinkMessage>& messages, std::uint32_t rank,
@@ -125,25 +127,26 @@ LinkExchange::LinkMessage& LinkExchange::message_for(std::vector<LinkMessage>& m
 }
 
 std::vector<LinkExchange::RankLink> LinkExchange::find_rank_links() const {
-    std::vector<RankLink> found;
+    std::vector<RankLink> rank_links;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
         for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
             const std::uint32_t end = raya_link_end(torus_, node, link);
-            if (share_.has(node) != share_.has(end))
-                found.push_back({link, node, share_.rank_of(share_.has(node) ? end : node)});
+            if (distribution_.has(node) != distribution_.has(end))
+                rank_links.push_back({link, node, distribution_.rank_of(distribution_.has(node) ? end : node)});
         }
-    return found;
+    return rank_links;
 }
 
-// Sender and receiver of a message read the number of packets in each mailbox from the status.
-void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in) {
+// Sender and receiver of a message read the number of packets in each mailbox from the status, so both know its length.
+void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<OutgoingMessage>& out,
+                                   std::vector<IncomingMessage>& in) {
     outgoing_.clear();
     incoming_.clear();
-    for (const auto& [link, node, rank] : rank_links_) {
-        const std::uint32_t packets = status.at(node, class_.outbox_status + link);
-        if (packets == 0 || inbox_occupied(status, link, node)) continue;
-        LinkMessage& m = message_for(share_.has(node) ? outgoing_ : incoming_, rank, link);
-        m.nodes.push_back(node);
+    for (const auto& [link, sender, rank] : rank_links_) {
+        const std::uint32_t packets = status.at(sender, class_.outbox_status + link);
+        if (packets == 0 || inbox_occupied(status, link, sender)) continue;
+        LinkMessage& m = message_for(distribution_.has(sender) ? outgoing_ : incoming_, rank, link);
+        m.senders.push_back(sender);
         m.packets.push_back(packets);
         m.words += box_words(packets);
     }
@@ -164,19 +167,20 @@ void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<Outgoin
         out.push_back({m.rank, tag(m), std::as_bytes(outgoing_words_->first(at).last(m.words))});
     }
     incoming_words_.resize(words_of(incoming_));
-    std::span<std::uint32_t> to = incoming_words_;
+    std::span<std::uint32_t> unused = incoming_words_;
     for (const LinkMessage& m : incoming_) {
-        in.push_back({m.rank, tag(m), std::as_writable_bytes(to.first(m.words))});
-        to = to.subspan(m.words);
+        in.push_back({m.rank, tag(m), std::as_writable_bytes(unused.first(m.words))});
+        unused = unused.subspan(m.words);
     }
 }
 
-void LinkExchange::read_message(const LinkMessage& m, std::size_t to) {
-    for (std::size_t i = 0; i < m.nodes.size(); ++i) {
+// Starts to read the packets of a message from the outboxes into outgoing_words_, from `first_word` on.
+void LinkExchange::read_message(const LinkMessage& m, std::size_t first_word) {
+    for (std::size_t i = 0; i < m.senders.size(); ++i) {
         const std::size_t words = box_words(m.packets[i]);
-        session_.read(class_.label + " outgoing", outboxes_, outbox_at(m.link, share_.slot_of(m.nodes[i])),
-                      *outgoing_words_, to, words);
-        to += words;
+        session_.read(class_.label + " outgoing", outboxes_, outbox_at(m.link, distribution_.slot_of(m.senders[i])),
+                      *outgoing_words_, first_word, words);
+        first_word += words;
     }
 }
 
@@ -185,51 +189,51 @@ void LinkExchange::wait_for_outgoing() {
 }
 
 void LinkExchange::write_incoming() {
-    std::span<const std::uint32_t> from = incoming_words_;
+    std::span<const std::uint32_t> unwritten = incoming_words_;
     for (const LinkMessage& m : incoming_)
-        for (std::size_t i = 0; i < m.nodes.size(); ++i) {
+        for (std::size_t i = 0; i < m.senders.size(); ++i) {
             const std::size_t words = box_words(m.packets[i]);
-            session_.write(class_.label + " incoming", inboxes_, from.first(words),
-                           inbox_at(m.link, share_.inbox(m.link, m.nodes[i])));
-            from = from.subspan(words);
+            session_.write(class_.label + " incoming", inboxes_, unwritten.first(words),
+                           inbox_at(m.link, distribution_.inbox_from(m.senders[i], m.link)));
+            unwritten = unwritten.subspan(words);
         }
 }
 
-std::uint64_t LinkExchange::copy_cost(const CopyRange& range) const {
-    return kCommandBytes + (range.end - range.first) * box_words(range.packets) * sizeof(std::uint32_t);
+std::uint64_t LinkExchange::copy_cost_bytes(const CopyRange& range) const {
+    return kCommandCostBytes + (range.end_slot - range.first_slot) * box_words(range.packets) * sizeof(std::uint32_t);
 }
 
-// Extends a range if that takes less time than another command. A range may include empty outboxes; these are copied to
-// empty inboxes.
+// Extends a range if the longer command takes less time than two commands. A range may include empty outboxes: a copy
+// of an empty outbox leaves the empty inbox empty.
 std::vector<LinkExchange::CopyRange> LinkExchange::copy_ranges(const NodeStatus& status, std::uint32_t link) const {
-    std::vector<CopyRange> found;
-    bool closed = true;
+    std::vector<CopyRange> ranges;
+    bool may_extend = false;
     for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
-        const std::uint32_t node = share_.own_nodes()[slot];
+        const std::uint32_t node = distribution_.own_nodes()[slot];
         if (crosses_ranks(link, node) || inbox_occupied(status, link, node)) {
-            closed = true;
+            may_extend = false;
             continue;
         }
         const std::uint32_t packets = status.at(node, class_.outbox_status + link);
         if (packets == 0) continue;
         const CopyRange single{slot, slot + 1, packets};
-        if (!closed) {
-            const CopyRange longer{found.back().first, slot + 1, std::max(found.back().packets, packets)};
-            if (copy_cost(longer) <= copy_cost(found.back()) + copy_cost(single)) {
-                found.back() = longer;
+        if (may_extend) {
+            const CopyRange longer{ranges.back().first_slot, slot + 1, std::max(ranges.back().packets, packets)};
+            if (copy_cost_bytes(longer) <= copy_cost_bytes(ranges.back()) + copy_cost_bytes(single)) {
+                ranges.back() = longer;
                 continue;
             }
         }
-        found.push_back(single);
-        closed = false;
+        ranges.push_back(single);
+        may_extend = true;
     }
-    return found;
+    return ranges;
 }
 
 void LinkExchange::visit_new_packets(const NodeStatus& status,
                                      const std::function<void(std::uint32_t, const raya_head&)>& visit) {
     for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
-        const std::uint32_t node = share_.own_nodes()[slot];
+        const std::uint32_t node = distribution_.own_nodes()[slot];
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t packets = status.at(node, class_.outbox_status + link);
             const std::size_t box = std::size_t{link} * nodes_ + slot;

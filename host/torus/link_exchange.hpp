@@ -1,5 +1,5 @@
-// Links of the torus: transfers packets from the outboxes of nodes to the inboxes of their neighbours. Within a device
-// it uses buffer copies or a kernel, between ranks messages.
+// Links of the torus. They transfer packets from the outboxes of nodes to the inboxes of neighbouring nodes: within a
+// device by buffer copies or by a kernel, between ranks by messages.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -10,12 +10,12 @@
 #include "host/cl/commands.hpp"
 #include "host/cl/kernels.hpp"
 #include "host/ranks/transport.hpp"
-#include "host/torus/node_share.hpp"
+#include "host/torus/node_distribution.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {
 
-/// Returns "+x", "-x", "+y", ...
+/// Returns the direction of a link: "+x", "-x", "+y", ...
 std::string link_name(std::uint32_t link);
 
 using ExchangeKernel = DescribedKernel<"torus/exchange.cl", "exchange", const Buffer<std::uint32_t>&, Uint<"nodes">,
@@ -25,50 +25,51 @@ using ExchangeKernel = DescribedKernel<"torus/exchange.cl", "exchange", const Bu
 
 class LinkExchange {
   public:
-    /// Kind of the packets in the mailboxes, and the words that the model charges for them.
+    /// Packets that one LinkExchange transfers, and number of words that the model charges for them.
     struct PacketClass {
-        std::string label;                                        // prefix of command labels
-        std::uint32_t packet_words, outbox_status, inbox_status;  // first status word of the packet counts
-        std::uint32_t charged_words = packet_words;               // charged for each message
-        std::optional<std::uint32_t> charged_status = {};  // status word: charged packets of the outbox; empty: all
+        std::string label;                          // prefix of command labels
+        std::uint32_t packet_words;                 // number of words in a packet
+        std::uint32_t outbox_status, inbox_status;  // first of RAYA_LINKS status words: numbers of packets in mailboxes
+        std::uint32_t charged_words = packet_words;        // number of words charged for each message
+        std::optional<std::uint32_t> charged_status = {};  // status word: number of charged packets; empty: all packets
         int tag = 0;                                       // tag of messages between ranks
     };
 
     /// Allocates mailboxes of `capacity` packets for every link of this rank's nodes (kernels/shared/traffic.h).
-    LinkExchange(Session& session, const NodeShare& share, std::uint32_t capacity, const PacketClass& packet_class);
+    LinkExchange(Session& session, const NodeDistribution& distribution, std::uint32_t capacity,
+                 const PacketClass& packet_class);
 
-    /// Transfers packets within the device with `kernel`, in work-groups of `group` work-items, instead of with buffer
-    /// copies, the default. `status`: device buffer with the same status words that exchange() receives; must outlive
-    /// this object.
-    void use_kernel(const ExchangeKernel& kernel, std::uint32_t group, Buffer<std::uint32_t>& status);
+    /// Makes exchange() use `kernel`, in work-groups of `group_size` work-items, instead of buffer copies, the default.
+    /// `status`: device buffer with the same status words that exchange() receives; must outlive this object.
+    void use_kernel(const ExchangeKernel& kernel, std::uint32_t group_size, Buffer<std::uint32_t>& status);
     void use_copies() { kernel_.reset(); }
 
     /// Empties the mailboxes and resets the counters.
     void clear();
 
-    /// For each link with both ends on this device: if its inbox is empty, transfers all packets of its outbox. With a
-    /// kernel this takes one launch, labelled "LABEL". With copies it takes one command for each link direction,
-    /// labelled "LABEL +x" and so on. A direction takes several commands if an inbox in the range is not empty, or if
-    /// the lengths of the outboxes differ so much that one command with the maximum length would take longer. Adds the
-    /// words charged for each link to `words`, [node][link]. `status`, `words`, packets() and moved() cover all nodes
-    /// of all ranks.
+    /// Transfers all packets of an outbox if both ends of its link are on this device and the inbox is empty. A kernel
+    /// transfers all links in one launch, labelled PacketClass::label. Buffer copies take one command for each link
+    /// direction, labelled "LABEL +x" and so on. A direction takes several commands if some of its inboxes are not
+    /// empty, or if the lengths of the outboxes differ so much that one command with the maximum length would take
+    /// longer. Adds the number of words charged for each link to `words`, [node][link]. `status`, `words`, packets()
+    /// and moved() cover all nodes of all ranks.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
-    /// The transfers between ranks that belong to the same exchange(). begin_transfers() appends the messages to `out`
-    /// and `in`. The caller starts these messages after wait_for_outgoing(). When they are complete, write_incoming()
+    /// Transfers between ranks, in the same superstep as an exchange(). begin_transfers() appends the messages to `out`
+    /// and `in`. The caller must call wait_for_outgoing(), start the messages and wait for them. Then write_incoming()
     /// writes the received packets into the inboxes.
-    void begin_transfers(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in);
+    void begin_transfers(const NodeStatus& status, std::vector<OutgoingMessage>& out, std::vector<IncomingMessage>& in);
     void wait_for_outgoing();
     void write_incoming();
 
     Buffer<std::uint32_t>& outboxes() { return outboxes_; }
     Buffer<std::uint32_t>& inboxes() { return inboxes_; }
-    const Buffer<std::uint32_t>& sent_flags() const { return sent_; }  // [link][slot]: 1 if the outbox was transferred
+    const Buffer<std::uint32_t>& sent_flags() const { return sent_; }  // [link][slot]: 1: outbox transferred
 
-    /// [node][link]: messages sent since clear().
+    /// [node][link]: number of messages sent since clear().
     const std::vector<std::uint64_t>& packets() const { return packets_; }
 
-    /// Packets sent over all links since clear(), charged or not.
+    /// Number of packets sent over all links since clear(), charged or not.
     std::uint64_t moved() const { return moved_; }
 
     /// Calls `visit`, unless it is empty, with the node and the head of every packet that was put into an outbox of
@@ -77,62 +78,64 @@ class LinkExchange {
                            const std::function<void(std::uint32_t node, const raya_head& packet)>& visit);
 
   private:
-    /// Mailboxes that one command copies: the first `packets` packets of each mailbox of slots `first` to `end` - 1.
+    /// Mailboxes that one command copies: the first `packets` packets of each mailbox of slots `first_slot` to
+    /// `end_slot` - 1.
     struct CopyRange {
-        std::uint32_t first, end, packets;
+        std::uint32_t first_slot, end_slot, packets;
     };
     void count_transfers(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words);
     void copy_mailboxes(const NodeStatus& status, std::uint32_t link);
     void launch_kernel();
     void write_sent_flags();
     std::vector<CopyRange> copy_ranges(const NodeStatus& status, std::uint32_t link) const;
-    std::uint64_t copy_cost(const CopyRange& range) const;  // time, as a number of bytes that are copied in that time
-    bool inbox_occupied(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const;
-    bool crosses_ranks(std::uint32_t link, std::uint32_t node) const;
+    /// Returns the number of bytes that could be copied in the time of the command.
+    std::uint64_t copy_cost_bytes(const CopyRange& range) const;
+    bool inbox_occupied(const NodeStatus& status, std::uint32_t link, std::uint32_t sender) const;
+    bool crosses_ranks(std::uint32_t link, std::uint32_t sender) const;
 
-    /// A link from this rank to another one, or from another one to this rank.
+    /// A link between this rank and another rank, in either direction.
     struct RankLink {
-        std::uint32_t link, node, rank;  // node: start of the link; rank: the other rank
+        std::uint32_t link, sender, rank;  // direction; node at the start of the link; the other rank
     };
 
-    /// Message from one rank to another: the used part of the mailboxes of one link direction between the ranks.
+    /// Message between this rank and another rank: the packets of one link direction, and their numbers.
     struct LinkMessage {
-        std::uint32_t rank = 0, link = 0;
-        std::vector<std::uint32_t> nodes;    // node at the start of each link, ascending
-        std::vector<std::uint32_t> packets;  // [mailbox]: number of packets
+        std::uint32_t rank = 0, link = 0;    // the other rank; direction
+        std::vector<std::uint32_t> senders;  // nodes whose outboxes are in the message, ascending
+        std::vector<std::uint32_t> packets;  // [index in `senders`]: number of packets
         std::size_t words = 0;               // length of the message
     };
     std::vector<RankLink> find_rank_links() const;
     LinkMessage& message_for(std::vector<LinkMessage>& messages, std::uint32_t rank, std::uint32_t link) const;
-    void read_message(const LinkMessage& message, std::size_t to);
+    void read_message(const LinkMessage& message, std::size_t first_word);
 
     Session& session_;
-    const NodeShare& share_;
+    const NodeDistribution& distribution_;
     const raya_torus torus_;
-    std::uint32_t nodes_, capacity_;  // nodes_: number of nodes on this device
+    std::uint32_t nodes_, capacity_;  // number of nodes of this rank; capacity of a mailbox, packets
     PacketClass class_;
     Buffer<std::uint32_t> outboxes_, inboxes_, sent_;
     struct KernelTransfer {
         ExchangeKernel kernel;
-        std::uint32_t group;
+        std::uint32_t group_size;
         Buffer<std::uint32_t>& status;
-        Buffer<std::uint32_t> ends;  // [link][slot]: slot of the node at the other end, or RAYA_NO_SLOT
+        Buffer<std::uint32_t> end_slots;  // [link][slot]: slot of the node at the end of the link, or RAYA_NO_SLOT
     };
     std::optional<KernelTransfer> kernel_;
-    std::vector<std::uint32_t> sent_flags_, device_flags_;  // new contents of sent_, its present contents
-    std::vector<std::uint32_t> visited_;                    // [link][slot]: packets of the outbox already visited
+    std::vector<std::uint32_t> sent_flags_, device_flags_;  // contents of sent_: next, present
+    std::vector<std::uint32_t> visited_;  // [link][slot]: number of packets in the outbox already visited
     std::vector<std::uint64_t> packets_;
     std::uint64_t moved_ = 0;
-    const std::vector<RankLink> rank_links_;  // sorted by link, then by node
+    const std::vector<RankLink> rank_links_;  // sorted by link, then by sender
     std::vector<LinkMessage> outgoing_, incoming_;
-    std::optional<Readback<std::uint32_t>> outgoing_words_;  // words of outgoing_, concatenated
-    std::vector<std::uint32_t> incoming_words_;              // words of incoming_
+    std::optional<Readback<std::uint32_t>> outgoing_words_;  // words of the messages outgoing_, concatenated
+    std::vector<std::uint32_t> incoming_words_;              // words of the messages incoming_, concatenated
     std::size_t box_words(std::uint32_t packets) const { return std::size_t{1 + packets} * class_.packet_words; }
     std::size_t outbox_at(std::uint32_t link, std::uint32_t slot) const {
         return raya_box_at(link, nodes_, slot, capacity_, class_.packet_words);
     }
     std::size_t inbox_at(std::uint32_t link, std::uint32_t inbox) const {
-        return raya_box_at(link, share_.inboxes(), inbox, capacity_, class_.packet_words);
+        return raya_box_at(link, distribution_.inboxes(), inbox, capacity_, class_.packet_words);
     }
 };
 

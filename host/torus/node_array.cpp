@@ -10,82 +10,84 @@ namespace raya {
 namespace {
 
 std::uint32_t max_node_words(const NodeMemories& memories) {
-    std::uint32_t largest = 0;
+    std::uint32_t max_words = 0;
     for (std::size_t i = 0; i + 1 < memories.starts.size(); ++i)
-        largest = std::max(largest, memories.starts[i + 1] - memories.starts[i]);
-    return largest;
+        max_words = std::max(max_words, memories.starts[i + 1] - memories.starts[i]);
+    return max_words;
 }
 
-constexpr std::size_t kRow = 4;  // words in a row; the words of each node start at a row
+constexpr std::size_t kRowWords = 4;  // the words of each node start at a multiple of kRowWords
 
-// Kernels copy a node's words to local memory if these words and the work-group's own data fit there, and if the device
-// does not limit loop iterations. Devices that limit them are CPUs, whose local memory is no
-// faster than global memory.
+// Chooses whether kernels copy a node's words to local memory: only if the words and the other data of the work-group
+// fit the local memory, and if the device does not limit loop iterations. Devices that limit them are CPUs, whose local
+// memory is not faster than global memory.
 KernelOptions choose_words_local(KernelOptions options, const NodeMemories& memories, const DeviceInfo& device) {
-    const std::size_t shared =
+    const std::size_t work_group_words =
         std::max(RAYA_INJECT_WORDS(options.group_size, options.lanes), RAYA_ROUTE_WORDS(options.group_size));
-    const std::size_t bytes = sizeof(std::uint32_t) * (shared + kRow + max_node_words(memories));
+    const std::size_t bytes = sizeof(std::uint32_t) * (work_group_words + kRowWords + max_node_words(memories));
     options.words_local = options.words_local && bytes <= device.local_memory_bytes && device.max_loop_iterations == 0;
     return options;
 }
 
-constexpr const char* kLoopRemedy = "fewer objects in a voxel (--voxels), a shorter --queue";
+constexpr const char* kTruncatedLoopRemedy = "fewer objects in a voxel (--voxels), a shorter --queue";
 
 // Returns true if status word `word` of any node is not 0.
 bool any_node_has(std::span<const std::uint32_t> status, std::size_t word) {
-    for (std::size_t at = word; at < status.size(); at += RAYA_STATUS_WORDS)
-        if (status[at] > 0) return true;
+    for (std::size_t i = word; i < status.size(); i += RAYA_STATUS_WORDS)
+        if (status[i] > 0) return true;
     return false;
 }
 
-// Reorders [rank][slot][each] to [node][each].
+// Reorders [rank][slot][elements_per_node] to [node][elements_per_node].
 template <class T>
-std::vector<T> in_order_of_nodes(const NodeShare& share, std::uint32_t ranks, const std::vector<T>& of_ranks,
-                                 std::size_t each) {
-    if (ranks == 1) return of_ranks;
-    std::vector<T> ordered(of_ranks.size());
-    auto from = of_ranks.begin();
+std::vector<T> in_order_of_nodes(const NodeDistribution& distribution, std::uint32_t ranks,
+                                 const std::vector<T>& by_rank, std::size_t elements_per_node) {
+    if (ranks == 1) return by_rank;
+    std::vector<T> by_node(by_rank.size());
+    auto source = by_rank.begin();
     for (std::uint32_t rank = 0; rank < ranks; ++rank)
-        for (const std::uint32_t node : share.nodes_of(rank)) {
-            std::copy_n(from, each, ordered.begin() + static_cast<std::ptrdiff_t>(each * node));
-            from += static_cast<std::ptrdiff_t>(each);
+        for (const std::uint32_t node : distribution.nodes_of(rank)) {
+            std::copy_n(source, elements_per_node,
+                        by_node.begin() + static_cast<std::ptrdiff_t>(elements_per_node * node));
+            source += static_cast<std::ptrdiff_t>(elements_per_node);
         }
-    return ordered;
+    return by_node;
 }
 
 }  // namespace
 
 NodeArray::NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories,
-                     const NodeBuffers& buffers, const KernelOptions& options, const NodeShare& share, Ranks& ranks)
+                     const NodeBuffers& buffers, const KernelOptions& options, const NodeDistribution& distribution,
+                     Ranks& ranks)
     : NodeArray(Kernels(session, choose_words_local(options, memories, session.device()), settings.kernels.sources),
-                settings, memories, buffers, share, ranks) {}
+                settings, memories, buffers, distribution, ranks) {}
 
 NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories,
-                     const NodeBuffers& buffers, const NodeShare& share, Ranks& ranks)
+                     const NodeBuffers& buffers, const NodeDistribution& distribution, Ranks& ranks)
     : session_(kernels.session()),
       settings_(settings),
       buffers_(buffers),
-      share_(share),
+      distribution_(distribution),
       ranks_(ranks),
-      nodes_(share.nodes()),
+      nodes_(distribution.nodes()),
       node_words_(max_node_words(memories)),
       options_(kernels.options()),
-      plan_(settings, memories, share, buffers, options_, session_.device()),
+      plan_(settings, memories, distribution, buffers, options_, session_.device()),
       memories_(session_.buffer<std::uint32_t>("node memories", memories.words.size())),
       starts_(session_.buffer<std::uint32_t>("starts of node memories", memories.starts.size())),
       run_(session_.buffer<raya_run>("run", 1)),
       queues_(session_.buffer<raya_packet>("queues", std::size_t{nodes_} * buffers.queue)),
       status_(session_.buffer<std::uint32_t>("status", std::size_t{nodes_} * RAYA_STATUS_WORDS)),
       inbox_of_link_(session_.buffer<std::uint32_t>("inboxes of links", std::size_t{nodes_} * RAYA_LINKS)),
-      returns_(session_.buffer<raya_head>("returns", share.has(RAYA_ROOT) ? buffers.queue : 1)),
+      returns_(session_.buffer<raya_head>("returns", distribution.has(RAYA_ROOT) ? buffers.queue : 1)),
       returns_readback_(session_.readback<raya_head>("returns", returns_.size())),
       events_(session_.buffer<std::uint64_t>("events", std::size_t{nodes_} * RAYA_EVENTS)),
       made_(session_.buffer<std::uint64_t>("packets made", std::size_t{nodes_} * RAYA_KINDS)),
       ended_(session_.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),
       processed_(session_.buffer<raya_processed>("processed packets", options_.costs ? queues_.size() : 1)),
-      ray_links_(session_, share, buffers.box,
+      ray_links_(session_, distribution, buffers.box,
                  {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX, settings.packets.ray_words}),
-      return_links_(session_, share, buffers.box,
+      return_links_(session_, distribution, buffers.box,
                     {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX,
                      settings.packets.return_words(), RAYA_STATUS_RETURN_CHARGED, 1}),
       inject_(kernels.get<node_kernels::Inject>()),
@@ -103,14 +105,14 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
 void NodeArray::write_inbox_table() {
     std::vector<std::uint32_t> inboxes;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-        for (const std::uint32_t node : share_.own_nodes())
-            inboxes.push_back(share_.inbox(link, raya_link_end(settings_.torus, node, link ^ 1u)));
+        for (const std::uint32_t node : distribution_.own_nodes())
+            inboxes.push_back(distribution_.inbox_from(raya_link_end(settings_.torus, node, link ^ 1u), link));
     session_.write("scatter", inbox_of_link_, inboxes);
 }
 
 void NodeArray::set_pixels(const PixelSubset& pixels) {
     const raya_run run{.nodes = nodes_,
-                       .inboxes = share_.inboxes(),
+                       .inboxes = distribution_.inboxes(),
                        .queue = buffers_.queue,
                        .box = buffers_.box,
                        .host = buffers_.queue,
@@ -121,8 +123,8 @@ void NodeArray::set_pixels(const PixelSubset& pixels) {
     session_.write("scatter", run_, {&run, 1});
 }
 
-LocalMemory<std::uint32_t> NodeArray::local_words(std::size_t shared) const {
-    return {shared + (options_.words_local ? node_words_ + kRow : 0)};
+LocalMemory<std::uint32_t> NodeArray::local_words(std::size_t work_group_words) const {
+    return {work_group_words + (options_.words_local ? node_words_ + kRowWords : 0)};
 }
 
 void NodeArray::clear() {
@@ -147,7 +149,8 @@ void NodeArray::launch_until_done(const std::string& label, Slots nodes, const L
         if (budget.single_launch && !guard_.has_copies()) return;
         session_.read(label, status_, status, std::size_t{nodes.first} * RAYA_STATUS_WORDS);
         if (any_node_has(status, RAYA_STATUS_CUT)) {
-            std::apply([&](auto&... parts) { guard_.restore_state(session_, label, kLoopRemedy, parts...); }, state);
+            std::apply([&](auto&... parts) { guard_.restore_state(session_, label, kTruncatedLoopRemedy, parts...); },
+                       state);
             continue;
         }
         if (!any_node_has(status, RAYA_STATUS_LEFT)) return;
@@ -196,9 +199,9 @@ void NodeArray::accept(Slots nodes, Reserve reserve, std::uint32_t superstep) {
 }
 
 std::vector<std::uint64_t> NodeArray::exchange(const NodeStatus& status) {
-    if (ranks_.many()) {
-        std::vector<Outgoing> out;
-        std::vector<Incoming> in;
+    if (ranks_.has_several()) {
+        std::vector<OutgoingMessage> out;
+        std::vector<IncomingMessage> in;
         ray_links_.begin_transfers(status, out, in);
         return_links_.begin_transfers(status, out, in);
         ray_links_.wait_for_outgoing();
@@ -212,7 +215,7 @@ std::vector<std::uint64_t> NodeArray::exchange(const NodeStatus& status) {
 }
 
 void NodeArray::finish_exchange() {
-    if (!ranks_.many()) return;
+    if (!ranks_.has_several()) return;
     session_.flush();  // the device computes while the host waits
     ranks_.wait();
     ray_links_.write_incoming();
@@ -226,21 +229,21 @@ std::vector<std::uint64_t> NodeArray::link_packets() const {
 }
 
 NodeStatus NodeArray::read_status() {
-    std::vector<std::uint32_t> own(status_.size());
-    session_.read("read status", status_, own);
-    if (any_node_has(own, RAYA_STATUS_CUT))
-        throw truncated_loops_error("read status", session_.device().name, kLoopRemedy);
-    const std::vector<std::uint32_t> all =
-        ranks_.all_gather(std::span<const std::uint32_t>(own), rank_sizes(RAYA_STATUS_WORDS));
-    const NodeStatus status(in_order_of_nodes(share_, ranks_.count(), all, RAYA_STATUS_WORDS));
+    std::vector<std::uint32_t> own_status(status_.size());
+    session_.read("read status", status_, own_status);
+    if (any_node_has(own_status, RAYA_STATUS_CUT))
+        throw truncated_loops_error("read status", session_.device().name, kTruncatedLoopRemedy);
+    const std::vector<std::uint32_t> all_status =
+        ranks_.all_gather(std::span<const std::uint32_t>(own_status), sizes_of_ranks(RAYA_STATUS_WORDS));
+    const NodeStatus status(in_order_of_nodes(distribution_, ranks_.count(), all_status, RAYA_STATUS_WORDS));
     plan_.update(status);
     return status;
 }
 
-std::vector<std::size_t> NodeArray::rank_sizes(std::size_t per_node) const {
+std::vector<std::size_t> NodeArray::sizes_of_ranks(std::size_t elements_per_node) const {
     std::vector<std::size_t> sizes;
     for (std::uint32_t rank = 0; rank < ranks_.count(); ++rank)
-        sizes.push_back(per_node * share_.nodes_of(rank).size());
+        sizes.push_back(elements_per_node * distribution_.nodes_of(rank).size());
     return sizes;
 }
 
@@ -260,35 +263,36 @@ void NodeArray::report_work(const NodeStatus& injected, const NodeWorkSink& sink
 
 void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns) {
     gather_remaining(returns);
-    if (!share_.has(RAYA_ROOT)) return;
+    if (!distribution_.has(RAYA_ROOT)) return;
     returns_pending_ = status.at(RAYA_ROOT, RAYA_STATUS_HOST);
     session_.read("gather", returns_, 0, returns_readback_, 0, returns_pending_);
 }
 
-// Called in the superstep after the start of the readback. The readback is complete, because read_status() has waited
-// for the command queue in the meantime.
+// Called in the superstep after the one that started the readback. The readback is complete, because read_status() has
+// waited for the command queue since its start.
 void NodeArray::gather_remaining(std::vector<raya_head>& returns) {
     if (returns_pending_ == 0) return;
     session_.wait("gather", returns_readback_);
-    const std::span<const raya_head> here = returns_readback_.first(std::exchange(returns_pending_, 0));
-    returns.insert(returns.end(), here.begin(), here.end());
+    const std::span<const raya_head> read = returns_readback_.first(std::exchange(returns_pending_, 0));
+    returns.insert(returns.end(), read.begin(), read.end());
 }
 
 std::vector<std::uint64_t> NodeArray::read_events() {
-    std::vector<std::uint64_t> own(events_.size());
-    session_.read("read counters", events_, own);
-    const std::vector<std::uint64_t> all = ranks_.gather(std::span<const std::uint64_t>(own), rank_sizes(RAYA_EVENTS));
-    return all.empty() ? all : in_order_of_nodes(share_, ranks_.count(), all, RAYA_EVENTS);
+    std::vector<std::uint64_t> own_events(events_.size());
+    session_.read("read counters", events_, own_events);
+    const std::vector<std::uint64_t> all_events =
+        ranks_.gather(std::span<const std::uint64_t>(own_events), sizes_of_ranks(RAYA_EVENTS));
+    return all_events.empty() ? all_events : in_order_of_nodes(distribution_, ranks_.count(), all_events, RAYA_EVENTS);
 }
 
 PacketCounts NodeArray::read_packets(const Buffer<std::uint64_t>& counters) {
-    std::vector<std::uint64_t> all(counters.size());
-    session_.read("read counters", counters, all);
-    PacketCounts own{}, sum{};
-    for (std::size_t i = 0; i < all.size(); ++i) own[i % RAYA_KINDS] += all[i];
-    for (const PacketCounts& of_rank : ranks_.all_gather(own))
-        for (std::size_t kind = 0; kind < RAYA_KINDS; ++kind) sum[kind] += of_rank[kind];
-    return sum;
+    std::vector<std::uint64_t> node_counts(counters.size());
+    session_.read("read counters", counters, node_counts);
+    PacketCounts own_counts{}, total_counts{};
+    for (std::size_t i = 0; i < node_counts.size(); ++i) own_counts[i % RAYA_KINDS] += node_counts[i];
+    for (const PacketCounts& rank_counts : ranks_.all_gather(own_counts))
+        for (std::size_t kind = 0; kind < RAYA_KINDS; ++kind) total_counts[kind] += rank_counts[kind];
+    return total_counts;
 }
 
 PacketCounts NodeArray::read_made() { return read_packets(made_); }

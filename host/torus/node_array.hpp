@@ -1,4 +1,4 @@
-// The torus nodes of this rank's device: their memories, queues and counters, and the launches of their kernels.
+// The torus nodes of this rank, on its device: their memories, queues and counters, and the launches of their kernels.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,8 +8,8 @@
 #include "host/ranks/ranks.hpp"
 #include "host/torus/launch_plan.hpp"
 #include "host/torus/link_exchange.hpp"
+#include "host/torus/node_distribution.hpp"
 #include "host/torus/node_memory.hpp"
-#include "host/torus/node_share.hpp"
 #include "host/torus/torus_result.hpp"
 #include "host/torus/torus_settings.hpp"
 #include "kernels/shared/traffic.h"
@@ -20,17 +20,17 @@ namespace raya {
 struct MachineState {
     std::uint64_t live = 0;           // number of packets in queues and mailboxes
     std::uint64_t full_queues = 0;    // number of full queues
-    std::uint64_t progress = 0;       // 0 if no packet was processed or transferred
+    std::uint64_t progress = 0;       // sum of the nodes' RAYA_STATUS_PROGRESS; 0: no packet was processed or moved
     std::uint64_t max_cycles = 0;     // modelled cycles of the busiest node
-    std::uint32_t longest_queue = 0;  // packets in the fullest queue
-    bool all_injected = true;         // all primary rays are generated
+    std::uint32_t longest_queue = 0;  // number of packets in the fullest queue
+    bool all_injected = true;         // all primary rays have been generated
     double injected_fraction = 0;     // fraction of the image rows whose primary rays are generated
 };
 
 /// `capacity`: capacity of a queue, in packets.
 MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity);
 
-/// Returns [node]: modelled cycles in the superstep.
+/// Returns [node]: modelled cycles of the node in the superstep.
 std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32_t nodes);
 
 /// Number of free queue slots that a packet needs before a node accepts or processes it (kernels/shared/traffic.h).
@@ -45,8 +45,8 @@ using InputWords = const Buffer<std::uint32_t>&;
 using RunConstants = const Buffer<raya_run>&;
 using FirstNode = Uint<"first_node">;           // slot of the first node of a launch
 using Work = Uint<"work">;                      // work budget of a node in a launch
-using Resume = Uint<"resume">;                  // 1: continue where the previous launch ended
-using LocalWords = LocalMemory<std::uint32_t>;  // local memory of a node's work-group
+using Resume = Uint<"resume">;                  // 1: continue the work that the previous launch left
+using LocalWords = LocalMemory<std::uint32_t>;  // local memory of a work-group, which computes one node
 using Queues = Buffer<raya_packet>&;
 using Mailboxes = Buffer<std::uint32_t>&;
 using Returns = Buffer<raya_head>&;  // returns that have reached the root
@@ -72,9 +72,9 @@ using Accept = DescribedKernel<"torus/accept.cl", "accept", InputWords, InputWor
 class NodeArray {
   public:
     /// Builds the kernels with `options` and allocates the device memory. `memories`: memories of this rank's nodes, by
-    /// slots of `share`. `ranks` and `share` must outlive this object.
+    /// slots of `distribution`. `ranks` and `distribution` must outlive this object.
     NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
-              const KernelOptions& options, const NodeShare& share, Ranks& ranks);
+              const KernelOptions& options, const NodeDistribution& distribution, Ranks& ranks);
 
     /// Empties queues and mailboxes, sets counters to 0, and restarts the generation of primary rays.
     void clear();
@@ -87,43 +87,46 @@ class NodeArray {
         std::uint32_t first = 0, count = 0;
     };
     Slots all() const { return {0, nodes_}; }
-    Slots inner() const { return {0, share_.inner()}; }  // nodes without links to other ranks
-    Slots border() const { return {share_.inner(), nodes_ - share_.inner()}; }
+    Slots inner() const { return {0, distribution_.inner()}; }  // nodes without links to other ranks
+    Slots border() const { return {distribution_.inner(), nodes_ - distribution_.inner()}; }
 
     void inject(Slots nodes);
     void trace_voxel(Slots nodes, Reserve reserve);
     void route();
-    /// Transfers rays and returns over the links of all nodes. Returns the words charged for each link,
-    /// [node][RAYA_LINKS]. Messages between ranks may still be in transit when it returns. finish_exchange() waits for
-    /// them; before that, call accept() for inner nodes only.
+    /// Transfers rays and returns over the links of all nodes. Returns [node][RAYA_LINKS]: number of words charged for
+    /// each link. Messages between ranks may still be in transit afterwards; finish_exchange() waits for them. Between
+    /// the two calls, accept() may be called for inner nodes only.
     std::vector<std::uint64_t> exchange(const NodeStatus& status);
     void finish_exchange();
     void accept(Slots nodes, Reserve reserve, std::uint32_t superstep);
 
-    /// Reads the status of the nodes of all ranks; blocks. accept() resets the status words that count per superstep.
+    /// Reads the status of the nodes of all ranks; blocks. Some status words are counts of the current superstep;
+    /// accept() resets them.
     NodeStatus read_status();
 
-    /// Passes the work of trace_voxel in each node to `sink`. Must be called after trace_voxel() and before route().
+    /// Passes the work of each node in this superstep to `sink`. Must be called after trace_voxel() and before route().
     /// `injected`: the status that read_status() returned between inject() and trace_voxel(). Requires
     /// KernelOptions::costs and a single rank.
     void report_work(const NodeStatus& injected, const NodeWorkSink& sink);
 
-    /// In rank 0, appends the returns of the previous call's readback to `returns`, and starts to read back the returns
-    /// that have now reached the root. After the last superstep, gather_remaining() appends the returns of the last
-    /// readback.
+    /// In rank 0, appends the returns of the readback that the previous call started to `returns`, and starts to read
+    /// back the returns that have reached the root since that call. After the last superstep, gather_remaining()
+    /// appends the returns of the last readback.
     void gather(const NodeStatus& status, std::vector<raya_head>& returns);
     void gather_remaining(std::vector<raya_head>& returns);
 
     /// In rank 0, passes to `sink` the messages in the outboxes of all ranks that the sending node created or changed.
-    /// All ranks must call it in every superstep. An empty sink, which all ranks must pass alike, skips the superstep.
+    /// All ranks must call record_packets() in every superstep, and either all or none of them with an empty sink. An
+    /// empty sink skips the superstep.
     void record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
     std::vector<std::uint64_t> read_events();  // rank 0: [node][RAYA_EVENTS] of all nodes; others: empty
-    PacketCounts read_made();                  // sum over all ranks
-    PacketCounts read_ended();
+    PacketCounts read_made();                  // packets made, sum over all ranks
+    PacketCounts read_ended();                 // packets ended, sum over all ranks
 
-    std::vector<std::uint64_t> link_packets() const;  // [node][RAYA_LINKS]: messages since clear(), of all ranks
-    bool links_by_kernel() const { return links_by_kernel_; }          // false: by copies
+    std::vector<std::uint64_t> link_packets()
+        const;  // [node][RAYA_LINKS]: number of messages since clear(), of all ranks
+    bool links_by_kernel() const { return links_by_kernel_; }          // see TorusResult
     const std::string& links_origin() const { return links_origin_; }  // see TorusResult
     std::uint64_t moved_rays() const { return ray_links_.moved(); }
     std::uint64_t moved_returns() const { return return_links_.moved(); }
@@ -132,7 +135,7 @@ class NodeArray {
 
   private:
     NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
-              const NodeShare& share, Ranks& ranks);
+              const NodeDistribution& distribution, Ranks& ranks);
     void write_inbox_table();
     void choose_link_method(Kernels& kernels);
     void use_kernel(const ExchangeKernel& kernel);
@@ -140,18 +143,19 @@ class NodeArray {
     /// Repeats `launch(work, resume)` until no node of `nodes` has work left.
     template <class Launch>
     void launch_until_done(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch);
-    std::vector<PacketRecord> gather_records(const std::vector<PacketRecord>& own);
-    std::vector<std::size_t> rank_sizes(std::size_t per_node) const;  // [rank]: `per_node` times its nodes
-    /// Local memory of a kernel: `shared` words, plus the node's words if kernels copy them there.
-    LocalMemory<std::uint32_t> local_words(std::size_t shared) const;
+    std::vector<PacketRecord> gather_records(const std::vector<PacketRecord>& own_records);
+    /// Returns [rank]: `elements_per_node` times the number of nodes of the rank.
+    std::vector<std::size_t> sizes_of_ranks(std::size_t elements_per_node) const;
+    /// Returns the local memory of a kernel: `work_group_words` words, plus the node's words if kernels copy them.
+    LocalMemory<std::uint32_t> local_words(std::size_t work_group_words) const;
     PacketCounts read_packets(const Buffer<std::uint64_t>& counters);
 
     Session& session_;
     const TorusSettings settings_;
     NodeBuffers buffers_;
-    const NodeShare& share_;
+    const NodeDistribution& distribution_;
     Ranks& ranks_;
-    std::uint32_t nodes_, node_words_;  // nodes_: number of nodes on this device
+    std::uint32_t nodes_, node_words_;  // number of nodes of this rank; number of words of the fullest of them
     KernelOptions options_;
     LaunchPlan plan_;
     Buffer<std::uint32_t> memories_, starts_;

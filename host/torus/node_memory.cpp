@@ -16,7 +16,7 @@ namespace {
 
 using ObjectNumbers = std::span<const std::uint32_t>;  // object numbers in the scene, ascending
 
-// Finds the parts of a packed job.
+// Access to the parts of a packed job.
 class JobParts {
   public:
     explicit JobParts(const PackedJob& job) : header(job.header()), words_(job.words()) {}
@@ -27,7 +27,7 @@ class JobParts {
     std::uint32_t first_polygon() const { return header.objects.spheres + header.objects.planes; }
     std::uint32_t first_cone() const { return first_polygon() + header.objects.polygons; }
     std::size_t surfaces() const { return surface(header.objects.spheres_at); }
-    // Returns the number of the surface that starts at `word`.
+    // Returns the number of the surface that starts at word `word` of the job.
     std::size_t surface(std::uint32_t word) const { return (word - kWordsOf<raya_job>) / RAYA_SURFACE_WORDS; }
 
     const std::uint32_t* plane(std::uint32_t i) const { return at(header.objects.planes_at + i * RAYA_PLANE_WORDS); }
@@ -39,7 +39,7 @@ class JobParts {
         return at(o.cones_at + (number - first_cone()) * RAYA_CONE_WORDS);
     }
 
-    // Returns the first word of the surface of an object.
+    // Returns the index of the first word of an object's surface.
     std::uint32_t surface_of(std::uint32_t number) const {
         const raya_objects& o = header.objects;
         return number < o.spheres ? *at(raya_sphere_surfaces_at(o.spheres_at, o.spheres) + number)
@@ -55,7 +55,7 @@ std::size_t outline_words(const std::uint32_t* polygon) {
            (polygon[RAYA_POLYGON_NORMALS_AT] != 0 ? RAYA_PATCH_WORDS : 0);
 }
 
-// The objects of a voxel, separated by kind.
+// Numbers of the objects in a voxel: of all objects, and of those of each kind.
 struct VoxelLists {
     ObjectNumbers all, spheres, polygons, cones;
 };
@@ -97,10 +97,10 @@ class NodePacker {
         return padded_to_rows(words);
     }
 
-    // Appends the node's words; returns its number of objects.
-    std::uint64_t append(std::uint32_t node, std::vector<std::uint32_t>& to) {
-        to_ = &to;
-        start_ = to.size();
+    // Appends the node's words to `words`; returns the number of objects in the node.
+    std::uint64_t append(std::uint32_t node, std::vector<std::uint32_t>& words) {
+        words_ = &words;
+        start_ = words.size();
         raya_node header{};
         header.job = job_.header;
         header.job.objects = {};
@@ -110,17 +110,17 @@ class NodePacker {
         header.grid = partition_.grid;
         header.number = node;
         header.voxels = raya_node_voxels(torus_, partition_.grid, node);
-        to.resize(start_ + kWordsOf<raya_node>);
+        words.resize(start_ + kWordsOf<raya_node>);
         append_surfaces(node);
         header.job.lights_at = current_offset();
         append_words(job_.at(job_.header.lights_at), std::size_t{job_.header.lights} * RAYA_LIGHT_WORDS);
         header.voxels_at = current_offset();
-        to.resize(to.size() + header.voxels * kWordsOf<raya_voxel_memory>);
+        words.resize(words.size() + header.voxels * kWordsOf<raya_voxel_memory>);
         header.job.objects.planes_at = current_offset();
         for (std::uint32_t i = 0; i < header.job.objects.planes; ++i) append_object(job_.plane(i), RAYA_PLANE_WORDS);
         const std::uint64_t objects = append_voxels(header);
         fill_row();
-        put_record(to, start_, header);
+        put_record(words, start_, header);
         return objects;
     }
 
@@ -130,21 +130,23 @@ class NodePacker {
     }
 
     // Returns the current offset from the node's first word.
-    std::uint32_t current_offset() const { return static_cast<std::uint32_t>(to_->size() - start_); }
+    std::uint32_t current_offset() const { return static_cast<std::uint32_t>(words_->size() - start_); }
 
-    void append_words(const std::uint32_t* from, std::size_t words) { to_->insert(to_->end(), from, from + words); }
+    void append_words(const std::uint32_t* source, std::size_t count) {
+        words_->insert(words_->end(), source, source + count);
+    }
 
     void append_object(const std::uint32_t* object, std::size_t words) {
         append_words(object, words);
-        to_->end()[-static_cast<std::ptrdiff_t>(words) + RAYA_OBJECT_SURFACE_AT] =
+        words_->end()[-static_cast<std::ptrdiff_t>(words) + RAYA_OBJECT_SURFACE_AT] =
             surface_at_[job_.surface(object[RAYA_OBJECT_SURFACE_AT])];
     }
 
-    // Pads with zeros to a multiple of four words, at which rows and nodes must start.
-    void fill_row() { to_->resize(start_ + padded_to_rows(current_offset())); }
+    // Pads with zeros to a multiple of four words, because rows and nodes must start there.
+    void fill_row() { words_->resize(start_ + padded_to_rows(current_offset())); }
 
-    void add_surface(std::uint32_t at) {
-        const std::size_t surface = job_.surface(at);
+    void add_surface(std::uint32_t word) {
+        const std::size_t surface = job_.surface(word);
         if (std::exchange(last_search_[surface], search_number_) != search_number_) surfaces_.push_back(surface);
     }
 
@@ -164,8 +166,8 @@ class NodePacker {
         find_surfaces(node);
         for (const std::size_t surface : surfaces_) {
             surface_at_[surface] = current_offset();
-            const std::size_t at = kWordsOf<raya_job> + surface * RAYA_SURFACE_WORDS;
-            append_words(job_.at(static_cast<std::uint32_t>(at)), RAYA_SURFACE_WORDS);
+            const std::size_t first_word = kWordsOf<raya_job> + surface * RAYA_SURFACE_WORDS;
+            append_words(job_.at(static_cast<std::uint32_t>(first_word)), RAYA_SURFACE_WORDS);
         }
     }
 
@@ -174,7 +176,7 @@ class NodePacker {
         for (std::uint32_t local = 0; local < header.voxels; ++local) {
             const VoxelLists lists = voxel_lists(header.number, local);
             const raya_voxel_memory voxel = append_voxel(lists, header.job.objects);
-            put_record(*to_, start_ + header.voxels_at + local * kWordsOf<raya_voxel_memory>, voxel);
+            put_record(*words_, start_ + header.voxels_at + local * kWordsOf<raya_voxel_memory>, voxel);
             objects += lists.all.size();
         }
         return objects;
@@ -187,7 +189,7 @@ class NodePacker {
         voxel.objects.spheres_at = current_offset();
         for (const std::uint32_t number : lists.spheres) append_words(job_.object(number), RAYA_SPHERE_WORDS);
         for (const std::uint32_t number : lists.spheres)
-            to_->push_back(surface_at_[job_.surface(job_.surface_of(number))]);
+            words_->push_back(surface_at_[job_.surface(job_.surface_of(number))]);
         voxel.objects.cones = static_cast<std::uint32_t>(lists.cones.size());
         voxel.objects.cones_at = current_offset();
         for (const std::uint32_t number : lists.cones) append_object(job_.object(number), RAYA_CONE_WORDS);
@@ -200,14 +202,14 @@ class NodePacker {
     }
 
     void append_polygons(ObjectNumbers polygons) {
-        std::size_t record = to_->size();
+        std::size_t record = words_->size();
         for (const std::uint32_t number : polygons) append_object(job_.object(number), RAYA_POLYGON_WORDS);
         for (const std::uint32_t number : polygons) {
             const std::uint32_t* const polygon = job_.object(number);
-            (*to_)[record + RAYA_POLYGON_CORNERS_AT] = current_offset();
+            (*words_)[record + RAYA_POLYGON_CORNERS_AT] = current_offset();
             append_words(job_.at(polygon[RAYA_POLYGON_CORNERS_AT]), polygon[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS);
             if (polygon[RAYA_POLYGON_NORMALS_AT] != 0) {
-                (*to_)[record + RAYA_POLYGON_NORMALS_AT] = current_offset();
+                (*words_)[record + RAYA_POLYGON_NORMALS_AT] = current_offset();
                 append_words(job_.at(polygon[RAYA_POLYGON_NORMALS_AT]), RAYA_PATCH_WORDS);
             }
             record += RAYA_POLYGON_WORDS;
@@ -217,12 +219,12 @@ class NodePacker {
     JobParts job_;
     const Partition& partition_;
     const raya_torus torus_;
-    std::uint32_t search_number_ = 0;           // number of calls of find_surfaces()
-    std::vector<std::uint32_t> last_search_;    // [surface]: number of the last call that found it
-    std::vector<std::size_t> surfaces_;         // surfaces found by the last call
-    std::vector<std::uint32_t> surface_at_;     // [surface]: its offset in the node being packed
-    std::vector<std::uint32_t>* to_ = nullptr;  // words of all nodes
-    std::size_t start_ = 0;                     // index of the node's first word in *to_
+    std::uint32_t search_number_ = 0;              // number of calls of find_surfaces()
+    std::vector<std::uint32_t> last_search_;       // [surface]: number of the last call that found the surface
+    std::vector<std::size_t> surfaces_;            // surfaces found by the last call
+    std::vector<std::uint32_t> surface_at_;        // [surface]: offset of the surface in the node being packed
+    std::vector<std::uint32_t>* words_ = nullptr;  // words of all nodes packed so far
+    std::size_t start_ = 0;                        // index of the current node's first word in *words_
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Transfers between nodes and host: the status of a superstep, the measurement that chooses between the methods of link
-// exchange, and packets for a trace.
+// Members of NodeArray, and functions of node_array.hpp, that evaluate the nodes' status, choose the method of link
+// exchange by a measurement, and record packets for a trace.
 #include <algorithm>
 #include <limits>
 
@@ -13,12 +13,12 @@ std::uint64_t cycles_of(const NodeStatus& status, std::uint32_t node) {
     return status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)} << 32;
 }
 
-constexpr std::uint32_t kMeasuredPackets = 32;  // packets in each mailbox of a measurement
-constexpr int kRepetitions = 5;                 // the shortest time is used
+constexpr std::uint32_t kMeasuredPackets = 32;  // number of packets in each outbox during a measurement
+constexpr int kRepetitions = 5;                 // the measurement uses the shortest time
 
 bool is_return(const raya_head& packet) { return raya_state_kind(packet.state) == RAYA_KIND_RETURN; }
 
-// Returns true if the model charges a packet of an outbox as a message and the outbox's node created or changed it.
+// Returns true if the node of the outbox created or changed the packet, and the model charges the packet as a message.
 bool is_new_message(const raya_head& packet) {
     return packet.state & RAYA_STATE_FRESH && (!is_return(packet) || packet.state & RAYA_STATE_CHARGED);
 }
@@ -49,7 +49,7 @@ std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32
 
 MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity) {
     MachineState state;
-    std::uint64_t rows = 0, done = 0;
+    std::uint64_t rows = 0, injected_rows = 0;
     for (std::uint32_t node = 0; node < nodes; ++node) {
         const auto at = [&](std::uint32_t word) { return status.at(node, word); };
         state.live += at(RAYA_STATUS_QUEUE) + at(RAYA_STATUS_HOST);
@@ -62,13 +62,14 @@ MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::u
         state.max_cycles = std::max(state.max_cycles, cycles_of(status, node));
         state.all_injected &= at(RAYA_STATUS_NEXT_ROW) >= at(RAYA_STATUS_ROWS);
         rows += at(RAYA_STATUS_ROWS);
-        done += at(RAYA_STATUS_NEXT_ROW);
+        injected_rows += at(RAYA_STATUS_NEXT_ROW);
     }
-    state.injected_fraction = rows ? static_cast<double>(done) / static_cast<double>(rows) : 1;
+    state.injected_fraction = rows ? static_cast<double>(injected_rows) / static_cast<double>(rows) : 1;
     return state;
 }
 
-// Measures on devices other than CPUs. On CPUs the kernel is at least as fast as copies (docs/tuning.md).
+// Chooses the faster method by a measurement, except on CPUs, where the kernel is at least as fast as buffer copies
+// (docs/tuning.md).
 void NodeArray::choose_link_method(Kernels& kernels) {
     const LinkMove chosen = settings_.kernels.link_move;
     const bool cpu = session_.device().type == "cpu";
@@ -76,9 +77,9 @@ void NodeArray::choose_link_method(Kernels& kernels) {
     if (chosen == LinkMove::kCopies) return;
     const auto kernel = kernels.get<ExchangeKernel>();
     if (chosen == LinkMove::kKernel || cpu) return use_kernel(kernel);
-    const double by_copies = measure_exchange_s();
+    const double copies_s = measure_exchange_s();
     use_kernel(kernel);
-    if (measure_exchange_s() < by_copies) return;
+    if (measure_exchange_s() < copies_s) return;
     ray_links_.use_copies();
     return_links_.use_copies();
     links_by_kernel_ = false;
@@ -90,21 +91,21 @@ void NodeArray::use_kernel(const ExchangeKernel& kernel) {
     links_by_kernel_ = true;
 }
 
-// Returns the seconds of an exchange over all links with kMeasuredPackets packets in every outbox. The caller must
-// clear() the packets and counts afterwards.
+// Returns the time of an exchange over all links with kMeasuredPackets packets in every outbox. The caller must call
+// clear() afterwards.
 double NodeArray::measure_exchange_s() {
     const std::uint32_t packets = std::min(kMeasuredPackets, buffers_.box);
     NodeStatus status(raya_nodes(settings_.torus));
     for (std::uint32_t node = 0; node < raya_nodes(settings_.torus); ++node) {
-        const auto put = [&](std::uint32_t word) {
+        const auto set_packets = [&](std::uint32_t word) {
             status.words[std::size_t{node} * RAYA_STATUS_WORDS + word] = packets;
         };
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-            if (settings_.torus.sides[link / 2] > 1) put(RAYA_STATUS_OUTBOX + link);
-        if (node != RAYA_ROOT) put(RAYA_STATUS_RETURN_OUTBOX + raya_return_link(settings_.torus, node));
+            if (settings_.torus.sides[link / 2] > 1) set_packets(RAYA_STATUS_OUTBOX + link);
+        if (node != RAYA_ROOT) set_packets(RAYA_STATUS_RETURN_OUTBOX + raya_return_link(settings_.torus, node));
     }
     for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
-        const std::size_t node = share_.own_nodes()[slot];
+        const std::size_t node = distribution_.own_nodes()[slot];
         session_.write("measure links", status_,
                        std::span(status.words).subspan(node * RAYA_STATUS_WORDS, RAYA_STATUS_WORDS),
                        std::size_t{slot} * RAYA_STATUS_WORDS);
@@ -112,7 +113,7 @@ double NodeArray::measure_exchange_s() {
     ray_links_.clear();
     return_links_.clear();
     std::vector<std::uint64_t> words(std::size_t{raya_nodes(settings_.torus)} * RAYA_LINKS);
-    double min_s = std::numeric_limits<double>::max();
+    double min_exchange_s = std::numeric_limits<double>::max();
     for (int i = 0; i <= kRepetitions; ++i) {
         session_.finish();
         const Clock::time_point start = Clock::now();
@@ -120,9 +121,9 @@ double NodeArray::measure_exchange_s() {
         return_links_.exchange(status, words);
         session_.finish();
         const double seconds = seconds_since(start);
-        if (i > 0) min_s = std::min(min_s, seconds);  // the first exchange may compile the kernel
+        if (i > 0) min_exchange_s = std::min(min_exchange_s, seconds);  // the first exchange may compile the kernel
     }
-    return min_s;
+    return min_exchange_s;
 }
 
 void NodeArray::record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
@@ -130,20 +131,20 @@ void NodeArray::record_packets(const NodeStatus& status, std::uint32_t superstep
         ray_links_.visit_new_packets(status, {});
         return return_links_.visit_new_packets(status, {});
     }
-    std::vector<PacketRecord> own;
-    const auto take = [&](std::uint32_t node, const raya_head& packet) {
-        if (is_new_message(packet)) own.push_back(record_of(settings_, superstep, node, packet));
+    std::vector<PacketRecord> own_records;
+    const auto record_new = [&](std::uint32_t node, const raya_head& packet) {
+        if (is_new_message(packet)) own_records.push_back(record_of(settings_, superstep, node, packet));
     };
-    ray_links_.visit_new_packets(status, take);
-    return_links_.visit_new_packets(status, take);
-    std::vector<PacketRecord> records = ranks_.many() ? gather_records(own) : std::move(own);
+    ray_links_.visit_new_packets(status, record_new);
+    return_links_.visit_new_packets(status, record_new);
+    std::vector<PacketRecord> records = ranks_.has_several() ? gather_records(own_records) : std::move(own_records);
     std::stable_sort(records.begin(), records.end(),
                      [](const PacketRecord& a, const PacketRecord& b) { return a.source < b.source; });
     for (const PacketRecord& record : records) sink(record);
 }
 
-std::vector<PacketRecord> NodeArray::gather_records(const std::vector<PacketRecord>& own) {
-    return ranks_.gather(std::span(own), ranks_.all_gather(own.size()));
+std::vector<PacketRecord> NodeArray::gather_records(const std::vector<PacketRecord>& own_records) {
+    return ranks_.gather(std::span(own_records), ranks_.all_gather(own_records.size()));
 }
 
 }  // namespace raya

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kNoTimeBytesPerS = 1e18;  // rate of links whose transfers take no time
 
+// Text that grows by formatted pieces.
 struct Text {
     std::string text;
     template <class... Args>
@@ -22,7 +23,7 @@ struct Text {
 
 std::string channel_name(std::uint32_t node, std::uint32_t link) { return fmt::format("{}{}", node, link_name(link)); }
 
-// A wire is named after its direction with ascending coordinates.
+// Returns the name of a wire, which contains the name of its channel in the direction of ascending coordinates.
 std::string wire_name(const raya_torus& torus, std::uint32_t node, std::uint32_t link) {
     return "wire " +
            (link % 2 == 0 ? channel_name(node, link) : channel_name(raya_link_end(torus, node, link), link ^ 1u));
@@ -36,10 +37,11 @@ std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machin
     Text hosts, links, routes;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
         hosts.add("    <host id=\"{}\" speed=\"{:.17g}f\"/>\n", node, 1e9 / machine.cycle_ns);
-        std::set<std::uint32_t> joined = {node};  // on a side of 2, two wires connect the same nodes; only one is used
+        std::set<std::uint32_t> connected = {
+            node};  // two wires connect the nodes of a side of 2; raya uses only the first
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t end = raya_link_end(torus, node, link);
-            if (!joined.insert(end).second) continue;
+            if (!connected.insert(end).second) continue;
             const std::string direction = channel_name(node, link), wire = wire_name(torus, node, link);
             links.add("    <link id=\"{}\" bandwidth=\"{:.17g}Bps\" latency=\"0\"/>\n", direction, one_way);
             if (link % 2 == 0)
@@ -61,14 +63,13 @@ std::string simgrid_replay(const raya_torus& torus, const History& history, cons
                machine.message_cycles, machine.word_cycles);
     for (std::size_t task = 0; task < history.tasks.size(); ++task) {
         const HistoryTask& t = history.tasks[task];
-        replay.add("t {} {} {}\n", t.node, t.cycles,
-                   t.cause == HistoryTask::kInjection ? "-" : std::to_string(t.cause));
+        replay.add("t {} {} {}\n", t.node, t.cycles, t.cause == HistoryTask::kNoCause ? "-" : std::to_string(t.cause));
         for (const HistoryMessage& message : history.sent_by(task)) {
             const bool is_return = message.kind == RAYA_KIND_RETURN;
             replay.add("m {} {}", message.words, is_return ? 0 : 1);
-            for (std::uint32_t node = t.node; node != message.to;) {
+            for (std::uint32_t node = t.node; node != message.destination;) {
                 const std::uint32_t link =
-                    is_return ? raya_return_link(torus, node) : raya_next_link(torus, node, message.to);
+                    is_return ? raya_return_link(torus, node) : raya_next_link(torus, node, message.destination);
                 node = raya_link_end(torus, node, link);
                 replay.add(" {} {}", link, node);
             }

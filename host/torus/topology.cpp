@@ -11,19 +11,18 @@
 namespace raya {
 namespace {
 
-// Returns C, the number of slabs in a row: the divisor of K for which the sides I C and J K / C differ least, the
-// smallest one in case of a tie. The product of the sides does not depend on C, so the smallest difference also gives
-// the ratio nearest to 1.
+// Returns C, the number of slabs in a row (see make_torus()). The product of the sides I C and J K / C does not depend
+// on C, so the smallest difference of the sides also gives the ratio nearest to 1.
 std::uint32_t slabs_per_row(const std::array<std::uint32_t, 3>& nodes) {
     const std::uint32_t i = nodes[0], j = nodes[1], k = nodes[2];
     const auto side_difference = [&](std::uint32_t c) {
         const std::uint32_t first = i * c, second = j * (k / c);
         return first > second ? first - second : second - first;
     };
-    std::uint32_t best = 1;
+    std::uint32_t best_slabs = 1;
     for (std::uint32_t c = 2; c <= k; ++c)
-        if (k % c == 0 && side_difference(c) < side_difference(best)) best = c;
-    return best;
+        if (k % c == 0 && side_difference(c) < side_difference(best_slabs)) best_slabs = c;
+    return best_slabs;
 }
 
 void check_nodes(const std::array<std::uint32_t, 3>& nodes) {

@@ -10,6 +10,7 @@ namespace raya {
 
 inline constexpr std::uint32_t kMaxNodes = 65536;
 
+/// Topology of the links.
 enum class Links { kTorus3d, kTorus2d };
 
 /// Returns "torus3d" or "torus2d".
@@ -20,8 +21,8 @@ std::string links_name(Links links);
 /// smallest such divisor in case of a tie. Throws UserError unless 1 <= I, J, K and I J K <= kMaxNodes.
 raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links);
 
-/// Number of links of a node that lead to another node: 2 for each side of the torus longer than 1, so at most 6 in 3-D
-/// and 4 in 2-D.
+/// Returns the number of links of a node that lead to another node: 2 for each side of the torus that is longer than 1,
+/// so at most 6 in a 3-D torus and 4 in a 2-D torus.
 std::uint32_t links_of_node(const raya_torus& torus);
 
 /// Returns text such as "4x4x4".

@@ -21,7 +21,7 @@ PackedJob packed_job(const Session& session, const Scene& scene, const TorusSett
     return pack_job(scene, job_settings(settings, scale));
 }
 
-// Returns a job that has only a header, no objects.
+// Returns a job that contains a header and no objects.
 PackedJob header_only_job(const raya_job& header, bool has_patches) {
     PackedJob job(header, std::vector<std::uint32_t>(kWordsOf<raya_job>), has_patches);
     job.set_header(header);
@@ -41,35 +41,35 @@ NodeBuffers buffers_of(const Scene& scene, const NodeMemories& memories, const T
                         raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces), trial);
 }
 
-// Packs the job and divides it among all nodes.
-TorusJob divide_scene(const Session& session, const Scene& scene, const TorusSettings& s, const NodeShare& share,
-                      const DeviceMemory& device) {
+// Packs the scene and divides it among all nodes. Returns the job with the memories of all nodes.
+TorusJob divide_scene(const Session& session, const Scene& scene, const TorusSettings& s,
+                      const NodeDistribution& distribution, const DeviceMemory& device) {
     const LengthScale scale = length_scale(scene, s.format);
     const PackedJob job = packed_job(session, scene, s, scale);
     const SpanLog::Span span = session.span("divide scene");
     const Partition partition = raya::partition(job, s.format, s.voxels);
-    TorusJob all{
+    TorusJob whole_job{
         header_only_job(job.header(), job.has_patches()), pack_nodes(job, partition, s.torus), scale, {}, 0, 0};
-    all.buffers = buffers_of(scene, all.memories, s, make_node_trial(job, s.format, s.voxels));
-    check_device_memory(scene.name, all.buffers, share.max_nodes_of_rank(), session.device().name, device);
-    set_windows(all.memories, s, job, partition);
-    all.words = all.memories.words.size();
-    all.fullest_words = fullest_words(all.memories);
-    return all;
+    whole_job.buffers = buffers_of(scene, whole_job.memories, s, make_node_trial(job, s.format, s.voxels));
+    check_device_memory(scene.name, whole_job.buffers, distribution.max_nodes_of_rank(), session.device().name, device);
+    set_windows(whole_job.memories, s, job, partition);
+    whole_job.words = whole_job.memories.words.size();
+    whole_job.fullest_words = fullest_words(whole_job.memories);
+    return whole_job;
 }
 
 // Returns the memories of `nodes`, in this order.
 NodeMemories select_memories(const NodeMemories& all, const std::vector<std::uint32_t>& nodes) {
-    NodeMemories own;
-    own.copies = all.copies;
-    own.max_objects = all.max_objects;
-    own.starts.push_back(0);
+    NodeMemories selected;
+    selected.copies = all.copies;
+    selected.max_objects = all.max_objects;
+    selected.starts.push_back(0);
     for (const std::uint32_t node : nodes) {
-        own.words.insert(own.words.end(), all.words.begin() + all.starts[node],
-                         all.words.begin() + all.starts[node + 1]);
-        own.starts.push_back(static_cast<std::uint32_t>(own.words.size()));
+        selected.words.insert(selected.words.end(), all.words.begin() + all.starts[node],
+                              all.words.begin() + all.starts[node + 1]);
+        selected.starts.push_back(static_cast<std::uint32_t>(selected.words.size()));
     }
-    return own;
+    return selected;
 }
 
 // A job without the nodes' words, in the form that is sent to other ranks.
@@ -82,35 +82,40 @@ struct TorusJobHeader {
     std::uint32_t max_objects;
 };
 
-void send_to_ranks(const TorusJob& all, const NodeShare& share, Ranks& ranks) {
-    const NodeMemories& m = all.memories;
-    TorusJobHeader f{all.header_only.header(),
-                     all.header_only.has_patches(),
-                     all.scale,
-                     all.buffers,
-                     all.words,
-                     all.fullest_words,
-                     m.copies,
-                     m.max_objects};
-    ranks.broadcast(f);
+void send_to_ranks(const TorusJob& whole_job, const NodeDistribution& distribution, Ranks& ranks) {
+    const NodeMemories& m = whole_job.memories;
+    TorusJobHeader header{whole_job.header_only.header(),
+                          whole_job.header_only.has_patches(),
+                          whole_job.scale,
+                          whole_job.buffers,
+                          whole_job.words,
+                          whole_job.fullest_words,
+                          m.copies,
+                          m.max_objects};
+    ranks.broadcast(header);
     for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) {
-        const NodeMemories of_rank = select_memories(m, share.nodes_of(rank));
-        ranks.send(rank, std::span<const std::uint32_t>(of_rank.starts));
-        ranks.send(rank, std::span<const std::uint32_t>(of_rank.words));
+        const NodeMemories rank_memories = select_memories(m, distribution.nodes_of(rank));
+        ranks.send(rank, std::span<const std::uint32_t>(rank_memories.starts));
+        ranks.send(rank, std::span<const std::uint32_t>(rank_memories.words));
     }
 }
 
-TorusJob receive_job(const NodeShare& share, Ranks& ranks) {
-    TorusJobHeader f;
-    ranks.broadcast(f);
+TorusJob receive_job(const NodeDistribution& distribution, Ranks& ranks) {
+    TorusJobHeader header;
+    ranks.broadcast(header);
     NodeMemories m;
-    m.copies = f.copies;
-    m.max_objects = f.max_objects;
-    m.starts.resize(share.nodes() + 1);
+    m.copies = header.copies;
+    m.max_objects = header.max_objects;
+    m.starts.resize(distribution.nodes() + 1);
     ranks.receive(0, std::span(m.starts));
     m.words.resize(m.starts.back());
     ranks.receive(0, std::span(m.words));
-    return {header_only_job(f.header, f.has_patches), std::move(m), f.scale, f.buffers, f.words, f.fullest_words};
+    return {header_only_job(header.header, header.has_patches),
+            std::move(m),
+            header.scale,
+            header.buffers,
+            header.words,
+            header.fullest_words};
 }
 
 }  // namespace
@@ -148,9 +153,9 @@ TorusSettings checked_settings(TorusSettings s, const Scene& scene, const Device
     return s;
 }
 
-std::uint64_t pixels_of(const TorusSettings& s) {
-    const std::uint64_t all = std::uint64_t{s.width} * s.height;
-    return s.pixels.first < all ? (all - s.pixels.first - 1) / s.pixels.stride + 1 : 0;
+std::uint64_t traced_pixels(const TorusSettings& s) {
+    const std::uint64_t image_pixels = std::uint64_t{s.width} * s.height;
+    return s.pixels.first < image_pixels ? (image_pixels - s.pixels.first - 1) / s.pixels.stride + 1 : 0;
 }
 
 KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job) {
@@ -167,7 +172,7 @@ KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job) {
             .patches = job.has_patches(),
             .cones = job.has_cones(),
             .costs = s.history,
-            .more = s.kernels.more};
+            .tuning = s.kernels.tuning};
 }
 
 void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob& job, const Partition& partition) {
@@ -189,20 +194,20 @@ NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
 
 DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks) {
     DeviceMemory smallest{device.global_memory_bytes, device.max_allocation_bytes};
-    for (const DeviceMemory& other : ranks.all_gather(smallest))
-        smallest = {std::min(smallest.total, other.total), std::min(smallest.max_buffer, other.max_buffer)};
+    for (const DeviceMemory& memory : ranks.all_gather(smallest))
+        smallest = {std::min(smallest.total, memory.total), std::min(smallest.max_buffer, memory.max_buffer)};
     return smallest;
 }
 
 TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,
-                        const NodeShare& share, const DeviceMemory& device, Ranks& ranks) {
-    if (!ranks.first()) return receive_job(share, ranks);
-    TorusJob all = divide_scene(session, scene, settings, share, device);
-    if (!ranks.many()) return all;
+                        const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks) {
+    if (!ranks.is_first()) return receive_job(distribution, ranks);
+    TorusJob job = divide_scene(session, scene, settings, distribution, device);
+    if (!ranks.has_several()) return job;
     const SpanLog::Span span = session.span("send nodes");
-    send_to_ranks(all, share, ranks);
-    all.memories = select_memories(all.memories, share.own_nodes());
-    return all;
+    send_to_ranks(job, distribution, ranks);
+    job.memories = select_memories(job.memories, distribution.own_nodes());
+    return job;
 }
 
 }  // namespace raya

@@ -16,14 +16,15 @@
 namespace raya {
 namespace {
 
-// Returns the progress, 0..1: the fraction of image rows whose rays are generated, times the mean of two estimates. The
-// fraction of finished packets is accurate while all nodes compute, but too high at the end, when few packets take many
-// supersteps. The logarithmic decrease of live packets is accurate at the end, but too low before.
+// Returns the progress, 0..1: the fraction of image rows whose primary rays are generated, times the mean of two
+// estimates. The first estimate, the fraction of finished packets, is accurate as long as all nodes compute, but too
+// high at the end, when few packets take many supersteps. The second, the logarithmic decrease of the number of live
+// packets, is accurate at the end, but too low before.
 double progress_of(const MachineState& state, std::size_t returns, std::uint64_t max_live) {
-    const auto finished = static_cast<double>(returns), live = static_cast<double>(state.live);
-    if (live == 0) return state.injected_fraction;
-    const double decrease = 1 - std::log1p(live) / std::log1p(static_cast<double>(max_live));
-    return state.injected_fraction * (finished / (finished + live) + decrease) / 2;
+    const auto finished_packets = static_cast<double>(returns), live_packets = static_cast<double>(state.live);
+    if (live_packets == 0) return state.injected_fraction;
+    const double decrease = 1 - std::log1p(live_packets) / std::log1p(static_cast<double>(max_live));
+    return state.injected_fraction * (finished_packets / (finished_packets + live_packets) + decrease) / 2;
 }
 
 }  // namespace
@@ -36,9 +37,9 @@ struct TorusRenderer::Impl {
     Session& session;
     Ranks& ranks;
     TorusSettings settings;
-    std::string scene;
-    NodeShare share;
-    DeviceMemory device;  // minimum over all ranks
+    std::string scene_name;
+    NodeDistribution distribution;
+    DeviceMemory device_memory;  // minimum over all ranks
     TorusJob job;
     KernelOptions options;
     std::unique_ptr<NodeArray> nodes{};
@@ -60,16 +61,16 @@ struct TorusRenderer::Impl {
 
 TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks) {
     const TorusSettings chosen = checked_settings(settings, scene, session.device());
-    const NodeShare share(chosen.torus, ranks.count(), ranks.rank());
-    const DeviceMemory device = smallest_device_memory(session.device(), ranks);
-    TorusJob job = make_torus_job(session, scene, chosen, share, device, ranks);
+    const NodeDistribution distribution(chosen.torus, ranks.count(), ranks.rank());
+    const DeviceMemory device_memory = smallest_device_memory(session.device(), ranks);
+    TorusJob job = make_torus_job(session, scene, chosen, distribution, device_memory, ranks);
     const KernelOptions options = kernel_options(chosen, job.header_only);
     impl_.reset(new Impl{.session = session,
                          .ranks = ranks,
                          .settings = chosen,
-                         .scene = scene.name,
-                         .share = share,
-                         .device = device,
+                         .scene_name = scene.name,
+                         .distribution = distribution,
+                         .device_memory = device_memory,
                          .job = std::move(job),
                          .options = options});
     ranks.one_rank_per_host_first([this] { impl_->build(); });
@@ -87,7 +88,8 @@ void TorusRenderer::set_pixels(const PixelSubset& pixels) {
 void TorusRenderer::set_queue(std::uint32_t queue) {
     Impl& p = *impl_;
     const NodeBuffers buffers = buffers_for(queue);
-    check_device_memory(p.scene, buffers, p.share.max_nodes_of_rank(), p.session.device().name, p.device);
+    check_device_memory(p.scene_name, buffers, p.distribution.max_nodes_of_rank(), p.session.device().name,
+                        p.device_memory);
     p.job.buffers = buffers;
     p.build();
 }
@@ -100,21 +102,23 @@ bool TorusRenderer::completes() {
 
 QueueTrial TorusRenderer::queue_trial() {
     Impl& p = *impl_;
-    return {.node_bytes = [&p](const NodeBuffers& b) { return p.node_bytes(b); },
-            .node_memory = p.settings.memory_bytes.value_or(UINT64_MAX),
-            .fits_device = [&p](const NodeBuffers& b) { return fits_device(b, p.share.max_nodes_of_rank(), p.device); },
-            .completes =
-                [this](const NodeBuffers& b) {
-                    set_queue(b.queue);
-                    return completes();
-                }};
+    return {
+        .node_bytes = [&p](const NodeBuffers& b) { return p.node_bytes(b); },
+        .node_memory = p.settings.memory_bytes.value_or(UINT64_MAX),
+        .fits_device =
+            [&p](const NodeBuffers& b) { return fits_device(b, p.distribution.max_nodes_of_rank(), p.device_memory); },
+        .completes =
+            [this](const NodeBuffers& b) {
+                set_queue(b.queue);
+                return completes();
+            }};
 }
 
 void TorusRenderer::Impl::build() {
     const SpanLog::Span span = session.span("set up device");
     const std::jthread notice = session.compile_notice();
     const Clock::time_point start = Clock::now();
-    nodes = std::make_unique<NodeArray>(session, settings, job.memories, job.buffers, options, share, ranks);
+    nodes = std::make_unique<NodeArray>(session, settings, job.memories, job.buffers, options, distribution, ranks);
     KernelOptions one_lane = options;
     one_lane.lanes = 1;
     Kernels kernels(session, one_lane, settings.kernels.sources);
@@ -135,23 +139,24 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Render
     p.session.clear_profile();
     const Clock::time_point start = Clock::now();
     const SpanLog::Span rendering = p.session.span("render");
-    const RankTraffic before = p.ranks.traffic();
+    const RankTraffic traffic_before = p.ranks.traffic();
     TorusResult result;
     std::vector<raya_head> returns;
-    returns.reserve(std::min<std::uint64_t>(2 * pixels_of(p.settings), kReservedReturns));
-    RenderObservers own = observers;
-    if (!p.ranks.first()) own.supersteps = {};
-    if (const auto deadlock = p.run_supersteps(result, returns, progress, own)) throw TorusDeadlock(*deadlock);
-    if (p.ranks.first()) p.compose(result, returns);
+    returns.reserve(std::min<std::uint64_t>(2 * traced_pixels(p.settings), kReservedReturns));
+    RenderObservers own_observers = observers;
+    if (!p.ranks.is_first()) own_observers.supersteps = {};
+    if (const auto deadlock = p.run_supersteps(result, returns, progress, own_observers))
+        throw TorusDeadlock(*deadlock);
+    if (p.ranks.is_first()) p.compose(result, returns);
     p.collect(result);
     result.render_s = seconds_since(start);
-    result.traffic = p.ranks.traffic() - before;
+    result.traffic = p.ranks.traffic() - traffic_before;
     p.describe(result);
-    if (p.ranks.first()) p.check(result);
+    if (p.ranks.is_first()) p.check(result);
     return result;
 }
 
-// The computation of a superstep, before packets are transferred.
+// Launches the computation of a superstep, which precedes the transfer of packets.
 void TorusRenderer::Impl::compute(NodeArray::Slots slots, Reserve reserve, bool injects, const NodeWorkSink& work) {
     if (injects) nodes->inject(slots);
     if (!work) return nodes->trace_voxel(slots, reserve);
@@ -160,7 +165,8 @@ void TorusRenderer::Impl::compute(NodeArray::Slots slots, Reserve reserve, bool 
     nodes->report_work(injected, work);
 }
 
-// Adds the counts of a superstep to the result, and passes them to `sink`. `words`: words charged for each link.
+// Adds the counts of a superstep to the result, and passes them to `sink`. `words`: [node][RAYA_LINKS], number of words
+// charged for each link.
 void TorusRenderer::Impl::add_superstep(TorusResult& result, const NodeStatus& status, const MachineState& state,
                                         const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const {
     result.supersteps.push_back({state.max_cycles, *std::max_element(words.begin(), words.end()), state.live});
@@ -197,12 +203,12 @@ std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusResult& 
         const bool ended = state.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && state.all_injected;
         if (progress) progress(ended ? 1 : progress_of(state, returns.size(), max_live));
         const bool injects = !state.all_injected && state.longest_queue <= job.buffers.queue / 4;
-        // Packets that a superstep accepts with a tight reserve count as progress in the next superstep. So only three
-        // supersteps without progress are a deadlock.
+        // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep. So the
+        // machine is in a deadlock only after three supersteps without progress.
         stalled = state.progress == 0 && result.supersteps.back().max_link_words == 0 ? stalled + 1 : 0;
-        const Reserve next = stalled > 0 ? Reserve::kTight : Reserve::kWholeTree;
+        const Reserve next_reserve = stalled > 0 ? Reserve::kTight : Reserve::kWholeTree;
         const bool continues = !ended && stalled < 3;
-        if (continues && nodes->inner().count > 0) compute(nodes->inner(), next, injects, observers.work);
+        if (continues && nodes->inner().count > 0) compute(nodes->inner(), next_reserve, injects, observers.work);
         nodes->finish_exchange();
         nodes->accept(nodes->border(), reserve, superstep);
         if (ended) {
@@ -211,9 +217,9 @@ std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusResult& 
         }
         if (!continues)
             return DeadlockFigures{
-                scene, superstep, state.live, state.full_queues, raya_nodes(settings.torus), job.buffers.queue};
-        if (nodes->border().count > 0) compute(nodes->border(), next, injects, observers.work);
-        reserve = next;
+                scene_name, superstep, state.live, state.full_queues, raya_nodes(settings.torus), job.buffers.queue};
+        if (nodes->border().count > 0) compute(nodes->border(), next_reserve, injects, observers.work);
+        reserve = next_reserve;
     }
 }
 
@@ -235,7 +241,7 @@ void TorusRenderer::Impl::collect(TorusResult& result) {
         result.events[i % RAYA_EVENTS] += events[i];
         loads[i / RAYA_EVENTS] += cycles[i % RAYA_EVENTS] * events[i];
     }
-    if (ranks.first()) result.load = load_of(std::move(loads));
+    if (ranks.is_first()) result.load = load_of(std::move(loads));
     result.made = nodes->read_made();
     result.ended = nodes->read_ended();
     const NodeStatus status = nodes->read_status();
@@ -253,15 +259,16 @@ void TorusRenderer::Impl::check(const TorusResult& result) const {
         if (result.made[kind] != result.ended[kind])
             throw std::logic_error(
                 fmt::format("{} packets of kind {} were made, {} ended", result.made[kind], kind, result.ended[kind]));
-    if (result.made[RAYA_KIND_PRIMARY] != pixels_of(settings))
+    if (result.made[RAYA_KIND_PRIMARY] != traced_pixels(settings))
         throw std::logic_error(
-            fmt::format("{} primary rays for {} pixels", result.made[RAYA_KIND_PRIMARY], pixels_of(settings)));
+            fmt::format("{} primary rays for {} pixels", result.made[RAYA_KIND_PRIMARY], traced_pixels(settings)));
     const EventCounts& e = result.events;
-    const std::uint64_t returns = settings.packets.return_a_ray
-                                      ? e[RAYA_PRIMARY] + e[RAYA_REFLECTED] + e[RAYA_REFRACTED]
-                                      : result.made[RAYA_KIND_RETURN];
-    if (result.returns != returns)
-        throw std::logic_error(fmt::format("{} returns are messages, not {}", result.returns, returns));
+    const std::uint64_t expected_returns = settings.packets.return_a_ray
+                                               ? e[RAYA_PRIMARY] + e[RAYA_REFLECTED] + e[RAYA_REFRACTED]
+                                               : result.made[RAYA_KIND_RETURN];
+    if (result.returns != expected_returns)
+        throw std::logic_error(
+            fmt::format("{} returns are charged as messages, expected {}", result.returns, expected_returns));
 }
 
 // Returns the memory of the fullest node in bytes.
@@ -277,7 +284,7 @@ void TorusRenderer::Impl::describe(TorusResult& result) const {
     result.node_bytes = node_bytes(job.buffers);
     result.links_by_kernel = nodes->links_by_kernel();
     result.links_origin = nodes->links_origin();
-    result.parts_here = share.nodes();
+    result.parts_of_rank = distribution.nodes();
     result.lanes = settings.kernels.lanes;
     result.group_size = settings.kernels.group_size;
     result.build_options = nodes->build_options();

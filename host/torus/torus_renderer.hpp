@@ -1,5 +1,5 @@
-// Renders a scene on a model of a torus machine: each node stores some voxels of the scene, and nodes send each other
-// rays as packets.
+// Renders a scene on a model of a torus machine. Each node stores some voxels of the scene, and nodes send rays to each
+// other as packets.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -17,10 +17,10 @@ namespace raya {
 
 class TorusRenderer {
   public:
-    /// Packs and divides the scene, checks that it fits the nodes, builds the kernels and allocates the device memory
-    /// for the nodes of this rank. Only rank 0 reads `scene`. Throws UserError if the scene does not fit, a setting is
-    /// out of range or there are more ranks than nodes, or DeviceError.
-    TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks = Ranks::alone());
+    /// Collective: packs and divides the scene, checks that it fits the nodes, builds the kernels and allocates the
+    /// device memory for the nodes of this rank. Only rank 0 reads `scene`. Throws UserError if the scene does not fit,
+    /// a setting is out of range or there are more ranks than nodes, and DeviceError.
+    TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks = Ranks::single());
     ~TorusRenderer();
 
     /// Renders one image; can be called repeatedly. All ranks must set the same members of `observers`. In ranks other
@@ -31,12 +31,12 @@ class TorusRenderer {
     /// Returns the factor by which the scene's lengths are multiplied.
     const LengthScale& scale() const;
 
-    /// Sets the pixels of the following images. A machine of several groups of nodes uses this to render the pixels of
-    /// one group after another with the same kernels.
+    /// Sets the pixels of the following images. So one renderer can render the pixel subsets of several groups of
+    /// nodes, one after another.
     void set_pixels(const PixelSubset& pixels);
 
-    /// Sets the capacity of the queues, in packets, for the following images; it may exceed a node's memory. Throws
-    /// UserError if the queues do not fit the device, or DeviceError.
+    /// Sets the capacity of the queues, in packets, for the following images. The queues may exceed a node's memory.
+    /// Throws UserError if the queues do not fit the device, and DeviceError.
     void set_queue(std::uint32_t queue);
 
     /// Runs the supersteps of an image without composing it. Returns false on a deadlock.

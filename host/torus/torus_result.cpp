@@ -21,7 +21,7 @@ std::uint64_t launches_of(const TorusResult& result, const std::string& label) {
     return launches;
 }
 
-// Returns the size of the packets in bytes.
+// Returns the total size of the packets in bytes.
 std::uint64_t packet_bytes(const PacketCounts& made) {
     std::uint64_t words = 0;
     for (std::uint32_t kind = RAYA_KIND_PRIMARY; kind < RAYA_KINDS; ++kind)
@@ -29,22 +29,22 @@ std::uint64_t packet_bytes(const PacketCounts& made) {
     return kWordBytes * words;
 }
 
-// Checks that transfers take longer than the processors' work for messages, as the stepwise time assumes (see the
-// header). The shortest packets are the worst case.
-constexpr std::uint32_t kWords = PacketCharge::kWholeReturnWords;
-static_assert(kWords < RAYA_RETURN_WORDS);
-static_assert(2 * RAYA_LINKS * (kT805MessageWordCycles * kWords + kT805MessageCycles) * kT805CycleNs <
-              kWords * 1e9 * 2 * 4 / kT805BothWaysBytesPerS);
+// Checks for the shortest packets, the worst case, that transfers take longer than the processors' work for messages,
+// as the stepwise time assumes (torus_time()).
+constexpr std::uint32_t kShortestWords = PacketCharge::kRayReturnWords;
+static_assert(kShortestWords < RAYA_RETURN_WORDS);
+static_assert(2 * RAYA_LINKS * (kT805MessageWordCycles * kShortestWords + kT805MessageCycles) * kT805CycleNs <
+              kShortestWords * 1e9 * 2 * 4 / kT805BothWaysBytesPerS);
 
 // Returns, for each node, the processor cycles for the messages that it sends and receives.
 std::vector<std::uint64_t> message_cycles(const raya_torus& torus, const TorusResult& result) {
     std::vector<std::uint64_t> cycles(raya_nodes(torus));
     for (std::uint32_t node = 0; node < cycles.size(); ++node)
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
-            const std::size_t at = std::size_t{node} * RAYA_LINKS + link;
-            const std::uint64_t one_end = t805_message_cycles(result.link_packets[at], result.link_words[at]);
-            cycles[node] += one_end;
-            cycles[raya_link_end(torus, node, link)] += one_end;
+            const std::size_t i = std::size_t{node} * RAYA_LINKS + link;
+            const std::uint64_t end_cycles = t805_message_cycles(result.link_packets[i], result.link_words[i]);
+            cycles[node] += end_cycles;
+            cycles[raya_link_end(torus, node, link)] += end_cycles;
         }
     return cycles;
 }
@@ -63,10 +63,10 @@ double busiest_link_ms(const raya_torus& torus, const TorusResult& result) {
 }
 
 double stepwise_ms(const std::vector<Superstep>& supersteps) {
-    double sum = 0;
+    double total_ms = 0;
     for (const Superstep& step : supersteps)
-        sum += t805_ms(step.max_node_cycles) + t805_link_ms(step.max_link_words, step.max_link_words);
-    return sum;
+        total_ms += t805_ms(step.max_node_cycles) + t805_link_ms(step.max_link_words, step.max_link_words);
+    return total_ms;
 }
 
 }  // namespace
@@ -79,17 +79,18 @@ TorusDeadlock::TorusDeadlock(const DeadlockFigures& state, const std::string& re
 
 std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const TorusResult& r) {
     const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
-    EventCounts primary{}, others = r.events;
-    for (const std::size_t made : {RAYA_PRIMARY, RAYA_DISCARDED}) primary[made] = std::exchange(others[made], 0);
-    PacketCounts rays{}, secondary = r.made;
-    rays[RAYA_KIND_PRIMARY] = std::exchange(secondary[RAYA_KIND_PRIMARY], 0);
+    EventCounts inject_events{}, trace_events = r.events;
+    for (const std::size_t event : {RAYA_PRIMARY, RAYA_DISCARDED})
+        inject_events[event] = std::exchange(trace_events[event], 0);
+    PacketCounts primary_packets{}, other_packets = r.made;
+    primary_packets[RAYA_KIND_PRIMARY] = std::exchange(other_packets[RAYA_KIND_PRIMARY], 0);
     const auto copied_bytes = [&](const char* label) { return launches_of(r, label) * kWordBytes * r.copied_words; };
 
-    KernelWork inject = work_of("inject", primary), trace = work_of("trace_voxel", others);
-    inject.bytes = copied_bytes("inject") + packet_bytes(rays);
-    trace.bytes =
-        copied_bytes("trace_voxel") + kWordBytes * RAYA_PACKET_WORDS * r.events[RAYA_STEPS] + packet_bytes(secondary);
-    trace.rays += primary[RAYA_PRIMARY];  // trace_voxel also traces the primary rays
+    KernelWork inject = work_of("inject", inject_events), trace = work_of("trace_voxel", trace_events);
+    inject.bytes = copied_bytes("inject") + packet_bytes(primary_packets);
+    trace.bytes = copied_bytes("trace_voxel") + kWordBytes * RAYA_PACKET_WORDS * r.events[RAYA_STEPS] +
+                  packet_bytes(other_packets);
+    trace.rays += inject_events[RAYA_PRIMARY];  // trace_voxel also traces the primary rays
     KernelWork route, accept, compose;
     route.label = "route";
     route.bytes = copied_bytes("route") +
@@ -105,15 +106,15 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
 TorusTime torus_time(const raya_torus& torus, const TorusResult& result) {
     const std::size_t nodes = raya_nodes(torus), links = nodes * RAYA_LINKS;
     if (result.load.per_pe.size() != nodes || result.link_words.size() != links || result.link_packets.size() != links)
-        throw std::invalid_argument("torus_time: the result is of another torus");
+        throw std::invalid_argument("torus_time: the result is of a torus with another number of nodes");
     const std::vector<std::uint64_t> messages = message_cycles(torus, result);
-    std::uint64_t processor = 0;
+    std::uint64_t processor_cycles = 0;
     for (std::size_t node = 0; node < nodes; ++node)
-        processor = std::max(processor, result.load.per_pe[node] + messages[node]);
+        processor_cycles = std::max(processor_cycles, result.load.per_pe[node] + messages[node]);
     TorusTime time;
     time.compute_ms = t805_ms(result.load.max);
     time.messages_ms = t805_ms(*std::max_element(messages.begin(), messages.end()));
-    time.processor_ms = t805_ms(processor);
+    time.processor_ms = t805_ms(processor_cycles);
     time.links_ms = busiest_link_ms(torus, result);
     time.overlapped_ms = std::max(time.processor_ms, time.links_ms);
     time.stepwise_ms = stepwise_ms(result.supersteps);

@@ -1,5 +1,5 @@
-// Results of a render on the torus: the image, counts, the work of kernels and the modelled time on T805 transputers;
-// and the records that observers receive during a render, of packets, supersteps and the work of nodes.
+// Results of a render on the torus: the image, counts, the work of kernels and the modelled time on T805 transputers.
+// Also the records of packets, supersteps and the work of nodes that observers receive during a render.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -23,43 +23,43 @@
 
 namespace raya {
 
-/// A packet that leaves the node that created or changed it. Returns that the model does not charge as messages of
-/// their own have no record (PacketCharge::return_a_ray).
+/// A packet that leaves the node that created or changed the packet. Returns that the model does not charge as separate
+/// messages have no record (PacketCharge::return_a_ray).
 struct PacketRecord {
     std::uint32_t superstep = 0, source = 0, destination = 0;  // source, destination: nodes
     raya_head head{};
-    std::uint32_t words = 0;  // words charged on each link of its route
+    std::uint32_t words = 0;  // number of words charged on each link of the packet's route
 };
 using PacketSink = std::function<void(const PacketRecord&)>;
 
 /// Work of a node in a superstep.
 struct NodeWork {
     std::uint32_t node = 0;
-    std::uint64_t injection_cycles = 0;           // for the primary rays that the node generated or discarded
+    std::uint64_t injection_cycles = 0;           // of the primary rays that the node generated or discarded
     std::span<const raya_processed> processed{};  // [slot of the queue before the superstep]
-    std::span<const raya_packet> queue{};         // after the superstep; RAYA_STATE_FRESH: new or changed
+    std::span<const raya_packet> queue{};         // queue after the superstep; RAYA_STATE_FRESH: packet new or changed
 };
 using NodeWorkSink = std::function<void(const NodeWork&)>;
 
 /// Counts of a superstep, used by time models and traces.
 struct Superstep {
     std::uint64_t max_node_cycles = 0;  // modelled cycles of the busiest node
-    std::uint64_t max_link_words = 0;   // words sent over the busiest link, one direction
-    std::uint64_t live = 0;             // packets in queues and mailboxes at the end
+    std::uint64_t max_link_words = 0;   // number of words sent over the busiest link, in one direction
+    std::uint64_t live = 0;             // number of packets in queues and mailboxes at the end
 };
 
 /// Counts of a superstep, in total and for each node.
 struct SuperstepDetail {
     const Superstep& all;
-    std::vector<std::uint64_t> cycles;             // [node]: modelled cycles
-    const std::vector<std::uint64_t>& link_words;  // [node][RAYA_LINKS]: words sent over each link
+    std::vector<std::uint64_t> cycles;             // [node]: modelled cycles of the node
+    const std::vector<std::uint64_t>& link_words;  // [node][RAYA_LINKS]: number of words sent over the link
 };
 using SuperstepSink = std::function<void(const SuperstepDetail&)>;
 
 /// Callbacks during a render; empty ones are not called. With several ranks, only rank 0 calls them.
 struct RenderObservers {
     PacketSink packets{};             // for each packet between nodes, by superstep, then by source
-    std::uint32_t packets_every = 1;  // only in supersteps 0, packets_every, ...: reading packets takes time
+    std::uint32_t packets_every = 1;  // `packets`: only supersteps 0, packets_every, ...; reading packets takes time
     SuperstepSink supersteps{};       // for each superstep
     NodeWorkSink work{};              // for each node and superstep; needs TorusSettings::history and one rank
 };
@@ -68,31 +68,31 @@ struct RenderObservers {
 using PacketCounts = std::array<std::uint64_t, RAYA_KINDS>;
 
 struct TorusResult {
-    Image image;  // pixels outside the subset are 0
+    Image image;  // pixels outside TorusSettings::pixels are 0
     EventCounts events{};
     Load load;  // modelled cycles of each node
     std::vector<Superstep> supersteps;
     PacketCounts made{}, ended{};
-    std::uint64_t returns = 0;                        // returns charged as messages (TorusSettings::packets)
-    std::uint64_t hops = 0;                           // link traversals of messages
-    std::vector<std::uint64_t> link_words;            // [node][RAYA_LINKS]: words charged for each link
-    std::vector<std::uint64_t> link_packets;          // [node][RAYA_LINKS]: messages over each link
-    std::uint64_t moved_rays = 0, moved_returns = 0;  // packets transferred over links
+    std::uint64_t returns = 0;                        // number of returns charged as messages (TorusSettings::packets)
+    std::uint64_t hops = 0;                           // sum of link_packets
+    std::vector<std::uint64_t> link_words;            // [node][RAYA_LINKS]: number of words charged for the link
+    std::vector<std::uint64_t> link_packets;          // [node][RAYA_LINKS]: number of messages over the link
+    std::uint64_t moved_rays = 0, moved_returns = 0;  // numbers of packets transferred over links
     std::uint64_t queue_max = 0;                      // maximum number of packets in a queue
-    std::uint64_t copies = 0;                         // duplicates of objects that are in several voxels
+    std::uint64_t copies = 0;                         // see NodeMemories
     LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t node_bytes = 0;     // memory of the fullest node: words and buffers
-    std::uint64_t copied_words = 0;   // words that all nodes together copy to local memory in each launch
-    bool links_by_kernel = false;     // true: a kernel transferred packets over links; false: buffer copies
+    std::uint64_t copied_words = 0;   // number of words that all nodes together copy to local memory in each launch
+    bool links_by_kernel = false;     // true: a kernel transferred packets over links; false: buffer copies did
     std::string links_origin;         // source of links_by_kernel: "options", "FILE, DATE", "measured", "defaults"
     std::uint64_t contributions = 0;  // number of return packets that reached the host
-    std::uint32_t parts_here = 0;     // number of nodes of this rank
-    RankTraffic traffic;              // messages of this rank during the render
+    std::uint32_t parts_of_rank = 0;  // number of nodes of this rank
+    RankTraffic traffic;              // messages that this rank has sent during the render
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
     std::string tuned;                 // source of lanes, group size and related settings (host/cl/tuned.hpp)
-    double build_s = 0, render_s = 0;  // host time of the kernel build; of everything after it
+    double build_s = 0, render_s = 0;  // host times of the kernel build, and of the render after it
     std::vector<LabelSummary> commands;
 };
 
@@ -100,24 +100,24 @@ struct TorusResult {
 struct DeadlockFigures {
     std::string scene;
     std::uint64_t superstep = 0;
-    std::uint64_t live = 0;   // number of packets in the machine
-    std::uint64_t full = 0;   // number of nodes whose queue is full
+    std::uint64_t live = 0;   // number of packets in queues and mailboxes
+    std::uint64_t full = 0;   // number of full queues
     std::uint32_t nodes = 0;  // number of nodes
     std::uint32_t queue = 0;  // capacity of a queue, packets
 };
 
-/// The torus is in a deadlock. Longer queues resolve it; find_longer_queue() of host/torus/buffer_plan.hpp finds a
-/// length.
+/// The torus is in a deadlock. Longer queues prevent the deadlock; find_longer_queue() (host/torus/buffer_plan.hpp)
+/// finds a sufficient length.
 struct TorusDeadlock : UserError {
     explicit TorusDeadlock(const DeadlockFigures& state, const std::string& remedy = "use a longer queue");
 
     DeadlockFigures figures;
 };
 
-/// Returns the work of each kernel. Events are counted per node, not per kernel: the events of generating primary rays
-/// count as operations of inject; all others, including the entry of primary rays into the bounding box, count as
-/// operations of trace_voxel. Bytes are lower bounds:
-///   - trace_voxel, inject, route: in each launch the words of all nodes, if kernels copy them to local memory;
+/// Returns the work of each kernel. Events are counted per node, not per kernel. Events of the generation of primary
+/// rays count as operations of inject; all other events, including those of the entry of primary rays into the bounding
+/// box, count as operations of trace_voxel. Bytes are lower bounds:
+///   - trace_voxel, inject, route: read the words of all nodes in each launch, if kernels copy them to local memory;
 ///   - trace_voxel: reads a ray packet for each voxel in which the ray was tested, and writes each packet created,
 ///     except primary rays; inject: writes a packet for each primary ray;
 ///   - route: reads and writes a ray for each link of its route, and a return once; accept: reads and writes each
@@ -128,9 +128,9 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
 
 /// Returns modelled times of a render on `torus` (host/model/t805.hpp):
 ///   - overlapped: the time of the busiest processor (its computation and its work for every message over its links) or
-///     of the busiest link, whichever is longer. A lower bound for that machine.
+///     of the busiest link, whichever is longer. A lower bound for a real machine.
 ///   - stepwise: the sum over supersteps of the busiest node's computation and the busiest link's transfers, at the
-///     rate of a link with both directions in use. The processors' work for messages adds nothing, because it overlaps
+///     rate of a link with both directions in use. The processors' work for messages is not added, because it overlaps
 ///     with the transfers and is shorter: at most 12 link directions x (2 + 19 / 8) cycles per word of the busiest
 ///     direction, which takes 83 cycles on its link.
 /// So overlapped <= stepwise. Throws std::invalid_argument if `result` is for another torus.

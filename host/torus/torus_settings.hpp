@@ -15,16 +15,16 @@ namespace raya {
 
 /// Capacity of a node's buffers, in packets of 16 words (kernels/shared/packet.h).
 struct NodeBuffers {
-    std::uint32_t queue = 0;
-    std::uint32_t box = 0;  // of each outbox and each inbox
+    std::uint32_t queue = 0;  // capacity of the queue
+    std::uint32_t box = 0;    // capacity of each outbox and each inbox
 };
 
 /// Nodes that generate primary rays. kRoot: the root generates all of them; kAll: each node generates those that enter
 /// the bounding box at one of its voxels.
 enum class Injection { kRoot, kAll };
 
-/// The pixels with row-major indices first, first + stride, first + 2 stride, ... One of several groups of nodes
-/// renders them.
+/// The pixels with row-major indices first, first + stride, first + 2 stride, ... A machine of several groups of nodes
+/// renders one such subset on each group.
 struct PixelSubset {
     std::uint32_t stride = 1, first = 0;
 };
@@ -37,17 +37,17 @@ struct TorusSettings {
     std::uint32_t width = 0, height = 0;  // pixels
     raya_torus torus{};
     Links links = Links::kTorus3d;  // topology of `torus`
-    Divisions voxels{};
+    Divisions voxels{};             // numbers of voxels along x, y, z
     Injection inject = Injection::kAll;
-    PacketCharge packets;                       // modelled message sizes; the device may move more or fewer words
+    PacketCharge packets;                       // modelled sizes of packets; the device may move more or fewer words
     std::uint32_t queue = 0;                    // capacity of a node's queue, packets; 0: plan_buffers() chooses
     std::optional<std::uint64_t> memory_bytes;  // memory of a node; empty: no limit
     PixelSubset pixels;
-    std::uint32_t bounces = 8;
+    std::uint32_t bounces = 8;  // maximum number of reflections and refractions after the primary ray
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     KernelChoice kernels;
-    std::uint32_t work_per_launch = 0;  // budget of a node in the kernel's work units; 0: see LaunchPlan
+    std::uint32_t work_per_launch = 0;  // LaunchBudget::work of all launches; 0: LaunchPlan chooses budgets
     bool history = false;               // record the cost of each packet; required by RenderObservers::work
 };
 

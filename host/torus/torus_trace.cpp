@@ -19,46 +19,46 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kCompressedBlock = 1 << 16;  // bytes of text compressed at a time
+constexpr std::size_t kCompressedBlock = 1 << 16;  // number of bytes of text that are compressed at a time
 
-// Numbers of a packet and of its parent; a primary ray has no parent.
+// Numbers of a packet and of its parent ray; a primary ray has no parent.
 struct Lineage {
     std::uint64_t ray = 0;
     std::optional<std::uint64_t> parent;
 };
 
-// A return packet is recorded once and has no children, so its number need not be looked up again.
+// A return packet gets a new number, because it is recorded once and has no children.
 Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
     const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
-    const RayId name = {record.head.pixel, RayId::tree_index_of(record.head.path, raya_state_level(state)),
-                        raya_state_light(state)};
+    const RayId id = {record.head.pixel, RayId::tree_index_of(record.head.path, raya_state_level(state)),
+                      raya_state_light(state)};
     Lineage lineage;
-    lineage.ray = kind == RAYA_KIND_RETURN ? numbers.next_number() : numbers.number_of(name);
+    lineage.ray = kind == RAYA_KIND_RETURN ? numbers.next_number() : numbers.number_of(id);
     if (kind == RAYA_KIND_RETURN)
-        lineage.parent = numbers.number_of(name);
+        lineage.parent = numbers.number_of(id);
     else if (kind != RAYA_KIND_PRIMARY)
-        lineage.parent = numbers.number_of(name.parent());
+        lineage.parent = numbers.number_of(id.parent());
     return lineage;
 }
 
-// Throws std::logic_error for packet heads that only a faulty kernel can produce, instead of writing a wrong row.
+// Throws std::logic_error for a packet head that only a faulty kernel can produce.
 void check_head(const PacketRecord& record) {
     const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
     const bool root_of_tree = raya_state_level(state) == 0, has_light = raya_state_light(state) != 0;
-    const bool right =
+    const bool valid =
         kind == RAYA_KIND_RETURN || (has_light == (kind == RAYA_KIND_SHADOW) &&
                                      (kind == RAYA_KIND_SHADOW || root_of_tree == (kind == RAYA_KIND_PRIMARY)));
-    if (!right) throw std::logic_error(fmt::format("packet trace: invalid packet state {:#x}", state));
+    if (!valid) throw std::logic_error(fmt::format("packet trace: invalid packet state {:#x}", state));
 }
 
 constexpr TraceTrack kSupersteps = {kTraceMachine, 1};
-constexpr std::uint32_t kFirstNode = 2;  // track of node 0
+constexpr std::uint32_t kFirstNodeTrack = 2;  // track of node 0
 
 double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }  // as in torus_time()
-TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kFirstNode + node}; }
+TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kFirstNodeTrack + node}; }
 
-// Returns the number of links on the route of a packet. Returns take the axes in another order than rays, but their
-// routes are equally long.
+// Returns the number of links on the route of a packet. The routes of returns take the axes in another order than those
+// of rays, but are equally long.
 std::uint32_t route_length(const raya_torus& torus, std::uint32_t source, std::uint32_t destination) {
     return raya_node_distance(torus, source, destination);
 }
@@ -111,14 +111,14 @@ void TorusTrace::add_superstep(const SuperstepDetail& step) {
 
 // Reservoir sampling (J. S. Vitter, "Random Sampling with a Reservoir", 1985, algorithm R).
 void TorusTrace::add_packet(const PacketRecord& p) {
-    const Sample sample = {p.superstep, p.source, p.destination, p.head.state, p.head.pixel};
+    const SampledPacket sample = {p.superstep, p.source, p.destination, p.head.state, p.head.pixel};
     ++packets_seen_;
     if (packets_.size() < kMaxPackets) return packets_.push_back(sample);
-    const std::uint64_t place = random_.next() % packets_seen_;
-    if (place < kMaxPackets) packets_[place] = sample;
+    const std::uint64_t index = random_.next() % packets_seen_;
+    if (index < kMaxPackets) packets_[index] = sample;
 }
 
-// Computes the times of the supersteps, which follow one another.
+// Adds supersteps and flows to a trace. The supersteps follow one another, from time 0 on.
 class TorusTrace::Timeline {
   public:
     Timeline(const TorusTrace& machine_trace, TraceFile& trace, const TorusResult& result, std::size_t nodes)
@@ -143,12 +143,13 @@ class TorusTrace::Timeline {
 
     // Adds the flows and returns their number.
     std::size_t add_flows() {
-        std::set<std::uint32_t> shown;
-        for (const TracedPe& n : nodes_) shown.insert(n.pe);
+        std::set<std::uint32_t> traced_nodes;
+        for (const TracedPe& n : nodes_) traced_nodes.insert(n.pe);
         std::size_t flows = 0;
-        for (const Sample& p : machine_trace_.packets_) {
+        for (const SampledPacket& p : machine_trace_.packets_) {
             const std::size_t arrival = p.superstep + route_length(machine_trace_.torus_, p.source, p.destination);
-            if (!shown.contains(p.source) || !shown.contains(p.destination) || arrival >= begins_.size()) continue;
+            if (!traced_nodes.contains(p.source) || !traced_nodes.contains(p.destination) || arrival >= begins_.size())
+                continue;
             trace_.flow(packet_kind_name(raya_state_kind(p.state)), track_of(p.source),
                         nanoseconds(computed_[p.superstep]), track_of(p.destination), nanoseconds(begins_[arrival]));
             ++flows;
@@ -185,9 +186,9 @@ class TorusTrace::Timeline {
     void add_node(std::size_t step, std::uint32_t node, double computed, double end) {
         const NodeStep& n = machine_trace_.steps_[step][node];
         const TraceTrack track = track_of(node);
-        const auto slice = [&](const char* name, double from, double to, const Json& arguments = {}) {
-            if (nanoseconds(to) > nanoseconds(from))
-                trace_.slice(track, name, nanoseconds(from), nanoseconds(to), arguments);
+        const auto slice = [&](const char* name, double begin, double finish, const Json& arguments = {}) {
+            if (nanoseconds(finish) > nanoseconds(begin))
+                trace_.slice(track, name, nanoseconds(begin), nanoseconds(finish), arguments);
         };
         trace_.slice(track, fmt::format("superstep {}", step), nanoseconds(now_ms_), nanoseconds(end));
         const double done = now_ms_ + t805_ms(n.cycles), sent = computed + link_ms(n.link_words);
@@ -201,7 +202,7 @@ class TorusTrace::Timeline {
     TraceFile& trace_;
     const TorusResult& result_;
     std::vector<TracedPe> nodes_;
-    std::vector<double> begins_, computed_;  // [superstep]: start, end of computation, ms
+    std::vector<double> begins_, computed_;  // [superstep]: start of the superstep, end of its computation, ms
     double now_ms_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Traces of the modelled torus: packets as CSV (docs/packets.md), and the work of each node in each superstep, in
-// modelled time.
+// Traces of the modelled torus: packets as CSV (docs/packets.md), and a trace of the work of each node in each
+// superstep, in modelled time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace raya {
 /// Returns "primary", "reflected", "refracted", "shadow" or "return". Throws std::logic_error for other kinds.
 const char* packet_kind_name(std::uint32_t kind);
 
-/// Writes packet records as CSV, in the order in which add() receives them. Memory: the compressed text and, mostly,
-/// RayNumbers with up to 48 bytes for each ray that was sent or had a child that was sent.
+/// Writes packet records as CSV, in the order in which add() receives them. Most of its memory is RayNumbers, with up
+/// to 48 bytes for each ray that was sent or whose child was sent; the rest is the compressed text.
 class PacketTrace {
   public:
     PacketTrace();
@@ -44,7 +44,7 @@ class PacketTrace {
 class TorusTrace {
   public:
     static constexpr std::size_t kMaxPackets = 20'000;
-    static constexpr std::uint32_t kPacketsEvery = 16;  // supersteps; reading all packets takes longer than the render
+    static constexpr std::uint32_t kPacketsEvery = 16;  // supersteps from one record of packets to the next
 
     explicit TorusTrace(const raya_torus& torus) : torus_(torus) {}
 
@@ -54,24 +54,25 @@ class TorusTrace {
     /// Adds a track for the supersteps and a track for each of `nodes` nodes to `trace`, from time 0 on, in the
     /// stepwise time of torus_time(): in each superstep a node computes and waits for the busiest node, then it sends
     /// and waits for the busiest link. Counters: live packets, load imbalance u of the superstep, words over the
-    /// busiest link and mean words over a link. Flows: the sampled packets whose source and destination have a track;
-    /// they arrive one superstep after departure for each link of their route, which is the earliest possible time.
+    /// busiest link and mean words over a link. Flows: the sampled packets whose source and destination have a track.
+    /// A flow ends as many supersteps after its start as the packet's route has links, the earliest possible arrival.
     /// `result` must be of the same render. If `nodes` is 0, adds only a remark to the metadata.
     void add_to(TraceFile& trace, const TorusResult& result, std::size_t nodes) const;
 
   private:
-    struct Sample {
+    struct SampledPacket {
         std::uint32_t superstep, source, destination, state, pixel;
     };
     struct NodeStep {
         std::uint64_t cycles = 0;
-        std::uint32_t link_words = 0, words = 0;  // words over its busiest link, over all its links
+        std::uint32_t link_words = 0,
+                      words = 0;  // numbers of words over the node's busiest link, and over all its links
     };
     class Timeline;
 
     raya_torus torus_;
     std::vector<std::vector<NodeStep>> steps_;  // [superstep][node]
-    std::vector<Sample> packets_;
+    std::vector<SampledPacket> packets_;
     std::uint64_t packets_seen_ = 0;
     SplitMix random_{0x7ace};
 };

@@ -23,8 +23,8 @@ class Projection {
           normal_(column_.cross(row_)),
           step_(std::min(column_.length(), row_.length())) {
         const double width = job.mapping.width, height = job.mapping.height;
-        // Bound of the rounding error of a direction, in pixels: 16 units in the last place of the sum of its terms'
-        // lengths. One more pixel for the half-open edge.
+        // Bound of the rounding error of a direction, in pixels: 16 units in the last place of the sum of the lengths
+        // of the direction's terms, and one pixel for the half-open edge.
         const double unit = std::ldexp(1.0, -format.fraction_bits);
         margin_ = 1 + 16 * unit * (corner_.length() + width * column_.length() + height * row_.length()) / step_;
         for (const double x : {-1.0, width})
@@ -51,37 +51,40 @@ class Projection {
     double step_, margin_, longest_ = 0;
 };
 
+// Bounds of projected points: [0] columns, [1] rows.
 struct ScreenBounds {
     double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     double high[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     bool whole = false;  // no bound is known: use the whole image
-    bool any() const { return whole || low[0] <= high[0]; }
+    bool is_nonempty() const { return whole || low[0] <= high[0]; }
 };
 
 // Extent of the bounding box along an axis. slack: bound of the rounding error of a ray's entry point
-// (grid/traversal.clh), a few fp32 units in the last place of the path length and the origin.
-struct BoxSide {
+// (grid/traversal.clh), a few fp32 units in the last place of the path length and of the origin.
+struct BoxExtent {
     double low, high, slack;
 };
 
-BoxSide side_of(const raya_grid& grid, std::uint32_t axis, double eye) {
+BoxExtent extent_of(const raya_grid& grid, std::uint32_t axis, double eye) {
     const double low = raya_voxel_plane(grid, axis, 0), high = raya_voxel_plane(grid, axis, grid.divisions[axis]);
     return {low, high, std::ldexp(std::abs(eye) + std::max(std::abs(low), std::abs(high)), -20)};
 }
 
 // Clips a face to the points with depth >= `min_depth` (Sutherland & Hodgman 1974).
 std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4>& face, double min_depth) {
-    std::vector<Vec3> part;
+    std::vector<Vec3> polygon;
     for (std::size_t i = 0; i < face.size(); ++i) {
         const Vec3 &a = face[i], &b = face[(i + 1) % face.size()];
-        const double from = projection.depth(a), to = projection.depth(b);
-        if (from >= min_depth) part.push_back(a);
-        if ((from >= min_depth) != (to >= min_depth)) part.push_back(a + (min_depth - from) / (to - from) * (b - a));
+        const double depth_a = projection.depth(a), depth_b = projection.depth(b);
+        if (depth_a >= min_depth) polygon.push_back(a);
+        if ((depth_a >= min_depth) != (depth_b >= min_depth))
+            polygon.push_back(a + (min_depth - depth_a) / (depth_b - depth_a) * (b - a));
     }
-    return part;
+    return polygon;
 }
 
-// Extends the bounds by the face of voxel `at` in plane k of `axis`. `distance`: distance of the plane from the eye.
+// Extends the bounds by a face of the voxel at place `at`: the face in plane `k` between voxels along `axis`.
+// `distance`: distance of this plane from the eye.
 void add_face(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, const raya_place& at,
               std::uint32_t axis, std::uint32_t k, double distance) {
     const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
@@ -93,10 +96,10 @@ void add_face(ScreenBounds& bounds, const Projection& projection, const raya_gri
     }
     // The clipping depth is smaller than the depth of any visible point of the face.
     for (const Vec3& p : clipped(projection, face, distance / projection.longest() / 2)) {
-        const std::array<double, 2> place = projection.pixel(p);
+        const std::array<double, 2> pixel = projection.pixel(p);
         for (std::size_t i = 0; i < 2; ++i) {
-            bounds.low[i] = std::min(bounds.low[i], place[i]);
-            bounds.high[i] = std::max(bounds.high[i], place[i]);
+            bounds.low[i] = std::min(bounds.low[i], pixel[i]);
+            bounds.high[i] = std::max(bounds.high[i], pixel[i]);
         }
     }
 }
@@ -106,7 +109,7 @@ void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_gr
     bool contains_eye = true;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const double eye = projection.eye()[axis];
-        const BoxSide box = side_of(grid, axis, eye);
+        const BoxExtent box = extent_of(grid, axis, eye);
         const double low = raya_voxel_plane(grid, axis, at.at[axis]),
                      high = raya_voxel_plane(grid, axis, at.at[axis] + 1);
         contains_eye = contains_eye && eye >= low - box.slack && eye <= high + box.slack;
@@ -139,8 +142,8 @@ std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& gri
         for (std::uint32_t i = 0; i < voxels && !bounds.whole; ++i)
             add_voxel(bounds, projection, grid, raya_voxel_of_node(torus, grid, node, i));
         PixelWindow window{{0, height}, {0, width}};
-        if (!bounds.any()) window = {{0, 0}, {0, 0}};
-        if (bounds.any() && !bounds.whole) {
+        if (!bounds.is_nonempty()) window = {{0, 0}, {0, 0}};
+        if (bounds.is_nonempty() && !bounds.whole) {
             const double m = projection.margin();
             window = {
                 {clamped(std::floor(bounds.low[1] - m), height), clamped(std::ceil(bounds.high[1] + m) + 1, height)},

@@ -36,10 +36,10 @@ std::string value_text(const TuningParameter& parameter, std::uint32_t value) {
     return value ? std::to_string(value) : "own";
 }
 
-constexpr double kDropped = std::numeric_limits<double>::infinity();
-// Limits of a candidate's time divided by the best time. Beyond kStopRatio, measured, further values of a parameter are
-// unlikely to be better. Candidates predicted within kMaxPredictedRatio are tried, because parameters interact;
-// neighbours that differ in two parameters are tried within kMaxPairRatio.
+constexpr double kDropped = std::numeric_limits<double>::infinity();  // cost of a candidate that failed
+// Limits for a candidate's time divided by the best time. If the measured ratio of a value exceeds kStopRatio, the
+// search tries no further values in this direction. Because parameters interact, it also tries candidates with a
+// predicted ratio below kMaxPredictedRatio, and neighbours that differ in two parameters with one below kMaxPairRatio.
 constexpr double kStopRatio = 1.25;
 constexpr double kMaxPredictedRatio = 1.12;
 constexpr double kMaxPairRatio = 1.5;
@@ -61,14 +61,14 @@ class CoordinateDescent {
             Candidate next = most_promising();
             if (next.empty()) next = most_promising_pair_step();
             if (next.empty()) break;
-            if (try_one(next)) descend();
+            if (try_candidate(next)) descend();
         }
         return result_;
     }
 
   private:
     // Measures a candidate. Returns true if it is the new best.
-    bool try_one(const Candidate& candidate) {
+    bool try_candidate(const Candidate& candidate) {
         if (costs_.contains(candidate)) return false;
         if (stop_()) {
             result_.ended = false;
@@ -84,73 +84,73 @@ class CoordinateDescent {
         return true;
     }
 
-    // Varies one parameter after another until no change helps. Parameters with few values come first, so that the
-    // search has varied most parameters if time runs out.
+    // Varies one parameter after another until no change helps. Begins with the parameters that have the fewest values,
+    // so that the search has varied as many parameters as possible if its time ends.
     void descend() {
-        for (bool gained = true; gained && result_.ended;) {
-            gained = false;
-            for (const std::size_t parameter : order_) gained |= try_values(parameter);
+        for (bool improved = true; improved && result_.ended;) {
+            improved = false;
+            for (const std::size_t parameter : order_) improved |= try_values(parameter);
         }
     }
 
-    // Tries larger values than the best candidate's, and smaller ones if no larger one helps.
+    // Tries larger values of the parameter than the best candidate's; if none of them helps, smaller values. Returns
+    // true if a value helps.
     bool try_values(std::size_t parameter) {
-        const Candidate from = result_.best;
-        return try_direction(from, parameter, +1) || try_direction(from, parameter, -1);
+        const Candidate start = result_.best;
+        return try_direction(start, parameter, +1) || try_direction(start, parameter, -1);
     }
 
     bool try_direction(Candidate candidate, std::size_t parameter, int direction) {
-        bool gained = false;
+        bool improved = false;
         const std::size_t count = space_.parameters[parameter].values.size();
         for (std::size_t& index = candidate[parameter]; result_.ended;) {
             index += static_cast<std::size_t>(direction);  // wraps below 0
             if (index >= count) break;
-            gained |= try_one(candidate);
+            improved |= try_candidate(candidate);
             if (!result_.ended || costs_[candidate] > kStopRatio * result_.cost) break;
         }
-        return gained;
+        return improved;
     }
 
     // Returns [parameter][value]: the minimum cost measured with that value.
     std::vector<std::vector<double>> minimum_costs() const {
-        std::vector<std::vector<double>> minimum;
+        std::vector<std::vector<double>> costs;
         for (const TuningParameter& parameter : space_.parameters)
-            minimum.emplace_back(parameter.values.size(), kDropped);
+            costs.emplace_back(parameter.values.size(), kDropped);
         for (const auto& [candidate, cost] : costs_)
             for (std::size_t k = 0; k < candidate.size(); ++k)
-                minimum[k][candidate[k]] = std::min(minimum[k][candidate[k]], cost);
-        return minimum;
+                costs[k][candidate[k]] = std::min(costs[k][candidate[k]], cost);
+        return costs;
     }
 
-    // Finds the candidate with the lowest predicted cost among the untried candidates passed to offer(). The prediction
-    // is the cost of the best multiplied, for each parameter, by the loss of the candidate's value: the minimum cost
-    // measured with this value divided by the cost of the best.
+    // Finds the candidate with the lowest predicted cost among the untried candidates passed to offer(). search()
+    // defines the prediction.
     class LowestPrediction {
       public:
         LowestPrediction(const CoordinateDescent& search, double max_ratio)
-            : search_(search), minimum_costs_(search.minimum_costs()), lowest_(max_ratio * search.result_.cost) {}
+            : search_(search), minimum_costs_(search.minimum_costs()), lowest_cost_(max_ratio * search.result_.cost) {}
 
         void offer(const Candidate& candidate) {
             const double best = search_.result_.cost;
-            double expected = best;
-            for (std::size_t k = 0; k < candidate.size(); ++k) expected *= minimum_costs_[k][candidate[k]] / best;
-            if (expected >= lowest_ || search_.costs_.contains(candidate)) return;
-            lowest_ = expected;
-            found_ = candidate;
+            double predicted = best;
+            for (std::size_t k = 0; k < candidate.size(); ++k) predicted *= minimum_costs_[k][candidate[k]] / best;
+            if (predicted >= lowest_cost_ || search_.costs_.contains(candidate)) return;
+            lowest_cost_ = predicted;
+            candidate_ = candidate;
         }
-        const Candidate& found() const { return found_; }
+        const Candidate& lowest_candidate() const { return candidate_; }
 
       private:
         const CoordinateDescent& search_;
         std::vector<std::vector<double>> minimum_costs_;
-        double lowest_;
-        Candidate found_;  // empty: no prediction below max_ratio
+        double lowest_cost_;
+        Candidate candidate_;  // empty: every prediction is above max_ratio
     };
 
     Candidate most_promising() const {
         LowestPrediction prediction(*this, kMaxPredictedRatio);
         for_each_candidate(space_, [&](const Candidate& candidate) { prediction.offer(candidate); });
-        return prediction.found();
+        return prediction.lowest_candidate();
     }
 
     // Returns the most promising neighbour that differs in two parameters. If two parameters share a resource, such as
@@ -167,15 +167,15 @@ class CoordinateDescent {
                         candidate[b] < space_.parameters[b].values.size())
                         prediction.offer(candidate);
                 }
-        return prediction.found();
+        return prediction.lowest_candidate();
     }
 
     const Space& space_;
     const MeasureRatio& measure_;
     const ShouldStop& stop_;
-    std::vector<std::size_t> order_;  // order in which parameters are varied
+    std::vector<std::size_t> order_;  // indices of the parameters in the order in which they are varied
     SearchResult result_;
-    std::map<Candidate, double> costs_;  // time divided by that of the start, or kDropped
+    std::map<Candidate, double> costs_;  // time divided by the time of the start, or kDropped
 };
 
 }  // namespace
@@ -210,7 +210,7 @@ void for_each_candidate(const Space& space, const std::function<void(const Candi
 
 Space space_of(const DeviceInfo& device, const TuningKey& key) {
     Space space{.parameters = {}, .defaults = default_values(device, key), .start = {}};
-    const bool cpu = device.type == "cpu", all_objects = key.accel == RAYA_ACCEL_NONE;
+    const bool cpu = device.type == "cpu", tests_all_objects = key.accel == RAYA_ACCEL_NONE;
     const auto add = [&](std::uint32_t TunedValues::*value, Values values) {
         add_default(values, space.defaults.*value);
         const auto at = std::find(values.begin(), values.end(), space.defaults.*value);
@@ -218,22 +218,22 @@ Space space_of(const DeviceInfo& device, const TuningKey& key) {
         space.parameters.push_back({value, std::move(values)});
     };
     const std::uint32_t max_group = max_group_size_of(device);
-    // llvmpipe vectorises over work-items. Compiling kernels with several lanes takes it minutes and gigabytes of
-    // memory.
+    // llvmpipe vectorises over work-items, so one lane suffices. It needs minutes and gigabytes of memory to compile
+    // kernels with several lanes.
     const bool llvmpipe = device.max_loop_iterations > 0;
     add(&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16});
-    // Torus nodes on a CPU keep their default, which preserves the order of packets (docs/packets.md).
+    // Torus nodes on a CPU keep their default group size, which preserves the order of packets (docs/packets.md).
     const std::uint32_t max_on_cpu = key.torus ? space.defaults.group : std::min(llvmpipe ? 16u : 4u, max_group);
     add(&TunedValues::group, cpu ? group_sizes(1, max_on_cpu) : group_sizes(16, max_group));
     if (supports_register_limit(device)) add(&TunedValues::registers, {0, 64, 96, 128, 168});
-    if (all_objects) add(&TunedValues::local_words, {0, 1});
-    if (all_objects && key.fp32 && !key.torus)
+    if (tests_all_objects) add(&TunedValues::local_words, {0, 1});
+    if (tests_all_objects && key.fp32 && !key.torus)
         add(&TunedValues::batch, cpu ? Values{0, 8, 16} : Values{0, 4, 8, 16, 32});
     if (key.accel == RAYA_ACCEL_GRID) {
         add(&TunedValues::trees, {0, 1, 2, 4, 8});
         add(&TunedValues::beams, {0, 1, 2, 4, 8});
     }
-    // On a CPU the default, 0, already selects the kernel.
+    // On a CPU the default value 0 already selects the exchange kernel.
     if (key.torus)
         add(&TunedValues::link_exchange, cpu ? Values{0, kCopyExchange} : Values{0, kCopyExchange, kKernelExchange});
     return space;
@@ -254,11 +254,11 @@ SearchResult search(const Space& space, const MeasureRatio& measure, const Shoul
     return CoordinateDescent(space, measure, stop).run();
 }
 
-SearchResult search_all(const Space& space, const Candidate& from, const MeasureRatio& measure,
+SearchResult search_all(const Space& space, const Candidate& start, const MeasureRatio& measure,
                         const ShouldStop& stop) {
-    SearchResult result{.best = from};
+    SearchResult result{.best = start};
     for_each_candidate(space, [&](const Candidate& candidate) {
-        if (candidate == from || !result.ended) return;
+        if (candidate == start || !result.ended) return;
         if (stop()) {
             result.ended = false;
             return;

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kKind = "raya tune";
-constexpr std::uint64_t kVersion = 2;                                        // version of the file format
+constexpr std::uint64_t kFileFormatVersion = 2;
 constexpr std::array<const char*, 3> kAccelNames = {"none", "grid", "bvh"};  // index: RAYA_ACCEL_*
 
 Json to_json(const TunedEntry& entry) {
@@ -32,7 +32,7 @@ Json to_json(const TunedEntry& entry) {
             {"scene", entry.scene}};
 }
 
-// Returns the index of the member's text in `names`.
+// Returns the index in `names` of the text of member `key`. Throws JsonError if `names` does not contain the text.
 std::uint32_t choice_of(const Json& json, const char* key, const std::vector<std::string>& names) {
     const auto found = std::find(names.begin(), names.end(), json.at(key).text());
     if (found == names.end()) throw JsonError(fmt::format("unknown {} \"{:.40}\"", key, json.at(key).text()));
@@ -47,7 +47,7 @@ TunedEntry entry_of(const Json& json, const DeviceInfo& device) {
                      .speedup = json.at("speedup").number(),
                      .scene = json.at("scene").text()};
     const KernelChoice kernels = with_values({}, entry.values);
-    check_kernel_options({.lanes = kernels.lanes, .group_size = kernels.group_size, .more = kernels.more}, device);
+    check_kernel_options({.lanes = kernels.lanes, .group_size = kernels.group_size, .tuning = kernels.tuning}, device);
     return entry;
 }
 
@@ -56,16 +56,19 @@ Json device_json(const DeviceInfo& device) {
         {"name", device.name}, {"platform", device.platform}, {"version", device.version}, {"driver", device.driver}};
 }
 
+// Throws UserError unless the file is one of raya tune for this device, driver, version of raya and file format.
 void check_origin(const Json& json, const DeviceInfo& device) {
     if (!json.find("kind") || json.at("kind").text() != kKind) throw UserError(fmt::format("not a file of {}", kKind));
-    const auto check = [](const std::string& is, const std::string& must, const char* what) {
-        if (is != must) throw UserError(fmt::format("written for another {}: {}, not {}", what, is, must));
+    const auto check = [](const std::string& stored, const std::string& required, const char* property) {
+        if (stored != required)
+            throw UserError(fmt::format("written for another {}: {}, not {}", property, stored, required));
     };
-    check(std::to_string(json.at("version").integer()), std::to_string(kVersion), "version of the file format");
+    check(std::to_string(json.at("version").integer()), std::to_string(kFileFormatVersion),
+          "version of the file format");
     check(json.at("raya").text(), raya_version(), "version of raya");
-    const Json now = device_json(device), &then = json.at("device");
-    for (const std::string& key : now.keys())
-        check(then.at(key).text(), now.at(key).text(), ("device's " + key).c_str());
+    const Json current = device_json(device), &stored = json.at("device");
+    for (const std::string& key : current.keys())
+        check(stored.at(key).text(), current.at(key).text(), ("device's " + key).c_str());
 }
 
 TunedFile file_of(const Json& json, const DeviceInfo& device) {
@@ -77,16 +80,18 @@ TunedFile file_of(const Json& json, const DeviceInfo& device) {
 
 constexpr std::uint64_t kMaxFileBytes = 1 << 20;
 
+// Returns nullopt if the file does not exist. Throws UserError if it is unusable or other users may write it.
 std::optional<TunedFile> read_stored(const fs::path& path, const DeviceInfo& device) {
-    std::error_code none;
-    if (!fs::exists(path, none)) return {};
-    if (const std::string why = other_writers(fs::canonical(path, none), {::geteuid()}, Sticky::kRefused, path);
+    std::error_code ignored;
+    if (!fs::exists(path, ignored)) return {};
+    if (const std::string why = unsafe_path_reason(fs::canonical(path, ignored), {::geteuid()}, Sticky::kRefused, path);
         !why.empty())
         throw UserError(why);
     return read_tuned(json_text(path, {path}, Pipes::kRefused, kMaxFileBytes), path, device);
 }
 
-// Replaces all characters except letters, digits, '.' and '+' by '-', and keeps at most 80 characters.
+// Replaces every sequence of characters other than letters, digits, '.' and '+' by one '-', and keeps at most 80
+// characters.
 std::string file_name_part(const std::string& name) {
     std::string text;
     for (const char c : name) {
@@ -134,7 +139,7 @@ std::string tuned_file_name(const DeviceInfo& device) {
 std::string tuned_text(const DeviceInfo& device, const TunedFile& file) {
     Json entries = Json::array();
     for (const TunedEntry& entry : file.entries) entries.push_back(to_json(entry));
-    return Json{{"kind", kKind},     {"version", kVersion},           {"raya", raya_version()},
+    return Json{{"kind", kKind},     {"version", kFileFormatVersion}, {"raya", raya_version()},
                 {"date", file.date}, {"device", device_json(device)}, {"tuned", entries}}
                .dump(2) +
            "\n";
@@ -150,25 +155,25 @@ fs::path tuned_path(const DeviceInfo& device) {
     std::error_code error;
     fs::create_directories(*folder, error);
     if (error)
-        throw UserError(fmt::format("{}: cannot create directory: {}; set XDG_CACHE_HOME to another place",
+        throw UserError(fmt::format("{}: cannot create directory: {}; set XDG_CACHE_HOME to another folder",
                                     folder->string(), error.message()));
     fs::path path = *folder / tuned_file_name(device);
     check_writable(path);
     return path;
 }
 
-void save_tuned(const DeviceInfo& device, const TunedFile& now) {
+void save_tuned(const DeviceInfo& device, const TunedFile& tuned) {
     const fs::path path = tuned_path(device);
-    TunedFile all = now;
+    TunedFile merged = tuned;
     try {
         if (const auto stored = read_stored(path, device))
             for (const TunedEntry& entry : stored->entries)
-                if (std::none_of(now.entries.begin(), now.entries.end(),
-                                 [&](const TunedEntry& one) { return one.key == entry.key; }))
-                    all.entries.push_back(entry);
+                if (std::none_of(tuned.entries.begin(), tuned.entries.end(),
+                                 [&](const TunedEntry& replacement) { return replacement.key == entry.key; }))
+                    merged.entries.push_back(entry);
     } catch (const UserError&) {  // an unusable file is overwritten
     }
-    write_whole_file(path, tuned_text(device, all));
+    write_whole_file(path, tuned_text(device, merged));
 }
 
 TunedSource stored_choices(std::function<void(const std::string&)> warn) {
@@ -178,19 +183,19 @@ TunedSource stored_choices(std::function<void(const std::string&)> warn) {
         throw UserError(fmt::format("RAYA_TUNED={}: must be off, or not set", setting));
     const auto folder = tuned_folder();
     if (!folder || setting == "off") return {};
-    return [folder = *folder, warn = std::move(warn), read = std::map<std::string, std::optional<TunedFile>>()](
+    return [folder = *folder, warn = std::move(warn), files = std::map<std::string, std::optional<TunedFile>>()](
                const DeviceInfo& device, const TuningKey& key) mutable -> std::optional<TunedChoice> {
         const fs::path path = folder / tuned_file_name(device);
-        const auto [at, first] = read.try_emplace(path.string());
+        const auto [file, is_new] = files.try_emplace(path.string());
         try {
-            if (first) at->second = read_stored(path, device);
+            if (is_new) file->second = read_stored(path, device);
         } catch (const UserError& error) {
             warn(fmt::format("{}; the file is ignored; remedy: run raya tune to write a new one", error.what()));
         }
-        if (!at->second) return {};
-        for (const TunedEntry& entry : at->second->entries)
+        if (!file->second) return {};
+        for (const TunedEntry& entry : file->second->entries)
             if (entry.key == key)
-                return TunedChoice{entry.values, fmt::format("{}, {}", path.string(), at->second->date)};
+                return TunedChoice{entry.values, fmt::format("{}, {}", path.string(), file->second->date)};
         return {};
     };
 }

@@ -11,33 +11,33 @@
 
 namespace raya {
 
-/// The JSON form in files and in messages between processes.
+/// Returns the JSON form of tuned values, for files and for messages between processes.
 Json to_json(const TunedValues& values);
 
-/// Throws JsonError if a value is missing or not an unsigned 32-bit integer.
+/// Inverse of to_json(). Throws JsonError if a value is missing or not an unsigned 32-bit integer.
 TunedValues values_of(const Json& json);
 
 /// Tuned values of one configuration of kernels.
 struct TunedEntry {
     TuningKey key;
     TunedValues values;
-    double speedup = 1;  // measured time of the defaults over that of `values`
-    std::string scene;   // scene of the measurement
+    double speedup = 1;  // measured time with the default values divided by the time with `values`
+    std::string scene;   // name of the measured scene
 };
 
 struct TunedFile {
-    std::string date;  // "2026-11-22"
+    std::string date;  // date of tuning: "2026-11-22"
     std::vector<TunedEntry> entries;
 };
 
-/// Returns the folder of the files: $XDG_CACHE_HOME/raya, or, if that variable is not an absolute path,
+/// Returns the folder of the files of tuned values: $XDG_CACHE_HOME/raya, or, if that variable is not an absolute path,
 /// $HOME/.cache/raya. Empty if neither is absolute.
 std::optional<std::filesystem::path> tuned_folder();
 
 /// Returns the file name of a device, made of the platform's and the device's name and the driver version.
 std::string tuned_file_name(const DeviceInfo& device);
 
-/// Returns the text of a file, which contains the names of device and driver and the version of raya.
+/// Returns the text of the device's file, which contains the names of device and driver and the version of raya.
 std::string tuned_text(const DeviceInfo& device, const TunedFile& file);
 
 /// Parses the text of file `name`. Throws UserError if the text is not a valid file of tuned values, has values that
@@ -48,14 +48,14 @@ TunedFile read_tuned(const std::string& text, const std::string& name, const Dev
 /// is not writable.
 std::filesystem::path tuned_path(const DeviceInfo& device);
 
-/// Merges `now` into the device's file: replaces the entries for the same kernels and keeps the others. Writes the file
-/// atomically, and overwrites an unusable file. Throws UserError like tuned_path().
-void save_tuned(const DeviceInfo& device, const TunedFile& now);
+/// Merges `tuned` into the device's file: replaces entries that have the same key as an entry of `tuned`, and keeps the
+/// others. Writes the file atomically, and overwrites an unusable file. Throws UserError like tuned_path().
+void save_tuned(const DeviceInfo& device, const TunedFile& tuned);
 
-/// Returns a source of the stored values, for ScopedTunedSource. It reads the file of a device at the first request for
-/// that device. If the file is unusable or writable by other users, it ignores the file and calls `warn` once. Returns
-/// an empty function if the environment variable RAYA_TUNED is "off"; throws UserError for any other value of the
-/// variable.
+/// Returns a source of the stored values, for ScopedTunedSource. The source reads a device's file when values for the
+/// device are first requested. If the file is unusable or writable by other users, the source ignores the file and
+/// calls `warn` once. Returns an empty function if the environment variable RAYA_TUNED is "off"; throws UserError for
+/// any other value of the variable.
 TunedSource stored_choices(std::function<void(const std::string&)> warn);
 
 }  // namespace raya

@@ -22,13 +22,13 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kMinSamples = 2;  // before stop_early may drop a candidate
-constexpr double kDropRatio = 1.25;
+constexpr std::size_t kMinSamples = 2;  // number of samples before stop_early may end a trial
+constexpr double kDropRatio = 1.25;     // stop_early ends a trial if the last candidate is slower by this factor
 
 struct Variant {
     const char* name;
     AccelKind accel;
-    std::uint32_t side;  // side of the default image, pixels
+    std::uint32_t side;  // side of the default image in pixels
 };
 constexpr Variant kVariants[] = {{"none", AccelKind::kNone, 512},
                                  {"grid", AccelKind::kGrid, 256},
@@ -51,7 +51,7 @@ struct TrialInput {
 Scene scene_of(const TrialSetup& render, const Variant& variant) {
     constexpr const char* kSpheres = "scenes/spheres.nff";
     constexpr int kLevel = 4;
-    std::vector<NffRemark> remarks;  // ignored: the parent process prints them
+    std::vector<NffRemark> remarks;  // not printed: the parent process prints them
     if (!render.scene.empty()) return read_nff(render.scene, render.strict ? nullptr : &remarks);
     if (variant.accel != AccelKind::kNone) return generate_balls(kLevel);
     return parse_nff(embedded_files().at(kSpheres), kSpheres);
@@ -86,11 +86,13 @@ TorusSettings torus_settings(const TrialRequest& request, const ImageSize& size,
 const EventCounts& events_of(const RingResult& result) { return result.all.events; }
 const EventCounts& events_of(const TorusResult& result) { return result.events; }
 
-/// Renders one image with built kernels; returns the seconds from the packed scene to the image.
-using NextImage = std::function<double()>;
+/// Renders one image with kernels that are already built. Returns the seconds from the packed scene to the image.
+using TimedRender = std::function<double()>;
 
+// Writes the lines "built" and "check" of candidate `number`, whose kernels `renderer` has built. Renders the first
+// image.
 template <class Renderer>
-NextImage prepare(int lines, std::size_t number, std::shared_ptr<Renderer> renderer) {
+TimedRender prepare(int lines, std::size_t number, std::shared_ptr<Renderer> renderer) {
     send_line(lines, {{"built", number}});
     const auto first = renderer->render();
     const std::string check = fmt::format("{}, {} rays", pixel_hash(first.image), ray_count(events_of(first)));
@@ -100,18 +102,18 @@ NextImage prepare(int lines, std::size_t number, std::shared_ptr<Renderer> rende
 
 double min_seconds(const std::vector<double>& seconds) { return *std::min_element(seconds.begin(), seconds.end()); }
 
-std::vector<std::vector<double>> samples_of(const std::vector<NextImage>& renders, const TrialRequest& request) {
+std::vector<std::vector<double>> samples_of(const std::vector<TimedRender>& renders, const TrialRequest& request) {
     std::vector<std::vector<double>> all(renders.size());
     for (std::uint32_t i = 0; i < request.samples; ++i) {
         for (std::size_t n = 0; n < renders.size(); ++n) all[n].push_back(mean_seconds(renders[n]));
-        const bool enough = request.stop_early && all.front().size() >= kMinSamples;
-        if (enough && min_seconds(all.back()) > kDropRatio * min_seconds(all.front())) break;
+        const bool may_stop = request.stop_early && all.front().size() >= kMinSamples;
+        if (may_stop && min_seconds(all.back()) > kDropRatio * min_seconds(all.front())) break;
     }
     return all;
 }
 
 TrialRequest request_of(const Json& json) {
-    const auto number = [](const Json& whole) { return static_cast<std::uint32_t>(whole.integer(UINT32_MAX)); };
+    const auto number = [](const Json& value) { return static_cast<std::uint32_t>(value.integer(UINT32_MAX)); };
     const std::vector<Json>& size = json.at("size").elements();
     TrialRequest request{.render = {.device = json.at("device").text(),
                                     .scene = json.at("scene").text(),
@@ -182,16 +184,16 @@ double ratio_of(const Trial& trial) {
 bool wins_significantly(const Trial& trial) {
     if (trial.status != TrialStatus::kCorrect || ratio_of(trial) > kMaxWinRatio) return false;
     const std::vector<double>&last = trial.samples.back(), &first = trial.samples.front();
-    std::size_t lost = 0;
-    for (std::size_t i = 0; i < last.size(); ++i) lost += last[i] >= first[i];
-    return lost <= last.size() / 9;
+    std::size_t lost_pairs = 0;
+    for (std::size_t i = 0; i < last.size(); ++i) lost_pairs += last[i] >= first[i];
+    return lost_pairs <= last.size() / 9;
 }
 
-double mean_seconds(const std::function<double()>& seconds) {
+double mean_seconds(const std::function<double()>& render) {
     constexpr double kMinSeconds = 0.02;
     double sum = 0;
     int calls = 0;
-    for (; sum < kMinSeconds; ++calls) sum += seconds();
+    for (; sum < kMinSeconds; ++calls) sum += render();
     return sum / calls;
 }
 
@@ -199,7 +201,7 @@ void run_trial(int lines, const Json& json) {
     const TrialRequest request = request_of(json);
     const TrialInput input = input_of(request);
     Session session(choose_device(request.render.device));
-    std::vector<NextImage> renders;
+    std::vector<TimedRender> renders;
     for (const TunedValues& values : request.candidates) {
         const KernelChoice kernels = with_values({.sources = {.folder = request.render.kernel_dir}}, values);
         const std::size_t number = renders.size();

@@ -25,14 +25,15 @@ struct Workload {
 /// fp32.
 std::vector<Workload> default_workloads();
 
-/// Device, scene and image size of trials. The default scene has 30 spheres and a plane; with an accelerator it is
-/// "balls" of the Standard Procedural Databases, with 7,381 spheres. The default size is 512 x 512 pixels; with an
-/// accelerator and on the torus it is 256 x 256.
+/// Device, scene and image size of trials. The default scene has 30 spheres and a plane; for a variant with an
+/// accelerator it is "balls" of the Standard Procedural Databases, with 7,381 spheres. The default image has 512 x 512
+/// pixels; for a variant with an accelerator and for the torus it has 256 x 256.
 struct TrialSetup {
-    std::string device, scene, kernel_dir;  // device: see choose_device(); empty: built-in scene, kernels
-    bool strict = false;                    // read the scene file in strict mode
-    ImageSize size{};
-    std::uint32_t pes = 256;  // number of PEs of the ring
+    std::string device;             // selector for choose_device()
+    std::string scene, kernel_dir;  // paths; empty: the default scene, the embedded kernels
+    bool strict = false;            // read the scene file in strict mode
+    ImageSize size{};               // 0 x 0: the default size
+    std::uint32_t pes = 256;        // number of PEs of the ring
 };
 
 /// Request to the child process of a trial.
@@ -40,57 +41,58 @@ struct TrialRequest {
     TrialSetup render;
     Workload workload;
     std::vector<TunedValues> candidates;  // the best so far, then the candidate to compare with it
-    std::uint32_t samples = 5;            // of each candidate; the candidates alternate
+    std::uint32_t samples = 5;            // number of samples of each candidate; the candidates alternate
     bool stop_early = true;               // stop if the last candidate is much slower than the first
 };
 Json to_json(const TrialRequest& request);
 
-/// Result of a trial. The names are those of the T4 format (t4_text() in tune.hpp).
+/// Result of a trial. All names except kUnfinished are those of the T4 format (t4_text() in tune.hpp).
 enum class TrialStatus {
     kCorrect,
     kCompile,      // building the kernels failed or crashed
     kRuntime,      // rendering failed or crashed
-    kCorrectness,  // the image or the number of rays differs from the defaults'
+    kCorrectness,  // the image or the number of rays differs from that with the default values
     kTimeout,      // a candidate exceeded its time limit
     kUnfinished    // no result: the time limit of the search ended the trial
 };
 
 struct Trial {
-    TunedValues values;  // of the last candidate
+    TunedValues values;  // the last candidate's values
     TrialStatus status = TrialStatus::kUnfinished;
     std::string error;                         // one line of text; empty for kCorrect
     std::string check;                         // image hash and number of rays of the last candidate
-    double build_s = 0;                        // of the last candidate
-    double wall_s = 0;                         // run time of the whole process
+    double build_s = 0;                        // build time of the last candidate's kernels
+    double wall_s = 0;                         // run time of the child process
     std::vector<std::vector<double>> samples;  // [candidate][sample]: seconds per image
     std::string when;                          // time of the trial's end: "2026-11-22T23:59:59Z"
 };
 
-/// Returns the time of the last candidate over that of the first: the ratio of the minimum times or the median ratio of
-/// consecutive samples, whichever is larger, so that a faster candidate must be faster by both. 1 without samples.
+/// Returns the time of the last candidate divided by the time of the first; 1 if there are no samples. It is the larger
+/// of two ratios, so that a faster candidate must be faster by both: the ratio of the minimum times, and the median
+/// ratio of consecutive samples.
 double ratio_of(const Trial& trial);
 
 /// Returns true if the last candidate is significantly faster than the first: ratio_of() is at most kMaxWinRatio, and
-/// the last candidate is faster in at least 8 of 9 pairs of samples. For equally fast candidates, a result of 8 of 9
-/// pairs has a probability of 2 %.
+/// the last candidate is faster in at least 8 of 9 pairs of samples. If both
+/// candidates are equally fast, the last one is faster in at least 8 of 9 pairs with a probability of 2 %.
 bool wins_significantly(const Trial& trial);
 
-/// Returns the median of seconds[i] / reference[i], the ratios of two candidates' samples; for reports.
+/// Returns the median of seconds[i] / reference[i], the ratios of the samples of two candidates; 1 without samples.
 double median_ratio(const std::vector<double>& seconds, const std::vector<double>& reference);
 
-/// Returns the mean of the seconds that `seconds` returns, over as many calls as take 20 ms, so that the clock's
-/// resolution and the overhead of launches do not matter.
-double mean_seconds(const std::function<double()>& seconds);
+/// Calls `render`, which returns its duration in seconds, until the durations add up to at least 20 ms, so that the
+/// clock's resolution does not matter. Returns their mean.
+double mean_seconds(const std::function<double()>& render);
 
-/// Task of the child process (host/base/child_process.hpp). run_trial() writes one JSON object per line to the file
-/// descriptor `lines`:
+/// Name and function of the child process's task (host/base/child_process.hpp). run_trial() writes one JSON object per
+/// line to the file descriptor `lines`:
 ///
-///     {"built": N}                                       the renderer of candidate N is built
-///     {"check": TEXT, "build_s": S}                      it has rendered once
-///     {"samples": [[S, ...], ...]}                       of each candidate; the trial is done
-///     {"error": TEXT, "kind": "user" or "device" or "internal"}      the last line
+///     {"built": N}                                       the kernels of candidate N are built
+///     {"check": TEXT, "build_s": S}                      candidate N has rendered its first image
+///     {"samples": [[S, ...], ...]}                       seconds per image of each candidate; the trial is done
+///     {"error": TEXT, "kind": "user" or "device" or "internal"}      the last line, if an exception ends the process
 ///
-/// Instead of writing "error", run_trial() throws.
+/// run_trial() throws the exception; its caller writes "error".
 inline constexpr const char* kTrialTask = "tune";
 void run_trial(int lines, const Json& request);
 

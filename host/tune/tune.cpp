@@ -14,10 +14,11 @@
 namespace raya {
 namespace {
 
-// Builds a Trial from the lines that its process writes.
+// Builds a Trial from the lines that the trial's process writes.
 class TrialReader {
   public:
-    TrialReader(const TrialRequest& request, const std::string& check) : request_(request), check_(check) {
+    TrialReader(const TrialRequest& request, const std::string& expected_check)
+        : request_(request), expected_check_(expected_check) {
         trial_.values = request.candidates.back();
     }
 
@@ -31,6 +32,7 @@ class TrialReader {
         if (const Json* samples = line.find("samples")) take_samples(*samples);
     }
 
+    // Ends the trial with the first line of `error`, unless the trial has already ended.
     void end(TrialStatus status, const std::string& error) {
         if (ended_) return;
         ended_ = true;
@@ -38,6 +40,7 @@ class TrialReader {
         trial_.error = error.substr(0, error.find('\n'));
     }
 
+    // Returns the status of a trial that fails now.
     TrialStatus failure() const {
         return built_ < request_.candidates.size() ? TrialStatus::kCompile : TrialStatus::kRuntime;
     }
@@ -48,31 +51,31 @@ class TrialReader {
     void take_check(const Json& line) {
         trial_.build_s = line.at("build_s").number();
         trial_.check = line.at("check").text();
-        if (!check_.empty() && trial_.check != check_)
-            end(TrialStatus::kCorrectness, fmt::format("another image: {}, not {}", trial_.check, check_));
+        if (!expected_check_.empty() && trial_.check != expected_check_)
+            end(TrialStatus::kCorrectness, fmt::format("another image: {}, not {}", trial_.check, expected_check_));
     }
 
     void take_samples(const Json& samples) {
-        for (const Json& of_one : samples.elements()) {
+        for (const Json& candidate_samples : samples.elements()) {
             trial_.samples.emplace_back();
-            for (const Json& seconds : of_one.elements()) trial_.samples.back().push_back(seconds.number());
+            for (const Json& seconds : candidate_samples.elements()) trial_.samples.back().push_back(seconds.number());
         }
         end(TrialStatus::kCorrect, "");
     }
 
     const TrialRequest& request_;
-    const std::string& check_;
+    const std::string& expected_check_;  // empty: accept any
     Trial trial_;
     std::size_t built_ = 0;  // number of candidates built so far
     bool ended_ = false;
 };
 
 // Runs a trial in a child process, because drivers may crash or hang, and ends the process after `limit_s` seconds.
-// `check`: the expected Trial::check; empty: any. Throws UserError if the process reports a user error.
-Trial supervise_trial(const TrialRequest& request, double limit_s, const std::string& check,
+// `expected_check`: the expected Trial::check; empty: accept any. Throws UserError if the process reports a user error.
+Trial supervise_trial(const TrialRequest& request, double limit_s, const std::string& expected_check,
                       const TrialProgress& running) {
     const Clock::time_point start = Clock::now();
-    TrialReader reader(request, check);
+    TrialReader reader(request, expected_check);
     ChildProcess process(kTrialTask, to_json(request));
     while (!reader.ended()) {
         std::string line;
@@ -90,7 +93,7 @@ Trial supervise_trial(const TrialRequest& request, double limit_s, const std::st
 }
 
 constexpr std::uint32_t kSamples = 5, kFinalSamples = 9;
-constexpr double kLimitFactor = 10;  // limit_s is multiplied by this for trials of the defaults and final comparisons
+constexpr double kLimitFactor = 10;  // factor of limit_s for the first trial of the defaults and for final comparisons
 
 class Tuner {
   public:
@@ -102,76 +105,82 @@ class Tuner {
     }
 
     Tuning run() {
-        check_ = defaults().check;
-        const ShouldStop time_is_over = [this] { return seconds() >= settings_.seconds; };
+        check_ = measure_defaults().check;
+        const ShouldStop time_is_over = [this] { return elapsed_s() >= settings_.seconds; };
         const MeasureRatio ratio = [this](const Candidate& best, const Candidate& candidate) {
-            return measure(best, candidate, remaining_seconds());
+            return measure(best, candidate, remaining_s());
         };
         const SearchResult found = search(result_.space, ratio, time_is_over);
         result_.complete = found.ended;
-        result_.seconds = seconds();
+        result_.seconds = elapsed_s();
         confirm(result_.space.values_of(found.best));
-        if (settings_.exhaustive) try_all(result_.best == result_.space.defaults ? result_.space.start : found.best);
+        if (settings_.exhaustive)
+            measure_all(result_.best == result_.space.defaults ? result_.space.start : found.best);
         return std::move(result_);
     }
 
   private:
-    double seconds() const { return seconds_since(start_); }
+    double elapsed_s() const { return seconds_since(start_); }
 
-    // Returns the seconds left for a candidate, at least 2, so that the last candidate may exceed the limit slightly.
-    double remaining_seconds() const { return std::max(2.0, settings_.seconds - seconds()); }
+    // Returns the time left for a candidate in seconds: at least 2, so that the last candidate may exceed the limit of
+    // the search slightly.
+    double remaining_s() const { return std::max(2.0, settings_.seconds - elapsed_s()); }
 
-    Trial trial(const std::vector<TunedValues>& candidates, std::uint32_t samples, double limit_s, bool stop_early) {
+    Trial run_trial_of(const std::vector<TunedValues>& candidates, std::uint32_t samples, double limit_s,
+                       bool stop_early) {
         const TrialRequest request{settings_.render, result_.workload, candidates, samples, stop_early};
         return supervise_trial(request, limit_s, check_, running_);
     }
 
-    Trial defaults() {
-        const Trial first = trial({result_.space.defaults}, 1, kLimitFactor * settings_.limit_s, false);
+    Trial measure_defaults() {
+        const Trial first = run_trial_of({result_.space.defaults}, 1, kLimitFactor * settings_.limit_s, false);
         if (first.status == TrialStatus::kCorrect) return first;
         throw DeviceError(fmt::format("{}: cannot measure the defaults: {}; remedy: run raya verify to find the error",
                                       result_.workload.name(), first.error));
     }
 
+    // Runs a trial. Returns the candidate's time divided by the best's, or nullopt if the candidate is dropped.
     std::optional<double> measure(const Candidate& best, const Candidate& candidate, double max_s) {
         const Space& space = result_.space;
         const double limit = std::min(settings_.limit_s, max_s);
-        Trial t = trial({space.values_of(best), space.values_of(candidate)}, kSamples, limit, true);
+        Trial t = run_trial_of({space.values_of(best), space.values_of(candidate)}, kSamples, limit, true);
         if (t.status == TrialStatus::kTimeout && limit < settings_.limit_s) t.status = TrialStatus::kUnfinished;
         result_.trials.push_back(t);
         return t.status == TrialStatus::kCorrect ? std::optional(ratio_of(t)) : std::nullopt;
     }
 
-    // The best of many measured candidates is biased towards lucky measurements, so compares it with the defaults
-    // again.
+    // Sets the result to `found` if a new comparison with the defaults confirms that it is faster. The search's own
+    // measurement of the best candidate is biased: the best of many measurements is often a lucky one.
     void confirm(const TunedValues& found) {
         result_.best = result_.space.defaults;
         if (found == result_.best) return;
-        const Trial last = trial({result_.best, found}, kFinalSamples, kLimitFactor * settings_.limit_s, false);
+        const Trial last = run_trial_of({result_.best, found}, kFinalSamples, kLimitFactor * settings_.limit_s, false);
         if (!wins_significantly(last)) return;
         result_.best = found;
         result_.ratio = median_ratio(last.samples[1], last.samples[0]);
     }
 
-    void try_all(const Candidate& from) {
-        const Tuning searched = result_;
+    // Measures every candidate, and compares the best of them with the search's result.
+    void measure_all(const Candidate& start) {
+        const Tuning search_result = result_;
         const MeasureRatio ratio = [this](const Candidate& best, const Candidate& candidate) {
             return measure(best, candidate, settings_.limit_s);
         };
-        const SearchResult all = search_all(result_.space, from, ratio, [] { return false; });
-        result_ = searched;  // discards the trials of search_all()
-        result_.tried_all = all.tried;
-        result_.best_all = result_.space.values_of(all.best);
-        if (*result_.best_all == result_.best) return;
-        const Trial last =
-            trial({*result_.best_all, result_.best}, kFinalSamples, kLimitFactor * settings_.limit_s, false);
-        if (last.status == TrialStatus::kCorrect) result_.ratio_all = median_ratio(last.samples[1], last.samples[0]);
+        const SearchResult all = search_all(result_.space, start, ratio, [] { return false; });
+        result_ = search_result;  // discards the trials of search_all()
+        result_.exhaustive_tried = all.tried;
+        result_.exhaustive_best = result_.space.values_of(all.best);
+        if (*result_.exhaustive_best == result_.best) return;
+        const Trial last = run_trial_of({*result_.exhaustive_best, result_.best}, kFinalSamples,
+                                        kLimitFactor * settings_.limit_s, false);
+        if (last.status == TrialStatus::kCorrect)
+            result_.exhaustive_ratio = median_ratio(last.samples[1], last.samples[0]);
     }
 
     const TuneSettings& settings_;
     const TrialProgress& running_;
     const Clock::time_point start_ = Clock::now();
-    std::string check_;
+    std::string check_;  // Trial::check of the defaults
     Tuning result_;
 };
 

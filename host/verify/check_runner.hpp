@@ -12,8 +12,8 @@
 
 namespace raya {
 
-/// Maximum number of lanes. Checks pad their rows to a multiple of kMaxLanes, so that the rows are the same for every
-/// number of lanes.
+/// Maximum number of lanes. Checks pad their rows of operands to a multiple of kMaxLanes, so that every number of lanes
+/// uses the same rows.
 inline constexpr std::size_t kMaxLanes = 16;
 
 class CheckRunner {

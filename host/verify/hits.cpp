@@ -15,7 +15,7 @@
 namespace raya {
 namespace {
 
-Program built(Session& session, const HitBuild& build) {
+Program build_hit_program(Session& session, const HitBuild& build) {
     KernelOptions options;
     options.lanes = build.lanes;
     options.format = build.format;
@@ -34,7 +34,8 @@ PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
     return job;
 }
 
-// Returns rays from points around the scene towards its centre, with normalised directions rounded to the format.
+// Returns `count` rays from random points in and around the scene to random points near its centre. Directions have
+// length 1; all numbers are rounded to the format.
 Rays random_rays(const NumberFormat& format, double extent, std::size_t count) {
     constexpr std::uint64_t kSeed = 1986;
     SplitMix random(kSeed);
@@ -44,38 +45,38 @@ Rays random_rays(const NumberFormat& format, double extent, std::size_t count) {
     Rays rays;
     for (std::size_t i = 0; i < count; ++i) {
         std::array<float, 3> origin{}, direction{};
-        Vec3 to{};
+        Vec3 to_target{};
         for (int axis = 0; axis < 3; ++axis) {
             origin[std::size_t(axis)] = rounded(random.uniform(-extent, extent) * (i % 3 == 0 ? 0.3 : 1));
-            to[axis] = random.uniform(-0.3, 0.3) * extent - origin[std::size_t(axis)];
+            to_target[axis] = random.uniform(-0.3, 0.3) * extent - origin[std::size_t(axis)];
         }
-        to.normalize();
-        for (int axis = 0; axis < 3; ++axis) direction[std::size_t(axis)] = rounded(to[axis]);
+        to_target.normalize();
+        for (int axis = 0; axis < 3; ++axis) direction[std::size_t(axis)] = rounded(to_target[axis]);
         rays.add(origin, direction, kDefaultRayLimit);
     }
     return rays;
 }
 
-std::vector<std::string> remedies(const std::vector<std::string>& of_lanes) {
+std::vector<std::string> hit_remedies(const std::vector<std::string>& lanes_remedies) {
     std::vector<std::string> all = {"if checks of \"number\" fail too, start with those"};
-    all.insert(all.end(), of_lanes.begin(), of_lanes.end());
+    all.insert(all.end(), lanes_remedies.begin(), lanes_remedies.end());
     all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
     return all;
 }
 
 void verify_hits(Verification& v, const HitBuild& build) {
-    const auto check = [&](const std::string& what, const std::function<Verdict(HitRunner&)>& body) {
-        v.check("geometry", fmt::format("{}, {}", what, build.name()), [&](Session& session) {
+    const auto check = [&](const std::string& subject, const std::function<Verdict(HitRunner&)>& body) {
+        v.check("geometry", fmt::format("{}, {}", subject, build.name()), [&](Session& session) {
             HitRunner runner(session, build);
-            return with_remedies(body(runner), runner.options(), remedies(v.lanes_remedies(build.lanes)));
+            return with_remedies(body(runner), runner.options(), hit_remedies(v.lanes_remedies(build.lanes)));
         });
     };
     for (const KnownScene& known : known_scenes())
         check("known hits of " + known.name, [&](HitRunner& runner) { return check_known_hits(runner, known); });
-    const std::size_t rays = v.depth() == Depth::kBrief ? 128 : 4096;  // number of rays in each scene
+    const std::size_t rays_per_scene = v.depth() == Depth::kBrief ? 128 : 4096;
     if (build.grid)
         check("grid", [&](HitRunner& runner) {
-            return check_grid_traversal(runner, {"polygons", "cones", "spheres"}, rays);
+            return check_grid_traversal(runner, {"polygons", "cones", "spheres"}, rays_per_scene);
         });
 }
 
@@ -104,11 +105,11 @@ std::string Hits::text(std::size_t ray) const {
 
 Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector<std::uint32_t>& job,
                const Rays& rays) {
-    const auto words = runner.filled("job", job);
-    const auto from = runner.filled("rays", rays.words);
+    const auto job_words = runner.filled("job", job);
+    const auto ray_words = runner.filled("rays", rays.words);
     auto objects = runner.poisoned("objects", rays.count()), distances = runner.poisoned("distances", rays.count());
     runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&, Buffer<std::uint32_t>&>(
-        kernel, rays.count(), words, from, objects, distances);
+        kernel, rays.count(), job_words, ray_words, objects, distances);
     return {runner.read(objects), runner.read(distances)};
 }
 
@@ -117,10 +118,10 @@ std::string HitBuild::name() const {
 }
 
 HitRunner::HitRunner(Session& session, const HitBuild& build)
-    : CheckRunner(session, built(session, build), build.lanes), format_(build.format), grid_(build.grid) {}
+    : CheckRunner(session, build_hit_program(session, build), build.lanes), format_(build.format), grid_(build.grid) {}
 
 Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
-                     const std::function<std::string(std::size_t)>& what, const std::string& pass_text) {
+                     const std::function<std::string(std::size_t)>& describe, const std::string& pass_text) {
     std::size_t wrong = 0, first = 0;
     for (std::size_t i = count; i-- > 0;) {
         if (got.objects[i] == expected.objects[i] && got.distances[i] == expected.distances[i]) continue;
@@ -129,7 +130,7 @@ Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, st
     }
     if (wrong == 0) return passed(pass_text);
     return failed(fmt::format("{} of {} rays wrong", wrong, count),
-                  {.where = fmt::format("{}\n{}", what(first), rays.text(first)),
+                  {.where = fmt::format("{}\n{}", describe(first), rays.text(first)),
                    .expected = expected.text(first),
                    .got = got.text(first)});
 }
@@ -145,45 +146,45 @@ Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
     }
     rays.pad();
     Verdict verdict;
-    std::vector<const char*> kernels = {"hits_of_all"};
-    if (runner.grid()) kernels.push_back("hits_by_search");
+    std::vector<const char*> kernels = {"hits_without_accel"};
+    if (runner.grid()) kernels.push_back("hits_with_accel");
     for (const char* kernel : kernels) {
         const Hits got = find_hits(runner, kernel, job.words(), rays);
-        const auto what = [&](std::size_t i) {
-            return fmt::format("{}: {} ({})", known.name, known.hits[i].what, kernel);
+        const auto describe = [&](std::size_t i) {
+            return fmt::format("{}: {} ({})", known.name, known.hits[i].description, kernel);
         };
         verdict =
-            compare_hits(expected, got, rays, known.hits.size(), what,
+            compare_hits(expected, got, rays, known.hits.size(), describe,
                          fmt::format("{} rays, {}without grid", known.hits.size(), runner.grid() ? "with and " : ""));
         if (verdict.outcome != Outcome::kPass) break;
     }
     return verdict;
 }
 
-Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_each) {
+Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_per_scene) {
     std::size_t hits = 0;
     for (const std::string& name : scenes) {
         const std::string file = fmt::format("scenes/{}.nff", name);
         const Scene scene = parse_nff(embedded_files().at(file), file);
         const PackedJob job = job_with_grid(scene, runner.format());
-        const Rays rays = random_rays(runner.format(), scene_extent(scene), rays_each);
-        const Hits all = find_hits(runner, "hits_of_all", job.words(), rays);
-        const Hits traversed = find_hits(runner, "hits_by_search", job.words(), rays);
-        const auto what = [&](std::size_t i) { return fmt::format("ray {} through {}, by the grid", i, file); };
-        const Verdict verdict = compare_hits(all, traversed, rays, rays_each, what, "");
+        const Rays rays = random_rays(runner.format(), scene_extent(scene), rays_per_scene);
+        const Hits expected = find_hits(runner, "hits_without_accel", job.words(), rays);
+        const Hits got = find_hits(runner, "hits_with_accel", job.words(), rays);
+        const auto describe = [&](std::size_t i) { return fmt::format("ray {} through {}, with grid", i, file); };
+        const Verdict verdict = compare_hits(expected, got, rays, rays_per_scene, describe, "");
         if (verdict.outcome != Outcome::kPass) return verdict;
-        for (const std::uint32_t object : all.objects) hits += object != kNoObject;
+        for (const std::uint32_t object : expected.objects) hits += object != kNoObject;
     }
-    const std::size_t all = scenes.size() * rays_each;
-    if (hits < rays_each) return failed(fmt::format("only {} of {} rays hit an object", hits, all), {});
-    return passed(fmt::format("{} rays, {} hits, with and without grid", all, hits));
+    const std::size_t rays = scenes.size() * rays_per_scene;
+    if (hits < rays_per_scene) return failed(fmt::format("only {} of {} rays hit an object", hits, rays), {});
+    return passed(fmt::format("{} rays, {} hits, with and without grid", rays, hits));
 }
 
 void verify_geometry(Verification& v) {
     for (const std::uint32_t lanes : v.lanes())
         for (const char* format : {"fp32", "spa22"}) {
             HitBuild build{.format = parse_format(format), .lanes = lanes, .sources = v.sources()};
-            // The grid traversal computes in fp32, whatever the number format.
+            // The grid traversal computes in fp32 in every format, so a brief verification checks it only in fp32.
             build.grid = v.depth() != Depth::kBrief || build.format.is_fp32();
             verify_hits(v, build);
             if (!v.full() || build.format.is_fp32()) continue;

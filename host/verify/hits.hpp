@@ -1,5 +1,5 @@
-// Checks of ray-object intersections with kernels/checks/hits.cl. Known hits are calculated by hand; hits of the grid
-// traversal are compared with those of testing all objects.
+// Checks of ray-object intersections with kernels/checks/hits.cl. Known hits are calculated by hand. Hits that the grid
+// traversal finds are compared with the hits found by testing all objects.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -18,10 +18,10 @@
 namespace raya {
 
 inline constexpr std::uint32_t kNoObject = 0xffffffffu;  // equals RAYA_NO_OBJECT of the kernels
-inline constexpr float kDefaultRayLimit = 4096;          // maximum t of a ray; beyond all objects of the scenes
+inline constexpr float kDefaultRayLimit = 4096;  // ray limit (maximum t), farther away than all objects of the scenes
 
 struct KnownHit {
-    const char* what;
+    const char* description;
     std::array<float, 3> origin, direction;
     std::uint32_t object;  // object number in the job, or kNoObject
     float t;               // distance of the hit; undefined for a miss
@@ -53,21 +53,21 @@ struct Rays {
 /// Results, indexed by ray.
 struct Hits {
     std::vector<std::uint32_t> objects;    // object number, or kNoObject
-    std::vector<std::uint32_t> distances;  // bits of t; for a miss, of the ray's limit
+    std::vector<std::uint32_t> distances;  // bits of t if the ray hits an object, else bits of its limit
 
     std::string text(std::size_t ray) const;
 };
 
-/// Runs `kernel`, "hits_of_all" or "hits_by_search", on the words of a job. The number of rays must be a multiple of
-/// kMaxLanes.
+/// Runs `kernel`, "hits_without_accel" or "hits_with_accel", on the words of a job (scene and accelerator). The number
+/// of rays must be a multiple of kMaxLanes.
 Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector<std::uint32_t>& job, const Rays& rays);
 
-/// Build options of the kernels.
+/// Options with which kernels/checks/hits.cl is built.
 struct HitBuild {
     NumberFormat format;
     std::uint32_t lanes = 1;
     bool filter = false;  // fp32 pre-test that rejects spheres
-    bool grid = true;     // false: build without the grid traversal, which takes most of the build time
+    bool grid = true;     // false: leave out the grid traversal, which takes most of the build time
     KernelSources sources{};
 
     /// Returns text such as "e6m15 filtered, 16 lanes".
@@ -85,17 +85,19 @@ class HitRunner : public CheckRunner {
     bool grid_;
 };
 
-/// Compares the hits of the first `count` rays. A pass has the result text `pass_text`. A failure states the number of
-/// wrong rays and details of the first one. `what(ray)` returns the description of a ray.
+/// Compares the hits of the first `count` rays. `describe(ray)` returns the description of a ray. If all hits are
+/// equal, the verdict is a pass with the text `pass_text`; else the verdict states the number of rays with a wrong hit,
+/// and details of the first.
 Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
-                     const std::function<std::string(std::size_t)>& what, const std::string& pass_text);
+                     const std::function<std::string(std::size_t)>& describe, const std::string& pass_text);
 
-/// Checks that every kernel of the build finds the known hits.
+/// Checks that every kernel that the build contains finds the known hits.
 Verdict check_known_hits(HitRunner& runner, const KnownScene& known);
 
-/// Checks that the grid traversal finds the same hits as testing all objects on the same device, for `rays` random rays
-/// in each of the scenes, which are names of files in scenes/. `rays` must be a multiple of kMaxLanes. The build must
+/// Checks that the grid traversal finds the same hits as testing all objects on the same device, for
+/// `rays_per_scene` random rays in each scene. `scenes`: names of files in scenes/, without extension. `rays_per_scene`
+/// must be a multiple of kMaxLanes. The build must
 /// include the grid traversal.
-Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays);
+Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_per_scene);
 
 }  // namespace raya

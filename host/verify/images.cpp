@@ -14,7 +14,7 @@
 namespace raya {
 namespace {
 
-// Returns a short name of the mapping, for names of checks.
+// Returns the mapping's name in names of checks.
 std::string mapping_name(const MappingRule& mapping) {
     if (mapping == column_mapping()) return "column";
     return mapping.kind == RAYA_RANDOM ? "random" : mapping_text(mapping);
@@ -23,7 +23,7 @@ std::string mapping_name(const MappingRule& mapping) {
 // A reference image and the settings that must not change any bit of it.
 struct Rendering {
     std::string image;
-    Depth from = Depth::kFull;                // the rendering is part of this depth and of deeper ones
+    Depth min_depth = Depth::kFull;           // verify() includes the rendering at this depth and deeper ones
     std::uint32_t lanes = 0, group_size = 0;  // 0: the device's default
     MappingRule mapping = cyclic_mapping(8);  // mapping of pixels to PEs of the ring
     std::uint32_t pes = kReferenceSide;
@@ -34,10 +34,11 @@ struct Rendering {
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     LinkMove link_move = LinkMove::kCopies;
-    bool global_words = false;  // put job words in global memory, as if local memory were too small
-    bool refined = false;       // refine, as if the device did not round division, square root and fma correctly
+    bool global_words = false;  // job words are in global memory, as if local memory were too small
+    bool refined = false;       // division, square root and fma are refined, as if the device did not round them
+                                // correctly
 
-    // Returns the key in StoredImage::counts. All renderings of an image with the same key have equal counts.
+    // Returns the key in StoredImage::counts. Renderings of the same image with the same key have equal counts.
     std::string variant() const {
         if (torus)
             return fmt::format("{} {}{}", links_name(links), sides_text(nodes),
@@ -95,9 +96,9 @@ Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Re
     s.width = s.height = kReferenceSide;
     s.torus = make_torus(r.nodes, r.links);
     s.links = r.links;
-    s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // more voxels than nodes, so some nodes have several
+    s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // more voxels than nodes, so that some nodes have several
     s.inject = r.inject;
-    s.packets.return_a_ray = r.inject == Injection::kRoot;  // covers both values
+    s.packets.return_a_ray = r.inject == Injection::kRoot;  // so that the checks cover both values
     s.bounces = kReferenceBounces;
     s.format = parse_format(image.format);
     s.sampling = image.sampling;
@@ -138,8 +139,8 @@ std::optional<Image> unoptimised_image(const Verification& v, Session& session, 
     }
 }
 
-// Chooses remedies according to whether unoptimised_image() is correct on this device.
-std::vector<std::string> remedies(const Verification& v, Session& session, const ReferenceImage& image) {
+// Returns remedies for a wrong image. They depend on whether unoptimised_image() is correct on this device.
+std::vector<std::string> image_remedies(const Verification& v, Session& session, const ReferenceImage& image) {
     const std::optional<Image> unoptimised = unoptimised_image(v, session, image);
     if (unoptimised && pixel_hash(*unoptimised) == stored_image(image).hash)
         return {
@@ -173,81 +174,83 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
          .expected = colour_text(pixel_bits(stored.image, first)),
          .got = colour_text(pixel_bits(got.image, first)),
          .options = got.options,
-         .remedies = remedies(v, session, image)});
+         .remedies = image_remedies(v, session, image)});
 }
 
-// Renderings that use every kernel and option at least once. A build takes most of a rendering's time. So renderings
-// with equal build options are adjacent and share a build, and some renderings of depth kQuick combine several
-// features, such as global words and refined division. Those of depth kBrief need three builds: one for each machine
-// and one for a reduced format.
+// Returns renderings that together use every kernel and option. Building kernels takes most of a rendering's time, so
+// renderings with equal build options are adjacent, in order to use the same build, and some renderings of depth kQuick
+// combine several features, such as global words and refined division. The renderings of depth kBrief need three
+// builds: one for each machine and one for a reduced format.
 std::vector<Rendering> standard_renderings() {
     constexpr auto k2d = Links::kTorus2d;
     constexpr auto kRoot = Injection::kRoot;
-    return {
-        {.image = "glass fp32", .from = Depth::kBrief},
-        {.image = "glass fp32 filter", .from = Depth::kBrief, .mapping = cyclic_mapping(5), .pes = 10},
-        {.image = "glass fp32 axes", .from = Depth::kBrief, .mapping = rows_mapping(), .pes = 16},
-        {.image = "glass fp32 diagonals", .from = Depth::kQuick, .mapping = grid_mapping(4, 4), .pes = 16},
-        {.image = "glass fp32",
-         .from = Depth::kQuick,
-         .mapping = cyclic_mapping(8, Fold::kBlock),
-         .pes = 7,
-         .work_per_launch = 40},
-        {.image = "glass fp32", .from = Depth::kQuick, .mapping = tiles_mapping(5, 4), .pes = 7},
-        {.image = "glass fp32", .global_words = true},
-        {.image = "glass fp32", .refined = true},
-        {.image = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
-        {.image = "glass fp32", .lanes = 4, .group_size = 32, .mapping = random_mapping(1), .pes = 5},
-        {.image = "ties fp32",
-         .from = Depth::kQuick,
-         .mapping = blocks_mapping(),
-         .pes = 5,
-         .global_words = true,
-         .refined = true},
-        {.image = "ties fp32"},
-        {.image = "ties fp32", .accel = AccelKind::kGrid},
-        {.image = "ties fp32", .accel = AccelKind::kBvh},
-        {.image = "ties fp32", .torus = true},
-        {.image = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
-        {.image = "polygons fp32", .from = Depth::kQuick, .accel = AccelKind::kGrid},
-        {.image = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true},
-        {.image = "polygons fp32", .from = Depth::kQuick, .accel = AccelKind::kBvh},
-        {.image = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true},
-        {.image = "cones fp32", .accel = AccelKind::kBvh},
-        {.image = "polygons fp32", .from = Depth::kQuick, .torus = true},
-        {.image = "polygons fp32",
-         .from = Depth::kQuick,
-         .work_per_launch = 3,
-         .torus = true,
-         .link_move = LinkMove::kKernel},
-        {.image = "polygons fp32", .torus = true, .global_words = true},
-        {.image = "polygons fp32",
-         .from = Depth::kBrief,
-         .torus = true,
-         .nodes = {3, 2, 2},
-         .links = k2d,
-         .inject = kRoot},
-        {.image = "cones fp32", .mapping = blocks_mapping(), .pes = 5, .global_words = true},
-        {.image = "mirrors spa22", .from = Depth::kBrief, .mapping = column_mapping(), .pes = kReferenceSide},
-        {.image = "mirrors spa22 filter", .from = Depth::kQuick, .mapping = cyclic_mapping(16), .pes = kReferenceSide},
-        {.image = "cones e5m10", .from = Depth::kQuick, .refined = true},
-        {.image = "mirrors spa22", .refined = true},
-        {.image = "polygons spa22", .torus = true, .refined = true},
-        {.image = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
-        {.image = "planes fp32 corners", .accel = AccelKind::kGrid},
-        {.image = "spheres e8m12t"},
-        {.image = "glass e8m21"},
-        {.image = "mirrors spa22", .torus = true, .links = k2d},
-        {.image = "polygons spa22", .accel = AccelKind::kGrid},
-        {.image = "polygons spa22", .accel = AccelKind::kBvh},
-        {.image = "spheres e8m12t", .accel = AccelKind::kBvh},
-        {.image = "polygons spa22", .torus = true, .nodes = {1, 3, 2}, .inject = kRoot},
-        {.image = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};
+    return {{.image = "glass fp32", .min_depth = Depth::kBrief},
+            {.image = "glass fp32 filter", .min_depth = Depth::kBrief, .mapping = cyclic_mapping(5), .pes = 10},
+            {.image = "glass fp32 axes", .min_depth = Depth::kBrief, .mapping = rows_mapping(), .pes = 16},
+            {.image = "glass fp32 diagonals", .min_depth = Depth::kQuick, .mapping = grid_mapping(4, 4), .pes = 16},
+            {.image = "glass fp32",
+             .min_depth = Depth::kQuick,
+             .mapping = cyclic_mapping(8, Fold::kBlock),
+             .pes = 7,
+             .work_per_launch = 40},
+            {.image = "glass fp32", .min_depth = Depth::kQuick, .mapping = tiles_mapping(5, 4), .pes = 7},
+            {.image = "glass fp32", .global_words = true},
+            {.image = "glass fp32", .refined = true},
+            {.image = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
+            {.image = "glass fp32", .lanes = 4, .group_size = 32, .mapping = random_mapping(1), .pes = 5},
+            {.image = "ties fp32",
+             .min_depth = Depth::kQuick,
+             .mapping = blocks_mapping(),
+             .pes = 5,
+             .global_words = true,
+             .refined = true},
+            {.image = "ties fp32"},
+            {.image = "ties fp32", .accel = AccelKind::kGrid},
+            {.image = "ties fp32", .accel = AccelKind::kBvh},
+            {.image = "ties fp32", .torus = true},
+            {.image = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
+            {.image = "polygons fp32", .min_depth = Depth::kQuick, .accel = AccelKind::kGrid},
+            {.image = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true},
+            {.image = "polygons fp32", .min_depth = Depth::kQuick, .accel = AccelKind::kBvh},
+            {.image = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true},
+            {.image = "cones fp32", .accel = AccelKind::kBvh},
+            {.image = "polygons fp32", .min_depth = Depth::kQuick, .torus = true},
+            {.image = "polygons fp32",
+             .min_depth = Depth::kQuick,
+             .work_per_launch = 3,
+             .torus = true,
+             .link_move = LinkMove::kKernel},
+            {.image = "polygons fp32", .torus = true, .global_words = true},
+            {.image = "polygons fp32",
+             .min_depth = Depth::kBrief,
+             .torus = true,
+             .nodes = {3, 2, 2},
+             .links = k2d,
+             .inject = kRoot},
+            {.image = "cones fp32", .mapping = blocks_mapping(), .pes = 5, .global_words = true},
+            {.image = "mirrors spa22", .min_depth = Depth::kBrief, .mapping = column_mapping(), .pes = kReferenceSide},
+            {.image = "mirrors spa22 filter",
+             .min_depth = Depth::kQuick,
+             .mapping = cyclic_mapping(16),
+             .pes = kReferenceSide},
+            {.image = "cones e5m10", .min_depth = Depth::kQuick, .refined = true},
+            {.image = "mirrors spa22", .refined = true},
+            {.image = "polygons spa22", .torus = true, .refined = true},
+            {.image = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
+            {.image = "planes fp32 corners", .accel = AccelKind::kGrid},
+            {.image = "spheres e8m12t"},
+            {.image = "glass e8m21"},
+            {.image = "mirrors spa22", .torus = true, .links = k2d},
+            {.image = "polygons spa22", .accel = AccelKind::kGrid},
+            {.image = "polygons spa22", .accel = AccelKind::kBvh},
+            {.image = "spheres e8m12t", .accel = AccelKind::kBvh},
+            {.image = "polygons spa22", .torus = true, .nodes = {1, 3, 2}, .inject = kRoot},
+            {.image = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};
 }
 
-// Renderings with every number of lanes and groups of 1 and 32 work-items, on both machines, in fp32 and reduced
-// formats.
-std::vector<Rendering> all_builds() {
+// Returns renderings with every number of lanes and groups of 1 and 32 work-items, on both machines, in fp32 and
+// reduced formats.
+std::vector<Rendering> renderings_of_all_builds() {
     std::vector<Rendering> all;
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
         for (const std::uint32_t group : {1u, 32u}) {
@@ -269,7 +272,7 @@ std::vector<Rendering> all_builds() {
 std::map<std::string, std::string> counts_by_variant(Session& session, const ReferenceImage& image) {
     std::map<std::string, std::string> counts;
     std::vector<Rendering> all = standard_renderings();
-    all.push_back({.image = image.name});  // every image on the ring
+    all.push_back({.image = image.name});  // so that every image has the counts of the ring
     for (const Rendering& r : all)
         if (r.image == image.name && !counts.contains(r.variant()))
             counts[r.variant()] = render({.lanes = 1, .group_size = 1}, session, r).counts;
@@ -279,14 +282,14 @@ std::map<std::string, std::string> counts_by_variant(Session& session, const Ref
 void verify_images(Verification& v) {
     std::vector<Rendering> renderings = standard_renderings();
     if (v.full()) {
-        const std::vector<Rendering> more = all_builds();
+        const std::vector<Rendering> more = renderings_of_all_builds();
         renderings.insert(renderings.end(), more.begin(), more.end());
     }
-    const auto has_lanes = [&](const Rendering& r) {
+    const auto has_given_lanes = [&](const Rendering& r) {
         return r.lanes == 0 || v.given_lanes() == 0 || r.lanes == v.given_lanes();
     };
     for (const Rendering& r : renderings)
-        if (v.depth() >= r.from && has_lanes(r))
+        if (v.depth() >= r.min_depth && has_given_lanes(r))
             v.check("image", r.name(), [&](Session& session) { return check_rendering(v, session, r); });
 }
 

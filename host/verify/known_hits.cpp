@@ -13,38 +13,38 @@ Scene empty_scene() {
     return scene;
 }
 
-// Returns a sphere of radius 5 with centre (x, 0, 16). A ray along +z from z = 0 at height h above the centre hits at t
-// = 16 - sqrt(25 - h^2).
+// Returns a sphere with centre (x, 0, z). With the default z and radius, a ray along +z from (x, h, 0) hits the sphere
+// at t = 16 - sqrt(25 - h^2).
 Sphere ball(double x, double z = 16, double radius = 5) { return {{x, 0, z}, radius, 0}; }
 
 KnownScene spheres() {
     Scene scene = empty_scene();
     scene.spheres = {ball(0), ball(32, 16, -5), ball(64), ball(64), ball(96), ball(96, 4, 2)};
-    for (int i = 0; i < 5; ++i) scene.spheres.push_back(ball(200 + 16 * i));  // 11: more than a batch of 8
-    scene.spheres.push_back(ball(264, 12));  // in front of the previous sphere, in the incomplete last batch
+    for (int i = 0; i < 5; ++i) scene.spheres.push_back(ball(200 + 16 * i));
+    scene.spheres.push_back(ball(264, 12));  // in front of the previous sphere
     return {"spheres",
             scene,
             {{"through the centre", {0, 0, 0}, kAhead, 0, 11},
-             {"off the centre", {3, 0, 0}, kAhead, 0, 12},
+             {"beside the centre", {3, 0, 0}, kAhead, 0, 12},
              {"tangent", {0, 5, 0}, kAhead, 0, 16},
-             {"passing by", {0, 5.25, 0}, kAhead, kNoObject, 0},
+             {"outside the sphere: a miss", {0, 5.25, 0}, kAhead, kNoObject, 0},
              {"from the centre outward", {0, 0, 16}, kAhead, 0, 5},
              {"from the surface inward", {0, 3, 12}, kAhead, 0, 8},
              {"from the surface outward", {0, 3, 20}, kAhead, kNoObject, 0},
              {"behind the ray", {0, 0, 32}, kAhead, kNoObject, 0},
-             {"from the other side", {0, 0, 32}, kBack, 0, 11},
+             {"along -z", {0, 0, 32}, kBack, 0, 11},
              {"at the ray's limit", {0, 0, 0}, kAhead, kNoObject, 0, 11},
              {"just within the ray's limit", {0, 0, 0}, kAhead, 0, 11, kJustAbove11},
              {"a lane without a ray", {0, 0, 0}, kAhead, kNoObject, 0, 0},
              {"only the inside is visible", {35, 0, 0}, kAhead, 1, 20},
              {"equal distances: the lower number", {64, 4, 0}, kAhead, 2, 13},
-             {"the nearer one has the higher number", {96, 0, 0}, kAhead, 5, 2},
-             {"tangent to the nearer one", {96, 2, 0}, kAhead, 5, 4},
-             {"the nearer one is missed", {96, 3, 0}, kAhead, 4, 12},
-             {"nearest of two in different batches", {264, 3, 0}, kAhead, 11, 8}}};
+             {"the nearer sphere has the higher number", {96, 0, 0}, kAhead, 5, 2},
+             {"tangent to the nearer sphere", {96, 2, 0}, kAhead, 5, 4},
+             {"the nearer sphere is missed", {96, 3, 0}, kAhead, 4, 12},
+             {"the nearer sphere is the last in the scene", {264, 3, 0}, kAhead, 11, 8}}};
 }
 
-// Two equal planes z = 16, a plane y = 64, a sphere that touches the planes z = 16, and a square in them.
+// Two equal planes z = 16, the plane y = 64, a sphere that touches the planes z = 16, and a square in these planes.
 KnownScene planes() {
     Scene scene = empty_scene();
     scene.spheres = {{{0, 32, 21}, 5, 0}};
@@ -53,10 +53,10 @@ KnownScene planes() {
     return {"planes",
             scene,
             {{"head on; equal distances: the lower number", {0, 0, 0}, kAhead, 1, 16},
-             {"from the other side", {0, 0, 32}, kBack, 1, 16},
+             {"along -z", {0, 0, 32}, kBack, 1, 16},
              {"behind the ray", {0, 0, 32}, kAhead, kNoObject, 0},
-             {"parallel", {0, 0, 0}, kRight, kNoObject, 0},
-             {"another plane", {0, 0, 0}, kUp, 3, 64},
+             {"parallel to the planes z = 16", {0, 0, 0}, kRight, kNoObject, 0},
+             {"the plane y = 64", {0, 0, 0}, kUp, 3, 64},
              {"oblique", {0, 0, 0}, {0.25F, 0.5F, 1}, 1, 16},
              {"from the plane itself", {0, 0, 16}, kAhead, kNoObject, 0},
              {"a sphere that touches the plane comes first", {0, 32, 0}, kAhead, 0, 16},
@@ -78,9 +78,9 @@ KnownScene polygons() {
     return {"polygons",
             scene,
             {{"inside the L's corner", {2, 2, 0}, kAhead, 0, 16},
-             {"inside its right arm", {6, 2, 0}, kAhead, 0, 16},
-             {"inside its upper arm", {2, 6, 0}, kAhead, 0, 16},
-             {"in its notch", {6, 6, 0}, kAhead, kNoObject, 0},
+             {"inside the L's right arm", {6, 2, 0}, kAhead, 0, 16},
+             {"inside the L's upper arm", {2, 6, 0}, kAhead, 0, 16},
+             {"in the L's notch", {6, 6, 0}, kAhead, kNoObject, 0},
              {"on the lower edge: inside", {2, 0, 0}, kAhead, 0, 16},
              {"on the left edge: inside", {0, 2, 0}, kAhead, 0, 16},
              {"on an upper edge: outside", {6, 4, 0}, kAhead, kNoObject, 0},
@@ -92,7 +92,7 @@ KnownScene polygons() {
              {"a square's lower left triangle", {65, 6, 0}, kAhead, 2, 16},
              {"a square's upper right triangle", {71, 6, 0}, kAhead, 3, 16},
              {"a wall across x; equal distances: the lower number", {120, 4, 4}, kRight, 4, 8},
-             {"from the other side", {136, 4, 4}, kLeft, 4, 8},
+             {"a wall along -x", {136, 4, 4}, kLeft, 4, 8},
              {"parallel to the wall", {128, 4, -4}, kAhead, kNoObject, 0},
              {"past the wall", {120, 9, 4}, kRight, kNoObject, 0}}};
 }
@@ -108,21 +108,21 @@ KnownScene cones() {
     return {"cones",
             scene,
             {{"through the axis", {0, 4, 0}, kAhead, 0, 11},
-             {"off the axis", {3, 4, 0}, kAhead, 0, 12},
+             {"beside the axis", {3, 4, 0}, kAhead, 0, 12},
              {"tangent: a miss", {5, 4, 0}, kAhead, kNoObject, 0},
-             {"passing by", {5.25, 4, 0}, kAhead, kNoObject, 0},
+             {"outside the cylinder: a miss", {5.25, 4, 0}, kAhead, kNoObject, 0},
              {"at the height of the base", {0, 0, 0}, kAhead, 0, 11},
              {"at the height of the apex", {0, 16, 0}, kAhead, 0, 11},
              {"below the base", {0, -1, 0}, kAhead, kNoObject, 0},
              {"above the apex", {0, 17, 0}, kAhead, kNoObject, 0},
              {"along the axis: open ends", {0, -4, 16}, kUp, kNoObject, 0},
              {"from inside", {0, 4, 16}, kAhead, 0, 5},
-             {"from the other side", {0, 4, 32}, kBack, 0, 11},
+             {"along -z", {0, 4, 32}, kBack, 0, 11},
              {"only the inside is visible", {35, 4, 0}, kAhead, 1, 20},
              {"a cone where its radius is 5", {67, 3, 0}, kAhead, 2, 12},
-             {"above its tip", {64, 9, 0}, kAhead, kNoObject, 0},
+             {"above a cone's tip", {64, 9, 0}, kAhead, kNoObject, 0},
              {"into a cone through its base", {99, 0, 0}, kAhead, 3, 21},
-             {"onto a cone from its tip's side", {99, 0, 40}, kBack, 3, 19},
+             {"onto a cone from the side of its tip", {99, 0, 40}, kBack, 3, 19},
              {"equal distances: the lower number", {131, 4, 0}, kAhead, 4, 12}}};
 }
 

@@ -31,25 +31,27 @@ std::uint32_t random_below(SplitMix& random, std::uint32_t end) {
     return static_cast<std::uint32_t>(random.next() % end);
 }
 
-std::uint32_t divisor_of(SplitMix& random, std::uint32_t side) {
+// Returns a random divisor of `side`.
+std::uint32_t random_divisor(SplitMix& random, std::uint32_t side) {
     std::uint32_t divisor = 1 + random_below(random, side);
     while (side % divisor) --divisor;
     return divisor;
 }
 
-// Returns a random side of an image in pixels: a small one, any one, or the maximum.
-std::uint32_t side(SplitMix& random) {
-    const std::uint32_t kinds[] = {1 + random_below(random, 40), 1 + random_below(random, kMaxSide), kMaxSide};
-    return kinds[random_below(random, 3)];
+// Returns a random side of an image in pixels: at most 40, at most kMaxSide, or kMaxSide.
+std::uint32_t random_side(SplitMix& random) {
+    const std::uint32_t sides[] = {1 + random_below(random, 40), 1 + random_below(random, kMaxSide), kMaxSide};
+    return sides[random_below(random, 3)];
 }
 
+// Returns a random valid mapping of `kind` (RAYA_FOLD_CYCLIC..RAYA_RANDOM).
 raya_mapping random_case(SplitMix& random, std::uint32_t kind) {
-    raya_mapping m{side(random), side(random), 1, 0, kind};
+    raya_mapping m{random_side(random), random_side(random), 1, 0, kind};
     const std::uint32_t pixels = m.width * m.height;
     const std::uint32_t pes[] = {1 + random_below(random, m.width), 1 + random_below(random, pixels), m.width, pixels};
     m.pes = pes[random_below(random, 4)];
     if (raya_has_slots(m)) m.parameter = random_below(random, m.width);
-    if (kind == RAYA_TILES) m.parameter = raya_pair(divisor_of(random, m.width), divisor_of(random, m.height));
+    if (kind == RAYA_TILES) m.parameter = raya_pair(random_divisor(random, m.width), random_divisor(random, m.height));
     if (kind == RAYA_RANDOM) m.parameter = static_cast<std::uint32_t>(random.next());
     if (kind == RAYA_GRID) {
         const std::uint32_t down = 1 + random_below(random, m.height), across = 1 + random_below(random, m.width);
@@ -59,8 +61,7 @@ raya_mapping random_case(SplitMix& random, std::uint32_t kind) {
     return m;
 }
 
-// `count` valid mappings of a kind (RAYA_FOLD_CYCLIC..RAYA_RANDOM), with sizes up to the maximum of images and arrays,
-// and one pixel for each.
+// Returns `count` random mappings of `kind`, and one pixel of the image of each mapping.
 std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std::uint32_t kind, std::size_t count) {
     constexpr std::uint64_t kSeed = 1993;
     SplitMix random(kSeed + kind);
@@ -75,26 +76,26 @@ std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std:
     return {mappings, pixels};
 }
 
-// `count` toruses, alternately 2-D and 3-D, and two nodes of each: [case][2].
+// Returns `count` random toruses, alternately 3-D and 2-D, and two nodes of each: [torus][2].
 std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::size_t count) {
     constexpr std::uint64_t kSeed = 805;
     SplitMix random(kSeed);
     std::vector<raya_torus> toruses;
     std::vector<std::uint32_t> nodes;
     for (std::size_t i = 0; i < count; ++i) {
-        const auto any = [&] { return 1 + random_below(random, i % 5 ? 7 : 40); };
-        const raya_torus torus = make_torus({any(), any(), any()}, i % 2 ? Links::kTorus2d : Links::kTorus3d);
+        const auto side = [&] { return 1 + random_below(random, i % 5 ? 7 : 40); };
+        const raya_torus torus = make_torus({side(), side(), side()}, i % 2 ? Links::kTorus2d : Links::kTorus3d);
         toruses.push_back(torus);
         for (int k = 0; k < 2; ++k) nodes.push_back(random_below(random, raya_nodes(torus)));
     }
     return {toruses, nodes};
 }
 
-// Compares the results of cases. `names` are the names of the words of a case. `what(i)` returns the description of
-// case i.
-template <class What>
-Verdict compare_cases(const Words& expected, const Words& got, const std::vector<std::string>& names, const What& what,
-                      const std::string& pass_text) {
+// Compares results of several words per case. `names`: names of the words of a case. `describe(i)` returns the
+// description of case i.
+template <class Describe>
+Verdict compare_cases(const Words& expected, const Words& got, const std::vector<std::string>& names,
+                      const Describe& describe, const std::string& pass_text) {
     const std::size_t stride = names.size();
     const auto differ = std::mismatch(expected.begin(), expected.end(), got.begin());
     if (differ.first == expected.end()) return passed(pass_text);
@@ -103,21 +104,21 @@ Verdict compare_cases(const Words& expected, const Words& got, const std::vector
     for (std::size_t i = 0; i < expected.size(); i += stride)
         wrong += !std::equal(&expected[i], &expected[i] + stride, &got[i]);
     return failed(fmt::format("{} of {} wrong", wrong, expected.size() / stride),
-                  {.where = fmt::format("{} of {}", names[at % stride], what(at / stride)),
+                  {.where = fmt::format("{} of {}", names[at % stride], describe(at / stride)),
                    .expected = fmt::format("{0} = 0x{0:08x}", expected[at]),
                    .got = fmt::format("{0} = 0x{0:08x}", got[at])});
 }
 
-// Appends the expected results of kernel find_owners (kernels/checks/machine.cl).
-void add_owner(Words& to, const raya_mapping& m, const raya_pixel& pixel) {
+// Appends the expected results of kernel find_owners (kernels/checks/machine.cl) for a pixel.
+void add_owner(Words& results, const raya_mapping& m, const raya_pixel& pixel) {
     const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
     const raya_share share = raya_share_of(m, owner);
     const std::uint32_t number = raya_index_of(m, share, pixel);
-    const raya_pixel back = raya_pixel_of(m, share, number);
+    const raya_pixel found_pixel = raya_pixel_of(m, share, number);
     std::uint32_t sides = 0;
     for (std::uint32_t side = 0; side < RAYA_SIDES; ++side)
         sides |= std::uint32_t{raya_has_neighbour(m, pixel, side) != 0} << side;
-    to.insert(to.end(), {owner, raya_share_size(share), number, back.row, back.column, sides});
+    results.insert(results.end(), {owner, raya_share_size(share), number, found_pixel.row, found_pixel.column, sides});
 }
 
 // `group_size`: work-group size of kernel reverse_words, 1..1024.
@@ -125,28 +126,28 @@ CheckRunner machine_runner(Session& session, const KernelSources& sources, std::
     return {session, Kernels(session, {.group_size = group_size}, sources).program("checks/machine.cl")};
 }
 
-// For a kind of mapping (RAYA_FOLD_CYCLIC..RAYA_RANDOM), checks the owners of pixels, the index of a pixel among those
-// of its PE, and the neighbours.
+// Checks mappings of `kind` (RAYA_FOLD_CYCLIC..RAYA_RANDOM): the owner of a pixel, the pixel's number in the owner's
+// share, and which neighbours the pixel has.
 Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases) {
     const auto [mappings, pixels] = mapping_cases(kind, cases);
     Words expected;
     for (std::size_t i = 0; i < cases; ++i) add_owner(expected, mappings[i], pixels[i]);
-    const auto from = runner.filled("mappings", mappings);
-    const auto at = runner.filled("pixels", pixels);
+    const auto mapping_buffer = runner.filled("mappings", mappings);
+    const auto pixel_buffer = runner.filled("pixels", pixels);
     auto owners = runner.poisoned("owners", expected.size());
     runner.run<const Buffer<raya_mapping>&, const Buffer<raya_pixel>&, cl_uint, Buffer<std::uint32_t>&>(
-        "find_owners", cases, 1, from, at, static_cast<cl_uint>(cases), owners);
-    const auto what = [&, &m = mappings, &p = pixels](std::size_t i) {
+        "find_owners", cases, 1, mapping_buffer, pixel_buffer, static_cast<cl_uint>(cases), owners);
+    const auto describe = [&, &m = mappings, &p = pixels](std::size_t i) {
         return fmt::format("pixel (row {}, column {}) of {}x{} on {} PEs, {}", p[i].row, p[i].column, m[i].width,
                            m[i].height, m[i].pes, mapping_text(m[i]));
     };
     return compare_cases(expected, runner.read(owners),
-                         {"owner", "size of the share", "number in the share", "row", "column", "neighbours"}, what,
+                         {"owner", "size of the share", "number in the share", "row", "column", "neighbours"}, describe,
                          fmt::format("{} pixels", cases));
 }
 
-// Checks the first link on the route of a ray between two nodes, the first link on the route of a return, and the nodes
-// at the ends of links.
+// Checks, for random nodes a and b, the first link on the route of a ray from a to b, the return link of a, and the
+// nodes at the other ends of a's links.
 Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
     const auto [toruses, nodes] = torus_cases(cases);
     Words expected;
@@ -156,42 +157,43 @@ Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             expected.push_back(raya_link_end(toruses[i], nodes[2 * i], link));
     }
-    const auto from = runner.filled("toruses", toruses);
-    const auto at = runner.filled("nodes", nodes);
+    const auto torus_buffer = runner.filled("toruses", toruses);
+    const auto node_buffer = runner.filled("nodes", nodes);
     auto routes = runner.poisoned("routes", expected.size());
     runner.run<const Buffer<raya_torus>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<std::uint32_t>&>(
-        "find_routes", cases, 1, from, at, static_cast<cl_uint>(cases), routes);
-    const auto what = [&, &t = toruses, &n = nodes](std::size_t i) {
+        "find_routes", cases, 1, torus_buffer, node_buffer, static_cast<cl_uint>(cases), routes);
+    const auto describe = [&, &t = toruses, &n = nodes](std::size_t i) {
         return fmt::format("node {} to {} on {}", n[2 * i], n[2 * i + 1],
                            sides_text({t[i].sides[0], t[i].sides[1], t[i].sides[2]}));
     };
-    return compare_cases(expected, runner.read(routes),
-                         {"next link", "link of the return", "end of +x", "of -x", "of +y", "of -y", "of +z", "of -z"},
-                         what, fmt::format("{} pairs of nodes", cases));
+    return compare_cases(
+        expected, runner.read(routes),
+        {"next link", "return link", "end of +x", "end of -x", "end of +y", "end of -y", "end of +z", "end of -z"},
+        describe, fmt::format("{} pairs of nodes", cases));
 }
 
-// Checks barriers and atomics. Each work-group reverses words in local memory kReversals times. Its work-items take
-// numbers from an atomic counter; each number must be taken once.
+// Checks barriers and atomics. Each work-group reverses the order of words in local memory kReversals times and adds 1
+// to each word every time. Its work-items take numbers from an atomic counter; each number must be taken once.
 Verdict check_local_memory(CheckRunner& runner, std::uint32_t group_size) {
     constexpr std::uint32_t kGroups = 64, kReversals = 9;
     const std::uint32_t words = 2000;  // 2 x 2000 words of 4 bytes: half of the 32 KB that OpenCL guarantees
-    Words from(std::size_t{kGroups} * words), expected(from.size());
-    std::iota(from.begin(), from.end(), 0u);
-    for (std::size_t i = 0; i < from.size(); ++i)  // kReversals is odd, so the result is reversed
-        expected[i] = from[i / words * words + (words - 1 - i % words)] + kReversals;
-    const auto given = runner.filled("from", from);
-    auto reversed = runner.poisoned("to", from.size());
-    auto drawn = runner.constant<std::uint32_t>("drawn", from.size(), 0);
+    Words source(std::size_t{kGroups} * words), expected(source.size());
+    std::iota(source.begin(), source.end(), 0u);
+    for (std::size_t i = 0; i < source.size(); ++i)  // kReversals is odd, so the result is in reverse order
+        expected[i] = source[i / words * words + (words - 1 - i % words)] + kReversals;
+    const auto source_buffer = runner.filled("from", source);
+    auto reversed = runner.poisoned("to", source.size());
+    auto times_taken = runner.constant<std::uint32_t>("times taken", source.size(), 0);
     using Local = LocalMemory<std::uint32_t>;
     runner.run<const Buffer<std::uint32_t>&, cl_uint, cl_uint, Local, Local, Buffer<std::uint32_t>&,
-               Buffer<std::uint32_t>&>("reverse_words", kGroups, group_size, given, words, kReversals, Local{2 * words},
-                                       Local{1}, reversed, drawn);
-    const auto what = [&](std::size_t i) { return fmt::format("group {}, word {}", i / words, i % words); };
+               Buffer<std::uint32_t>&>("reverse_words", kGroups, group_size, source_buffer, words, kReversals,
+                                       Local{2 * words}, Local{1}, reversed, times_taken);
+    const auto describe = [&](std::size_t i) { return fmt::format("group {}, word {}", i / words, i % words); };
     const std::string pass_text = fmt::format("{} groups of {} words", kGroups, words);
-    const Verdict verdict = compare_cases(expected, runner.read(reversed), {"local memory"}, what, pass_text);
+    const Verdict verdict = compare_cases(expected, runner.read(reversed), {"local memory"}, describe, pass_text);
     if (verdict.outcome != Outcome::kPass) return verdict;
-    return compare_cases(Words(from.size(), 1), runner.read(drawn), {"times that a number was taken from the counter"},
-                         what, pass_text);
+    return compare_cases(Words(source.size(), 1), runner.read(times_taken),
+                         {"times that a number was taken from the counter"}, describe, pass_text);
 }
 
 std::vector<std::string> integer_remedies() {
@@ -249,15 +251,16 @@ void verify_transfers(Verification& v) {
         check(fmt::format("ring: rotations of {} PEs", pes),
               [p = pes, w = words](Session& s) { return check_rotations(s, p, w); });
     for (const Links links : {Links::kTorus3d, Links::kTorus2d})
-        for (const std::uint32_t every : {1u, 50u}) {
+        for (const std::uint32_t stride : {1u, 50u}) {
             const std::string name =
-                fmt::format("{}: exchange of {}", links_name(links), every == 1 ? "all mailboxes" : "few mailboxes");
+                fmt::format("{}: exchange of {}", links_name(links), stride == 1 ? "all mailboxes" : "few mailboxes");
             const raya_torus torus = make_torus({3, 2, 4}, links);
-            check(name, [&](Session& s) { return check_links(s, torus, every); });
+            check(name, [&](Session& s) { return check_links(s, torus, stride); });
             v.check("machine", name + " by a kernel", [&](Session& s) {
-                // Mailboxes have up to 12 units of 8 words: some work-items copy one unit, others none.
+                // 8 work-items copy the 4 to 12 units of 8 words of a mailbox, so the check covers work-items that copy
+                // two units, one or none.
                 Kernels kernels(s, {.group_size = std::min(8u, max_group_size_of(v.device()))}, v.sources());
-                return with_remedies(check_links(s, torus, every, &kernels), "", integer_remedies());
+                return with_remedies(check_links(s, torus, stride, &kernels), "", integer_remedies());
             });
         }
 }

@@ -26,12 +26,13 @@ std::array<std::uint32_t, 3> operands_of(const NumberRows& rows, std::size_t row
             std::bit_cast<std::uint32_t>(rows.c[row])};
 }
 
-// Returns true if an operand or the result is denormal.
+// Returns true if an operand or the expected result is denormal.
 bool has_denormal(std::size_t operation, const std::array<std::uint32_t, 3>& operands, std::uint32_t expected) {
-    bool some = is_denormal(expected);
+    bool denormal = is_denormal(expected);
     if (operation != kFromIndex)
-        for (std::size_t k = 0; k < kNumberOperations[operation].operands; ++k) some = some || is_denormal(operands[k]);
-    return some;
+        for (std::size_t k = 0; k < kNumberOperations[operation].operands; ++k)
+            denormal = denormal || is_denormal(operands[k]);
+    return denormal;
 }
 
 std::string number_text(std::uint32_t bits) {
@@ -54,7 +55,7 @@ Fault fault_of(const NumberFormat& format, std::size_t operation, const std::arr
             .got = number_text(got)};
 }
 
-Program built(Session& session, const NumberBuild& build) {
+Program build_number_program(Session& session, const NumberBuild& build) {
     const KernelOptions options{
         .lanes = build.lanes, .format = build.format, .exact_divide = build.trusted, .exact_fma = build.trusted};
     KernelSources sources = build.sources;
@@ -104,49 +105,50 @@ std::string NumberBuild::name() const {
 NumberRunner::NumberRunner(Session& session, const NumberBuild& build)
     : format_(build.format),
       has_denormals_(session.device().denormals),
-      runner_(session, built(session, build), build.lanes) {}
+      runner_(session, build_number_program(session, build), build.lanes) {}
 
-NumberResults NumberRunner::run(const NumberRows& rows, bool all) {
+NumberResults NumberRunner::run(const NumberRows& rows, bool with_functions) {
     NumberResults results;
     append(results, rows, "operations", kAnsweredOperations);
-    if (all) append(results, rows, "functions", kNumberOperations.size() - kAnsweredOperations);
+    if (with_functions) append(results, rows, "functions", kNumberOperations.size() - kAnsweredOperations);
     return results;
 }
 
 void NumberRunner::append(NumberResults& results, const NumberRows& rows, const std::string& kernel,
-                          std::size_t count) {
+                          std::size_t operations) {
     std::vector<float> operands = rows.a;
     operands.insert(operands.end(), rows.b.begin(), rows.b.end());
     operands.insert(operands.end(), rows.c.begin(), rows.c.end());
-    const auto from = runner_.filled("operands", operands);
-    auto to = runner_.poisoned("results", count * rows.count());
-    runner_.run_rows<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>(kernel, rows.count(), from,
-                                                                            static_cast<cl_uint>(rows.count()), to);
-    const std::vector<std::uint32_t> columns = runner_.read(to);
+    const auto operand_buffer = runner_.filled("operands", operands);
+    auto result_buffer = runner_.poisoned("results", operations * rows.count());
+    runner_.run_rows<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>(
+        kernel, rows.count(), operand_buffer, static_cast<cl_uint>(rows.count()), result_buffer);
+    const std::vector<std::uint32_t> columns = runner_.read(result_buffer);
     for (auto at = columns.begin(); at != columns.end(); at += std::ptrdiff_t(rows.count()))
         results.emplace_back(at, at + std::ptrdiff_t(rows.count()));
 }
 
 Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected) {
-    const bool all = std::any_of(expected.begin(), expected.end(),
-                                 [](const ExpectedNumbers& one) { return one.operation >= kAnsweredOperations; });
-    const NumberResults results = run(rows, all);
+    const bool with_functions = std::any_of(expected.begin(), expected.end(), [](const ExpectedNumbers& answers) {
+        return answers.operation >= kAnsweredOperations;
+    });
+    const NumberResults results = run(rows, with_functions);
     std::size_t wrong = 0, compared = 0, skipped = 0;
     std::string operations;
     Fault fault;
     for (const ExpectedNumbers& answers : expected) {
-        std::size_t wrong_here = 0;
+        std::size_t wrong_of_operation = 0;
         for (std::size_t i = 0; i < answers.results.size(); ++i) {
             const std::size_t row = answers.first_row + i;
-            const std::uint32_t got = results[answers.operation].at(row), right = answers.results[i];
-            const bool skip = !has_denormals_ && has_denormal(answers.operation, operands_of(rows, row), right);
+            const std::uint32_t got = results[answers.operation].at(row), correct = answers.results[i];
+            const bool skip = !has_denormals_ && has_denormal(answers.operation, operands_of(rows, row), correct);
             (skip ? skipped : compared) += 1;
-            if (skip || agrees(got, right)) continue;
-            if (wrong++ == 0) fault = fault_of(format_, answers.operation, operands_of(rows, row), right, got);
-            ++wrong_here;
+            if (skip || agrees(got, correct)) continue;
+            if (wrong++ == 0) fault = fault_of(format_, answers.operation, operands_of(rows, row), correct, got);
+            ++wrong_of_operation;
         }
-        if (wrong_here)
-            operations += fmt::format("{}{} of {} of {}", operations.empty() ? "" : ", ", wrong_here,
+        if (wrong_of_operation)
+            operations += fmt::format("{}{} of {} of {}", operations.empty() ? "" : ", ", wrong_of_operation,
                                       answers.results.size(), kNumberOperations[answers.operation].name);
     }
     if (wrong) return failed("wrong: " + operations, fault);
@@ -154,11 +156,11 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
     return passed(fmt::format("{} answers{}", compared, denormals));
 }
 
-// --- Checks of layer "number": compare all operations and formats with the known answers
+// --- Checks of layer "number": compare all operations in all formats with the known answers
 namespace {
 
-std::vector<std::string> remedies_for(const NumberBuild& build, const DeviceInfo& device,
-                                      const std::vector<std::string>& of_lanes) {
+std::vector<std::string> number_remedies(const NumberBuild& build, const DeviceInfo& device,
+                                         const std::vector<std::string>& lanes_remedies) {
     std::vector<std::string> all;
     if (build.format.is_fp32() && build.trusted && device.correctly_rounded_divide_sqrt)
         all.emplace_back(
@@ -168,12 +170,13 @@ std::vector<std::string> remedies_for(const NumberBuild& build, const DeviceInfo
         all.emplace_back(
             "if only mul_add is wrong: the compiler contracts a b + c in spite of FP_CONTRACT OFF; look for an option "
             "of the driver that disables contraction");
-    all.insert(all.end(), of_lanes.begin(), of_lanes.end());
+    all.insert(all.end(), lanes_remedies.begin(), lanes_remedies.end());
     all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
     return all;
 }
 
-// Runs the rows of all operations in one launch. An operation has answers only for its own rows.
+// Launches the kernel once with the rows of all operations. The kernel computes every operation for every row; each
+// operation is compared only in its own rows.
 Verdict check_answers(Session& session, const NumberBuild& build, const FormatAnswers& answers,
                       const std::vector<std::string>& remedies) {
     NumberRows rows;
@@ -194,7 +197,7 @@ Verdict check_answers(Session& session, const NumberBuild& build, const FormatAn
 void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t lanes, bool trusted) {
     const NumberBuild build{.format = answers.format, .lanes = lanes, .trusted = trusted, .sources = v.sources()};
     v.check("number", build.name(), [&](Session& session) {
-        return check_answers(session, build, answers, remedies_for(build, v.device(), v.lanes_remedies(lanes)));
+        return check_answers(session, build, answers, number_remedies(build, v.device(), v.lanes_remedies(lanes)));
     });
 }
 
@@ -212,8 +215,8 @@ void verify_numbers(Verification& v) {
     for (const FormatAnswers& answers : known_answers()) {
         if (!v.full() && !is_representative(answers.format)) continue;
         for (const std::uint32_t lanes : v.lanes()) verify_format(v, answers, lanes, true);
-        const bool promises = v.device().correctly_rounded_divide_sqrt || v.device().fused_multiply_add;
-        if (v.full() && promises) verify_format(v, answers, v.own_lanes(), false);
+        const bool promises_rounding = v.device().correctly_rounded_divide_sqrt || v.device().fused_multiply_add;
+        if (v.full() && promises_rounding) verify_format(v, answers, v.lanes_or_default(), false);
     }
 }
 

@@ -19,7 +19,7 @@ struct NumberOperation {
     std::size_t operands;  // 1..3
 };
 
-/// In the order in which kernels/checks/numbers.cl returns the results.
+/// The operations in the order in which kernels/checks/numbers.cl returns their results.
 inline constexpr std::array<NumberOperation, 16> kNumberOperations = {{{"add", 2},
                                                                        {"sub", 2},
                                                                        {"mul", 2},
@@ -36,7 +36,7 @@ inline constexpr std::array<NumberOperation, 16> kNumberOperations = {{{"add", 2
                                                                        {"abs", 1},
                                                                        {"log2", 1},
                                                                        {"exp2", 3}}};
-/// Indices into kNumberOperations. Operand of exp2: c.
+/// Indices into kNumberOperations. exp2 reads only operand c.
 enum NumberOperationNumber : std::size_t {
     kAdd,
     kSub,
@@ -55,8 +55,8 @@ enum NumberOperationNumber : std::size_t {
     kLog2,
     kExp2
 };
-/// Number of operations in kernel `operations`, which are the first in kNumberOperations. Kernel `functions` computes
-/// the others.
+/// Number of operations with known answers: the first ones in kNumberOperations. Kernel `operations` computes them,
+/// kernel `functions` the remaining operations.
 inline constexpr std::size_t kAnsweredOperations = kPower + 1;
 
 /// Operands a, b and c of each row. An operation ignores the operands that it does not need. For from_index, `a`
@@ -73,12 +73,13 @@ struct NumberRows {
 /// Bits of results: [operation][row].
 using NumberResults = std::vector<std::vector<std::uint32_t>>;
 
-/// Build options of the number layer.
+/// Options with which kernels/checks/numbers.cl is built.
 struct NumberBuild {
     NumberFormat format;
     std::uint32_t lanes = 1;
-    bool trusted = true;  // use division, square root and fma of the device if it rounds them correctly; false: refine
-    bool optimised = true;
+    bool trusted = true;    // use the device's division, square root and fma if the device promises correct rounding;
+                            // false: refine their results
+    bool optimised = true;  // false: -cl-opt-disable
     KernelSources sources{};
 
     /// Returns text such as "e6m15, 16 lanes, division refined".
@@ -98,17 +99,17 @@ class NumberRunner {
 
     const std::string& options() const { return runner_.options(); }
 
-    /// Returns the results of all operations if `all`, else of the first kAnsweredOperations. The number of rows must
-    /// be a multiple of kMaxLanes.
-    NumberResults run(const NumberRows& rows, bool all);
+    /// Returns the results of the first kAnsweredOperations operations, and of the others if `with_functions` is true.
+    /// The number of rows must be a multiple of kMaxLanes.
+    NumberResults run(const NumberRows& rows, bool with_functions);
 
-    /// Compares the results with `expected`. A pass has a result text such as "357 answers". A failure states the
-    /// number of wrong results of each operation and the first wrong result. Any NaN matches any NaN. On devices
-    /// without denormal numbers, rows with a denormal operand or result are skipped.
+    /// Computes the operations and compares the results with `expected`. The verdict of a pass has a text such as "357
+    /// answers"; that of a failure states the number of wrong results of each operation and the first wrong result. Any
+    /// NaN matches any NaN. Skips rows with a denormal operand or result on devices without denormal numbers.
     Verdict check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected);
 
   private:
-    void append(NumberResults& results, const NumberRows& rows, const std::string& kernel, std::size_t count);
+    void append(NumberResults& results, const NumberRows& rows, const std::string& kernel, std::size_t operations);
 
     NumberFormat format_;
     bool has_denormals_;
@@ -116,13 +117,14 @@ class NumberRunner {
 };
 
 /// Operands and correct result of an edge case, as bits of fp32 numbers; the operand of from_index is an integer.
-/// Unused operands are 1. tests/verify/make_known_answers.cpp computes them with MPFR and writes known_answers.csv.
+/// Unused operands are 1. tests/verify/make_known_answers.cpp computes the results with MPFR and prints
+/// known_answers.csv.
 struct KnownAnswer {
     std::array<std::uint32_t, 3> operands{};
     std::uint32_t result = 0;
 };
 
-/// All answers of one format.
+/// Known answers in one format.
 struct FormatAnswers {
     NumberFormat format;
     std::array<std::vector<KnownAnswer>, kAnsweredOperations> operations;  // in the order of kNumberOperations
@@ -136,7 +138,7 @@ std::vector<FormatAnswers> parse_known_answers(const std::string& text);
 /// Inverse of parse_known_answers().
 std::string known_answers_text(const std::vector<FormatAnswers>& all);
 
-/// Returns the answers that are embedded in the program.
+/// Returns the answers of known_answers.csv, which is embedded in the program.
 const std::vector<FormatAnswers>& known_answers();
 
 }  // namespace raya

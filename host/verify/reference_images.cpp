@@ -18,11 +18,13 @@ namespace {
 constexpr const char* kReferenceHeading =
     "# Hashes, counts and pixels of the reference images, made by tests/verify/make_reference_images.cpp: do not "
     "edit.\n"
-    "# \"NAME: HASH\"; \"counts VARIANT: COUNTER NUMBER ...\"; then a line for each row: RED/GREEN/BLUE, bits of "
-    "fp32\n"
-    "# numbers in hexadecimal without trailing zeros; .: as on the left, =: as in the previous image.\n";
+    "# An image has a line \"NAME: HASH\", lines \"counts VARIANT: COUNTER NUMBER ...\", and a line for each row of "
+    "pixels.\n"
+    "# A pixel is RED/GREEN/BLUE, bits of fp32 numbers in hexadecimal without trailing zeros; \".\" repeats the pixel "
+    "to the\n"
+    "# left, \"=\" the pixel at the same position in the previous image.\n";
 
-// Parses "3f8/3f8/0". Throws std::logic_error unless it has three numbers.
+// Parses a text such as "3f8/3f8/0". Throws std::logic_error unless the text has three numbers.
 std::vector<float> colour_of(const std::string& text) {
     std::vector<float> rgb;
     std::istringstream in(text);
@@ -130,10 +132,10 @@ std::string reference_images_text(const std::vector<StoredImage>& all) {
         for (const auto& [variant, counts] : stored.counts) text += fmt::format("counts {}: {}\n", variant, counts);
         std::string left;
         for (std::size_t i = 0; i < previous.size(); ++i) {
-            const std::string own = colour_text(&stored.image.rgb.at(3 * i));
+            const std::string pixel = colour_text(&stored.image.rgb.at(3 * i));
             const bool first = i % kReferenceSide == 0, last = (i + 1) % kReferenceSide == 0;
-            text += (own == left && !first ? "." : own == previous[i] ? "=" : own) + (last ? "\n" : " ");
-            left = previous[i] = own;
+            text += (pixel == left && !first ? "." : pixel == previous[i] ? "=" : pixel) + (last ? "\n" : " ");
+            left = previous[i] = pixel;
         }
     }
     return text;
@@ -148,32 +150,33 @@ const StoredImage& stored_image(const ReferenceImage& image) {
     return *found;
 }
 
-std::string counts_text(const EventCounts& events, const std::vector<std::pair<const char*, std::uint64_t>>& more) {
+std::string counts_text(const EventCounts& events,
+                        const std::vector<std::pair<const char*, std::uint64_t>>& other_counts) {
     std::istringstream names(
         "primary primary_hits reflected refracted shadow shadow_hits sphere_tests plane_tests "
         "polygon_tests cone_tests shaded lit highlights walks steps discarded");
     std::string text, name;
     for (const std::uint64_t number : events) text += fmt::format("{} {} ", (names >> name, name), number);
-    for (const auto& [other, number] : more) text += fmt::format("{} {} ", other, number);
+    for (const auto& [counter, number] : other_counts) text += fmt::format("{} {} ", counter, number);
     text.pop_back();
     return text;
 }
 
-Verdict check_counts(const std::string& known, const std::string& counted, const std::string& result,
+Verdict check_counts(const std::string& expected, const std::string& got, const std::string& pass_text,
                      const std::string& options) {
-    if (counted == known) return passed(result);
+    if (got == expected) return passed(pass_text);
     Fault fault{
         .where = "sums over the image, whose pixels are right",
         .options = options,
         .remedies = {"if checks of \"number\" or \"geometry\" fail too, start with those",
                      "run RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify, and report to raya whether it passes"}};
-    std::istringstream right(known), got(counted);
+    std::istringstream expected_in(expected), got_in(got);
     std::string names;
-    for (std::string name, expected, found; right >> name >> expected && got >> name >> found;) {
-        if (found == expected) continue;
+    for (std::string name, correct, found; expected_in >> name >> correct && got_in >> name >> found;) {
+        if (found == correct) continue;
         const char* comma = names.empty() ? "" : ", ";
         names += comma + name;
-        fault.expected += fmt::format("{}{} {}", comma, name, expected);
+        fault.expected += fmt::format("{}{} {}", comma, name, correct);
         fault.got += fmt::format("{}{} {}", comma, name, found);
     }
     return failed("wrong counts: " + names, fault);

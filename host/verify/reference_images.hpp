@@ -1,5 +1,5 @@
-// Reference images: settings, hashes, pixels and counts. tests/verify/make_reference_images.cpp generates
-// reference_images.txt.
+// Reference images: settings, hashes, pixels and counts. reference_images.txt contains the results, which
+// tests/verify/make_reference_images.cpp generates.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -18,14 +18,14 @@
 
 namespace raya {
 
-/// Settings that determine the pixels of a reference image. Rendering (images.cpp) has the settings that must not
-/// change the pixels, such as machine, mapping, lanes and group size.
+/// Settings that determine the pixels of a reference image. Struct Rendering (images.cpp) has the settings that must
+/// not change the pixels, such as machine, mapping, lanes and group size.
 struct ReferenceImage {
     std::string name;   // "glass fp32 filter"
     std::string scene;  // file name without extension: in scenes/, or "ties" for host/verify/ties.nff
     std::string format;
     AntialiasMethod antialias = AntialiasMethod::kNone;
-    raya_u32 points = RAYA_POINTS_AXES;
+    raya_u32 points = RAYA_POINTS_AXES;  // points of supersampling
     Sampling sampling = Sampling::kCentres;
 };
 
@@ -37,15 +37,15 @@ const std::vector<ReferenceImage>& reference_images();
 const ReferenceImage& reference_image_named(const std::string& name);
 Scene scene_of(const ReferenceImage& image);
 
-/// Returns the reference settings: a ring with one PE, one lane, work-groups of one work-item, no accelerator, no fp32
-/// pre-test of objects.
+/// Returns the settings with which reference_images.txt was generated: a ring with one PE, one lane, work-groups of one
+/// work-item, no accelerator, no fp32 pre-test of objects.
 RingSettings reference_settings(const ReferenceImage& image);
 
 /// The stored hash, pixels and counts of a reference image.
 struct StoredImage {
     std::string name, hash;
     Image image;
-    std::map<std::string, std::string> counts;  // variant ("ring", "bvh", ...) -> "COUNTER NUMBER ..."
+    std::map<std::string, std::string> counts;  // [variant, such as "ring" or "bvh"]: "COUNTER NUMBER ..."
 };
 
 /// Parses reference_images.txt. A line "NAME: HASH" starts an image. Lines "counts VARIANT: COUNTER NUMBER ..." follow,
@@ -53,21 +53,24 @@ struct StoredImage {
 /// "." repeats the pixel to the left, "=" the pixel at the same position in the previous image. Throws std::logic_error
 /// for a syntax error.
 std::vector<StoredImage> parse_reference_images(const std::string& text);
+/// Inverse of parse_reference_images().
 std::string reference_images_text(const std::vector<StoredImage>& all);
 
-/// Returns the stored result of `image`, which is embedded in the program. Throws std::logic_error if it is missing.
+/// Returns the result of `image` in reference_images.txt, which is embedded in the program. Throws std::logic_error if
+/// the result is missing.
 const StoredImage& stored_image(const ReferenceImage& image);
 
-/// Returns "COUNTER NUMBER ...": the counted events in the order of kernels/shared/events.h, then `more`.
-std::string counts_text(const EventCounts& events, const std::vector<std::pair<const char*, std::uint64_t>>& more);
+/// Returns "COUNTER NUMBER ...": the counted events in the order of kernels/shared/events.h, then `other_counts`.
+std::string counts_text(const EventCounts& events,
+                        const std::vector<std::pair<const char*, std::uint64_t>>& other_counts);
 
-/// Compares two texts of counts_text(). A pass has the result text `result`; a failure lists every counter that
-/// differs. `options`: build options of the kernels.
-Verdict check_counts(const std::string& known, const std::string& counted, const std::string& result,
+/// Compares two texts of counts_text(). If they are equal, the verdict is a pass with the text `pass_text`; else it is
+/// a failure that lists the counters that differ. `options`: build options of the kernels.
+Verdict check_counts(const std::string& expected, const std::string& got, const std::string& pass_text,
                      const std::string& options);
 
-/// Renders the image with each variant that `raya verify` renders, and returns the counts: variant -> counts_text().
-/// They do not depend on lanes, group size, PEs or launches.
+/// Renders the image with each variant that `raya verify` renders. Returns [variant]: counts_text(). The counts do not
+/// depend on lanes, group size, number of PEs or launches.
 std::map<std::string, std::string> counts_by_variant(Session& session, const ReferenceImage& image);
 
 }  // namespace raya

@@ -30,7 +30,7 @@ Json settings_json(const VerifySettings& s, const std::string& selector, std::si
 
 VerifySettings settings_of(const Json& json) {
     const std::string& depth = json.at("depth").text();
-    const auto is = [&](Depth one) { return depth == depth_name(one); };
+    const auto is = [&](Depth named) { return depth == depth_name(named); };
     return {.depth = is(Depth::kFull)    ? Depth::kFull
                      : is(Depth::kBrief) ? Depth::kBrief
                                          : Depth::kQuick,
@@ -61,13 +61,13 @@ SelectedDevices selected_devices(const std::string& selector) {
     return selected;
 }
 
-// Returns the first check of each layer, as examples for --only.
+// Returns the names of the first check of each layer, as examples for --only.
 std::string example_names(const std::vector<std::string>& names) {
     std::string text, layer;
     for (const std::string& name : names) {
-        const std::string own = name.substr(0, name.find(' '));
-        if (own != layer) text += "\n  " + name;
-        layer = own;
+        const std::string layer_of_check = name.substr(0, name.find(' '));
+        if (layer_of_check != layer) text += "\n  " + name;
+        layer = layer_of_check;
     }
     return text;
 }
@@ -86,7 +86,9 @@ void refuse_empty_selection(const cl::Device& device, const VerifySettings& sett
 
 // --- In the parent process
 
-std::vector<std::string> remedies(const std::string& full_name, int status, const VerifySettings& settings) {
+// Returns remedies for a crash. `full_name`: "LAYER NAME" of the check that was running; empty: none was. `status`:
+// exit status of the process.
+std::vector<std::string> crash_remedies(const std::string& full_name, int status, const VerifySettings& settings) {
     std::vector<std::string> all;
     const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     if (signal == SIGKILL) all.emplace_back("the system may have run out of memory and ended the process: see dmesg");
@@ -106,7 +108,7 @@ class Supervision {
 
     /// Runs the remaining checks in a new process. Returns true if another process should continue.
     bool run_remaining(const std::string& selector, std::size_t index) {
-        const std::size_t before = settings_.done;
+        const std::size_t done_before = settings_.done;
         ended_ = false;
         ChildProcess process(kVerifyTask, settings_json(settings_, selector, index));
         for (std::string line;;) {
@@ -115,12 +117,12 @@ class Supervision {
             if (read == ChildProcess::Read::kLine)
                 take(Json::parse(line, {"the process of the checks"}));
             else if (sink_.running && running_)
-                sink_.running(running_->layer, running_->name, seconds());
+                sink_.running(running_->layer, running_->name, check_seconds());
         }
         const int status = process.wait();
         if (ended_ && status == 0) return false;
         finish(crashed_check(status));
-        return !ended_ && settings_.done > before;
+        return !ended_ && settings_.done > done_before;
     }
 
     DeviceChecks take_checks() { return std::move(all_); }
@@ -131,7 +133,7 @@ class Supervision {
         std::string layer, name;
     };
 
-    double seconds() const { return seconds_since(start_); }
+    double check_seconds() const { return seconds_since(start_); }
 
     void take(const Json& line) {
         if (const Json* error = line.find("error")) refuse(line.at("kind").text(), error->text());
@@ -171,7 +173,8 @@ class Supervision {
         if (sink_.finished) sink_.finished(check);
     }
 
-    // Returns the failed check of a process that ended too early, with exit status `status`.
+    // Returns a failed check for a process that ended too early with exit status `status`. Throws an exception if the
+    // process has not found a device.
     Check crashed_check(int status) const {
         const std::string result = "ended by " + ending_text(status);
         if (devices_ == 0 && WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)
@@ -186,21 +189,21 @@ class Supervision {
         Check check{"device", ended_ ? "the end of the program" : "between checks", 0, {}};
         std::string where = "in the driver, with no check running", full_name;
         if (running_) {
-            check = {running_->layer, running_->name, seconds(), {}};
+            check = {running_->layer, running_->name, check_seconds(), {}};
             full_name = check.layer + " " + check.name;
             where = "in the driver or its compiler, while this check ran";
         }
-        check.verdict = failed(result, {.where = where, .remedies = remedies(full_name, status, settings_)});
+        check.verdict = failed(result, {.where = where, .remedies = crash_remedies(full_name, status, settings_)});
         return check;
     }
 
-    VerifySettings settings_;  // settings_.done: number of finished checks
+    VerifySettings settings_;  // settings_.done counts the finished checks
     const SupervisorSink& sink_;
     DeviceChecks all_;
-    std::size_t devices_ = 0;
+    std::size_t devices_ = 0;  // number of selected devices
     std::optional<Running> running_;
-    Clock::time_point start_;
-    bool ended_ = false;  // {"ended": true} was read
+    Clock::time_point start_;  // of the running check
+    bool ended_ = false;       // the process has written {"ended": true}
 };
 
 }  // namespace
@@ -213,10 +216,10 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
     return supervision.take_checks();
 }
 
-void run_checks(int lines, const Json& order) {
-    const VerifySettings settings = settings_of(order);
-    const std::size_t index = order.at("index").integer();
-    const SelectedDevices selected = selected_devices(order.at("device").text());
+void run_checks(int lines, const Json& request) {
+    const VerifySettings settings = settings_of(request);
+    const std::size_t index = request.at("index").integer();
+    const SelectedDevices selected = selected_devices(request.at("device").text());
     if (index == 0 && settings.done == 0)
         for (const cl::Device& device : selected.devices) refuse_empty_selection(device, settings);
     const cl::Device& device = selected.devices.at(index);

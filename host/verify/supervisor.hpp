@@ -1,11 +1,12 @@
-// Runs a device's checks in a child process, because a crash in a driver ends its process. After a crash another child
-// process continues with the next check. Protocol: the child writes one JSON object per line:
+// Runs a device's checks in a child process, because a crash in a driver ends the process. After a crash another child
+// process continues with the next check. The child writes one JSON object per line:
 //
 //     {"devices": N, "left_out": [TEXT, ...], "name": ..., "platform": ..., "version": ..., "driver": ...}
+//                           the first line: N selected devices, unusable devices, and the device that is checked
 //     {"started": {"layer": LAYER, "name": NAME}}    a check starts
-//     {"check": {...}}      the check is done: to_json() of verify.hpp
+//     {"check": {...}}      the check is done; the object is that of to_json() in verify.hpp
 //     {"ended": true}       all checks are done
-//     {"error": TEXT, "kind": "user" or "device" or "internal"}      the last line
+//     {"error": TEXT, "kind": "user" or "device" or "internal"}      the last line, if an exception ends the process
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -20,7 +21,7 @@ namespace raya {
 struct DeviceChecks {
     std::string name, platform, version, driver;
     std::vector<Check> checks;
-    double seconds = 0;
+    double seconds = 0;  // sum of the checks' times
 
     bool all_passed() const { return count_of(checks, Outcome::kFail) == 0 && count_of(checks, Outcome::kPass) > 0; }
 };
@@ -34,16 +35,16 @@ struct SupervisorSink {
 };
 
 /// Checks device number `index`, from 0, of the devices that `selector` selects: "all" selects every usable device, any
-/// other text one device by the rules of choose_device(). If the child process ends early, the running check has
+/// other text one device by the rules of choose_device(). If the child process ends early, the running check counts as
 /// failed, and the next checks run in a new process, as long as each process completes at least one check. Sets
 /// `devices` to the number of selected devices. Throws the UserError or DeviceError that the child process reports, and
 /// DeviceError if the driver ends the process before the first check.
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink, std::size_t& devices);
 
-/// Task of the child process (host/base/child_process.hpp). run_checks() writes the lines of the protocol to the file
-/// descriptor `lines`; instead of writing "error" it throws.
+/// Name and function of the child process's task (host/base/child_process.hpp). run_checks() writes the lines to the
+/// file descriptor `lines`, except "error": it throws the exception, and its caller writes "error".
 inline constexpr const char* kVerifyTask = "verify";
-void run_checks(int lines, const Json& order);
+void run_checks(int lines, const Json& request);
 
 }  // namespace raya

@@ -15,27 +15,28 @@ namespace raya {
 /// Checks one broadcast and one gather over the bus.
 Verdict check_bus(Session& session);
 
-/// Checks that blocks of `words` words arrive when every PE sends one to the PE at a given distance, for five
-/// distances, and when each PE in turn broadcasts one to all PEs.
+/// Checks transfers of blocks over the bus; a block has 3 rows of `words` words. For each of five distances d, PE i
+/// receives the block of PE (i + d) mod `pes`. Then each PE in turn broadcasts its block to all PEs.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words);
 
-/// Checks 12 rotations (circular shifts over the ring) of `pes` blocks of `words` words, in both directions.
+/// Checks 12 rotations (circular shifts over the ring) of `pes` blocks of 3 rows of `words` words, in both directions.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words);
 
-/// Fills one of every `every` outboxes with packets, exchanges once, and compares all inboxes and the flags of
-/// transferred outboxes. `kernels`: exchange with the kernel built from these; null: exchange with buffer copies.
-Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every, Kernels* kernels = nullptr);
+/// Fills every `stride`-th outbox with packets and exchanges packets over all links once. Checks all inboxes and the
+/// flags that mark the outboxes whose packets have been transferred. `kernels`: use the exchange kernel built from
+/// these; null: use buffer copies.
+Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t stride, Kernels* kernels = nullptr);
 
-/// Copy of the first `count` words of each of `blocks` blocks, between two layouts of blocks with different strides.
+/// A copy of blocks between two buffers in which the blocks have different layouts.
 struct BlockCopy {
-    Session::Blocks from, to;
-    std::size_t count, blocks;
+    Session::Blocks from, to;         // layouts in source and destination
+    std::size_t block_words, blocks;  // words to copy from the start of each block; number of blocks
 };
 
 /// Size of each of the two buffers of check_copies(), in words.
 inline constexpr std::size_t kCopiedWords = 4096;
 
-/// Checks each copy, and that the remaining words of the destination do not change.
+/// Checks that each copy is correct and does not change the other words of the destination.
 Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies);
 
 }  // namespace raya

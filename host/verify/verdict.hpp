@@ -21,11 +21,11 @@ struct Fault {
     std::vector<std::string> remedies{};  // remedies to try, most promising first
 };
 
-/// Outcome of a check with its explanation.
+/// Outcome of a check, and the explanation of the outcome.
 struct Verdict {
     Outcome outcome = Outcome::kPass;
     std::string result;  // one line: what was compared, why the check was skipped, or what is wrong
-    Fault fault{};       // if the outcome is kFail
+    Fault fault{};       // empty unless the outcome is kFail
 };
 
 inline Verdict passed(std::string result) { return {Outcome::kPass, std::move(result)}; }
@@ -40,8 +40,8 @@ inline Verdict with_remedies(Verdict verdict, const std::string& options, const 
     return verdict;
 }
 
-/// Fill value of result buffers before a launch. No check expects this value, so a kernel that writes nothing fails,
-/// even if an earlier kernel has left correct results in the same memory.
+/// Fill value of result buffers before a launch. No check expects this value. So a check of a kernel that writes
+/// nothing fails, even if an earlier launch has left correct results in the same memory.
 inline constexpr std::uint32_t kPoison = 0xdeadbeef;
 
 /// Parses a word written as 8 hexadecimal digits without trailing zeros: "3f8" is 0x3f800000. Throws std::logic_error

@@ -18,36 +18,37 @@ bool contains_any(const std::string& message, const std::vector<const char*>& te
                        [&](const char* text) { return message.find(text) != std::string::npos; });
 }
 
-// Returns remedies for a check that threw an exception, chosen by its message. `by_device`: the exception is a
+// Returns remedies for a check that threw an exception with this message. `is_device_error`: the exception is a
 // DeviceError.
-std::vector<std::string> remedies_for(const std::string& message, bool by_device) {
-    const std::string newer = "a newer driver, or another OpenCL implementation for this device (raya devices)";
+std::vector<std::string> remedies_for(const std::string& message, bool is_device_error) {
+    const std::string newer_driver = "a newer driver, or another OpenCL implementation for this device (raya devices)";
     if (contains_any(message, {"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE",
                                "CL_OUT_OF_", "bad_alloc"}))
-        return {"out of memory: end other programs that use this device or this machine, and run verify again", newer};
+        return {"out of memory: end other programs that use this device or this machine, and run verify again",
+                newer_driver};
     if (contains_any(message, {"CL_DEVICE_NOT_AVAILABLE", "CL_CONTEXT_TERMINATED", "CL_COMMAND_TERMINATED",
                                "CL_EXEC_STATUS_ERROR", "illegal read or write"}))
         return {
             "the device was lost: check whether raya devices still lists it, and look for the cause in the "
             "system's log (dmesg)",
-            "another program, or a limit on the run time of a kernel, may have caused it", newer};
+            "another program, or a limit on the run time of a kernel, may have caused it", newer_driver};
     if (contains_any(message, {"building program", "CL_INVALID_BUILD_OPTIONS"})) {
-        std::vector<std::string> all = {"see the build log above; report the error to the compiler's vendor"};
+        std::vector<std::string> remedies = {"see the build log above; report the error to the compiler's vendor"};
         const std::vector<std::string> more = compiler_remedies();
-        all.insert(all.end(), more.begin(), more.end());
-        return all;
+        remedies.insert(remedies.end(), more.begin(), more.end());
+        return remedies;
     }
-    if (by_device) return {"run raya devices, and check that this is the intended device", newer};
+    if (is_device_error) return {"run raya devices, and check that this is the intended device", newer_driver};
     return {"if checks of \"number\", \"geometry\" or \"machine\" fail too, start with those",
             "otherwise this is an internal error of raya: report it"};
 }
 
 Verdict verdict_of(const std::function<Verdict()>& body) {
-    const auto failure = [](const std::string& message, bool by_device) {
+    const auto failure = [](const std::string& message, bool is_device_error) {
         const std::size_t end = message.find('\n');
         Fault fault;
         if (end != std::string::npos) fault.where = message.substr(end + 1);
-        fault.remedies = remedies_for(message.substr(0, end), by_device);
+        fault.remedies = remedies_for(message.substr(0, end), is_device_error);
         return failed(message.substr(0, end), fault);
     };
     try {
@@ -59,7 +60,7 @@ Verdict verdict_of(const std::function<Verdict()>& body) {
     }
 }
 
-// Returns lines "      label         text". The further lines of `text` are aligned below its first line.
+// Returns a line "      LABEL         TEXT" for each line of `text`; the label is only in the first line.
 std::string indented(const std::string& label, const std::string& text) {
     constexpr int kLabel = 14;
     if (text.empty()) return {};
@@ -183,7 +184,7 @@ KernelChoice Verification::kernels(std::uint32_t lanes, std::uint32_t group_size
 
 std::vector<std::uint32_t> Verification::lanes() const {
     if (full() && settings_.lanes == 0) return {1, 4, 8, 16};
-    return {own_lanes()};
+    return {lanes_or_default()};
 }
 
 std::vector<std::string> Verification::lanes_remedies(std::uint32_t lanes) const {

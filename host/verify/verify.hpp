@@ -17,14 +17,15 @@ namespace raya {
 const char* outcome_name(Outcome outcome);
 
 struct Check {
-    std::string layer, name;  // "number", "e6m15, 16 lanes"
-    double seconds = 0;       // wall-clock time
+    std::string layer;   // "number"
+    std::string name;    // "e6m15, 16 lanes"
+    double seconds = 0;  // wall-clock time
     Verdict verdict;
 };
 
-/// Runs and times `body`. If `body` throws, the check fails with the exception's message, and the remaining checks
-/// still run. Examples: a driver rejects a kernel; the torus loses packets because of wrong arithmetic and reports an
-/// internal error.
+/// Runs and times `body`. If `body` throws, the returned check has failed with the exception's message, so that the
+/// remaining checks still run. Examples: a driver rejects a kernel; the torus loses packets because of wrong arithmetic
+/// and reports an internal error.
 Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body);
 
 /// Returns remedies for errors of the compiler or driver, except those that are already in effect.
@@ -45,9 +46,9 @@ Json to_json(const Check& check);
 Check check_of(const Json& json);
 
 enum class Depth {
-    kBrief,  // few kernels and rays: for simulators, and for compilers that take a minute per kernel
-    kQuick,  // one number of lanes, common formats, a dozen images: takes seconds
-    kFull    // every format, number of lanes and group size: takes minutes
+    kBrief,  // few kernels and rays: for simulated devices, and for compilers that take a minute per kernel
+    kQuick,  // one number of lanes, common formats, 15 renderings: takes seconds
+    kFull    // every format, every number of lanes, several group sizes: takes minutes
 };
 
 /// Value of the member "kind", which identifies the report.
@@ -60,11 +61,12 @@ struct VerifySettings {
     Depth depth = Depth::kQuick;
     KernelSources sources{};
     std::string only{};       // run only checks whose "LAYER NAME" contains this text; empty: all
-    std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default, with kFull all
-    std::size_t done = 0;     // number of checks to skip at the beginning
+    std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default number, with
+                              // Depth::kFull all four numbers
+    std::size_t done = 0;     // number of checks that are already done; verify() skips them
 };
 
-/// Callbacks at the start of every check, with its layer and name, and at its end.
+/// Callbacks: `started` is called with the layer and name of every check before it runs, `finished` after it has run.
 struct CheckSink {
     std::function<void(const std::string&, const std::string&)> started{};
     std::function<void(const Check&)> finished{};
@@ -88,17 +90,17 @@ class Verification {
     Depth depth() const { return settings_.depth; }
     bool full() const { return depth() == Depth::kFull; }
 
-    /// Runs one check in a session of its own, because a failed command may make an OpenCL context unusable.
+    /// Runs one check in a new session, because a failed command may make an OpenCL context unusable.
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
 
     const KernelSources& sources() const { return settings_.sources; }
-    /// Returns the sources and options of a renderer's kernels. `lanes` 0: given_lanes().
+    /// Returns the sources and options of a renderer's kernels. If `lanes` is 0, the options have given_lanes() lanes.
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
 
-    /// Returns VerifySettings::lanes: the only number of lanes to check; 0: not set.
+    /// Returns VerifySettings::lanes: the only number of lanes to check, or 0.
     std::uint32_t given_lanes() const { return settings_.lanes; }
     /// Returns given_lanes() if set, else the device's default.
-    std::uint32_t own_lanes() const { return settings_.lanes ? settings_.lanes : default_lanes(info_); }
+    std::uint32_t lanes_or_default() const { return settings_.lanes ? settings_.lanes : default_lanes(info_); }
     /// Returns every number of lanes to check.
     std::vector<std::uint32_t> lanes() const;
 
@@ -115,10 +117,10 @@ class Verification {
     CheckSink sink_;
     bool runs_;
     std::vector<Check> checks_;
-    std::vector<std::string> names_;  // of all checks, including the settings_.done skipped ones
+    std::vector<std::string> names_;  // names of all selected checks, including those that are skipped
 };
 
-// The layers. Each layer relies on the layers before it.
+// Run the checks of one layer. Each layer relies on the layers before it.
 void verify_numbers(Verification& verification);
 void verify_geometry(Verification& verification);
 void verify_machines(Verification& verification);

@@ -1,14 +1,14 @@
-// Checks of hits. Finds the nearest hits of given rays by testing all objects and, unless RAYA_ACCEL is
-// RAYA_ACCEL_NONE, by the ring machine's search in the job's acceleration structure. The job's words must lie in global
-// memory. The host compares the results.
+// Kernels that find the nearest hits of given rays: one by testing all objects and, unless RAYA_ACCEL is
+// RAYA_ACCEL_NONE, one by the ring machine's search in the job's grid or BVH. The host compares their hits. The job's
+// words must lie in global memory.
 #include "kernels/checks/rays.clh"
 #include "kernels/shading/search.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void hits_of_all(__global const uint* restrict job,
-                 __global const float* restrict rays,
-                 __global uint* restrict objects,    // [ray]: object number, RAYA_NO_OBJECT without a hit
-                 __global uint* restrict distances)  // [ray]: bits of t; without a hit those of the ray's limit
+void hits_without_accel(__global const uint* restrict job,
+                        __global const float* restrict rays,
+                        __global uint* restrict objects,    // [ray]: object number, RAYA_NO_OBJECT without a hit
+                        __global uint* restrict distances)  // [ray]: bits of t; without a hit, bits of the ray's limit
 {
     const uint first = first_ray();
     const hit h = closest_hit(job, &((job_words)job)->objects, load_ray(rays, first), 0);
@@ -29,10 +29,10 @@ RAYA_KERNEL_BODY hit searched_hit(words job, const ray* r, int shadow) {
 }
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void hits_by_search(__global const uint* restrict job,
-                    __global const float* restrict rays,
-                    __global uint* restrict objects,    // as above
-                    __global uint* restrict distances)
+void hits_with_accel(__global const uint* restrict job,
+                     __global const float* restrict rays,
+                     __global uint* restrict objects,    // objects, distances: as in hits_of_all
+                     __global uint* restrict distances)
 {
     const uint first = first_ray();
     const ray r = load_ray(rays, first);

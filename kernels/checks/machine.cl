@@ -13,10 +13,10 @@
 __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [case]
                           __global const raya_pixel* restrict pixels,      // [case]
                           const uint cases,
-                          __global uint* restrict results)                 // [case][6]: owner, size of its share,
-                                                                           // index in it, row and column of the pixel
-                                                                           // with that index, sides with a neighbour
-                                                                           // (bit s: side s)
+                          __global uint* restrict results)                 // [case][6]: owner; size of its share;
+                                                                           // the pixel's index in the share; row and
+                                                                           // column of the pixel with that index; sides
+                                                                           // with a neighbour (bit s: side s)
 {
     const uint i = get_global_id(0);
     if (i >= cases) return;
@@ -37,8 +37,8 @@ __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [c
     to[5] = sides;
 }
 
-// Finds the first link of the route of a ray and of a return, and the node at the other end of each link. One work-item
-// per pair of nodes.
+// For a ray packet and a return packet in a node, finds the first link of the packet's route. Also finds the node at
+// the other end of each link. One work-item per case.
 __kernel void find_routes(__global const raya_torus* restrict toruses,  // [case]
                           __global const uint* restrict nodes,          // [case][2]: node of the packet, destination
                           const uint cases,
@@ -56,27 +56,29 @@ __kernel void find_routes(__global const raya_torus* restrict toruses,  // [case
 }
 
 // Exercises local memory, barriers and atomics as the trace kernel uses them. Every work-group copies its words to
-// local memory, reverses their order and adds 1 to each, `times` times, and writes them to `to`. Then its work-items
-// draw the numbers 0 .. words - 1 from a shared counter.
+// local memory, `repeats` times reverses their order and adds 1 to each, and writes them to `output`. Then its
+// work-items draw the numbers 0 .. words - 1 from `counter`.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
-void reverse_words(__global const uint* restrict from,  // [group][words]
-                   const uint words,
-                   const uint times,
-                   __local uint* restrict own,          // [2][words]
-                   __local uint* restrict next,         // [1]
-                   __global uint* restrict to,          // [group][words]
-                   __global uint* restrict drawn)       // [group][words]: how often each number was drawn, added to
+void reverse_words(__global const uint* restrict input,  // [group][words]
+                   const uint words,                     // number of words of a work-group
+                   const uint repeats,
+                   __local uint* restrict buffers,       // [2][words]
+                   __local uint* restrict counter,       // [1]
+                   __global uint* restrict output,       // [group][words]
+                   __global uint* restrict draws)        // [group][words]: number of times that each number was drawn,
+                                                         // added to
 {
     const uint group = get_group_id(0);
-    if (get_local_id(0) == 0) *next = 0;
-    for (uint w = get_local_id(0); w < words; w += RAYA_GROUP) own[w] = from[group * words + w];
+    if (get_local_id(0) == 0) *counter = 0;
+    for (uint w = get_local_id(0); w < words; w += RAYA_GROUP) buffers[w] = input[group * words + w];
     barrier(CLK_LOCAL_MEM_FENCE);
-    for (uint i = 0; i < times; ++i) {
-        __local const uint* source = own + i % 2 * words;
-        __local uint* target = own + (i + 1) % 2 * words;
+    for (uint i = 0; i < repeats; ++i) {
+        __local const uint* source = buffers + i % 2 * words;
+        __local uint* target = buffers + (i + 1) % 2 * words;
         for (uint w = get_local_id(0); w < words; w += RAYA_GROUP) target[w] = source[words - 1 - w] + 1;
         barrier(CLK_LOCAL_MEM_FENCE);
     }
-    for (uint w = get_local_id(0); w < words; w += RAYA_GROUP) to[group * words + w] = own[times % 2 * words + w];
-    for (uint n = atomic_inc(next); n < words; n = atomic_inc(next)) drawn[group * words + n] += 1;
+    for (uint w = get_local_id(0); w < words; w += RAYA_GROUP)
+        output[group * words + w] = buffers[repeats % 2 * words + w];
+    for (uint n = atomic_inc(counter); n < words; n = atomic_inc(counter)) draws[group * words + n] += 1;
 }

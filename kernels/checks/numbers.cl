@@ -1,12 +1,12 @@
 // Checks of the number layer: applies every operation to rows of operands.
 //
-// A work-group is one work-item, which processes the next V rows; `rows` is a multiple of V. Arrays are column-major:
-// operand k of row i is at k * rows + i, and so are the bits of result k. Every operation is applied to every row. The
-// host compares only the results of the operations for which the row was made (host/verify/numbers.hpp).
+// Work-group g is one work-item, which processes the V rows from g V on; `rows` is a multiple of V. Arrays are
+// column-major: element k * rows + i is operand k, or the bits of result k, of row i. Every operation is applied to
+// every row. The host compares only the results of the operations for which the row was made (host/verify/numbers.hpp).
 #include "kernels/checks/rows.clh"
 #include "kernels/number/power.clh"
 
-RAYA_KERNEL_BODY void do_operations(real a, real b, real c, __global uint* to, uint rows) {
+RAYA_KERNEL_BODY void store_operations(real a, real b, real c, __global uint* to, uint rows) {
     store_bits(to, 1, num_add(a, b));
     store_bits(to + rows, 1, num_sub(a, b));
     store_bits(to + 2 * rows, 1, num_mul(a, b));
@@ -22,28 +22,28 @@ RAYA_KERNEL_BODY void do_operations(real a, real b, real c, __global uint* to, u
 }
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void operations(__global const float* restrict operands,  // [3][rows]: a, b, c; from_index takes a's bits
+void operations(__global const float* restrict operands,  // [3][rows]: a, b, c; num_from_index() takes the bits of a
                 const uint rows,
-                __global uint* restrict results)          // [12][rows], in the order of do_operations()
+                __global uint* restrict results)          // [12][rows], in the order of store_operations()
 {
     const uint first = get_group_id(0) * RAYA_LANES;
     const real a = load_lanes(operands + first, 1), b = load_lanes(operands + rows + first, 1);
     const real c = load_lanes(operands + 2 * rows + first, 1);
-    do_operations(a, b, c, results + first, rows);
+    store_operations(a, b, c, results + first, rows);
 }
 
-// The remaining operations, for which there are no known answers. They are a separate kernel because compiling them
-// takes time.
+// The remaining operations, for which the host has no known answers. This kernel is separate because it takes long to
+// compile.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void functions(__global const float* restrict operands,  // as above
+void functions(__global const float* restrict operands,  // as in operations
                const uint rows,
                __global uint* restrict results)          // [4][rows], in the order of the stores
 {
     const uint first = get_group_id(0) * RAYA_LANES;
-    const real a = load_lanes(operands + first, 1);
+    const real a = load_lanes(operands + first, 1), c = load_lanes(operands + 2 * rows + first, 1);
     __global uint* to = results + first;
     store_bits(to, 1, num_neg(a));
     store_bits(to + rows, 1, num_abs(a));
     store_bits(to + 2 * rows, 1, num_log2(a));
-    store_bits(to + 3 * rows, 1, num_exp2(load_lanes(operands + 2 * rows + first, 1)));  // of c
+    store_bits(to + 3 * rows, 1, num_exp2(c));
 }

@@ -22,24 +22,25 @@ void mark_contrasts(__global const uint* restrict broadcast,  // the job's words
                     const uint side,                          // RAYA_LEFT..RAYA_BELOW
                     const uint distance,                      // the block comes from PE (i + distance) mod P
                     const uint begin,                         // index of the block's first pixel in its owner's share
-                    const uint band,                          // pixels in the block
-                    const uint capacity,                      // pixels in a PE's memory; 0: do nothing
+                    const uint band,                          // number of pixels in the block
+                    const uint capacity,                      // number of pixels in a PE's memory; 0: do nothing
                     const uint first_pe,                      // number of the PE that is work-group 0
                     const float threshold,                    // a number of the format, 0..1
                     __global const float* restrict arrived,   // [PE][3][band]
                     __global const float* restrict pixels,    // [PE][3][capacity]
-                    __global uchar* restrict marks)           // [PE][capacity]: set to 1 where the pixel differs
+                    __global uchar* restrict marks)           // [PE][capacity]: set to 1 for pixels that differ
 {
     const uint group = get_group_id(0);
     const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;
     const arrived_block block = open_arrived(m, first_pe, distance, side, begin, band, arrived);
-    __global const float* own = pixels + (size_t)group * capacity * 3;
-    __global uchar* mine = marks + (size_t)group * capacity;
+    __global const float* own_pixels = pixels + (size_t)group * capacity * 3;
+    __global uchar* own_marks = marks + (size_t)group * capacity;
     const uint end = min(capacity, raya_share_size(block.share));
     for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {
         const uint n = arrived_neighbour(&block, k);
         if (n == RAYA_NOT_HERE) continue;
-        const vec a = colour_at(own, capacity, k), b = colour_at(block.words, band, n);
-        if (differs(a.x, b.x, threshold) || differs(a.y, b.y, threshold) || differs(a.z, b.z, threshold)) mine[k] = 1;
+        const vec a = colour_at(own_pixels, capacity, k), b = colour_at(block.words, band, n);
+        if (differs(a.x, b.x, threshold) || differs(a.y, b.y, threshold) || differs(a.z, b.z, threshold))
+            own_marks[k] = 1;
     }
 }

@@ -7,13 +7,13 @@
 //
 //     copy the job's words to local memory, barrier
 //     while a lane has a pixel:
-//         a lane whose tree is done adds its sum to its pixel; after the last point it stores the pixel and takes the
-//             PE's next one; then it makes the primary ray of the next point               (ring/pixel_store.clh)
+//         a lane whose tree is done adds the tree's sum to its pixel; after the last point the lane stores the pixel
+//             and takes the PE's next one; then it makes the primary ray of the next point (ring/pixel_store.clh)
 //         test all objects for the rays of all lanes                                       (geometry/)
 //         add the background if nothing was hit; else add the ambient term, push the refracted ray on the stack, and
 //             add each light that a shadow ray reaches                                     (shading/)
 //         continue with the reflected ray, else with the deepest refracted ray on the stack; else the tree is done
-//         end the launch if a lane has done its work, and save the trees for the next one  (ring/saved_trees.clh)
+//         if a lane has done its work, save the trees for the next launch and end this one (ring/saved_trees.clh)
 //
 // The contributions to a point are added in the order of its ray tree, and the points of a pixel in their order. So the
 // image's bits do not depend on V, group size, mapping or device.
@@ -96,15 +96,15 @@ RAYA_KERNEL_BODY int trace_share(words scene, pixel_store* store, volatile __loc
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void trace(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h), the same for all PEs
-           const uint word_count,                    // number of words
-           const uint block,                         // index in the share of the first pixel of a PE's block
-           const uint capacity,                      // pixels in a block
-           const uint end,                           // the pixels of each share before `end` are traced; they lie in
-                                                     // the block
+           const uint word_count,                    // number of these words
+           const uint window_start,                  // index in each share of the window's first pixel
+           const uint capacity,                      // maximum number of pixels in the window of a PE
+           const uint end,                           // index in each share, one past the last pixel to trace, which
+                                                     // lies in the window
            const uint points,                        // RAYA_POINTS_*: which sample points are traced
            const uint first_pe,                      // number of the PE that is work-group 0
-           const uint work,                          // maximum work of a launch: tests and steps of a lane's rays, or
-                                                     // marks examined
+           const uint work,                          // maximum work of a launch: number of tests and steps of a lane's
+                                                     // rays, and of marks that a work-item examines
            __global const uchar* restrict marks,     // [PE][capacity]: not 0 if the pixel is supersampled; unused with
                                                      // RAYA_POINTS_OWN
            __local raya_trace_progress* shared,      // [1]: shared by the work-items of a PE
@@ -112,7 +112,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
            __global float* restrict pixels,          // [PE][3][capacity]: linear rgb; also read in supersampling
            __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels of this pass
            __global ulong* restrict events,          // [PE][work-item][RAYA_EVENTS], added to
-           __global raya_trace_progress* restrict progress,  // [PE]: on entry of the last launch, on return of this one
+           __global raya_trace_progress* restrict progress,  // [PE]: after the last launch; on return, after this one
            __global uint* restrict saved)            // state of unfinished trees (kernels/ring/saved_trees.clh)
 {
     // A kernel argument, not a __local variable of the kernel: PoCL 3.1 lost pixels when the address of a __local
@@ -125,9 +125,9 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
         mine->left = mine->cut = 0;
     }
 #if RAYA_WORDS_LOCAL
-    __local uint* const own = (__local uint*)memory;
-    for (uint i = item; i < word_count; i += RAYA_GROUP) own[i] = broadcast[i];
-    const words scene = own;
+    __local uint* const local_words = (__local uint*)memory;
+    for (uint i = item; i < word_count; i += RAYA_GROUP) local_words[i] = broadcast[i];
+    const words scene = local_words;
 #else
     const words scene = broadcast;
 #endif
@@ -135,11 +135,11 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     pixel_store store;
     store.mapping = ((job_words)scene)->mapping;
     store.share = raya_share_of(store.mapping, first_pe + group);
-    store.block = block;
+    store.window_start = window_start;
     store.end = min(end, raya_share_size(store.share));
     store.points = points;
     store.marks_left = work;
-    store.plane = capacity;
+    store.capacity = capacity;
     store.pixels = pixels + (size_t)group * capacity * 3;
     store.marks = marks + (size_t)group * capacity;
     store.cycles = cycles + (size_t)group * capacity;

@@ -20,12 +20,13 @@
 #include "kernels/shared/portable.h"
 
 typedef struct {
-    // If no coordinate of a ray's origin exceeds `reach` in absolute value, each of its hits lies in all boxes that
-    // contain the object hit. Other rays must be tested against all objects; if `reach` is negative, all rays.
+    // If no coordinate of a ray's origin exceeds `reach` in absolute value, each hit of the ray lies in all boxes that
+    // contain the object hit. All other rays must be tested against all objects. A negative `reach` is exceeded by
+    // every ray.
     float reach;
     raya_u32 root;         // link to the root; RAYA_NO_TREE without objects
     raya_u32 separate;     // number of separate objects: finite objects in no leaf, tested for every ray
-    raya_u32 separate_at;  // offset of their numbers (ascending), in words from the job's first word
+    raya_u32 separate_at;  // offset of the separate objects' numbers (ascending), in words from the job's first word
     raya_u32 rows_at;      // offset of row 0, in words from the job's first word: a multiple of 16
 } raya_bvh;
 RAYA_SHARED_SIZE(raya_bvh, 4 * 5);
@@ -54,7 +55,7 @@ enum {  // first row of each field of a leaf of faces: x, y, z of corners 1 to 3
     RAYA_BVH_FACES = 17
 };
 #define RAYA_BVH_MAX_CORNERS 4
-enum {  // words in the first row of a polygon's leaf
+enum {  // first word of each field in the first row of a polygon's leaf
     RAYA_BVH_OUTLINE_NUMBER = 0,
     RAYA_BVH_OUTLINE_CORNERS = 1,  // number of corners
     RAYA_BVH_OUTLINE_PLANE = 2,
@@ -79,9 +80,9 @@ RAYA_SHARED_FUNCTION raya_u32 raya_outline_rows(raya_u32 corners) {
     return (corners + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH + 1;
 }
 
-// A link is one word. Bits 29..31 are the kind of its target. If the target is an object (RAYA_LINK_OBJECT), bits 0..28
-// are the object's number. Else bits 25..28 are the number of objects in the leaf - 1, and bits 0..24 are the target's
-// first row.
+// A link is one word. Bits 29..31 are the kind of the link's target. If the target is an object (RAYA_LINK_OBJECT),
+// bits 0..28 are the object's number. Else bits 25..28 are the number of objects in the leaf - 1, and bits 0..24 are
+// the target's first row.
 #define RAYA_LINK_ROW 0x01ffffffu
 #define RAYA_LINK_OBJECTS_SHIFT 25u
 #define RAYA_LINK_KIND_SHIFT 29u

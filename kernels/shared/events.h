@@ -5,21 +5,21 @@
 
 enum {
     RAYA_PRIMARY,        // primary rays, one per sample point
-    RAYA_PRIMARY_HITS,   // ... that hit an object
+    RAYA_PRIMARY_HITS,   // primary rays that hit an object
     RAYA_REFLECTED,      // reflected rays, total reflection included
     RAYA_REFRACTED,      // refracted rays
     RAYA_SHADOW,         // shadow rays
-    RAYA_SHADOW_HITS,    // ... that hit an object before the light
+    RAYA_SHADOW_HITS,    // shadow rays that hit an object before the light
     RAYA_SPHERE_TESTS,   // tests of a ray against a sphere
-    RAYA_PLANE_TESTS,    // ... a plane
-    RAYA_POLYGON_TESTS,  // ... a polygon or patch
-    RAYA_CONE_TESTS,     // ... a cone or cylinder
+    RAYA_PLANE_TESTS,    // tests of a ray against a plane
+    RAYA_POLYGON_TESTS,  // tests of a ray against a polygon or patch
+    RAYA_CONE_TESTS,     // tests of a ray against a cone or cylinder
     RAYA_SHADED,         // shaded hits of primary, reflected and refracted rays; each adds an ambient term
-    RAYA_LIT,            // shadow rays that reach their light, which adds a diffuse term and, if Ks > 0, a highlight
-    RAYA_HIGHLIGHTS,     // highlights computed (num_power)
+    RAYA_LIT,            // shadow rays that reach their light; each adds a diffuse term
+    RAYA_HIGHLIGHTS,     // highlights added to these diffuse terms; each takes one num_power()
     RAYA_WALKS,          // rays that entered the grid's box, or that traversed the BVH
     RAYA_STEPS,          // voxels or BVH nodes that rays entered, including the first
-    RAYA_DISCARDED,      // primary rays that a torus node made and discarded because they belong to other nodes
+    RAYA_DISCARDED,      // primary rays that a torus node made and discarded because other nodes trace them
     RAYA_EVENTS          // number of counters
 };
 

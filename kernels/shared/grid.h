@@ -11,8 +11,8 @@ typedef struct {
     float low[3];           // lowest x, y, z of the box, in scene units
     float cell[3];          // size of a voxel along x, y, z; > 0
     raya_u32 divisions[3];  // A, B, C
-    // If no coordinate of a ray's origin exceeds `reach` in absolute value, each of its hits lies in a voxel whose list
-    // contains the object. Other rays must be tested against all objects (host/accel/partition.hpp).
+    // If no coordinate of a ray's origin exceeds `reach` in absolute value, each hit of the ray lies in a voxel whose
+    // list contains the object hit. All other rays must be tested against all objects (host/accel/partition.hpp).
     float reach;
 } raya_grid;
 RAYA_SHARED_SIZE(raya_grid, 4 * 10);
@@ -25,25 +25,25 @@ RAYA_SHARED_SIZE(raya_grid, 4 * 10);
 typedef struct {
     raya_grid grid;
     raya_u32 separate;     // number of separate objects: finite objects in no list, tested for every ray
-    raya_u32 separate_at;  // their object numbers, ascending
+    raya_u32 separate_at;  // object numbers of the separate objects, ascending
     raya_u32 voxels_at;    // the voxel words
-    raya_u32 rows_at;
-    raya_u32 numbers_at;
+    raya_u32 rows_at;      // row 0
+    raya_u32 numbers_at;   // the rows' object numbers
 } raya_grid_words;
 RAYA_SHARED_SIZE(raya_grid_words, 4 * (10 + 5));
 
 // A voxel word describes a list by three bit fields: RAYA_ROWS_LEFT is the number of spheres, RAYA_ROW_NUMBER the row
 // of the first sphere, and RAYA_LINKED is set if a link row follows the spheres' rows. 0 is an empty list.
 #define RAYA_ROW_NUMBER 0x03ffffffu
-#define RAYA_ONE_ROW 0x04000000u
+#define RAYA_ONE_ROW 0x04000000u  // the value 1 of the field RAYA_ROWS_LEFT
 #define RAYA_ROWS_LEFT 0x7c000000u
 #define RAYA_MAX_ROWS 31u  // maximum number of spheres in one voxel word
 #define RAYA_LINKED 0x80000000u
 
 // Row 0 belongs to no list. A sphere's row holds the sphere's four words (job.h), which suffice to find a hit. A link
-// row holds the voxel word of the rest of the list, 0 if nothing follows. The object number of a link row is that of an
-// object that is not a sphere. It is RAYA_NO_OBJECT_HERE if the link only continues a list of more than RAYA_MAX_ROWS
-// spheres.
+// row holds, at RAYA_ROW_NEXT, the voxel word of the rest of the list, 0 if nothing follows. The object number of a
+// link row is that of an object in the list that is not a sphere, or RAYA_NO_OBJECT_HERE if the row only continues a
+// list of more than RAYA_MAX_ROWS spheres.
 enum { RAYA_ROW_NEXT = 0, RAYA_ROW_WORDS = 4 };
 #define RAYA_NO_OBJECT_HERE 0xffffffffu
 

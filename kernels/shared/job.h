@@ -11,7 +11,8 @@
 #include "kernels/shared/mapping.h"
 #include "kernels/shared/portable.h"
 
-// The objects of a scene or of a voxel: the number of objects of each kind, and the offset of the first of them.
+// The objects of a scene or of a voxel: the number of objects of each kind, and the offset of the first object of each
+// kind.
 typedef struct {
     raya_u32 spheres, planes, polygons, cones;
     raya_u32 spheres_at, planes_at, polygons_at, cones_at;
@@ -20,7 +21,7 @@ RAYA_SHARED_SIZE(raya_objects, 4 * 8);
 
 typedef struct {
     raya_mapping mapping;
-    raya_u32 bounces;  // reflections and refractions after the primary ray
+    raya_u32 bounces;  // maximum number of reflections and refractions from a primary ray to a ray of its tree
     raya_u32 lights;   // number of lights
     raya_u32 lights_at;
     raya_objects objects;
@@ -28,7 +29,7 @@ typedef struct {
     raya_u32 cycles[RAYA_EVENTS];    // modelled cycles of one event of each kind (events.h)
     float eye[3];                    // origin of the primary rays
     float corner[3];                 // direction of the primary ray of row 0, column 0, not normalised
-    float column_step[3], row_step[3];  // added to `corner` for each column and each row
+    float column_step[3], row_step[3];  // added to `corner` for each column, for each row
     float background[3];             // radiance of rays that hit nothing
     float ambient;                   // ambient intensity A
     float extent;                    // largest absolute coordinate of eye and finite objects, in scene units
@@ -37,13 +38,13 @@ typedef struct {
 RAYA_SHARED_SIZE(raya_job, 4 * (5 + 3 + 8 + 1 + RAYA_EVENTS + 17 + 2));
 
 enum {  // words of a surface
-    RAYA_SURFACE_COLOUR = 0,      // r, g, b; with a checker, the colour `even`
+    RAYA_SURFACE_COLOUR = 0,      // r, g, b; with a checker, of its even squares
     RAYA_SURFACE_DIFFUSE = 3,     // Kd
     RAYA_SURFACE_SPECULAR = 4,    // Ks
     RAYA_SURFACE_SHINE = 5,       // Phong exponent
     RAYA_SURFACE_TRANSMIT = 6,    // T
     RAYA_SURFACE_REFRACTION = 7,  // ior
-    RAYA_SURFACE_ODD = 8,         // r, g, b: the checker's colour `odd`
+    RAYA_SURFACE_ODD = 8,         // r, g, b of the checker's odd squares
     RAYA_SURFACE_CHECKER = 11,    // side of a square in scene units, 0 without a checker
     RAYA_SURFACE_WORDS = 12
 };
@@ -72,7 +73,7 @@ enum {  // words of a plane n.x = d
 };
 
 enum {  // words of a polygon after those of its plane
-    RAYA_POLYGON_AXIS = RAYA_OBJECT_WORDS,  // 0..2: axis along which points are projected for its normals
+    RAYA_POLYGON_AXIS = RAYA_OBJECT_WORDS,  // 0..2: axis along which a patch's points are projected to (u, v)
     RAYA_POLYGON_CORNERS,                   // number of corners
     RAYA_POLYGON_CORNERS_AT,                // offset of the first corner
     RAYA_POLYGON_NORMALS_AT,                // offset of the normals of a patch; 0 for a polygon

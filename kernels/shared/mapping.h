@@ -1,27 +1,27 @@
 // The mapping of pixels to PEs: the owner of a pixel and the share of a PE (the pixels that it owns), both in closed
-// form. share_pixels.h enumerates the pixels of a share. Host and kernels share these formulas; they exist nowhere
-// else.
+// form. share_pixels.h enumerates the pixels of a share. Host and kernels use the same formulas: those in this file.
 //
 // The slot mappings implement the cyclic mapping with offset p (Kohata & Ito 1993, cyclic mapping; p = 0 is their
 // column split). Pixel (row j, column x) lies in slot c = (x - j p) mod W. The fold assigns slots to PEs; it matters if
 // P != W:
 //
 //   RAYA_FOLD_CYCLIC   P <= W   PE i owns the slots i, i + P, i + 2P, ...
-//                      P >  W   the PEs c, c + W, c + 2W, ... share slot c, row by row in turn
+//                      P >  W   the PEs c, c + W, c + 2W, ... own the rows of slot c in turn
 //   RAYA_FOLD_BLOCK    P <= W   PE i owns the slots c with floor(c P / W) = i
-//                      P >  W   the PEs floor(c P / W) to floor((c + 1) P / W) - 1 share slot c, each a run of rows
+//                      P >  W   each of the PEs floor(c P / W) to floor((c + 1) P / W) - 1 owns a run of rows of slot c
 //
 // The other mappings, with the number of the PE that owns pixel (j, x):
 //
 //   RAYA_ROWS     j mod P: interleaved scan lines
 //   RAYA_BLOCKS   floor(j P / H): contiguous scan lines
-//   RAYA_GRID     (j mod A) B + (x mod B), P = A B: an array of A rows of B PEs (CAP 16 x 16, Pixel Machine 8 x 8)
+//   RAYA_GRID     (j mod A) B + (x mod B), P = A B: A rows of B PEs (as in CAP: 16 x 16, Pixel Machine: 8 x 8)
 //   RAYA_TILES    t mod P: tiles of w x h pixels, t = (j div h)(W div w) + (x div w); w divides W, h divides H
-//   RAYA_RANDOM   raya_scramble(j W + x, W H, seed) mod P (scramble.h); share sizes differ by at most 1
+//   RAYA_RANDOM   raya_scramble(j W + x, W H, seed) mod P (scramble.h); share sizes differ by at most 1 pixel
 //
 // A share is a lattice of slots (or columns) and rows, every P-th tile, or every P-th scrambled number. So pixel k of
-// PE i has a closed form too. A PE may own no pixel: if P > H with RAYA_ROWS, or with more PEs than tiles. Limits: 1 <=
-// W, H <= 16384, 1 <= P <= W H, 0 <= p < W. So j p < 2^28 fits in 32 bits; c P < 2^42 needs 64 bits.
+// PE i has a closed form too. Some PEs own no pixel, for example, if P > H with RAYA_ROWS or if P exceeds the number of
+// tiles. Limits: 1 <= W, H <= 16384, 1 <= P <= W H, 0 <= p < W. So j p < 2^28 fits in 32 bits; c P < 2^42 needs 64
+// bits.
 #ifndef RAYA_SHARED_MAPPING_H
 #define RAYA_SHARED_MAPPING_H
 #include "kernels/shared/portable.h"
@@ -45,8 +45,8 @@ typedef struct {
 } raya_mapping;
 RAYA_SHARED_SIZE(raya_mapping, 20);
 
-// The share of one PE. With RAYA_TILES and RAYA_RANDOM only `pe` and `size` are used. With the other mappings it is the
-// slots (or columns) first_slot + m slot_step, 0 <= m < slots, of the rows first_row, first_row + row_step, ...
+// The share of one PE. With RAYA_TILES and RAYA_RANDOM only `pe` and `size` are used. With the other mappings the share
+// is the slots (or columns) first_slot + m slot_step, 0 <= m < slots, in the rows first_row, first_row + row_step, ...
 typedef struct {
     raya_u32 pe, size;  // number of the PE; number of its pixels
     raya_u32 first_slot, slot_step, slots;
@@ -86,8 +86,8 @@ RAYA_SHARED_FUNCTION raya_u32 raya_slot_owner(raya_mapping m, raya_u32 row, raya
     }
     const raya_u32 first = raya_floor_ratio(slot, m.pes, m.width);
     if (m.pes <= m.width) return first;
-    const raya_u32 sharers = raya_floor_ratio(slot + 1, m.pes, m.width) - first;
-    return first + raya_floor_ratio(row, sharers, m.height);
+    const raya_u32 slot_pes = raya_floor_ratio(slot + 1, m.pes, m.width) - first;
+    return first + raya_floor_ratio(row, slot_pes, m.height);
 }
 
 // Returns the PE that owns a pixel.
@@ -122,15 +122,15 @@ RAYA_SHARED_FUNCTION raya_share raya_slot_share(raya_mapping m, raya_u32 pe) {
     } else {
         s.first_slot = (raya_u32)(((raya_u64)(pe + 1) * m.width - 1) / m.pes);
         const raya_u32 first = raya_floor_ratio(s.first_slot, m.pes, m.width);
-        const raya_u32 sharers = raya_floor_ratio(s.first_slot + 1, m.pes, m.width) - first;
-        s.first_row = raya_ceil_ratio(pe - first, m.height, sharers);
-        rows = raya_ceil_ratio(pe - first + 1, m.height, sharers) - s.first_row;
+        const raya_u32 slot_pes = raya_floor_ratio(s.first_slot + 1, m.pes, m.width) - first;
+        s.first_row = raya_ceil_ratio(pe - first, m.height, slot_pes);
+        rows = raya_ceil_ratio(pe - first + 1, m.height, slot_pes) - s.first_row;
     }
     s.size = s.slots * rows;
     return s;
 }
 
-// Returns the share of a PE: the pixels whose raya_owner() it is.
+// Returns the share of a PE: the pixels whose raya_owner() is this PE.
 RAYA_SHARED_FUNCTION raya_share raya_share_of(raya_mapping m, raya_u32 pe) {
     if (raya_has_slots(m)) return raya_slot_share(m, pe);
     raya_share s = {pe, 0, 0, 1, m.width, pe, m.pes};  // the share with RAYA_ROWS, modified below for the others

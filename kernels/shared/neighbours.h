@@ -27,7 +27,7 @@ RAYA_SHARED_FUNCTION raya_pixel raya_neighbour(raya_pixel pixel, raya_u32 side) 
 enum {
     RAYA_POINTS_OWN,       // one point: the pixel's own sample point (kernels/README.md, Camera)
     RAYA_POINTS_AXES,      // four points, half a pixel to the left, right, above, below
-    RAYA_POINTS_DIAGONALS  // four, half a pixel away on both axes: upper left, upper right, lower left, lower right
+    RAYA_POINTS_DIAGONALS  // four points, half a pixel away on both axes: upper left and right, lower left and right
 };
 
 #define RAYA_NEW_POINTS 4u

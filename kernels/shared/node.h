@@ -21,7 +21,7 @@ typedef struct {
     raya_u32 voxels;     // number of its voxels
     raya_u32 window[4];  // pixels whose rays may enter the box at the node's voxels: first row, end row, first column,
                          // end column; the ends are excluded
-    raya_u32 voxels_at;  // raya_voxel_memory of its voxels, in the order of raya_local_voxel()
+    raya_u32 voxels_at;  // the raya_voxel_memory of its voxels, in the order of raya_local_voxel()
 } raya_node;
 RAYA_SHARED_SIZE(raya_node, sizeof(raya_job) + 4 * (7 + 10 + 7));
 

@@ -6,30 +6,30 @@
 #include "kernels/shared/packet.h"
 
 enum {
-    RAYA_COUNT_NEXT,      // number of the queue's packets that work-items have taken so far
+    RAYA_COUNT_NEXT,      // number of packets that work-items have taken from the queue so far
     RAYA_COUNT_RESERVED,  // queue slots in use or reserved
     RAYA_COUNT_USED,      // queue slots in use
     RAYA_COUNT_PROGRESS,  // packets processed
-    RAYA_COUNT_WORK,      // work done in this launch; at its limit the launch takes no more packets
+    RAYA_COUNT_WORK,      // work done in this launch, in object tests; at the limit work-items take no more packets
     RAYA_COUNT_EVENTS,    // events of each kind: low and high word
     RAYA_COUNT_MADE = RAYA_COUNT_EVENTS + 2 * RAYA_EVENTS,  // packets of each kind that were made
     RAYA_COUNT_ENDED = RAYA_COUNT_MADE + RAYA_KINDS,        // packets of each kind that ended
     RAYA_COUNT_WORDS = RAYA_COUNT_ENDED + RAYA_KINDS
 };
 
-// Goals of packets in the kernel `route`: the outbox of a link (0 .. RAYA_LINKS - 1), or one of these.
+// Goals of packets in the kernel `route`: the outbox of a link (0 .. RAYA_LINKS - 1), or one of the following.
 enum {
     RAYA_TO_ROOT = RAYA_LINKS,  // the outbox of the link towards the root (returns)
     RAYA_STAYS,                 // this node's queue
-    RAYA_GONE,                  // none: the slot holds no packet
+    RAYA_GONE,                  // no goal: the slot holds no packet
     RAYA_GOALS
 };
 
 // Goals of packets in the kernel `accept`, which have arrived over a link.
 enum {
-    RAYA_TAKEN,       // the queue
-    RAYA_LEFT_THERE,  // the packet stays in the inbox: the queue has no free slots for it
-    RAYA_NOTHING,     // none: the slot holds no packet
+    RAYA_TAKEN,       // this node's queue
+    RAYA_LEFT_THERE,  // the inbox, where the packet stays: the queue has too few free slots for it
+    RAYA_NOTHING,     // no goal: the slot holds no packet
     RAYA_ACCEPT_GOALS
 };
 
@@ -38,8 +38,8 @@ enum {
 // of objects + this number.
 #define RAYA_WORK_OF_PROCESSING(lights) (8 + 4 * (lights))
 
-// Words of local memory that a kernel needs for the work-items of a node. `group`: L, work-items; `lanes`: V
-// (kernels/torus/moves.clh).
+// Numbers of words of local memory that kernels need for the work-items of a node (kernels/torus/moves.clh). `group`:
+// L, the number of work-items; `lanes`: V.
 #define RAYA_VOTE_WORDS(voters) (((voters) + 31) / 32)
 #define RAYA_INJECT_WORDS(group, lanes) (RAYA_COUNT_WORDS + 1 + RAYA_VOTE_WORDS((group) * (lanes)))
 #define RAYA_ROUTE_WORDS(group) (RAYA_GOALS + 1 + RAYA_GOALS * RAYA_VOTE_WORDS(group))

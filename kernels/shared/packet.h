@@ -2,7 +2,7 @@
 // protocol).
 //
 //   the paper's field            here
-//   voxel, next voxel            voxel: the next one; the previous one is not needed
+//   voxel, next voxel            voxel: only the next voxel
 //   screen position *            pixel
 //   kind of ray *                state: kind, level, light, flags; path: position in the pixel's ray tree
 //   weight                       weight *
@@ -23,7 +23,7 @@
 typedef struct {
     raya_u32 pixel;  // row * W + column
     raya_u32 state;  // kind, flags, level and light: raya_state()
-    raya_u32 path;   // path from the primary ray to this one; bit 31 - l: 1 if at level l it takes the refracted ray
+    raya_u32 path;   // path from the primary ray to this ray; bit 31 - l: 1 if the ray of level l + 1 is refracted
     float weight;    // of the ray; a return's colour is multiplied by it
     union {
         float colour[3];  // return: red, green, blue. Shadow ray: the light's contribution if nothing is hit
@@ -32,7 +32,7 @@ typedef struct {
             raya_u32 object;  // scene-wide number of the object hit
         } nearest;            // the nearest hit so far of a wide ray, except shadow rays
     } carries;
-    raya_u32 voxel;  // of a ray: the voxel to test it in next; RAYA_NO_VOXEL: it misses the box
+    raya_u32 voxel;  // voxel in which the ray is tested next; RAYA_NO_VOXEL: the ray misses the box
 } raya_head;
 RAYA_SHARED_SIZE(raya_head, 4 * 8);
 
@@ -40,7 +40,7 @@ typedef struct {
     raya_head head;
     float origin[3];
     float direction[3];  // of length 1
-    float limit;         // only hits at t < limit count: a shadow ray's light, a wide ray's nearest hit
+    float limit;         // only hits at t < limit count; t of a shadow ray's light or of a wide ray's nearest hit
     raya_u32 start;      // the first voxel that a wide ray visited
 } raya_packet;
 RAYA_SHARED_SIZE(raya_packet, 4 * 16);
@@ -78,8 +78,8 @@ enum {  // kinds of packets; 0: the slot holds no packet
 // This node has made or changed the packet and not sent it yet. A trace of the traffic reports such a packet as a new
 // message.
 #define RAYA_STATE_FRESH 0x20u
-// Of a return: the model charges it as a message. Of a shadow ray: it is the last one of its ray, and its end makes the
-// ray's one charged return (raya_run.return_a_ray).
+// Of a return: the model charges it as a message. Of a shadow ray: the last shadow ray of a ray. When it ends, it makes
+// the only return of that ray that is charged (raya_run.return_a_ray).
 #define RAYA_STATE_CHARGED 0x40u
 #define RAYA_STATE_LEVEL_SHIFT 8u
 #define RAYA_STATE_LIGHT_SHIFT 16u
@@ -103,8 +103,8 @@ RAYA_SHARED_FUNCTION raya_u32 raya_packet_words(raya_u32 state) {
 RAYA_SHARED_FUNCTION raya_u32 raya_path_reflected(raya_u32 path) { return path; }
 RAYA_SHARED_FUNCTION raya_u32 raya_path_refracted(raya_u32 path, raya_u32 level) { return path | 1u << (31u - level); }
 
-// Returns true if the contribution with this path and state precedes the other one of the same pixel in the order of
-// the ray tree.
+// Returns true if the contribution with `path` and `state` precedes that with `other_path` and `other_state`, of the
+// same pixel, in the order of the ray tree.
 RAYA_SHARED_FUNCTION int raya_comes_before(raya_u32 path, raya_u32 state, raya_u32 other_path, raya_u32 other_state) {
     if (path != other_path) return path < other_path;
     if (raya_state_level(state) != raya_state_level(other_state))

@@ -1,5 +1,5 @@
 // The order of the pixels in a PE's share (mapping.h): raya_pixel_of() returns pixel k of a share, raya_index_of() is
-// its inverse. raya_pixel_run enumerates pixels without a division for each.
+// its inverse. raya_pixel_run enumerates pixels without a division for each pixel.
 #ifndef RAYA_SHARED_SHARE_PIXELS_H
 #define RAYA_SHARED_SHARE_PIXELS_H
 #include "kernels/shared/mapping.h"
@@ -30,7 +30,7 @@ typedef struct {
     raya_pixel pixel;
     raya_u32 number;  // k: index of the pixel in the share
     raya_u32 left;    // number of pixels that follow in the run
-    raya_u32 step;    // distance from one to the next, in columns, modulo the width
+    raya_u32 step;    // distance from one pixel of the run to the next, in columns, modulo the width
 } raya_pixel_run;
 
 RAYA_SHARED_FUNCTION raya_pixel_run raya_pixel_run_of(raya_mapping m, raya_share s, raya_u32 k) {
@@ -59,8 +59,8 @@ RAYA_SHARED_FUNCTION raya_pixel_run raya_pixel_run_at(raya_pixel_run run, raya_m
 RAYA_SHARED_FUNCTION raya_u32 raya_index_of(raya_mapping m, raya_share s, raya_pixel pixel) {
     if (m.kind == RAYA_TILES) {
         const raya_u32 w = raya_first_of(m.parameter), h = raya_second_of(m.parameter);
-        const raya_u32 own_tile = raya_tile_of(m, pixel.row, pixel.column) / m.pes;  // index among the owner's tiles
-        return (own_tile * h + pixel.row % h) * w + pixel.column % w;
+        const raya_u32 tile_index = raya_tile_of(m, pixel.row, pixel.column) / m.pes;  // index among the owner's tiles
+        return (tile_index * h + pixel.row % h) * w + pixel.column % w;
     }
     if (m.kind == RAYA_RANDOM)
         return raya_scramble(pixel.row * m.width + pixel.column, m.width * m.height, m.parameter) / m.pes;

@@ -5,7 +5,7 @@
 // along the first side, then the second, then the third.
 //
 //   3-D torus  sides I x J x K; six links per node; node (i, j, k) lies at (i, j, k)
-//   2-D torus  sides (I C) x (J K / C); four links per node, as a T805 has. The K slabs of equal k lie in an array of C
+//   2-D torus  sides (I C) x (J K / C); four links per node, as a T805 has. The K slabs of nodes of equal k lie in C
 //              columns, C a divisor of K: node (i, j, k) lies at (i + I (k mod C), j + J (k div C)). For example,
 //              4 x 4 x 4 nodes form an 8 x 8 torus.
 //
@@ -15,7 +15,7 @@
 #define RAYA_SHARED_TORUS_H
 #include "kernels/shared/grid.h"
 
-// Links of a node: link 2 d leads to the next higher number along side d, link 2 d + 1 to the next lower one.
+// Links of a node: link 2 d leads to the node with the next higher place along side d, link 2 d + 1 to the next lower.
 #define RAYA_LINKS 6u
 #define RAYA_NO_LINK RAYA_LINKS  // the packet is at its destination
 #define RAYA_ROOT 0u             // the node that is connected to the host
@@ -77,7 +77,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_node_of_voxel(raya_torus t, raya_grid g, raya
     return raya_node_of(t, v.at[0] % t.nodes[0], v.at[1] % t.nodes[1], v.at[2] % t.nodes[2]);
 }
 
-// Returns how many of a node's voxels lie along an axis: those at first, first + step, ... < divisions.
+// Returns the number of coordinates that a node's voxels have along an axis: first, first + step, ... < divisions.
 RAYA_SHARED_FUNCTION raya_u32 raya_node_voxels_along(raya_torus t, raya_grid g, raya_place node, raya_u32 axis) {
     const raya_u32 first = node.at[axis], step = t.nodes[axis], end = g.divisions[axis];
     return first < end ? (end - first - 1) / step + 1 : 0;
@@ -99,16 +99,17 @@ RAYA_SHARED_FUNCTION raya_u32 raya_local_voxel(raya_torus t, raya_grid g, raya_u
     return v.at[0] / t.nodes[0] + along_x * (v.at[1] / t.nodes[1] + along_y * (v.at[2] / t.nodes[2]));
 }
 
-// Returns the number of the voxel with index `within` among those of a node: the inverse of raya_local_voxel().
-RAYA_SHARED_FUNCTION raya_u32 raya_voxel_of_node(raya_torus t, raya_grid g, raya_u32 node, raya_u32 within) {
+// Returns the number of the voxel with index `local_index` among those of a node: the inverse of raya_local_voxel().
+RAYA_SHARED_FUNCTION raya_u32 raya_voxel_of_node(raya_torus t, raya_grid g, raya_u32 node, raya_u32 local_index) {
     const raya_place n = raya_node_place(t, node);
-    const raya_place l = raya_place_of(within, raya_node_voxels_along(t, g, n, 0), raya_node_voxels_along(t, g, n, 1));
+    const raya_place l =
+        raya_place_of(local_index, raya_node_voxels_along(t, g, n, 0), raya_node_voxels_along(t, g, n, 1));
     return raya_voxel(g, n.at[0] + t.nodes[0] * l.at[0], n.at[1] + t.nodes[1] * l.at[1],
                       n.at[2] + t.nodes[2] * l.at[2]);
 }
 
 // Returns the distance, in links, between two places along one side of the torus in the shorter direction. Sets `up` to
-// 1 if that direction leads to higher numbers, else to 0.
+// 1 if that direction leads to higher places, else to 0.
 RAYA_SHARED_FUNCTION raya_u32 raya_side_distance(raya_u32 from, raya_u32 to, raya_u32 side, int* up) {
     const raya_u32 higher = to >= from ? to - from : to + side - from;
     *up = higher <= side - higher;

@@ -1,5 +1,5 @@
 // Progress of the trace kernel (kernels/ring/trace.cl). A launch ends after a bounded amount of work, and the next
-// launch continues. This header has the progress that a PE reports to the host and the size of the state that its
+// launch continues. This header defines the progress that a PE reports to the host and the size of the state that its
 // work-items save.
 #ifndef RAYA_SHARED_TRACE_PROGRESS_H
 #define RAYA_SHARED_TRACE_PROGRESS_H
@@ -9,13 +9,13 @@
 
 // Progress of a PE through the pixels of its share.
 typedef struct {
-    raya_u32 next;  // index in the share of the first pixel that no work-item has taken
+    raya_u32 next;  // index in the share of the first pixel that no work-item has taken yet
     raya_u32 left;  // number of work-items that have work left
     raya_u32 cut;   // number of work-items whose loops the device ended early (loop_canary.clh); must be 0
 } raya_trace_progress;
 RAYA_SHARED_SIZE(raya_trace_progress, 4 * 3);
 
-// Default number of ray trees that a lane traces concurrently. In a grid there are several, because rays visit
+// Default number of ray trees that a lane traces concurrently. With a grid a lane traces several, because rays visit
 // different numbers of voxels and lanes with one tree each would wait for one another.
 #define RAYA_DEFAULT_TREES(accel, lanes) ((accel) == RAYA_ACCEL_GRID && (lanes) > 1 ? 4 : 1)
 

@@ -9,16 +9,16 @@
 //     for each link, from `turn` mod 6 on, while `work` is left:
 //         move the rays that fit to the end of the queue, close the gaps in the inbox           (accept_rays)
 //         move the returns that fit to the outbox towards the root, close the gaps in the inbox (forward_returns)
-//         write the numbers of packets that stay to the node's status
+//         store in the node's status how many rays and how many returns stay in the inboxes
 //
 // A launch that has done its `work` starts no further inbox. The next launch (`resume` = 1) continues with the
-// remaining ones.
+// remaining inboxes.
 #include "kernels/torus/moves.clh"
 
 // The queue of the node. Rays are appended to it.
 typedef struct {
     __global raya_packet* packets;
-    uint used, capacity;  // packets
+    uint used, capacity;  // number of packets in the queue, maximum number of packets
     uint new_packets;     // raya_max_new_packets() of the scene
     uint tight;           // 1: one free slot suffices for any ray
 } ray_queue;
@@ -38,11 +38,11 @@ static inline uint accept_rays(__global uint* inbox, ray_queue* queue, vote_word
         const uint goal = slot >= waiting ? RAYA_NOTHING : fits ? RAYA_TAKEN : RAYA_LEFT_THERE;
         vote(votes, goal);
         node_barrier();
-        const uint rank = votes_before(votes, goal);
-        // This slot has already been read by an earlier iteration or this one.
-        if (goal == RAYA_LEFT_THERE) rays[left + rank] = packet;
+        const uint position = votes_before(votes, goal);
+        // An earlier iteration or this one has already read the slot to which the packet moves.
+        if (goal == RAYA_LEFT_THERE) rays[left + position] = packet;
         packet.head.state &= ~RAYA_STATE_FRESH;
-        if (goal == RAYA_TAKEN) queue->packets[queue->used + taken + rank] = packet;
+        if (goal == RAYA_TAKEN) queue->packets[queue->used + taken + position] = packet;
         taken += votes_for(votes, RAYA_TAKEN, goal);
         left += votes_for(votes, RAYA_LEFT_THERE, goal);
         node_barrier();
@@ -53,9 +53,10 @@ static inline uint accept_rays(__global uint* inbox, ray_queue* queue, vote_word
     return left;
 }
 
-// Moves as many returns as fit from an inbox to `to`, which has space for `capacity` returns and holds `used`. Returns
-// the number of moved returns. The other `left` returns move to the front of the inbox. Adds to `charged` the number of
-// moved returns that the model charges as messages. All work-items must call it, because it has barriers.
+// Moves as many returns as fit from an inbox to `to` (an outbox's packets or the host's buffer), which has space for
+// `capacity` returns and holds `used` returns. Returns the number of moved returns. The other `left` returns move to
+// the front of the inbox. Adds to `charged` the number of moved returns that the model charges as messages. All
+// work-items must call it, because it has barriers.
 static inline uint forward_returns(__global uint* inbox, __global raya_head* to, uint used, uint capacity, uint* left,
                                 volatile __local uint* charged) {
     __global raya_head* const returns = returns_in(inbox);
@@ -87,7 +88,7 @@ void accept(__global const uint* restrict memories,     // the words of all node
             __global const uint* restrict inbox_slots,  // [link][node]: slot of the inbox of the link that ends there
             __global const uint* restrict sent,         // [link][node]: 1 if the outbox of rays has been copied
             __global const uint* restrict return_sent,  // [link][node]: 1 if the outbox of returns has been copied
-            const uint work,                            // maximum work of a node in a launch: batches of L packets, > 0
+            const uint work,                            // maximum work of a node in a launch, batches of L packets, > 0
             const uint resume,                          // 1: continues where the last launch ended
             __local uint* local_words,                  // RAYA_ACCEPT_WORDS
             __global raya_packet* restrict queues,      // [node][queue]
@@ -146,7 +147,7 @@ void accept(__global const uint* restrict memories,     // the words of all node
     status[RAYA_STATUS_QUEUE] = queue.used;
     status[RAYA_STATUS_QUEUE_MAX] = max(status[RAYA_STATUS_QUEUE_MAX], queue.used);
     status[RAYA_STATUS_LEFT] = RAYA_LINKS - i;
-    // The host has read the status before this superstep's first launch of accept, so its counts start anew.
+    // The host has read the status before the superstep's first launch of accept, so progress and cycles restart at 0.
     const uint progress = resume ? status[RAYA_STATUS_PROGRESS] : 0;
     status[RAYA_STATUS_PROGRESS] = progress + queue.used - before + returns_used - returns_before;
     status[RAYA_STATUS_CYCLES] = status[RAYA_STATUS_CYCLES + 1] = 0;

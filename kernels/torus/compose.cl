@@ -1,5 +1,5 @@
-// compose: adds the contributions of each pixel. They have reached the root in any order, and the host has sorted them
-// into the order of the pixel's ray tree:
+// compose: adds the contributions of each pixel in the order of the pixel's ray tree. The contributions have reached
+// the root in any order; the host has sorted them.
 //
 //     pixel = 0; for each contribution: pixel = colour * weight + pixel, rounded once
 //

@@ -18,14 +18,14 @@
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void exchange(__global const uint* restrict ends,      // [link][node]: slot of the node at the link's other end;
-                                                       // RAYA_NO_SLOT: skipped
+                                                       // RAYA_NO_SLOT: the link is skipped
               const uint nodes,                        // number of nodes on the device
               const uint inboxes_of_link,              // number of inboxes on the device per link
-              const uint capacity,                     // of a mailbox, packets
+              const uint capacity,                     // maximum number of packets in a mailbox
               const uint packet_words,                 // words of a packet: 8 or 16
               const uint outbox_status,                // index in a node's status of the counts of its
                                                        // outboxes (RAYA_STATUS_OUTBOX or _RETURN_OUTBOX)
-              const uint inbox_status,                 // ... of its inboxes
+              const uint inbox_status,                 // index in a node's status of the counts of its inboxes
               __global const uint* restrict outboxes,  // mailboxes (kernels/shared/traffic.h)
               __global uint* restrict inboxes,
               __global uint* restrict sent,            // [link][node]: 1 if the outbox has been copied
@@ -37,11 +37,11 @@ void exchange(__global const uint* restrict ends,      // [link][node]: slot of 
     const int goes = packets > 0 && status[end * RAYA_STATUS_WORDS + inbox_status + link] == 0;
     if (item == 0) sent[box] = goes;
     if (!goes) return;
-    const ulong from_at = raya_box_at(link, nodes, slot, capacity, packet_words);
-    const ulong to_at = raya_box_at(link, inboxes_of_link, slot, capacity, packet_words);
-    __global const uint8* const from = (__global const uint8*)(outboxes + from_at);
-    __global uint8* const to = (__global uint8*)(inboxes + to_at);
+    const ulong source_at = raya_box_at(link, nodes, slot, capacity, packet_words);
+    const ulong target_at = raya_box_at(link, inboxes_of_link, slot, capacity, packet_words);
+    __global const uint8* const source = (__global const uint8*)(outboxes + source_at);
+    __global uint8* const target = (__global uint8*)(inboxes + target_at);
     const uint units = (1 + packets) * (packet_words / 8);
-    for (uint i = item; i < units; i += RAYA_GROUP) to[i] = from[i];
+    for (uint i = item; i < units; i += RAYA_GROUP) target[i] = source[i];
     if (loops_were_cut(min(units, 2u))) status[slot * RAYA_STATUS_WORDS + RAYA_STATUS_CUT] = 1;
 }

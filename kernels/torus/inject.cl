@@ -2,18 +2,18 @@
 //
 // One work-group is one node. If the root makes all primary rays, it processes all pixels and the other nodes do
 // nothing. Else a ray that enters the box belongs to the node that holds its first voxel, and a ray that misses the box
-// to node (row mod nodes). A node makes the rays of all pixels in its window (kernels/shared/node.h) and in its share
-// of rows, and discards those that belong to other nodes. Discarded rays cost work too, so they are counted
-// (RAYA_DISCARDED).
+// belongs to node (row mod nodes). A node makes the rays of all pixels in its window and in its rows
+// (torus/pixel_rows.clh), and discards rays that belong to other nodes. Making a discarded ray takes time, so discarded
+// rays are counted (RAYA_DISCARDED).
 //
 //     from the node's next pixel on, L x V pixels of a row at a time:
 //         make their rays and find their first voxels                      (shading/camera.clh, grid/traversal.clh)
-//         append the node's own rays to the queue, as many as fit
+//         append the rays that belong to the node to the queue, as many as fit
 //         the next pixel is the first whose ray did not fit
 //
 // A node makes rays until an eighth of its queue is in use. It always leaves as many slots free as the tree of one ray
-// needs. So there are free slots for arriving packets and for the packets of secondary rays. A launch also ends when it
-// has done its `work`. The next launch (`resume` = 1) continues at the next pixel.
+// needs. So there are free slots for arriving packets and for packets of secondary rays. A launch also ends when it has
+// done its `work`. The next launch (`resume` = 1) continues at the next pixel.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/torus/primaries.clh"
 
@@ -22,47 +22,47 @@
 // The queue to which a node appends primary rays, and the state that its work-items share.
 typedef struct {
     __global raya_packet* packets;  // the queue
-    uint max_packets;               // number of packets up to which rays are appended
+    uint max_packets;               // the node appends rays until the queue holds this many packets
     shared_words shared;            // RAYA_COUNT_WORDS
     shared_words next;              // [1]: next pixel of the row
-    shared_words own;               // RAYA_VOTE_WORDS(L V): a bit for each lane's ray, 1 if it is the node's own
-    uint work, spent;               // limit and work of this launch so far: batches of up to L V pixels, and rows
+    shared_words own_bits;          // RAYA_VOTE_WORDS(L V): a bit for each lane's ray, 1 if it belongs to the node
+    uint work, spent;               // maximum work of the launch, work done so far; unit: a batch of up to L V pixels,
+                                    // or a row
 } injection;
 
-// Sets the bits of the lanes whose rays are the node's own. Lane l of work-item i has bit i V + l. With one work-item
+// Sets the bits of the lanes whose rays belong to the node. Lane l of work-item i has bit i V + l. With one work-item
 // no bits are needed.
-static inline void vote_own(const injection* to, const primaries* p) {
+static inline void vote_own_rays(const injection* to, const primaries* p) {
 #if RAYA_GROUP > 1
     const uint bit = get_local_id(0) * RAYA_LANES;
-    atomic_or(&to->own[bit / 32], mask_bits(p->own) << bit % 32);
+    atomic_or(&to->own_bits[bit / 32], mask_bits(p->own_rays) << bit % 32);
 #endif
 }
 
-// Returns the number of the node's own rays in the lanes of lower-numbered work-items.
-static inline uint own_before(const injection* to) {
+// Returns how many rays in the lanes of lower-numbered work-items belong to the node.
+static inline uint own_rays_before(const injection* to) {
     uint number = 0;
 #if RAYA_GROUP > 1
     const uint bit = get_local_id(0) * RAYA_LANES;
-    number = popcount(to->own[bit / 32] & (1u << bit % 32) - 1u);
-    for (uint i = 0; i < bit / 32; ++i) number += popcount(to->own[i]);
+    number = popcount(to->own_bits[bit / 32] & (1u << bit % 32) - 1u);
+    for (uint i = 0; i < bit / 32; ++i) number += popcount(to->own_bits[i]);
 #endif
     return number;
 }
 
 static inline void clear_votes(const injection* to) {
-    for (uint i = get_local_id(0); i < RAYA_VOTE_WORDS(RAYA_STEP); i += RAYA_GROUP) to->own[i] = 0;
+    for (uint i = get_local_id(0); i < RAYA_VOTE_WORDS(RAYA_STEP); i += RAYA_GROUP) to->own_bits[i] = 0;
 }
 
-// Appends the node's own rays among the lanes' rays to the queue, from slot `at` on, as many as fit. The lanes hold the
-// pixels first .. end - 1 of the row. Returns the index in the row of the first pixel whose ray did not fit; `end` if
-// all fit.
+// Appends those of the lanes' rays that belong to the node to the queue, from slot `at` on, as many as fit. Lane l has
+// pixel first + l of the row. Returns the index in the row of the first pixel whose ray did not fit; `end` if all fit.
 static inline uint put_primaries(const primaries* p, const injection* to, uint at, uint first, uint end) {
-    lanes_index own, meets;
-    own.truth = p->own;
+    lanes_index own_rays, meets;
+    own_rays.truth = p->own_rays;
     meets.truth = p->meets;
     uint met = 0, made = 0, first_waiting = end;
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
-        if (!own.lane[lane]) continue;
+        if (!own_rays.lane[lane]) continue;
         if (at + made >= to->max_packets) {
             first_waiting = first + lane;
             break;
@@ -79,13 +79,13 @@ static inline uint put_primaries(const primaries* p, const injection* to, uint a
     return first_waiting;
 }
 
-// Returns how many rays of the lanes belong to other nodes. Counts only pixels before `next`: the rays of later pixels
-// will be made again.
-static inline uint discarded(const primaries* p, uint first, uint next) {
-    lanes_index own;
-    own.truth = p->own;
+// Returns how many of the lanes' rays belong to other nodes. Counts only rays of pixels before `next`, because the rays
+// of later pixels will be made again.
+static inline uint number_of_discarded(const primaries* p, uint first, uint next) {
+    lanes_index own_rays;
+    own_rays.truth = p->own_rays;
     uint number = 0;
-    for (uint lane = 0; lane < RAYA_LANES && first + lane < next; ++lane) number += !own.lane[lane];
+    for (uint lane = 0; lane < RAYA_LANES && first + lane < next; ++lane) number += !own_rays.lane[lane];
     return number;
 }
 
@@ -97,14 +97,14 @@ static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, 
     for (; at < row.count && *used < to->max_packets && to->spent < to->work; ++to->spent) {
         const uint first = at + item * RAYA_LANES, end = min(row.count, at + RAYA_STEP), before = *used;
         const primaries p = make_primaries(n, row, first, stride);
-        vote_own(to, &p);
+        vote_own_rays(to, &p);
         if (item == 0) *next = end;
         node_barrier();
-        const uint first_waiting = put_primaries(&p, to, before + own_before(to), first, end);
+        const uint first_waiting = put_primaries(&p, to, before + own_rays_before(to), first, end);
         if (first_waiting < end) atomic_min(next, first_waiting);
         node_barrier();
         at = *next;
-        count_shared(to->shared, RAYA_COUNT_EVENTS + 2 * RAYA_DISCARDED, discarded(&p, first, at));
+        count_shared(to->shared, RAYA_COUNT_EVENTS + 2 * RAYA_DISCARDED, number_of_discarded(&p, first, at));
         clear_votes(to);
         node_barrier();
     }
@@ -112,11 +112,11 @@ static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, 
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
-void inject(__global const uint* restrict memories,  // parameters without a comment: as in trace_voxel
+void inject(__global const uint* restrict memories,  // for parameters without a comment see trace_voxel
             __global const uint* restrict starts,
             __global const raya_run* restrict run,
             const uint first_node,
-            const uint work,                         // maximum work of a node in a launch: batches and rows, > 0
+            const uint work,                         // maximum work of a node in a launch, > 0; unit: a batch or a row
             const uint resume,
             __local uint* local_words,               // RAYA_INJECT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
                                                      // of a node
@@ -131,7 +131,7 @@ void inject(__global const uint* restrict memories,  // parameters without a com
     to.packets = queues + (size_t)slot * capacity;
     to.shared = local_words;
     to.next = local_words + RAYA_COUNT_WORDS;
-    to.own = to.next + 1;
+    to.own_bits = to.next + 1;
     to.work = work;
     to.spent = 0;
     status += (size_t)slot * RAYA_STATUS_WORDS;

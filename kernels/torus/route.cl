@@ -4,9 +4,8 @@
 //
 // One work-group is one node. L packets at a time, in the order of the queue:
 //
-//     find each packet's goal: the outbox of a link, the outbox towards the root, or this node's queue
-//     a packet whose outbox is full stays in the queue
-//     close the gaps in the queue
+//     find each packet's goal (torus/moves.clh); if it is a full outbox, the packet stays in the queue
+//     move the packets to their goals; close the gaps in the queue
 //
 // A launch ends after `work` batches of L packets. The next launch (`resume` = 1) continues with the remaining packets.
 // Packets that stay move to the front of the queue; the last launch sets the queue's new length.
@@ -26,8 +25,8 @@ static inline uint goal_of(const node* n, const raya_head* packet) {
     return raya_next_link(n->torus, n->number, raya_node_of(n->torus, to.at[0], to.at[1], to.at[2]));
 }
 
-// Adds the votes of L packets to the number of slots `used` by each goal. A packet votes for its outbox even if that is
-// full. So a count may exceed the outbox's capacity, and the caller must limit it.
+// Adds the votes of L packets to the number of slots `used` by each goal. A packet votes for its outbox even if the
+// outbox is full. So a count may exceed the outbox's capacity, and the caller must limit the count.
 static inline void count_votes(volatile __local uint* used, vote_words votes, uint goal) {
 #if RAYA_GROUP == 1
     ++used[goal];
@@ -41,7 +40,7 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
            __global const uint* restrict starts,
            __global const raya_run* restrict run,
            const uint first_node,
-           const uint work,                          // maximum work of a node in a launch: batches of L packets, > 0
+           const uint work,                          // maximum work of a node in a launch, batches of L packets, > 0
            const uint resume,                        // 1: continues where the last launch ended
            __local uint* local_words,                // RAYA_ROUTE_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
                                                      // of a node

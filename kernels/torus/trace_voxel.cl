@@ -15,8 +15,8 @@
 //         all other rays move to the next voxel                                               (grid/traversal.clh)
 //
 // Wide rays (is_wide() in kernels/grid/traversal.clh) must be tested against all objects. They visit all voxels in the
-// order of voxel numbers. Their packets record the voxel of the nearest hit. At the end they return to it and are
-// shaded there.
+// order of voxel numbers. Their packets record the voxel of the nearest hit. At the end the packets return to that
+// voxel, where the hit is shaded.
 //
 // A node that has done its `work` takes no more packets. The remaining packets are in the queue's first slots, because
 // the node takes packets from the end of the queue. The next launch (`resume` = 1) processes them. Dividing the work
@@ -34,20 +34,21 @@ static inline mask reserve(const node* n, const packet_batch* f, mask m, uint* r
     lanes_index chosen, level;
     chosen.truth = m & mask_not(is_shadow(f));
     level.all = levels_of(f);
-    const uint each = raya_max_new_packets(((job_words)n->memory)->lights);
-    shared_words all = &f->shared[RAYA_COUNT_RESERVED];
+    const uint packets_per_hit = raya_max_new_packets(((job_words)n->memory)->lights);
+    shared_words used_slots = &f->shared[RAYA_COUNT_RESERVED];
     *reserved = 0;
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!chosen.lane[lane]) continue;
-        const uint need = f->tight ? each : raya_slots_for_ray(each, RAYA_BOUNCES, level.lane[lane]);
+        const uint needed_slots =
+            f->tight ? packets_per_hit : raya_slots_for_ray(packets_per_hit, RAYA_BOUNCES, level.lane[lane]);
         chosen.lane[lane] = 0;
-        if (*all + need > f->capacity) continue;
-        if (shared_add(all, each) + need > f->capacity) {
-            shared_add(all, -each);
+        if (*used_slots + needed_slots > f->capacity) continue;
+        if (shared_add(used_slots, packets_per_hit) + needed_slots > f->capacity) {
+            shared_add(used_slots, -packets_per_hit);
             continue;
         }
         chosen.lane[lane] = RAYA_TRUE;
-        *reserved += each;
+        *reserved += packets_per_hit;
     }
     return m & (is_shadow(f) | chosen.truth);
 }
@@ -64,7 +65,7 @@ static inline void count_tests(packet_batch* f, mask m, objects_words all) {
     count_tests_of(f, RAYA_CONE_TESTS, m, all->cones);
 }
 
-// Moves the packets of the lanes m to the voxels `place`.
+// Sets the next voxel of the packets of the lanes m to `place`.
 static inline void move_packets(packet_batch* f, mask m, index place) {
     lanes_index chosen, to;
     chosen.truth = m;
@@ -76,8 +77,8 @@ static inline void move_packets(packet_batch* f, mask m, index place) {
     }
 }
 
-// Processes the packets of the lanes m. All are in the voxel `place` of this node, or outside the box if `place` is
-// RAYA_NO_VOXEL.
+// Processes the packets of the lanes m. Their rays are in the voxel `place` of this node, or outside the box if `place`
+// is RAYA_NO_VOXEL.
 static inline void process(const node* n, packet_batch* f, mask m, uint place) {
     const uint before = f->appended;
     uint reserved;
@@ -123,8 +124,8 @@ static inline void record_costs(const packet_batch* f, uint end, __global raya_p
 }
 #endif
 
-// Processes the packets in the queue's slots first .. end - 1, at most V. Skips packets that are in other nodes'
-// voxels.
+// Processes the packets in the queue's slots first .. end - 1, at most V. Skips packets whose next voxel belongs to
+// another node.
 RAYA_KERNEL_BODY void process_slots(const node* n, packet_batch* f, uint first, uint end) {
     load_batch(f, first, end);
     lanes_index waiting;
@@ -133,9 +134,9 @@ RAYA_KERNEL_BODY void process_slots(const node* n, packet_batch* f, uint first, 
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!waiting.lane[lane]) continue;
         const uint place = f->voxel.lane[lane];
-        const mask here = waiting.truth & (f->voxel.all == (index)(place));
-        waiting.truth &= mask_not(here);
-        if (place == RAYA_NO_VOXEL || is_own(n, raya_unpack_place(place))) process(n, f, here, place);
+        const mask in_voxel = waiting.truth & (f->voxel.all == (index)(place));
+        waiting.truth &= mask_not(in_voxel);
+        if (place == RAYA_NO_VOXEL || is_own(n, raya_unpack_place(place))) process(n, f, in_voxel, place);
     }
 }
 

@@ -1,5 +1,5 @@
-// Random rays aimed at objects, most of them at silhouettes, edges, rims and corners, where rounding decides whether a
-// kernel finds a hit.
+// Random rays aimed at objects. Most are aimed at silhouettes, edges, rims and corners, where rounding decides whether
+// a kernel finds a hit.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -16,12 +16,13 @@
 
 namespace raya {
 
-/// Bounds of rays that are not wide in a format: coordinates of origins up to `reach`, | |D|^2 - 1 | up to
-/// RAYA_STRETCH.
+/// Bounds of rays that are not wide in a format: no coordinate of an origin exceeds `reach` in absolute value, and |
+/// |D|^2 - 1 | does not exceed RAYA_STRETCH.
 struct RayBounds {
     NumberFormat format;
     double reach = 0;
 
+    /// Returns the spacing of the format's numbers in [1, 2).
     double unit() const { return std::ldexp(1.0, -format.fraction_bits); }
     Vec3 rounded(const Vec3& v) const {
         Vec3 to;
@@ -30,29 +31,28 @@ struct RayBounds {
     }
 };
 
-/// Scales the scene by `scale` and each object by another random factor, 2^-9 to 2. Aligns some cones with coordinate
-/// axes.
-inline Scene of_all_sizes(Scene scene, SplitMix& random, double scale) {
+/// Returns the scene scaled by `scale`. Each object is also scaled by its own random factor, 2^-9 to 2. About a third
+/// of the cones are aligned with a coordinate axis.
+inline Scene with_random_sizes(Scene scene, SplitMix& random, double scale) {
     const auto size = [&] { return std::exp2(random.uniform(-9, 1)); };
     scene.view.from *= scale;
     for (Sphere& s : scene.spheres) s = {scale * s.centre, scale * size() * s.radius, s.surface};
     for (Plane& p : scene.planes) p.distance *= scale;
     for (Polygon& p : scene.polygons) {
-        const double by = size();
+        const double factor = size();
         const Vec3 first = p.vertices[0];
-        for (Vec3& v : p.vertices) v = scale * (first + by * (v - first));
+        for (Vec3& v : p.vertices) v = scale * (first + factor * (v - first));
     }
     for (Cone& c : scene.cones) {
-        const double by = size();
+        const double factor = size();
         if (below(random, 3) == 0) c.apex = c.base + (c.apex - c.base).length() * axis_direction(random);
-        c = {scale * c.base, scale * by * c.base_radius, scale * (c.base + by * (c.apex - c.base)),
-             scale * by * c.apex_radius, c.surface};
+        c = {scale * c.base, scale * factor * c.base_radius, scale * (c.base + factor * (c.apex - c.base)),
+             scale * factor * c.apex_radius, c.surface};
     }
     return scene;
 }
 
 /// The target of a ray: a point of an object, and a direction in which a ray through the point grazes the object.
-/// `tangent` is 0 if any direction may do.
 struct Aim {
     Vec3 point{0}, tangent{0};
 };
@@ -81,13 +81,13 @@ inline Aim aim_at(SplitMix& random, const Polygon& p) {
 inline Aim aim_at(SplitMix& random, const Cone& c) {
     static constexpr std::array<double, 4> kEnds = {0, 1, 1e-3, 1 - 1e-3};
     const Vec3 axis = (c.apex - c.base).normalized(), out = perpendicular(random, axis);
-    const double share = below(random, 2) == 0 ? kEnds[below(random, kEnds.size())] : random.uniform(0, 1);
-    const double radius = std::abs(c.base_radius) + share * (std::abs(c.apex_radius) - std::abs(c.base_radius));
-    const Vec3 point = c.base + share * (c.apex - c.base) + (below(random, 8) == 0 ? 0 : radius) * out;
+    const double fraction = below(random, 2) == 0 ? kEnds[below(random, kEnds.size())] : random.uniform(0, 1);
+    const double radius = std::abs(c.base_radius) + fraction * (std::abs(c.apex_radius) - std::abs(c.base_radius));
+    const Vec3 point = c.base + fraction * (c.apex - c.base) + (below(random, 8) == 0 ? 0 : radius) * out;
     const Vec3 down = c.apex - c.base + (std::abs(c.apex_radius) - std::abs(c.base_radius)) * out;
-    const Vec3 round = axis.cross(out),
-               mixed = random.uniform(-1, 1) * down.normalized() + random.uniform(-1, 1) * round;
-    return {point, below(random, 3) == 0 ? down.normalized() : below(random, 2) == 0 ? round : mixed.normalized()};
+    const Vec3 around = axis.cross(out),
+               mixed = random.uniform(-1, 1) * down.normalized() + random.uniform(-1, 1) * around;
+    return {point, below(random, 3) == 0 ? down.normalized() : below(random, 2) == 0 ? around : mixed.normalized()};
 }
 
 inline Aim aim_at(SplitMix& random, const Scene& scene, std::size_t number) {
@@ -97,8 +97,8 @@ inline Aim aim_at(SplitMix& random, const Scene& scene, std::size_t number) {
     return aim_at(random, scene.cones[number - scene.polygons.size()]);
 }
 
-/// Returns the distance from a point along a direction to the border of the cube of allowed origins (coordinates up to
-/// `reach`).
+/// Returns the distance from point `from` along `direction` to the surface of the cube of allowed origins, whose
+/// coordinates do not exceed `reach` in absolute value.
 inline double distance_within_reach(const RayBounds& bounds, const Vec3& from, const Vec3& direction) {
     double distance = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
@@ -108,7 +108,8 @@ inline double distance_within_reach(const RayBounds& bounds, const Vec3& from, c
     return std::max(distance, 0.0);
 }
 
-inline Vec3 random_start(SplitMix& random, const RayBounds& bounds, const Aim& aim) {
+/// Returns an origin for a ray towards the aim, within the bounds but for rounding.
+inline Vec3 random_origin(SplitMix& random, const RayBounds& bounds, const Aim& aim) {
     const bool grazes = below(random, 2) == 0;
     const Vec3 away = grazes ? (below(random, 2) == 0 ? 1.0 : -1.0) * aim.tangent : random_direction(random);
     const double distance = distance_within_reach(bounds, aim.point, away);
@@ -127,13 +128,13 @@ inline Vec3 random_start(SplitMix& random, const RayBounds& bounds, const Aim& a
     }
 }
 
-/// Returns a ray towards the aim, with an error of a few units in the last place. Its direction has length 1 or any
-/// other length that RAYA_STRETCH allows.
+/// Returns a ray towards the aim, whose direction has an error of a few units in the last place and a length of 1 or
+/// any other length that RAYA_STRETCH allows.
 inline reference::Ray random_aimed_ray(SplitMix& random, const RayBounds& bounds, Aim aim) {
     if (below(random, 2) == 0) aim.point = bounds.rounded(aim.point);
     const double stretch = bounds.format.is_fp32() ? 0x1p-18 : 16 * bounds.unit();  // RAYA_STRETCH
     for (;;) {
-        const Vec3 start = bounds.rounded(random_start(random, bounds, aim));
+        const Vec3 start = bounds.rounded(random_origin(random, bounds, aim));
         const Vec3 arm = aim.point - start;
         const double distance = arm.length(), blur = below(random, 4) * bounds.unit() * random.uniform(0, 7) * distance;
         if (distance == 0) continue;

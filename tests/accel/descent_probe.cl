@@ -1,11 +1,13 @@
-// Test kernel for hits of shadow rays. It adds to the kernels of kernels/checks/hits.cl.
+// Kernels of kernels/checks/hits.cl, and a test kernel for hits of shadow rays.
 #include "kernels/checks/hits.cl"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void stops_by_search(__global const uint* restrict job,
-                     __global const float* restrict rays,
-                     __global uint* restrict objects,    // [ray]: number of any object hit, or RAYA_NO_OBJECT
-                     __global uint* restrict distances)  // [ray]: bits of t
+void shadow_hits_with_accel(__global const uint* restrict job,
+                            __global const float* restrict rays,
+                            __global uint* restrict objects,    // [ray]: number of one of the objects hit;
+                                                                // RAYA_NO_OBJECT without a hit
+                            __global uint* restrict distances)  // [ray]: bits of t of that hit; without a hit, bits of
+                                                                // the ray's limit
 {
     const uint first = first_ray();
     const ray r = load_ray(rays, first);

@@ -1,10 +1,10 @@
-// Test kernel: tests given rays (kernels/checks/rays.clh) against one object each. Sixteen consecutive rays are tested
-// against the same object. The number of rays is a multiple of 16.
+// Test kernel that tests each of the given rays (kernels/checks/rays.clh) against one object. Rays 16 i to 16 i + 15
+// are tested against objects[i]. The number of rays is a multiple of 16.
 #include "kernels/checks/rays.clh"
 #include "kernels/geometry/scene.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void hits_of_one(__global const uint* restrict job,
+void single_object_hits(__global const uint* restrict job,
                  __global const float* restrict rays,
                  __global const uint* restrict objects,      // [ray / 16]: object number in the job, not of a plane
                  __global float* restrict distances) // [ray]: t; without a hit the ray's limit

@@ -1,4 +1,4 @@
-// Partitions (grid registrations) of random scenes, and access to their object lists.
+// Partitions (lists of objects per voxel) of random scenes, and access to their lists.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -7,19 +7,21 @@
 #include <vector>
 
 #include "host/accel/partition.hpp"
-#include "tests/accel/hits_of_one.hpp"
 #include "tests/accel/random_grids.hpp"
+#include "tests/accel/single_object_hits.hpp"
 
 namespace raya {
 
-/// Number formats of the tests. For the last one no error bounds are known, so every object is in every list.
+/// Number formats of the tests. For e5m6 no error bounds are known, so every object is in every list.
 inline const std::vector<std::string> kFormats = {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10", "e7m20t", "e5m6"};
 
-inline bool lists(const Partition& p, std::uint32_t voxel, std::uint32_t object) {
+/// Returns true if the voxel's list contains the object.
+inline bool lists_object(const Partition& p, std::uint32_t voxel, std::uint32_t object) {
     return std::binary_search(p.objects.begin() + p.starts[voxel], p.objects.begin() + p.starts[voxel + 1], object);
 }
 
-inline std::size_t lists_with(const Partition& p, std::uint32_t object) {
+/// Returns the number of lists that contain the object.
+inline std::size_t count_lists_with(const Partition& p, std::uint32_t object) {
     return static_cast<std::size_t>(std::count(p.objects.begin(), p.objects.end(), object));
 }
 
@@ -36,21 +38,22 @@ inline Partition partition_of(const Scene& scene, const std::string& format, con
     return partition(job_in(scene, parse_format(format)), parse_format(format), divisions);
 }
 
-/// Returns half of the error that the partition allows for a ray whose origin is at `reach`. (The tests of the
-/// traversal allow a quarter.)
+/// Returns half of the traversal error, in scene units, that the partition allows for a ray whose origin is at `reach`.
+/// test_traversal.cpp allows a quarter of that error.
 inline double traversal_error(const raya_grid& grid) {
-    double largest = grid.reach;
-    for (std::uint32_t axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(double{grid.low[axis]})});
-    return 8 * 0x1p-24 * largest;
+    double max_coordinate = grid.reach;
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+        max_coordinate = std::max({max_coordinate, std::abs(double{grid.low[axis]})});
+    return 8 * 0x1p-24 * max_coordinate;
 }
 
 inline Divisions random_divisions(SplitMix& random) {
-    const auto along = [&] { return 1 + below(random, 20); };
-    const std::uint32_t x = along(), y = along();
-    return {x, y, along()};
+    const auto random_count = [&] { return 1 + below(random, 20); };
+    const std::uint32_t x = random_count(), y = random_count();
+    return {x, y, random_count()};
 }
 
-/// Returns a random scale of a scene, up to the largest and down to the smallest sizes that the format can represent.
+/// Returns a random scale for a scene, between the smallest and the largest that the format can represent.
 inline double random_scale(SplitMix& random, const NumberFormat& format) {
     const double max_exponent = format.exponent_bits == 5 ? 2 : format.exponent_bits == 6 ? 8 : 16;
     return std::exp2(random.uniform(-max_exponent, max_exponent));

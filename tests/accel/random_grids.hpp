@@ -24,15 +24,16 @@ inline raya_grid random_grid(SplitMix& random) {
                                                  {16, 1, 16}, {5, 8, 3}, {1, 1, 200},  {30, 20, 10}};
     const Divisions divisions = kinds[below(random, static_cast<std::uint32_t>(kinds.size()))];
     const double scale = std::exp2(random.uniform(-20, 20));
-    const double away = below(random, 3) == 0 ? random.uniform(0, 1000) : 1;  // distance from the origin, in box sizes
+    // The grid's maximum distance from the origin, in multiples of `scale`.
+    const double max_distance = below(random, 3) == 0 ? random.uniform(0, 1000) : 1;
     raya_grid grid{};
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const double side = scale * (below(random, 5) == 0 ? random.uniform(1e-3, 1) : 1);
-        grid.low[axis] = static_cast<float>(random.uniform(-1, 1) * away * scale);
+        grid.low[axis] = static_cast<float>(random.uniform(-1, 1) * max_distance * scale);
         grid.cell[axis] = static_cast<float>(side / divisions[axis]);
         grid.divisions[axis] = divisions[axis];
     }
-    grid.reach = static_cast<float>(4 * (away + 1) * scale);
+    grid.reach = static_cast<float>(4 * (max_distance + 1) * scale);
     return grid;
 }
 
@@ -42,13 +43,14 @@ inline Vec3 grid_point(const raya_grid& grid, const Vec3& planes) {
     Vec3 p;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const int a = static_cast<int>(axis);
-        const double whole = std::floor(planes[a]);
-        const double plane = raya_voxel_plane(grid, axis, static_cast<std::uint32_t>(whole));
-        p[a] = planes[a] == whole ? plane : plane + (planes[a] - whole) * grid.cell[axis];
+        const double plane_number = std::floor(planes[a]);
+        const double plane = raya_voxel_plane(grid, axis, static_cast<std::uint32_t>(plane_number));
+        p[a] = planes[a] == plane_number ? plane : plane + (planes[a] - plane_number) * grid.cell[axis];
     }
     return p;
 }
 
+/// Returns a random point of the box.
 inline Vec3 random_place(SplitMix& random, const raya_grid& grid) {
     Vec3 planes;
     for (std::uint32_t axis = 0; axis < 3; ++axis)
@@ -56,6 +58,7 @@ inline Vec3 random_place(SplitMix& random, const raya_grid& grid) {
     return grid_point(grid, planes);
 }
 
+/// Returns a random corner of a voxel.
 inline Vec3 random_corner(SplitMix& random, const raya_grid& grid) {
     Vec3 planes;
     for (std::uint32_t axis = 0; axis < 3; ++axis)
@@ -79,8 +82,8 @@ inline Vec3 special_direction(SplitMix& random) {
     return d.normalized();
 }
 
-/// Returns a random ray of one of these kinds: from inside, from outside or from far away; parallel to an axis; along
-/// edges or faces of voxels; through corners of voxels.
+/// Returns a random ray of one of these kinds: with an origin in the box, outside it or far from it; parallel to an
+/// axis; along edges or faces of voxels; through corners of voxels.
 inline reference::Ray random_grid_ray(SplitMix& random, const raya_grid& grid) {
     const Vec3 inside = random_place(random, grid), corner = random_corner(random, grid);
     const Vec3 other = below(random, 2) == 0 ? random_place(random, grid) : random_corner(random, grid);

@@ -30,7 +30,7 @@ inline VoxelBlock one_voxel(const raya_grid& g, std::uint32_t voxel) {
     return b;
 }
 
-/// The interval of t in which a ray is in a block: in <= t <= out, empty if in > out.
+/// The interval in <= t <= out in which a ray is in a block; empty if in > out.
 struct Passage {
     double in = 0, out = std::numeric_limits<double>::infinity();
     bool empty() const { return in > out; }

@@ -1,5 +1,5 @@
-// Test kernel: traces given rays through a grid by kernels/grid/stepper.clh and records every voxel. Buffers are those
-// of traversal_probe.cl.
+// Test kernel that traces given rays through a grid by kernels/grid/stepper.clh and records every voxel. Its arguments
+// are those of `traverse` (traversal_probe.cl) except `wide`.
 #include "kernels/checks/rays.clh"
 #include "kernels/grid/stepper.clh"
 

@@ -6,8 +6,8 @@
 
 #include "host/accel/bvh.hpp"
 #include "host/verify/hits.hpp"
-#include "tests/accel/hits_of_one.hpp"
 #include "tests/accel/partition_lists.hpp"
+#include "tests/accel/single_object_hits.hpp"
 #include "tests/thorough.hpp"
 
 namespace raya {
@@ -28,10 +28,10 @@ void add_star(Scene& scene, SplitMix& random) {
     scene.polygons.push_back(star);
 }
 
-// Returns objects of all kinds close together, so that boxes overlap.
-Scene crowded_objects(SplitMix& random, int of_each) {
+// Returns a scene with `count_per_kind` objects of each kind close together, so that their boxes overlap.
+Scene crowded_objects(SplitMix& random, int count_per_kind) {
     Scene scene = empty_scene();
-    for (int i = 0; i < of_each; ++i) {
+    for (int i = 0; i < count_per_kind; ++i) {
         for (const ObjectKind& kind : object_kinds())
             if (kind.name != "plane") kind.add(scene, random);
         add_star(scene, random);
@@ -39,11 +39,11 @@ Scene crowded_objects(SplitMix& random, int of_each) {
     return scene;
 }
 
-// Returns aimed rays. A quarter of the directions are replaced by an axis direction, and a third of the limits by a
-// random limit up to 2 * bounds.reach.
-Rays rays_at(SplitMix& random, const Scene& scene, const RayBounds& bounds, int turns) {
+// Returns 16 * `rounds` rays aimed at each object. A quarter of the directions are replaced by an axis direction, and a
+// third of the limits by a random limit up to 2 * bounds.reach.
+Rays rays_at(SplitMix& random, const Scene& scene, const RayBounds& bounds, int rounds) {
     Rays rays;
-    for (const reference::Ray& aimed : aim_at_all(random, scene, bounds, turns).rays) {
+    for (const reference::Ray& aimed : aim_at_all(random, scene, bounds, rounds).rays) {
         std::array<float, 3> origin{}, direction{};
         const bool along_axis = below(random, 4) == 0;
         const std::uint32_t axis = below(random, 3);
@@ -69,19 +69,19 @@ Tally compare(const Variant& variant, unsigned cases) {
     for (unsigned seed = 1; seed <= cases; ++seed) {
         SplitMix random(seed);
         const double scale = random_scale(random, variant.format);
-        const Scene scene = of_all_sizes(crowded_objects(random, 12), random, scale);
+        const Scene scene = with_random_sizes(crowded_objects(random, 12), random, scale);
         PackedJob job = job_in(scene, variant.format);
         append_bvh(job, variant.format);
         const RayBounds bounds{variant.format, 2.0 * job.header().extent};
         const Rays rays = rays_at(random, scene, bounds, 1);
-        const Hits all = find_hits(runner, "hits_of_all", job.words(), rays);
-        const Hits tree = find_hits(runner, "hits_by_search", job.words(), rays);
-        const Hits stops = find_hits(runner, "stops_by_search", job.words(), rays);
+        const Hits all = find_hits(runner, "hits_without_accel", job.words(), rays);
+        const Hits traversed = find_hits(runner, "hits_with_accel", job.words(), rays);
+        const Hits shadow_hits = find_hits(runner, "shadow_hits_with_accel", job.words(), rays);
         for (std::size_t i = 0; i < rays.count(); ++i) {
             const bool hit = all.objects[i] != kNoObject;
             tally.hits += hit;
-            tally.wrong += tree.objects[i] != all.objects[i] || tree.distances[i] != all.distances[i] ||
-                           (stops.objects[i] != kNoObject) != hit;
+            tally.wrong += traversed.objects[i] != all.objects[i] || traversed.distances[i] != all.distances[i] ||
+                           (shadow_hits.objects[i] != kNoObject) != hit;
         }
         tally.rays += rays.count();
     }
@@ -107,12 +107,13 @@ TEST_CASE("BVH traversal finds the hits of testing all objects, in every format"
         }
 }
 
-TEST_CASE("boxes without a margin, a missing edge and filters without a bound are detected", "[descent]") {
+TEST_CASE("injected faults are detected: boxes without a margin, a missing edge, filters without a bound",
+          "[descent]") {
     struct Mutant {
         const char* format;
         SourcePatch patch;
     };
-    const std::vector<Mutant> faults = {
+    const std::vector<Mutant> mutants = {
         {"spa22", {"geometry/outline_filter.clh", "5.0f * RAYA_ERROR", "0.1f * RAYA_ERROR"}},
         {"fp32",
          {"bvh/leaves.clh", "edge < edges; edge += RAYA_LANES)\n        crossed",
@@ -120,7 +121,7 @@ TEST_CASE("boxes without a margin, a missing edge and filters without a bound ar
         {"spa22",
          {"geometry/outline_filter.clh", "(fabs(rising - falling) > error)", "(fabs(rising - falling) > 0.0f)"}},
         {"fp32", {"bvh/boxes.clh", "near <= far;", "near < far * (1.0f - 0x1p-12f);"}}};
-    for (const auto& [name, patch] : quick_of(2, faults)) {
+    for (const auto& [name, patch] : quick_of(2, mutants)) {
         const NumberFormat format = parse_format(name);
         CAPTURE(name, patch.file, patch.replace);
         CHECK(compare({16, true, format, {patch}, tree_options(!format.is_fp32())}, 4).wrong > 0);

@@ -1,4 +1,4 @@
-// Reading the words of a grid as the kernels do yields the object lists of the partition.
+// The words of a grid, read as the kernels read them, contain the object lists of the partition.
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -11,9 +11,9 @@ namespace {
 
 raya_grid_words grid_of(const PackedJob& job) { return record_at<raya_grid_words>(job.words(), job.header().accel_at); }
 
-/// Returns the object numbers in the list of a voxel word. Checks that every sphere's row holds the words of the
-/// sphere.
-std::vector<std::uint32_t> objects_behind(const PackedJob& job, std::uint32_t word) {
+/// Returns the object numbers in the list that a voxel word describes. Checks that the row of every sphere holds the
+/// sphere's words.
+std::vector<std::uint32_t> objects_in_list(const PackedJob& job, std::uint32_t word) {
     const raya_grid_words grid = grid_of(job);
     const raya_objects objects = job.header().objects;
     std::vector<std::uint32_t> numbers;
@@ -39,14 +39,15 @@ std::vector<std::uint32_t> objects_behind(const PackedJob& job, std::uint32_t wo
     return numbers;
 }
 
+/// Checks that each voxel's list is that of the partition.
 void check_lists(const PackedJob& job, const Partition& p) {
     const raya_grid_words grid = grid_of(job);
     CHECK(grid.rows_at % 4 == 0);
     for (std::size_t v = 0; v + 1 < p.starts.size(); ++v) {
         const std::vector<std::uint32_t> expected(p.objects.begin() + p.starts[v], p.objects.begin() + p.starts[v + 1]);
-        if (objects_behind(job, job.words()[grid.voxels_at + v]) != expected) {
+        if (objects_in_list(job, job.words()[grid.voxels_at + v]) != expected) {
             CAPTURE(v);
-            FAIL("another list");
+            FAIL("the voxel's list differs from the partition's");
         }
     }
 }

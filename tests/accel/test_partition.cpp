@@ -49,11 +49,11 @@ std::size_t touched_voxels(const raya_grid& g, const Sphere& s) {
 
 }  // namespace
 
-TEST_CASE("lists are ascending and hold all finite objects and no planes; copies counts the further entries") {
+TEST_CASE("lists are ascending and hold all finite objects and no planes; copies() is the number of repeated entries") {
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
         SplitMix random(seed);
         const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);
-        const PackedJob job = job_in(of_all_sizes(mixed_scene(seed), random, 1), format);
+        const PackedJob job = job_in(with_random_sizes(mixed_scene(seed), random, 1), format);
         const Divisions divisions = random_divisions(random);
         const Partition p = partition(job, format, divisions);
         CAPTURE(seed, divisions);
@@ -97,8 +97,8 @@ TEST_CASE("an object well inside a voxel is registered only there") {
             const Partition p = partition_of(scene, format, {4, 4, 4});
             CAPTURE(format, seed, kind.name, voxel);
             REQUIRE(bits({p.grid.low, p.grid.low + 3}) == bits({grid.low, grid.low + 3}));
-            REQUIRE(lists_with(p, 2) == 1);
-            REQUIRE(lists(p, raya_voxel(p.grid, voxel[0], voxel[1], voxel[2]), 2));
+            REQUIRE(count_lists_with(p, 2) == 1);
+            REQUIRE(lists_object(p, raya_voxel(p.grid, voxel[0], voxel[1], voxel[2]), 2));
         }
     }
 }
@@ -133,8 +133,8 @@ TEST_CASE("an object that ends just before a plane is registered on both sides")
         scene.spheres[2].centre.x += plane - slack - box.max.x;
         const Partition p = partition_of(scene, "fp32", {2, 2, 2});
         const auto listed = [&](std::uint32_t x) {
-            return lists(p, raya_voxel(grid, x, 0, 0), 2) || lists(p, raya_voxel(grid, x, 1, 0), 2) ||
-                   lists(p, raya_voxel(grid, x, 0, 1), 2) || lists(p, raya_voxel(grid, x, 1, 1), 2);
+            return lists_object(p, raya_voxel(grid, x, 0, 0), 2) || lists_object(p, raya_voxel(grid, x, 1, 0), 2) ||
+                   lists_object(p, raya_voxel(grid, x, 0, 1), 2) || lists_object(p, raya_voxel(grid, x, 1, 1), 2);
         };
         CAPTURE(seed, slack, plane);
         REQUIRE(HitRegions(job_in(scene, {}), {}).region(2).box.max.x < plane);
@@ -143,14 +143,14 @@ TEST_CASE("an object that ends just before a plane is registered on both sides")
     }
 }
 
-TEST_CASE("large slanted objects are not in all voxels") {
+TEST_CASE("large slanted objects are registered only near their surfaces") {
     constexpr double kSide = 16;
     Scene scene = cornered_scene();
     scene.polygons = {{{{-1, -1, -1}, {1, -1, 0.5}, {1, 1, 1}, {-1, 1, -0.5}}, {}, 0}};
     scene.cones = {{{-0.9, -0.9, -0.9}, 0.01, {0.9, 0.9, 0.9}, 0.01, 0}};
     const Partition p = partition_of(scene, "fp32", {16, 16, 16});
-    CHECK(double(lists_with(p, 2)) < 2.5 * kSide * kSide);
-    CHECK(double(lists_with(p, 3)) < 14 * kSide);
+    CHECK(double(count_lists_with(p, 2)) < 2.5 * kSide * kSide);
+    CHECK(double(count_lists_with(p, 3)) < 14 * kSide);
 }
 
 TEST_CASE("the box contains all finite objects, and its sides are never 0") {
@@ -159,7 +159,7 @@ TEST_CASE("the box contains all finite objects, and its sides are never 0") {
         const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);
         const ObjectKind& kind = object_kinds()[seed % object_kinds().size()];
         const PackedJob job =
-            job_in(of_all_sizes(random_scene(kind, seed, 5), random, random_scale(random, format)), format);
+            job_in(with_random_sizes(random_scene(kind, seed, 5), random, random_scale(random, format)), format);
         const HitRegions regions(job, format);
         const Divisions divisions = random_divisions(random);
         const raya_grid grid = partition(job, format, divisions).grid;
@@ -201,7 +201,7 @@ TEST_CASE("a scene without finite objects has a box with side 1 and empty lists"
     }
 }
 
-TEST_CASE("if no bound is known every object is in every list") {
+TEST_CASE("if no error bound is known, every object is in every list") {
     Scene coarse = mixed_scene(1), huge = random_scene(object_kinds()[0], 2), steep = mixed_scene(3);
     huge.spheres[0].centre.x = 100;
     steep.cones.push_back({{0, 0, 0}, 1, {0, 0, 0.01}, 0, 0});
@@ -222,7 +222,7 @@ TEST_CASE("if no bound is known every object is in every list") {
     CHECK(divisions_for(job_in(coarse, parse_format("e8m9")), parse_format("e8m9"), 1000) == Divisions{1, 1, 1});
 }
 
-TEST_CASE("the reach is twice the scene's extent, with planes as far as the voxels' size allows") {
+TEST_CASE("the reach is twice the scene's extent; with planes it is as large as the voxel size allows") {
     Scene scene = mixed_scene(1);
     REQUIRE(!scene.planes.empty());
     for (const std::string format : {"fp32", "e6m15", "e8m12"}) {

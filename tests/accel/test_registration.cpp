@@ -33,18 +33,18 @@ bool is_listed_near(const Partition& p, const Vec3& point, double error, std::ui
     for (const std::uint32_t z : at[2])
         for (const std::uint32_t y : at[1])
             for (const std::uint32_t x : at[0])
-                if (!lists(p, raya_voxel(p.grid, x, y, z), object)) return false;
+                if (!lists_object(p, raya_voxel(p.grid, x, y, z), object)) return false;
     return !at[0].empty() && !at[1].empty() && !at[2].empty();
 }
 
 // Checks that hits lie in the regions of their objects and in voxels that list the objects. Returns the number of hits.
 std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scene, const NumberFormat& format,
-                       int turns) {
+                       int rounds) {
     const PackedJob job = job_in(scene, format);
     const Partition p = partition(job, format, random_divisions(random));
     const double error = traversal_error(p.grid), extent = job.header().extent;
     const RayBounds bounds{format, std::min(2 * extent, double{p.grid.reach})};
-    const std::vector<FoundHit> hits = hits_of_one(runner, job, aim_at_all(random, scene, bounds, turns));
+    const std::vector<FoundHit> hits = single_object_hits(runner, job, aim_at_all(random, scene, bounds, rounds));
     const HitRegions regions(job, format);
     const std::vector<std::uint32_t> numbers = finite_numbers(job);
     for (const FoundHit& hit : hits) {
@@ -74,14 +74,15 @@ TEST_CASE("every hit lies in voxels that list its object") {
                 SplitMix random(seed);
                 CAPTURE(kind.name, seed);
                 const double scale = random_scale(random, format);
-                hits += check_hits(runner, random, of_all_sizes(random_scene(kind, seed, 8), random, scale), format, 2);
+                hits += check_hits(runner, random, with_random_sizes(random_scene(kind, seed, 8), random, scale),
+                                   format, 2);
             }
         for (const std::string& scene : kScenes) {
             SplitMix random(1);
             hits += check_hits(runner, random, scene_of(scene), format, 1);
         }
     }
-    CHECK(cases == 7 * 7 * case_count());
+    CHECK(cases == 7 * 7 * case_count());  // 7 formats, 7 kinds of finite objects
     CHECK(hits > 80 * cases);
 }
 
@@ -98,7 +99,7 @@ TEST_CASE("a discriminant that is flushed to 0 is not a hit of a cone") {
         rays.rays.push_back({{-1, -std::ldexp(1.0, -14), 0.5}, {1, std::ldexp(1.0, -14), 0}});
         rays.rays.push_back({{0.5, 2, 0}, {0, -1, 0}});
     }
-    const std::vector<FoundHit> hits = hits_of_one(runner, job_in(scene, format), rays);
+    const std::vector<FoundHit> hits = single_object_hits(runner, job_in(scene, format), rays);
     CHECK(hits.size() == 8);
     for (const FoundHit& hit : hits) CHECK(hit.t == 2 - 0.125);
 }

@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kGrids = 40, kRays = 1024;  // rays per grid
+constexpr std::size_t kGrids = 40, kRays = 1024;  // kRays: number of rays per grid
 
 struct SteppedVoxels {
     std::vector<std::uint32_t> voxels;  // [ray][max_count]: voxel numbers, RAYA_NO_VOXEL after the last
@@ -51,7 +51,8 @@ SteppedVoxels stepped_traversal(KernelRunner& runner, const raya_grid& grid, con
 }
 
 /// Returns the number of voxels that stepper.clh must visit, given the voxels that traversal.clh visits. stepper.clh
-/// skips the last voxels if the ray crosses them with length 0, as where it leaves the box through an edge.
+/// skips the last voxels if the ray's path through them has length 0, for example if the ray leaves the box through an
+/// edge.
 std::size_t voxels_until_end(const SteppedVoxels& w, std::size_t ray, std::uint32_t max_count) {
     std::size_t count = 0;
     while (count < max_count && w.voxels[ray * max_count + count] != RAYA_NO_VOXEL) ++count;
@@ -80,8 +81,9 @@ TEST_CASE("for every number of lanes, the stepper visits the voxels of the plain
                 CAPTURE(lanes, seed, ray, end);
                 std::size_t i = ray * max_count;
                 for (; i < ray * max_count + end; ++i) {
-                    if (found.voxels[i] != expected.voxels[i]) FAIL("another voxel");
-                    if (bits({found.leaves[i]}) != bits({expected.leaves[i]})) FAIL("left at another t");
+                    if (found.voxels[i] != expected.voxels[i]) FAIL("the stepper visits a different voxel");
+                    if (bits({found.leaves[i]}) != bits({expected.leaves[i]}))
+                        FAIL("the stepper leaves the voxel at a different t");
                 }
                 if (i < (ray + 1) * max_count) REQUIRE(found.voxels[i] == RAYA_NO_VOXEL);
                 steps += end;

@@ -1,5 +1,5 @@
-// Compares the grid traversal (traversal.clh) with a reference that uses bisection: voxels are visited in order, none
-// is missed, and none is far from the ray.
+// Compares the grid traversal (traversal.clh) with a reference that uses bisection: a traversal visits voxels in order,
+// misses none, and visits none that is far from the ray.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,13 +14,14 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kTraversedGrids = 50, kTraversedRays = 2048;  // rays per grid
+constexpr std::size_t kTraversedGrids = 50, kTraversedRays = 2048;  // kTraversedRays: number of rays per grid
 
 struct Traversals {
-    std::vector<std::uint32_t> wide, voxels;  // [ray]; [ray][max_count]
-    std::vector<float> leaves;                // [ray][max_count]: t at which the ray leaves each voxel
-    std::vector<float> resumed_leaves;        // [ray][max_count]: as `leaves`, if the traversal is resumed in the voxel
-    std::vector<std::uint32_t> next_voxels;
+    std::vector<std::uint32_t> wide;         // [ray]: 1 if the ray is wide, else 0
+    std::vector<std::uint32_t> voxels;       // [ray][max_count]: voxel numbers, then RAYA_NO_VOXEL
+    std::vector<float> leaves;               // [ray][max_count]: t at which the ray leaves each voxel
+    std::vector<float> resumed_leaves;       // [ray][max_count]: as `leaves`, if the traversal is resumed in the voxel
+    std::vector<std::uint32_t> next_voxels;  // [ray][max_count]: voxel after each voxel, if resumed in it
 };
 
 std::vector<std::uint32_t> grid_words(const raya_grid& grid) {
@@ -48,7 +49,7 @@ Traversals traverse(KernelRunner& runner, const raya_grid& grid, const std::vect
     return {runner.read(wide), runner.read(voxels), runner.read(leaves), runner.read(resumed), runner.read(nexts)};
 }
 
-/// The voxels that a ray visits, in order, and t at which it leaves them.
+/// The voxels that a ray visits, in order, and t at which the ray leaves each.
 struct Path {
     std::vector<std::uint32_t> voxels;
     std::vector<float> leaves;
@@ -124,8 +125,8 @@ Entry entry(const raya_grid& grid, const reference::Ray& ray, double limit, doub
 double random_limit(SplitMix& random, const raya_grid& grid, const reference::Ray& ray) {
     const Passage box = passage(grid, all_voxels(grid), ray, 0);
     if (below(random, 4) != 0 || box.empty()) return kFarLimit;
-    static constexpr std::array<double, 4> kShares = {0.3, 0.99, 1.01, 1.5};
-    return fp32(box.in * kShares[below(random, kShares.size())]);
+    static constexpr std::array<double, 4> kFractions = {0.3, 0.99, 1.01, 1.5};
+    return fp32(box.in * kFractions[below(random, kFractions.size())]);
 }
 
 /// A random grid, random rays, and the limits of the rays.
@@ -219,10 +220,13 @@ TEST_CASE("a ray is wide only if it starts beyond the reach or its direction is 
     raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
     const std::vector<std::array<float, 6>> near = {
         {0, 0, 0, 1, 0, 0}, {8, -8, 8, 0, 0.6F, 0.8F}, {0, 0, 0, 0, 0, kLong}};
-    const std::vector<std::array<float, 6>> wide = {
-        {kAboveReach, 0, 0, 1, 0, 0}, {0, -kAboveReach, 0, 1, 0, 0}, {0, 0, kAboveReach, 1, 0, 0},
-        {0, 0, 0, kTooLong, 0, 0},
-        {0, 0, 0, 0, 0, -kTooShort}, {0, 0, 0, 0, NAN, 1},      {0, 0, 0, 0, 0, 0}};
+    const std::vector<std::array<float, 6>> wide = {{kAboveReach, 0, 0, 1, 0, 0},
+                                                    {0, -kAboveReach, 0, 1, 0, 0},
+                                                    {0, 0, kAboveReach, 1, 0, 0},
+                                                    {0, 0, 0, kTooLong, 0, 0},
+                                                    {0, 0, 0, 0, 0, -kTooShort},
+                                                    {0, 0, 0, 0, NAN, 1},
+                                                    {0, 0, 0, 0, 0, 0}};
     std::vector<float> words;
     for (const auto* rays : {&near, &wide})
         for (const auto& ray : *rays) {
@@ -238,8 +242,8 @@ TEST_CASE("a ray is wide only if it starts beyond the reach or its direction is 
     }
 }
 
-// All rays that kernels make start with such directions. After several reflections a ray may be wide.
-TEST_CASE("rays of normalised directions are never wide, those reflected once hardly ever") {
+// The kernels make primary and shadow rays with normalised directions. After several reflections a ray may be wide.
+TEST_CASE("rays with normalised directions are never wide; rays reflected once are rarely wide") {
     const raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
     constexpr std::size_t kCount = 1 << 16;
     for (const char* format : {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10t"}) {

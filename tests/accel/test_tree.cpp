@@ -1,4 +1,4 @@
-// Invariants of every BVH that is built.
+// Invariants of BVHs, checked on BVHs built from random items.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -26,7 +26,7 @@ BvhItem item_at(SplitMix& random, std::uint32_t number, double size, int layout)
     return item;
 }
 
-/// Returns true if `outer` is the smallest box that contains all boxes.
+/// Returns true if `outer` is the smallest box that contains the boxes of first .. end - 1.
 template <class Boxed>
 bool fits(const Bounds& outer, const Boxed* first, const Boxed* end) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -78,7 +78,7 @@ TEST_CASE("BVH: every item is in one leaf of its kind, and boxes are tight", "[t
         CHECK(numbers.size() == count);
         CHECK(std::set<std::uint32_t>(numbers.begin(), numbers.end()).size() == count);
         CHECK(tree.depth <= 40);
-        // The tree does not depend on the order of the items.
+        // The BVH does not depend on the order of the items.
         std::reverse(items.begin(), items.end());
         const Bvh rebuilt = build_bvh(items);
         REQUIRE(rebuilt.items.size() == tree.items.size());

@@ -1,8 +1,8 @@
-// Test kernels: trace given rays (kernels/checks/rays.clh) through a grid by kernels/grid/traversal.clh and record
-// every voxel.
+// Test kernels that trace given rays (kernels/checks/rays.clh) through a grid by kernels/grid/traversal.clh.
 #include "kernels/checks/rays.clh"
 #include "kernels/grid/traversal.clh"
 
+// Records every voxel on each ray.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void traverse(__global const raya_grid* restrict grid,
               __global const float* restrict rays,
@@ -53,11 +53,12 @@ void resumes(__global const raya_grid* restrict grid,
         }
 }
 
-// Applies is_wide() to rays with normalised directions, and to these rays after one reflection at a normalised normal.
+// Applies is_wide() to rays with normalised directions, and to the same rays after a reflection at a normalised normal.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void made_directions(__global const raya_grid* restrict grid,
                      __global const float* restrict arms,  // [ray][6]: a direction and a normal, not normalised
-                     __global uint* restrict wide)         // [ray][2]: 1 if the ray, the reflected ray is wide; else 0
+                     __global uint* restrict wide)         // [ray][2]: 1 if wide, else 0, of the ray and of the
+                                                           // reflected ray
 {
     const uint first = first_ray();
     const vec zero = {num_all(0.0f), num_all(0.0f), num_all(0.0f)};

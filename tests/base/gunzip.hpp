@@ -18,7 +18,7 @@ inline std::string gunzip(std::string_view bytes) {
     if (pipe == nullptr) throw std::runtime_error("cannot run gzip");
     std::string text, block(1 << 16, '\0');
     while (const std::size_t read = std::fread(block.data(), 1, block.size(), pipe)) text.append(block, 0, read);
-    if (::pclose(pipe) != 0) throw std::runtime_error("gzip cannot unpack it");
+    if (::pclose(pipe) != 0) throw std::runtime_error("gzip cannot unpack the bytes");
     return text;
 }
 

@@ -1,4 +1,4 @@
-// A new folder for a test case, removed at its end.
+// A new folder for a test case; the destructor removes the folder.
 #pragma once
 #include <filesystem>
 #include <iterator>
@@ -11,7 +11,7 @@ class ScratchFolder : public TemporaryFolder {
   public:
     ScratchFolder() : TemporaryFolder("raya-test") {}
 
-    /// The number of entries of the folder.
+    /// Returns the number of entries of the folder.
     long entries() const {
         return std::distance(std::filesystem::directory_iterator(path()), std::filesystem::directory_iterator());
     }

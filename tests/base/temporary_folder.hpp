@@ -12,8 +12,8 @@ class TemporaryFolder {
   public:
     /// Creates the folder. Its name starts with `name`. Throws std::system_error if the folder cannot be created.
     explicit TemporaryFolder(const std::string& name) {
-        const std::string open_end(6, 'X');  // mkdtemp replaces it
-        std::string made = (std::filesystem::temp_directory_path() / (name + "-" + open_end)).string();
+        const std::string random_part(6, 'X');  // mkdtemp() replaces these letters
+        std::string made = (std::filesystem::temp_directory_path() / (name + "-" + random_part)).string();
         if (::mkdtemp(made.data()) == nullptr)
             throw std::system_error(errno, std::generic_category(), "cannot create a temporary folder: " + made);
         path_ = made;

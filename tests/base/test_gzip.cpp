@@ -21,12 +21,12 @@ TEST_CASE("gzip unpacks the appended text, whatever its pieces", "[report]") {
     SplitMix random(kSeed);
     for (int i = 0; i < 40; ++i) {
         CAPTURE(kSeed, i);
-        const std::uint64_t pieces = random.next() % 20, longest = std::uint64_t{1} << (random.next() % 19);
+        const std::uint64_t pieces = random.next() % 20, max_length = std::uint64_t{1} << (random.next() % 19);
         const bool noise = random.next() % 2 == 0;  // false: text that compresses well
         std::string text;
         GzipText file;
         for (std::uint64_t piece = 0; piece < pieces; ++piece) {
-            std::string part(random.next() % longest, 'a');
+            std::string part(random.next() % max_length, 'a');
             if (noise)
                 for (char& c : part) c = static_cast<char>(random.next());
             file.append(part);

@@ -21,14 +21,14 @@
 namespace raya {
 namespace {
 
-struct End {
+struct ChildEnd {
     int status = 0;  // as waitpid() returns it
     std::string output;
 };
 
 /// Runs `work` in a child process; returns the child's status and its output on stderr.
 template <class Work>
-End in_child_process(const Work& work) {
+ChildEnd in_child_process(const Work& work) {
     std::array<int, 2> ends{};
     if (::pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
     const pid_t child = ::fork();
@@ -40,7 +40,7 @@ End in_child_process(const Work& work) {
         ::_exit(99);
     }
     ::close(ends[1]);
-    End end;
+    ChildEnd end;
     std::array<char, 256> block{};
     for (ssize_t read = 0; (read = ::read(ends[0], block.data(), block.size())) > 0;)
         end.output.append(block.data(), static_cast<std::size_t>(read));
@@ -49,8 +49,8 @@ End in_child_process(const Work& work) {
     return end;
 }
 
-/// Calls `interrupt` when one of the process's files reaches `bytes`: during a write, always at the same byte.
-void interrupt_at(rlim_t bytes, void (*interrupt)(int)) {
+/// Calls `interrupt` when a file of this process reaches `bytes` bytes: during a write, and always at the same byte.
+void interrupt_at_size(rlim_t bytes, void (*interrupt)(int)) {
     std::signal(SIGXFSZ, interrupt);
     const rlimit limit{bytes, RLIM_INFINITY};
     ::setrlimit(RLIMIT_FSIZE, &limit);
@@ -62,9 +62,9 @@ TEST_CASE("an interruption in the middle of a file removes its written part", "[
     const std::string bytes(100'000, 'x');
     for (const char* name : {"new", "old"}) {
         CAPTURE(name);
-        const End end = in_child_process([&] {
+        const ChildEnd end = in_child_process([&] {
             install_interrupt_handlers();
-            interrupt_at(50'000, [](int) { ::raise(SIGINT); });
+            interrupt_at_size(50'000, [](int) { ::raise(SIGINT); });
             write_whole_file(folder / name, bytes);
         });
         CHECK(WIFSIGNALED(end.status));
@@ -78,8 +78,8 @@ TEST_CASE("an interruption in the middle of a file removes its written part", "[
 
 TEST_CASE("without the handler the partly written file remains: the test above can fail", "[interruption]") {
     const ScratchFolder folder;
-    const End end = in_child_process([&] {
-        interrupt_at(50'000, [](int) { ::raise(SIGINT); });
+    const ChildEnd end = in_child_process([&] {
+        interrupt_at_size(50'000, [](int) { ::raise(SIGINT); });
         write_whole_file(folder / "new", std::string(100'000, 'x'));
     });
     CHECK(WTERMSIG(end.status) == SIGINT);
@@ -89,7 +89,7 @@ TEST_CASE("without the handler the partly written file remains: the test above c
 TEST_CASE("each signal ends the process with the signal's own status", "[interruption]") {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         CAPTURE(signal);
-        const End end = in_child_process([&] {
+        const ChildEnd end = in_child_process([&] {
             install_interrupt_handlers();
             ::raise(signal);
         });
@@ -102,7 +102,7 @@ TEST_CASE("each signal ends the process with the signal's own status", "[interru
 TEST_CASE("a library's handler is called, and the process ends nevertheless", "[interruption]") {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         CAPTURE(signal);
-        const End end = in_child_process([&] {
+        const ChildEnd end = in_child_process([&] {
             install_interrupt_handlers();
             struct sigaction action {};
             action.sa_handler = [](int) { (void)!::write(STDERR_FILENO, "theirs\n", 7); };
@@ -115,7 +115,7 @@ TEST_CASE("a library's handler is called, and the process ends nevertheless", "[
 }
 
 TEST_CASE("a signal that the caller ignores stays ignored, as under nohup", "[interruption]") {
-    const End end = in_child_process([] {
+    const ChildEnd end = in_child_process([] {
         std::signal(SIGHUP, SIG_IGN);
         install_interrupt_handlers();
         ::raise(SIGHUP);
@@ -127,9 +127,9 @@ TEST_CASE("a signal that the caller ignores stays ignored, as under nohup", "[in
 
 TEST_CASE("an interruption removes only files in progress, up to the maximum of 16", "[interruption]") {
     const ScratchFolder folder;
-    const End end = in_child_process([&] {
+    const ChildEnd end = in_child_process([&] {
         install_interrupt_handlers();
-        for (int i = 0; i < 100; ++i) {  // finished files free their slots
+        for (int i = 0; i < 100; ++i) {  // finished files free their entries in the table
             const FileInProgress done(folder / "done");
             std::ofstream(folder / "done") << i;
         }

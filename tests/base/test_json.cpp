@@ -87,7 +87,7 @@ TEST_CASE("a syntax error names file, line and member") {
           "x.json:2: a[1].b: -1e400 is outside the range of double precision");
     CHECK(parse_error_message("[1" + std::string(1000, '0') + "]").size() < 120);
     CHECK(parse_error_message("{\"a\": {\"b\": 1, \"c\": 2,\n\"b\": 3}}") ==
-          "x.json:2: a.b: the object has this member twice");
+          "x.json:2: a.b: member 'b' occurs twice in this JSON object");
     const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
     CHECK(parsed(nested(100)).dump() == nested(100));
     CHECK(parse_error_message(nested(101)) == "x.json:1: nested more than 100 levels deep");

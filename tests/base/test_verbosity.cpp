@@ -12,19 +12,19 @@
 namespace raya {
 namespace {
 
-/// The output of `action` on stderr at verbosity `level`.
+/// Returns the output of `action` on stderr at verbosity `level`.
 template <class Action>
 std::string output_at(int level, Action&& action) {
     const ScratchFolder folder;
     const std::string file = folder / "stderr";
-    const int kept = ::dup(STDERR_FILENO), opened = ::open(file.c_str(), O_WRONLY | O_CREAT, 0600);
-    ::dup2(opened, STDERR_FILENO);
+    const int saved_stderr = ::dup(STDERR_FILENO), output_file = ::open(file.c_str(), O_WRONLY | O_CREAT, 0600);
+    ::dup2(output_file, STDERR_FILENO);
     set_verbosity(level);
     action();
     set_verbosity(kDefaultVerbosity);
-    ::dup2(kept, STDERR_FILENO);
-    ::close(kept);
-    ::close(opened);
+    ::dup2(saved_stderr, STDERR_FILENO);
+    ::close(saved_stderr);
+    ::close(output_file);
     std::ifstream text(file);
     return {std::istreambuf_iterator<char>(text), {}};
 }

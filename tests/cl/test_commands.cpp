@@ -21,7 +21,7 @@ constexpr std::size_t kMaxSize = std::numeric_limits<std::size_t>::max();
 
 const std::string kSource = "kernel void add(global uint* a, const uint b) { a[get_global_id(0)] += b; }";
 
-std::vector<cl_uint> counting(std::size_t count, cl_uint first) {
+std::vector<cl_uint> consecutive_numbers(std::size_t count, cl_uint first) {
     std::vector<cl_uint> words(count);
     std::iota(words.begin(), words.end(), first);
     return words;
@@ -38,7 +38,7 @@ std::vector<cl_uint> contents(Session& session, const Buffer<cl_uint>& buffer) {
 TEST_CASE("copies rotate the blocks of a ring exactly", "[cl]") {
     Session session(choose_device(""));
     constexpr std::size_t kPes = 7, kBlock = 13;  // odd sizes, so that blocks are not aligned
-    const std::vector<cl_uint> before = counting(kPes * kBlock, 1000);
+    const std::vector<cl_uint> before = consecutive_numbers(kPes * kBlock, 1000);
     Buffer<cl_uint> from = session.buffer<cl_uint>("from", before.size());
     Buffer<cl_uint> to = session.buffer<cl_uint>("to", before.size());
     session.write("load", from, before);
@@ -58,13 +58,13 @@ TEST_CASE("copies rotate the blocks of a ring exactly", "[cl]") {
 TEST_CASE("block copies move their elements and change no others", "[cl]") {
     constexpr std::uint64_t kSeed = 1;
     SplitMix random(kSeed);
-    const auto below = [&](std::size_t end) { return std::size_t(random.next() % end); };
+    const auto random_below = [&](std::size_t end) { return std::size_t(random.next() % end); };
     Session session(choose_device(""));
     for (int i = 0; i < 300; ++i) {
-        const std::size_t blocks = 1 + below(20), count = 1 + below(30);
+        const std::size_t blocks = 1 + random_below(20), count = 1 + random_below(30);
         const auto place = [&] {
-            const std::size_t offset = below(5);
-            return Session::Blocks{offset, offset + count + below(5), below(3)};
+            const std::size_t offset = random_below(5);
+            return Session::Blocks{offset, offset + count + random_below(5), random_below(3)};
         };
         const BlockCopy copy{place(), place(), count, blocks};
         CAPTURE(kSeed, i, blocks, count, copy.from.offset, copy.from.pitch, copy.to.offset, copy.to.pitch);
@@ -152,7 +152,7 @@ TEST_CASE("the profile contains every command in order, with increasing times", 
     Session session(choose_device(""));
     auto add = session.build("add", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint>("add");
     Buffer<cl_uint> a = session.buffer<cl_uint>("a", 64), b = session.buffer<cl_uint>("b", 64);
-    session.write("load", a, counting(64, 0));
+    session.write("load", a, consecutive_numbers(64, 0));
     for (cl_uint i = 0; i < 5; ++i) session.launch("add", add, 8, 8, a, i);
     session.copy("move", a, 0, b, 0, 64);
     session.launch("add", add, 4, 16, b, 1U);
@@ -222,7 +222,7 @@ TEST_CASE("transfers of any size through pinned memory move the same bytes", "[c
     constexpr std::uint64_t kSeed = 20261123;
     SplitMix random(kSeed);
     Session session(choose_device(""), Timing::kOn, Transfers::kStaged);
-    constexpr std::size_t kHalf = kPinnedHalf / sizeof(cl_uint);
+    constexpr std::size_t kHalf = kPinnedHalfBytes / sizeof(cl_uint);
     Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 5 * kHalf);
     session.fill("clear", buffer, 0);
     std::vector<cl_uint> expected(buffer.size());
@@ -233,7 +233,7 @@ TEST_CASE("transfers of any size through pinned memory move the same bytes", "[c
         const std::size_t count = edge ? edge - 1 : random.next() % (max_count + 1),
                           offset = random.next() % (buffer.size() - count + 1);
         CAPTURE(kSeed, i, count, offset);
-        std::vector<cl_uint> words = counting(count, static_cast<cl_uint>(random.next()));
+        std::vector<cl_uint> words = consecutive_numbers(count, static_cast<cl_uint>(random.next()));
         std::copy(words.begin(), words.end(), expected.begin() + static_cast<std::ptrdiff_t>(offset));
         session.write("there", buffer, words, offset);
         std::fill(words.begin(), words.end(), 0xdeadbeef);  // the transfer may still be running
@@ -256,7 +256,7 @@ TEST_CASE("an asynchronous read returns the contents at its place in the queue, 
     for (const Transfers transfers : {Transfers::kDirect, Transfers::kStaged}) {
         Session session(choose_device(""), Timing::kOn, transfers);
         // Fills the halves of the plain staging memory several times without waiting.
-        constexpr std::size_t kWords = kPlainHalf / sizeof(cl_uint);
+        constexpr std::size_t kWords = kPlainHalfBytes / sizeof(cl_uint);
         Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", kWords);
         Readback<cl_uint> readback = session.readback<cl_uint>("words", 4 * kWords);
         std::vector<cl_uint> there(kWords), expected;
@@ -264,7 +264,7 @@ TEST_CASE("an asynchronous read returns the contents at its place in the queue, 
         while (expected.size() < readback.size()) {
             const std::size_t count = random.next() % 16 ? 1 + random.next() % 200 : kWords - random.next() % 2,
                               offset = random.next() % (kWords - count + 1);
-            std::vector<cl_uint> words = counting(count, static_cast<cl_uint>(random.next()));
+            std::vector<cl_uint> words = consecutive_numbers(count, static_cast<cl_uint>(random.next()));
             session.write("there", buffer, words, offset);
             std::copy(words.begin(), words.end(), there.begin() + static_cast<std::ptrdiff_t>(offset));
             std::fill(words.begin(), words.end(), 0xdeadbeef);

@@ -1,4 +1,4 @@
-// Observed sessions: the observer receives builds, launch arguments and the offset of the device's clock.
+// Session::observe() records builds and launch arguments; measure_clock_offset() measures the device's clock.
 #include <catch2/catch.hpp>
 
 #include "host/cl/commands.hpp"
@@ -21,9 +21,9 @@ TEST_CASE("an observed session records builds, and the arguments of the given nu
     session.observe(log, 2);
     auto put =
         session.build("put.cl", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint, cl_float, LocalMemory<cl_uint>>("put");
-    Buffer<cl_uint> to = session.buffer<cl_uint>("numbers", 8), other = session.buffer<cl_uint>("others", 8);
+    Buffer<cl_uint> to = session.buffer<cl_uint>("numbers", 8), target = session.buffer<cl_uint>("others", 8);
     for (cl_uint i = 0; i < 3; ++i) session.launch("go", put, 4, 2, to, 7 + i, 0.5F, LocalMemory<cl_uint>{3});
-    session.copy("move", to, 0, other, 0, 8);
+    session.copy("move", to, 0, target, 0, 8);
     const std::vector<CommandRecord>& commands = session.profile().commands();
     REQUIRE(commands.size() == 4);
     const auto& arguments = commands[1].arguments;
@@ -34,10 +34,10 @@ TEST_CASE("an observed session records builds, and the arguments of the given nu
     CHECK(arguments[2].value == "0.5");
     CHECK(arguments[3].value == "local, 12 bytes");
     CHECK(commands[2].arguments.empty());
-    CHECK(commands[1].object == "put");
+    CHECK(commands[1].target_name == "put");
     CHECK(commands[1].groups == 4);
     CHECK(commands[1].group_size == 2);
-    CHECK(commands[3].object == "numbers -> others");
+    CHECK(commands[3].target_name == "numbers -> others");
     CHECK(commands[3].groups == 0);
     REQUIRE(log.spans().size() == 1);
     CHECK(log.spans()[0].name == "build put.cl");
@@ -68,7 +68,7 @@ TEST_CASE("a clock offset maps a command's time between the host's two times", "
     }
 }
 
-TEST_CASE("a command's times lie between the host's times around it", "[cl]") {
+TEST_CASE("a command's times lie between the host's times before and after it", "[cl]") {
     Session session(choose_device(""));
     const ClockOffset offset = measure_clock_offset(session);
     CHECK(session.profile().commands().empty());

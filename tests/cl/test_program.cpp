@@ -103,7 +103,8 @@ TEST_CASE("the error of a failed build contains log, options, device and program
     CHECK_THAT(text, Contains(session.device().platform) && Contains(session.device().name));
 }
 
-/// The number of programs in PoCL's cache. The cache folder belongs to this test program (tests/kernel_cache.hpp).
+/// Returns the number of programs in PoCL's cache. The cache folder belongs to this test program
+/// (tests/kernel_cache.hpp).
 long cached_programs() {
     long cached = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(std::getenv("POCL_CACHE_DIR")))

@@ -1,4 +1,4 @@
-// Makes the parser and the CommandText of all commands in the test's own process.
+// Makes the parser and the CommandText of all commands inside the test process.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace raya {
 
-inline std::shared_ptr<CLI::App> make_full_parser() { return make_program(Ranks::alone(), "test"); }
+inline std::shared_ptr<CLI::App> make_full_parser() { return make_program(Ranks::single(), "test"); }
 inline CommandText text_of_all_commands() { return command_text(*make_full_parser()); }
 
 }  // namespace raya

@@ -31,19 +31,19 @@ namespace {
 
 struct Fault {
     std::string call;
-    int at = 0;          // first faulty call, from 1; or the query; or minimum bytes
+    int threshold = 0;   // number of the first faulty call, from 1; or the query; or, for `new`, the minimum bytes
     std::string action;  // "lost", "astray", "crash", "overflow", "overflows", "exit", "slow" or empty
     cl_int error = CL_SUCCESS;
 
     Fault() {
         const char* text = std::getenv("RAYA_FAULT");
-        std::istringstream(text != nullptr ? text : "") >> call >> at >> action;
+        std::istringstream(text != nullptr ? text : "") >> call >> threshold >> action;
         error = std::atoi(action.c_str());
         if (error != CL_SUCCESS) action.clear();
     }
 };
 
-const Fault& wanted() {
+const Fault& injected_fault() {
     static const Fault fault;
     return fault;
 }
@@ -57,17 +57,17 @@ int overflow(int depth) {
 
 /// Injects the fault into this call. Returns the error that the call must return without doing its work, or CL_SUCCESS
 /// if the call must do its work.
-cl_int fault_of(const char* call) {
-    const Fault& fault = wanted();
+cl_int inject_fault(const char* call) {
+    const Fault& fault = injected_fault();
     static std::atomic<int> calls{0};
-    if (fault.call != call || fault.action == "lost" || fault.action == "astray" || ++calls < fault.at)
+    if (fault.call != call || fault.action == "lost" || fault.action == "astray" || ++calls < fault.threshold)
         return CL_SUCCESS;
     if (fault.action == "crash") std::raise(SIGSEGV);
     if (fault.action == "overflow") std::_Exit(overflow(1));
     if (fault.action == "overflows") {
-        std::thread one(overflow, 1), other(overflow, 1);
-        one.join();
-        other.join();
+        std::thread first_thread(overflow, 1), second_thread(overflow, 1);
+        first_thread.join();
+        second_thread.join();
     }
     if (fault.action == "exit") std::_Exit(1);
     if (fault.action == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(2500));
@@ -76,33 +76,34 @@ cl_int fault_of(const char* call) {
 
 /// Returns true if this copy must be corrupted by `action`: "lost" or "astray".
 bool corrupts_copy(const char* call, const char* action) {
-    const Fault& fault = wanted();
+    const Fault& fault = injected_fault();
     static std::atomic<int> calls{0};
-    return fault.action == action && fault.call == call && ++calls % fault.at == 0;
+    return fault.action == action && fault.call == call && ++calls % fault.threshold == 0;
 }
 
 template <class Function>
-Function* real(const char* name) {
+Function* driver_function(const char* name) {
     return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
-/// Calls the driver's function, or returns the injected error.
+/// Calls the driver's function `name`, or returns the injected error.
 template <class Function, class... Args>
-cl_int command(const char* name, Args... args) {
-    const cl_int error = fault_of(name);
-    return error != CL_SUCCESS ? error : real<Function>(name)(args...);
+cl_int call_or_fail(const char* name, Args... args) {
+    const cl_int error = inject_fault(name);
+    return error != CL_SUCCESS ? error : driver_function<Function>(name)(args...);
 }
 
-/// Same for functions that return an object, and the error through a pointer.
+/// Same, for functions that return an object and store the error in `*error`.
 template <class Function, class... Args>
-auto object(const char* name, cl_int* error, Args... args) -> decltype(real<Function>(name)(args..., error)) {
-    const cl_int fault = fault_of(name);
-    if (fault == CL_SUCCESS) return real<Function>(name)(args..., error);
+auto create_or_fail(const char* name, cl_int* error, Args... args)
+    -> decltype(driver_function<Function>(name)(args..., error)) {
+    const cl_int fault = inject_fault(name);
+    if (fault == CL_SUCCESS) return driver_function<Function>(name)(args..., error);
     if (error != nullptr) *error = fault;
     return nullptr;
 }
 
-/// Returns the target offset of a misdirected copy; the original offset if the buffer is too small for another.
+/// Returns the target offset of a misdirected copy; `offset` itself if the buffer has no space for another.
 size_t displaced_offset(cl_mem buffer, size_t offset, size_t size) {
     size_t bytes = 0;
     clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr);
@@ -111,8 +112,8 @@ size_t displaced_offset(cl_mem buffer, size_t offset, size_t size) {
 
 /// Replaces the answer to the query if the fault is for this query.
 void replace_answer(const char* call, cl_uint query, size_t size, void* value) {
-    const Fault& fault = wanted();
-    if (fault.call != call || static_cast<int>(query) != fault.at || value == nullptr) return;
+    const Fault& fault = injected_fault();
+    if (fault.call != call || static_cast<int>(query) != fault.threshold || value == nullptr) return;
     const size_t answer = static_cast<size_t>(fault.error);
     std::memcpy(value, &answer, std::min(size, sizeof answer));
 }
@@ -120,18 +121,19 @@ void replace_answer(const char* call, cl_uint query, size_t size, void* value) {
 /// Enqueues a read of one byte, which is discarded, instead of a copy. Its event completes and has profiling times.
 cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, const cl_event* wait_list,
                             cl_event* event) {
-    static char nowhere;
-    return real<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer")(queue, from, CL_FALSE, 0, 1, &nowhere, waits,
-                                                                      wait_list, event);
+    static char discarded_byte;
+    return driver_function<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer")(
+        queue, from, CL_FALSE, 0, 1, &discarded_byte, waits, wait_list, event);
 }
 
 }  // namespace
 
-// Not with the address sanitizer, which replaces operator new itself.
+// Left out with the address sanitizer, which replaces operator new itself.
 #ifndef __SANITIZE_ADDRESS__
 void* operator new(std::size_t bytes) {
-    constexpr std::size_t kMinFailingBytes = 1000;  // bytes; excludes allocations by `Fault` itself
-    if (bytes > kMinFailingBytes && wanted().call == "new" && bytes >= static_cast<std::size_t>(wanted().at))
+    constexpr std::size_t kMinFailingBytes = 1000;  // excludes the allocations of `Fault` itself
+    if (bytes > kMinFailingBytes && injected_fault().call == "new" &&
+        bytes >= static_cast<std::size_t>(injected_fault().threshold))
         throw std::bad_alloc();
     if (void* memory = std::malloc(bytes != 0 ? bytes : 1)) return memory;
     throw std::bad_alloc();
@@ -143,32 +145,33 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 extern "C" {
 
 cl_int CL_API_CALL clGetPlatformIDs(cl_uint capacity, cl_platform_id* platforms, cl_uint* count) {
-    return command<decltype(clGetPlatformIDs)>("clGetPlatformIDs", capacity, platforms, count);
+    return call_or_fail<decltype(clGetPlatformIDs)>("clGetPlatformIDs", capacity, platforms, count);
 }
 
 cl_context CL_API_CALL clCreateContext(const cl_context_properties* properties, cl_uint count,
                                        const cl_device_id* devices,
                                        void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*), void* user,
                                        cl_int* error) {
-    return object<decltype(clCreateContext)>("clCreateContext", error, properties, count, devices, notify, user);
+    return create_or_fail<decltype(clCreateContext)>("clCreateContext", error, properties, count, devices, notify,
+                                                     user);
 }
 
 cl_mem CL_API_CALL clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
-    return object<decltype(clCreateBuffer)>("clCreateBuffer", error, context, flags, size, host);
+    return create_or_fail<decltype(clCreateBuffer)>("clCreateBuffer", error, context, flags, size, host);
 }
 
 cl_int CL_API_CALL clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
                                           const size_t* offset, const size_t* global, const size_t* local,
                                           cl_uint waits, const cl_event* wait_list, cl_event* event) {
-    return command<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel", queue, kernel, dimensions, offset,
-                                                     global, local, waits, wait_list, event);
+    return call_or_fail<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel", queue, kernel, dimensions, offset,
+                                                          global, local, waits, wait_list, event);
 }
 
 cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
                                        size_t size, void* to, cl_uint waits, const cl_event* wait_list,
                                        cl_event* event) {
-    return command<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer", queue, buffer, blocking, offset, size, to,
-                                                  waits, wait_list, event);
+    return call_or_fail<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer", queue, buffer, blocking, offset, size, to,
+                                                       waits, wait_list, event);
 }
 
 cl_int CL_API_CALL clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset,
@@ -176,8 +179,8 @@ cl_int CL_API_CALL clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_m
                                        cl_event* event) {
     if (corrupts_copy("clEnqueueCopyBuffer", "lost")) return command_without_copy(queue, from, waits, wait_list, event);
     if (corrupts_copy("clEnqueueCopyBuffer", "astray")) to_offset = displaced_offset(to, to_offset, size);
-    return command<decltype(clEnqueueCopyBuffer)>("clEnqueueCopyBuffer", queue, from, to, from_offset, to_offset, size,
-                                                  waits, wait_list, event);
+    return call_or_fail<decltype(clEnqueueCopyBuffer)>("clEnqueueCopyBuffer", queue, from, to, from_offset, to_offset,
+                                                       size, waits, wait_list, event);
 }
 
 cl_int CL_API_CALL clEnqueueCopyBufferRect(cl_command_queue queue, cl_mem from, cl_mem to, const size_t* from_origin,
@@ -189,26 +192,27 @@ cl_int CL_API_CALL clEnqueueCopyBufferRect(cl_command_queue queue, cl_mem from, 
     size_t origin[] = {to_origin[0], to_origin[1], to_origin[2]};
     if (corrupts_copy("clEnqueueCopyBufferRect", "astray"))
         origin[0] = displaced_offset(to, origin[0], (region[1] - 1) * to_row + region[0]);
-    return command<decltype(clEnqueueCopyBufferRect)>("clEnqueueCopyBufferRect", queue, from, to, from_origin, origin,
-                                                      region, from_row, from_slice, to_row, to_slice, waits, wait_list,
-                                                      event);
+    return call_or_fail<decltype(clEnqueueCopyBufferRect)>("clEnqueueCopyBufferRect", queue, from, to, from_origin,
+                                                           origin, region, from_row, from_slice, to_row, to_slice,
+                                                           waits, wait_list, event);
 }
 
 cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info query, size_t size, void* value,
-                                   size_t* needed) {
-    const cl_int error = real<decltype(clGetDeviceInfo)>("clGetDeviceInfo")(device, query, size, value, needed);
+                                   size_t* needed_bytes) {
+    const cl_int error =
+        driver_function<decltype(clGetDeviceInfo)>("clGetDeviceInfo")(device, query, size, value, needed_bytes);
     replace_answer("clGetDeviceInfo", query, size, value);
     return error;
 }
 
 cl_int CL_API_CALL clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info query,
-                                            size_t size, void* value, size_t* needed) {
-    const cl_int error = real<decltype(clGetKernelWorkGroupInfo)>("clGetKernelWorkGroupInfo")(kernel, device, query,
-                                                                                              size, value, needed);
+                                            size_t size, void* value, size_t* needed_bytes) {
+    const cl_int error = driver_function<decltype(clGetKernelWorkGroupInfo)>("clGetKernelWorkGroupInfo")(
+        kernel, device, query, size, value, needed_bytes);
     replace_answer("clGetKernelWorkGroupInfo", query, size, value);
     return error;
 }
 
-cl_int CL_API_CALL clFinish(cl_command_queue queue) { return command<decltype(clFinish)>("clFinish", queue); }
+cl_int CL_API_CALL clFinish(cl_command_queue queue) { return call_or_fail<decltype(clFinish)>("clFinish", queue); }
 
 }  // extern "C"

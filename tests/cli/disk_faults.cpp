@@ -1,13 +1,13 @@
 // Fault injection into file writes: a library that is preloaded into raya (LD_PRELOAD).
-//   RAYA_FULL_DISK="1000000 /folder"    the files in this folder have space for 1,000,000 bytes together, then write()
-//                                       fails with ENOSPC. As on a real disk, the write that fills it is short.
-//   RAYA_FULL_DISK="write /folder"      a write() to a file there writes half its bytes and then blocks
-//   RAYA_FULL_DISK="rename /folder"     a rename() of a file there blocks
+//   RAYA_FULL_DISK="1000000 /folder"    the files in this folder have space for 1,000,000 bytes in total. The write()
+//                                       that exceeds it writes what fits; later ones fail with ENOSPC.
+//   RAYA_FULL_DISK="write /folder"      a write() to a file in this folder writes half of its bytes, then blocks
+//   RAYA_FULL_DISK="rename /folder"     a rename() to a file in this folder blocks
 //   RAYA_WRITE_FAULT="17 28"            the 17th of raya's writing calls (below) fails with errno 28 (ENOSPC)
 //   RAYA_WRITE_FAULT="17 short"         the 17th of raya's writing calls writes half its bytes
 //   RAYA_WRITE_CALLS=FILE               appends a line to FILE for each writing call: its name, and "fails" if it fails
-// Writing calls are calls on regular files by raya and the C++ library, not by drivers.
-// The alternative, a small mounted file system, needs root and does not work in every container.
+// Writing calls: calls of the functions at the end of this file by raya or the C++ library, not by drivers.
+// A small mounted file system would need root, which not every container has.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -37,17 +37,17 @@ struct Disk {
     Disk() {
         const char* text = std::getenv("RAYA_FULL_DISK");
         if (text == nullptr) return;
-        const std::string all = text;
-        const std::size_t space = all.find(' ');
+        const std::string setting = text;
+        const std::size_t space = setting.find(' ');
         free_bytes = std::atoll(text);
-        if (free_bytes == 0) blocking_call = all.substr(0, space);
-        folder = all.substr(space + 1) + "/";
+        if (free_bytes == 0) blocking_call = setting.substr(0, space);
+        folder = setting.substr(space + 1) + "/";
     }
 };
 
 Disk& disk() {
-    static Disk the_disk;
-    return the_disk;
+    static Disk instance;
+    return instance;
 }
 
 /// Returns true if the file is in the folder of RAYA_FULL_DISK.
@@ -64,20 +64,20 @@ bool is_in_folder(int descriptor) {
 }
 
 template <class Function>
-Function* real(const char* name, Function*) {
+Function* library_function(const char* name, Function*) {
     return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
 struct WriteFault {
-    long at = 0;    // number of the failing call from 1; 0: none
-    int error = 0;  // errno of the failing call
+    long number = 0;  // number of the failing call from 1; 0: none
+    int error = 0;    // errno of the failing call
     bool is_short = false;
 
     WriteFault() {
         const char* text = std::getenv("RAYA_WRITE_FAULT");
         if (text == nullptr) return;
         char* end = nullptr;
-        at = std::strtol(text, &end, 10);
+        number = std::strtol(text, &end, 10);
         error = std::atoi(end);
         is_short = error == 0;
     }
@@ -91,54 +91,54 @@ const WriteFault& write_fault() {
 void record_call(const char* call, bool fails) {
     static const char* const file = std::getenv("RAYA_WRITE_CALLS");
     if (file == nullptr) return;
-    const int descriptor = real("open", &::open)(file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    const int descriptor = library_function("open", &::open)(file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     const std::string line = std::string(call) + (fails ? " fails\n" : "\n");
-    real("write", &::write)(descriptor, line.data(), line.size());
-    real("close", &::close)(descriptor);
+    library_function("write", &::write)(descriptor, line.data(), line.size());
+    library_function("close", &::close)(descriptor);
 }
 
-bool is_of_raya(const void* caller) {
+bool is_call_by_raya(const void* caller) {
     std::uintptr_t base = 0;
     const char* const module = raya::module_of(reinterpret_cast<std::uintptr_t>(caller) - 1, base);
     return module != nullptr && (raya::is_raya(module) || raya::begins_with(module, "libstdc++"));
 }
 
-/// Counts the call and returns true if it must fail. A short write or EINTR is injected only into calls for which their
-/// manual pages (section 2) document it.
-bool next_fails(const char* call, bool can_be_short, bool can_be_interrupted) {
+/// Counts the call and returns true if it must fail. A short write or EINTR is injected only into calls whose manual
+/// page (section 2) documents it.
+bool next_call_fails(const char* call, bool can_be_short, bool can_be_interrupted) {
     static std::atomic<long> calls{0};
     const WriteFault& fault = write_fault();
-    const bool now =
-        ++calls == fault.at && (!fault.is_short || can_be_short) && (fault.error != EINTR || can_be_interrupted);
-    record_call(call, now);
-    if (now) errno = fault.error;
-    return now;
+    const bool fails_now =
+        ++calls == fault.number && (!fault.is_short || can_be_short) && (fault.error != EINTR || can_be_interrupted);
+    record_call(call, fails_now);
+    if (fails_now) errno = fault.error;
+    return fails_now;
 }
 
-/// Same, for calls by raya only: calls by other libraries are not counted and do not fail.
+/// Same for calls by raya. Calls by other libraries are not counted and do not fail.
 bool fails(const char* call, const void* caller, bool can_be_short, bool can_be_interrupted) {
-    return is_of_raya(caller) && next_fails(call, can_be_short, can_be_interrupted);
+    return is_call_by_raya(caller) && next_call_fails(call, can_be_short, can_be_interrupted);
 }
 
 /// Returns true if the descriptor is a regular file, but not the file to which stderr is redirected.
 bool is_file(int descriptor) {
     struct stat status {
     }, messages{};
-    const int saved = errno;
-    const bool is = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+    const int saved_errno = errno;
+    const bool is_regular = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
     const bool is_stderr = ::fstat(STDERR_FILENO, &messages) == 0 && messages.st_ino == status.st_ino;
-    errno = saved;
-    return is && !is_stderr;
+    errno = saved_errno;
+    return is_regular && !is_stderr;
 }
 
-bool is_written(int descriptor) {
+bool is_open_for_writing(int descriptor) {
     return is_file(descriptor) && (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
 }
 
-bool may_write(int flags) { return (flags & O_ACCMODE) != O_RDONLY || (flags & O_CREAT) != 0; }
+bool opens_for_writing(int flags) { return (flags & O_ACCMODE) != O_RDONLY || (flags & O_CREAT) != 0; }
 
-ssize_t write_some(int descriptor, const void* bytes, std::size_t count) {
-    static auto* const next = real("write", &::write);
+ssize_t write_within_limits(int descriptor, const void* bytes, std::size_t count) {
+    static auto* const next = library_function("write", &::write);
     if (!is_in_folder(descriptor) || disk().blocking_call == "rename") return next(descriptor, bytes, count);
     if (disk().blocking_call == "write" && next(descriptor, bytes, count / 2) >= 0) block();
     const long long free_bytes = disk().free_bytes;
@@ -151,10 +151,10 @@ ssize_t write_some(int descriptor, const void* bytes, std::size_t count) {
     return written;
 }
 
-/// The write function of stdout (fopencookie): the C library's own would bypass the preloaded write().
+/// The write function of stdout (fopencookie). The write function of the C library would bypass the preloaded write().
 ssize_t write_stdout(void*, const char* bytes, std::size_t count) {
-    static auto* const next = real("write", &::write);
-    if (is_file(STDOUT_FILENO) && next_fails("stdout", false, true)) return 0;
+    static auto* const next = library_function("write", &::write);
+    if (is_file(STDOUT_FILENO) && next_call_fails("stdout", false, true)) return 0;
     return std::max<ssize_t>(next(STDOUT_FILENO, bytes, count), 0);
 }
 
@@ -176,7 +176,7 @@ ssize_t write(int descriptor, const void* bytes, std::size_t count) {
         if (!write_fault().is_short) return -1;
         count /= 2;
     }
-    return write_some(descriptor, bytes, count);
+    return write_within_limits(descriptor, bytes, count);
 }
 
 ssize_t writev(int descriptor, const iovec* parts, int count) {
@@ -184,7 +184,7 @@ ssize_t writev(int descriptor, const iovec* parts, int count) {
         if (!write_fault().is_short) return -1;
         count /= 2;
     }
-    return real("writev", &::writev)(descriptor, parts, count);
+    return library_function("writev", &::writev)(descriptor, parts, count);
 }
 
 ssize_t pwrite(int descriptor, const void* bytes, std::size_t count, off_t at) {
@@ -192,7 +192,7 @@ ssize_t pwrite(int descriptor, const void* bytes, std::size_t count, off_t at) {
         if (!write_fault().is_short) return -1;
         count /= 2;
     }
-    return real("pwrite", &::pwrite)(descriptor, bytes, count, at);
+    return library_function("pwrite", &::pwrite)(descriptor, bytes, count, at);
 }
 
 int open(const char* path, int flags, ...) {
@@ -200,8 +200,8 @@ int open(const char* path, int flags, ...) {
     va_start(more, flags);
     const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(more, mode_t) : 0;
     va_end(more);
-    if (may_write(flags) && fails("open", CALLER, false, true)) return -1;
-    return real("open", &::open)(path, flags, mode);
+    if (opens_for_writing(flags) && fails("open", CALLER, false, true)) return -1;
+    return library_function("open", &::open)(path, flags, mode);
 }
 
 int open64(const char* path, int flags, ...) {
@@ -209,48 +209,51 @@ int open64(const char* path, int flags, ...) {
     va_start(more, flags);
     const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(more, mode_t) : 0;
     va_end(more);
-    if (may_write(flags) && fails("open", CALLER, false, true)) return -1;
-    return real("open64", &::open64)(path, flags, mode);
+    if (opens_for_writing(flags) && fails("open", CALLER, false, true)) return -1;
+    return library_function("open64", &::open64)(path, flags, mode);
 }
 
 int close(int descriptor) {
-    const bool fails_now = is_written(descriptor) && fails("close", CALLER, false, true);
+    const bool must_fail = is_open_for_writing(descriptor) && fails("close", CALLER, false, true);
     const int error = errno;
-    const int closed = real("close", &::close)(descriptor);  // Linux closes it even if it returns an error
-    if (!fails_now) return closed;
+    const int result = library_function("close", &::close)(descriptor);  // closes it even if it fails
+    if (!must_fail) return result;
     errno = error;
     return -1;
 }
 
-int fsync(int descriptor) { return fails("fsync", CALLER, false, true) ? -1 : real("fsync", &::fsync)(descriptor); }
+int fsync(int descriptor) {
+    return fails("fsync", CALLER, false, true) ? -1 : library_function("fsync", &::fsync)(descriptor);
+}
 
 int fdatasync(int descriptor) {
-    return fails("fdatasync", CALLER, false, true) ? -1 : real("fdatasync", &::fdatasync)(descriptor);
+    return fails("fdatasync", CALLER, false, true) ? -1 : library_function("fdatasync", &::fdatasync)(descriptor);
 }
 
 int ftruncate(int descriptor, off_t length) noexcept {
-    return fails("ftruncate", CALLER, false, true) ? -1 : real("ftruncate", &::ftruncate)(descriptor, length);
+    return fails("ftruncate", CALLER, false, true) ? -1
+                                                   : library_function("ftruncate", &::ftruncate)(descriptor, length);
 }
 
 int flock(int descriptor, int operation) noexcept {
-    return fails("flock", CALLER, false, true) ? -1 : real("flock", &::flock)(descriptor, operation);
+    return fails("flock", CALLER, false, true) ? -1 : library_function("flock", &::flock)(descriptor, operation);
 }
 
 int rename(const char* from, const char* to) noexcept {
     if (disk().blocking_call == "rename" && std::string(to).find(disk().folder) == 0) block();
-    return fails("rename", CALLER, false, false) ? -1 : real("rename", &::rename)(from, to);
+    return fails("rename", CALLER, false, false) ? -1 : library_function("rename", &::rename)(from, to);
 }
 
 int mkdir(const char* path, mode_t mode) noexcept {
-    return fails("mkdir", CALLER, false, false) ? -1 : real("mkdir", &::mkdir)(path, mode);
+    return fails("mkdir", CALLER, false, false) ? -1 : library_function("mkdir", &::mkdir)(path, mode);
 }
 
 char* mkdtemp(char* path) noexcept {
-    return fails("mkdtemp", CALLER, false, false) ? nullptr : real("mkdtemp", &::mkdtemp)(path);
+    return fails("mkdtemp", CALLER, false, false) ? nullptr : library_function("mkdtemp", &::mkdtemp)(path);
 }
 
 int dup2(int from, int to) noexcept {
-    return fails("dup2", CALLER, false, true) ? -1 : real("dup2", &::dup2)(from, to);
+    return fails("dup2", CALLER, false, true) ? -1 : library_function("dup2", &::dup2)(from, to);
 }
 
 }  // extern "C"

@@ -1,11 +1,11 @@
 // Fault injection into allocations: a library that is preloaded into raya (LD_PRELOAD) and makes one allocation fail.
-//   RAYA_MEMORY_SITES=FILE      writes, when the process exits, a line for each allocation site: its number, its
-//                               count, its return addresses; and a line "elsewhere" with the number of allocations
-//                               by other libraries
+//   RAYA_MEMORY_SITES=FILE      writes, when the process exits, a line for each allocation site: its number, the
+//                               number of allocations, the return addresses; and a line "elsewhere" with the number
+//                               of allocations by other libraries
 //   RAYA_MEMORY_FAULT=1f2e      the first allocation at the site with number 1f2e fails
 //   RAYA_MEMORY_FAULT==17       the 17th allocation by raya fails
 //   RAYA_MEMORY_FAULT=+17       the 17th allocation by other libraries fails
-//   RAYA_MEMORY_FAILED=FILE     creates FILE when an allocation fails, so that the test knows whether it did
+//   RAYA_MEMORY_FAILED=FILE     creates FILE when the injected fault occurs
 // A site is identified by the innermost return addresses in raya and its modules. An allocation counts as raya's if
 // only libraries that allocate for their caller are between these addresses and the allocation: the C and C++
 // libraries, fmt, zlib and xxHash.
@@ -31,8 +31,8 @@ void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 
 namespace {
 
-constexpr std::size_t kDepth = 3;  // return addresses of a site; with one, callers of a template are not distinguished
-constexpr std::size_t kSlots = 1 << 16;
+constexpr std::size_t kDepth = 3;        // return addresses per site; 1 would not distinguish callers of a template
+constexpr std::size_t kSlots = 1 << 16;  // maximum number of sites
 
 using Site = std::array<std::uintptr_t, kDepth>;
 
@@ -43,11 +43,11 @@ struct Slot {
 };
 
 std::array<Slot, kSlots> slots;
-std::atomic<std::uint64_t> in_raya{0}, elsewhere{0};
-std::atomic<bool> failed{false};
-__thread bool busy __attribute__((tls_model("initial-exec"))) = false;  // true in this library's own allocations
+std::atomic<std::uint64_t> raya_allocations{0}, other_allocations{0};
+std::atomic<bool> has_failed{false};
+__thread bool busy __attribute__((tls_model("initial-exec"))) = false;  // true during this library's own allocations
 
-enum class Module { kOwn, kRaya, kSupport, kOther };  // kOwn: this library; kSupport: allocates for its caller
+enum class Module { kThisLibrary, kRaya, kSupport, kOther };  // kSupport: a library that allocates for its caller
 
 Module module_of(std::uintptr_t address, std::uintptr_t& base) {
     const char* const name = raya::module_of(address, base);
@@ -55,7 +55,7 @@ Module module_of(std::uintptr_t address, std::uintptr_t& base) {
     if (raya::is_raya(name)) return Module::kRaya;
     for (const char* support : {"libstdc++", "libc.so", "libfmt", "libz.so", "libxxhash", "ld-linux"})
         if (raya::begins_with(name, support)) return Module::kSupport;
-    return raya::begins_with(name, "libmemory_faults") ? Module::kOwn : Module::kOther;
+    return raya::begins_with(name, "libmemory_faults") ? Module::kThisLibrary : Module::kOther;
 }
 
 struct StackWalk {
@@ -79,18 +79,19 @@ std::uint64_t number_of(const Site& site) {
     return hash | 1;
 }
 
-void record(std::uint64_t number, const Site& site) {
-    for (std::size_t at = number % kSlots;; at = (at + 1) % kSlots) {
+void count_allocation(std::uint64_t number, const Site& site) {
+    for (std::size_t index = number % kSlots;; index = (index + 1) % kSlots) {
         std::uint64_t found = 0;
-        if (slots[at].number.compare_exchange_strong(found, number)) slots[at].site = site;
+        if (slots[index].number.compare_exchange_strong(found, number)) slots[index].site = site;
         if (found != 0 && found != number) continue;
-        ++slots[at].count;
+        ++slots[index].count;
         return;
     }
 }
 
-bool fails_now() {
-    if (failed.exchange(true)) return false;
+/// Returns true at its first call, and then sets errno.
+bool fail_once() {
+    if (has_failed.exchange(true)) return false;
     if (const char* file = std::getenv("RAYA_MEMORY_FAILED")) ::close(::open(file, O_CREAT | O_WRONLY, 0666));
     errno = ENOMEM;
     return true;
@@ -98,19 +99,19 @@ bool fails_now() {
 
 /// The value of RAYA_MEMORY_FAULT.
 struct Fault {
-    char kind = '\0';  // '=': n-th in raya, '+': n-th elsewhere, ' ': site, 0: no fault
-    std::uint64_t number = 0;
+    char kind = '\0';          // '=': allocation by raya, '+': by other libraries, ' ': site, 0: no fault
+    std::uint64_t number = 0;  // of the allocation (from 1) or of the site
 
     Fault() {
         const char* text = std::getenv("RAYA_MEMORY_FAULT");
         if (text == nullptr) return;
-        const bool counts = *text == '=' || *text == '+';
-        kind = counts ? *text : ' ';
-        number = std::strtoull(text + counts, nullptr, counts ? 10 : 16);
+        const bool is_ordinal = *text == '=' || *text == '+';
+        kind = is_ordinal ? *text : ' ';
+        number = std::strtoull(text + is_ordinal, nullptr, is_ordinal ? 10 : 16);
     }
 };
 
-bool is_in_raya(const void* caller, StackWalk& walk) {
+bool is_by_raya(const void* caller, StackWalk& walk) {
     std::uintptr_t base = 0;
     const Module module = module_of(reinterpret_cast<std::uintptr_t>(caller) - 1, base);
     if (module == Module::kRaya || module == Module::kSupport) {
@@ -123,15 +124,15 @@ bool is_in_raya(const void* caller, StackWalk& walk) {
 
 bool fails(const void* caller) {
     static const Fault fault;
-    static const bool lists = std::getenv("RAYA_MEMORY_SITES") != nullptr;
-    if (busy || (fault.kind == '\0' && !lists) || failed.load(std::memory_order_relaxed)) return false;
+    static const bool lists_sites = std::getenv("RAYA_MEMORY_SITES") != nullptr;
+    if (busy || (fault.kind == '\0' && !lists_sites) || has_failed.load(std::memory_order_relaxed)) return false;
     StackWalk walk;
-    const bool raya = is_in_raya(caller, walk);
-    const std::uint64_t count = ++(raya ? in_raya : elsewhere), number = number_of(walk.site);
-    if (raya && lists) record(number, walk.site);
-    const bool wanted =
-        fault.kind == ' ' ? raya && number == fault.number : count == fault.number && fault.kind == (raya ? '=' : '+');
-    return wanted && fails_now();
+    const bool by_raya = is_by_raya(caller, walk);
+    const std::uint64_t count = ++(by_raya ? raya_allocations : other_allocations), number = number_of(walk.site);
+    if (by_raya && lists_sites) count_allocation(number, walk.site);
+    const bool is_faulty = fault.kind == ' ' ? by_raya && number == fault.number
+                                             : count == fault.number && fault.kind == (by_raya ? '=' : '+');
+    return is_faulty && fail_once();
 }
 
 /// Writes RAYA_MEMORY_SITES when the process exits.
@@ -147,7 +148,7 @@ struct SiteWriter {
             for (const std::uintptr_t address : slot.site) ::dprintf(descriptor, " %lx", address);
             ::dprintf(descriptor, "\n");
         }
-        ::dprintf(descriptor, "elsewhere %lu\n", elsewhere.load());
+        ::dprintf(descriptor, "elsewhere %lu\n", other_allocations.load());
         ::close(descriptor);
     }
 } site_writer;

@@ -1,4 +1,4 @@
-// Lists the keys of a report and the types of their values, for comparison with the expected ones.
+// Lists the keys of a report and the types of their values, for comparison with the expected keys.
 #pragma once
 #include <set>
 #include <string>
@@ -7,11 +7,12 @@
 
 namespace raya {
 
-/// Adds "PATH TYPE" to `keys` for every value in `json`. All elements of an array have the same path.
+/// Adds "PATH TYPE" to `keys` for every value in `json`. TYPE is "count" for an unsigned integer, else a JSON type. All
+/// elements of an array have the same path.
 inline void list_keys(const Document& json, const std::string& path, std::set<std::string>& keys) {
     if (!json.is_structured()) {
-        const bool whole = json.is_number_unsigned();
-        keys.insert(path + (whole ? " count" : std::string(" ") + json.type_name()));
+        const bool is_count = json.is_number_unsigned();
+        keys.insert(path + (is_count ? " count" : std::string(" ") + json.type_name()));
         return;
     }
     for (const auto& [key, value] : json.items())

@@ -44,16 +44,16 @@ struct RunOutcome {
 
 /// Environment, limits and redirections of a run.
 struct RunOptions {
-    std::vector<std::pair<std::string, std::string>> variables{};  // [name, value], added to this environment
-    bool as_nobody = false;     // if root runs the test: run as user nobody, so that permissions apply
-    rlim_t max_file_bytes = 0;  // RLIMIT_FSIZE in bytes, 0: no limit; a longer write fails with EFBIG
-    rlim_t memory = 0;          // RLIMIT_AS in bytes, 0: no limit
-    std::string error_file{};   // file that stderr is written to; empty: RunOutcome::err
+    std::vector<std::pair<std::string, std::string>> variables{};  // [name, value], added to the test's environment
+    bool as_nobody = false;       // if root runs the test: run as user nobody, so that permissions apply
+    rlim_t max_file_bytes = 0;    // RLIMIT_FSIZE in bytes, 0: no limit; a longer write fails with EFBIG
+    rlim_t max_memory_bytes = 0;  // RLIMIT_AS in bytes, 0: no limit
+    std::string error_file{};     // file that stderr is written to; empty: RunOutcome::err
     std::string program = RAYA_PROGRAM;
     int signal = 0;                       // signal number, sent to the program unless it has ended; 0: none
-    int signal_after_ms = 0;              // delay from when the program handles the signal and `signal_when` is true
+    int signal_after_ms = 0;              // delay after the program has a handler and `signal_when` returned true
     std::function<bool()> signal_when{};  // polled; empty: always true
-    int signal_count = 1;                 // how often it is sent; timeout(1) sends it twice
+    int signal_count = 1;                 // number of times that it is sent; timeout(1) sends it twice
     std::string out_file{};               // file that stdout is written to; empty: RunOutcome::out
 };
 
@@ -88,7 +88,7 @@ inline std::vector<std::string> environment(const RunOptions& options) {
     for (char** variable = environ; *variable != nullptr; ++variable) {
         const std::string_view text = *variable;
         bool replaced = false;
-        for (const auto& [name, value] : options.variables)  // RAYA_KERNEL_LOG would add writes
+        for (const auto& [name, value] : options.variables)  // without RAYA_KERNEL_LOG, which would add writes
             replaced = replaced || text.starts_with(name + "=") ||
                        (name == "LD_PRELOAD" && text.starts_with("RAYA_KERNEL_LOG="));
         if (!replaced) all.emplace_back(text);
@@ -104,7 +104,7 @@ inline void open_stream(const std::string& file, int stream) {
     if (opened < 0 || ::dup2(opened, stream) < 0) ::_exit(126);
 }
 
-inline void leave_root() {
+inline void become_nobody() {
     constexpr uid_t kNobody = 65534;
     if (::geteuid() != 0) return;
     if (::setgroups(0, nullptr) != 0 || ::setgid(kNobody) != 0 || ::setuid(kNobody) != 0) ::_exit(126);
@@ -122,9 +122,9 @@ inline void limit_memory(rlim_t bytes) {
     if (bytes != 0 && ::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(126);
 }
 
-/// Returns true if the child runs raya and has a handler for the signal (SigCgt in proc(5)). Before its exec of raya,
-/// the child has the handlers of this process.
-inline bool catches(pid_t child, int signal) {
+/// Returns true if the child runs raya and has a handler for the signal (SigCgt in proc(5)). Before its exec of raya
+/// the child has the handlers of this process, which do not count.
+inline bool has_handler(pid_t child, int signal) {
     const std::string folder = "/proc/" + std::to_string(child);
     std::error_code ended;
     const auto program = std::filesystem::read_symlink(folder + "/exe", ended);
@@ -144,16 +144,17 @@ inline bool has_ended(pid_t child) {
     return ::waitid(P_PID, static_cast<id_t>(child), &found, WEXITED | WNOHANG | WNOWAIT) != 0 || found.si_pid != 0;
 }
 
-/// Waits until the time that `options` define, and sends the signal. The caller has not reaped the child, so the
-/// child's process ID is valid.
+/// Waits for the conditions in `options`, at most 60 s, then sends the signal. The caller has not reaped the child, so
+/// the child's process ID is valid.
 inline void send_signal(pid_t child, const RunOptions& options) {
     using namespace std::chrono;
     if (options.signal == 0) return;
-    const auto late = steady_clock::now() + seconds(60);
+    const auto deadline = steady_clock::now() + seconds(60);
     const auto ready = [&] {
-        return catches(child, options.signal) && (!options.signal_when || options.signal_when());
+        return has_handler(child, options.signal) && (!options.signal_when || options.signal_when());
     };
-    while (!ready() && !has_ended(child) && steady_clock::now() < late) std::this_thread::sleep_for(milliseconds(5));
+    while (!ready() && !has_ended(child) && steady_clock::now() < deadline)
+        std::this_thread::sleep_for(milliseconds(5));
     std::this_thread::sleep_for(milliseconds(options.signal_after_ms));
     for (int sent = 0; sent < options.signal_count; ++sent) ::kill(child, options.signal);
 }
@@ -181,8 +182,8 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const RunOptions&
         detail::open_stream(options.out_file, STDOUT_FILENO);
         detail::open_stream(options.error_file, STDERR_FILENO);
         detail::limit_files(options.max_file_bytes);
-        if (options.as_nobody) detail::leave_root();
-        detail::limit_memory(options.memory);
+        if (options.as_nobody) detail::become_nobody();
+        detail::limit_memory(options.max_memory_bytes);
         ::fexecve(program, argv.data(), envp.data());
         ::_exit(127);
     }

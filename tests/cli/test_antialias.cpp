@@ -14,7 +14,7 @@ using Loads = std::vector<std::uint64_t>;
 
 constexpr std::uint64_t kPixels = kTestWidth * kTestHeight;
 
-Arguments supersample(const Arguments& more = {}) {
+Arguments supersample_options(const Arguments& more = {}) {
     Arguments options = {"--antialias", "supersample"};
     options.insert(options.end(), more.begin(), more.end());
     return options;
@@ -52,7 +52,7 @@ TEST_CASE("render --antialias: the report has the keys of its method", "[cli]") 
     keys.insert({"antialias.threshold number", "antialias.points string", "antialias.recomputed_pixels count",
                  "antialias.recomputed_share number"});
     keys.merge(load_keys("load.supersample."));
-    CHECK(keys_of(RenderFiles("planes", supersample()).report()) == keys);
+    CHECK(keys_of(RenderFiles("planes", supersample_options()).report()) == keys);
 }
 
 TEST_CASE("render --antialias none: the report says none, and the image is that of the default", "[cli]") {
@@ -67,51 +67,52 @@ TEST_CASE("render --antialias none: the report says none, and the image is that 
 
 TEST_CASE("render --antialias filter: the counts of the report are consistent", "[cli]") {
     const RenderFiles files("planes", {"--antialias", "filter", "--offset", "3"});
-    const Document report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
+    const Document report = files.report(), plain_report = RenderFiles("planes", {"--offset", "3"}).report();
     CHECK(report["antialias"] == Document{{"method", "filter"}, {"exchange", "ring"}, {"band_pixels", kTestHeight}});
     CHECK(report["communication"]["rotations"] ==
           2 + 2 * 3);  // one column per PE, offset 3: neighbours are 1 PE left and right, 3 PEs up and down
     check_rotations(report);
-    for (const char* part : {"rays", "tests", "shading", "load"}) CHECK(report[part] == plain[part]);
-    CHECK(report["image"]["hash"] != plain["image"]["hash"]);
-    CHECK(report["machine"]["pe_memory_used_bytes"] ==
-          plain["machine"]["pe_memory_used_bytes"].get<int>() + 2 * 12 * kTestHeight);  // sums, a block in transit
+    for (const char* part : {"rays", "tests", "shading", "load"}) CHECK(report[part] == plain_report[part]);
+    CHECK(report["image"]["hash"] != plain_report["image"]["hash"]);
+    CHECK(report["machine"]["pe_memory_used_bytes"] == plain_report["machine"]["pe_memory_used_bytes"].get<int>() +
+                                                           2 * 12 * kTestHeight);  // the sums and a block in transit
     for (const char* label : {"filter.sum_rows", "filter.sum_columns"}) CHECK(launches_of(report, label) == 2);
     CHECK(launches_of(report, "filter.take_means") == 1);
     CHECK_THAT(files.run().out, Catch::Contains("ring    8 rotations, " + std::to_string(8 * 20 * 3 * 12) + " words"));
 }
 
-TEST_CASE("render --exchange bus: the report counts and charges the transfers, and the image is that of the ring",
+TEST_CASE("render --exchange bus: the report has the number and the time of the transfers; image as with the ring",
           "[cli]") {
     const auto options = [](const std::string& exchange) {
         return Arguments{"--antialias", "supersample", "--offset", "3", "--exchange", exchange};
     };
     const Document ring = RenderFiles("planes", options("ring")).report();
     const RenderFiles bus("planes", options("bus")), broadcast("planes", options("bus-broadcast"));
-    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // words of a PE's pixels, one column
+    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // number of words for the pixels of a PE, one column
     for (const RenderFiles* files : {&bus, &broadcast}) {
         const Document report = files->report();
-        const Document& words = report["communication"];
-        const bool sends = files == &bus;
+        const Document& communication = report["communication"];
+        const bool by_transfers = files == &bus;
         CHECK(report["image"]["hash"] == ring["image"]["hash"]);
         CHECK(report["load"] == ring["load"]);
-        CHECK(words["rotations"] == 0);
-        CHECK(words["transfers"] == (sends ? 4 * kTestWidth : 0));  // one per neighbour; a broadcast serves all
-        CHECK(words["pe_broadcasts"] == (sends ? 0 : kTestWidth));
-        const std::uint64_t moves = sends ? words["transfers"] : words["pe_broadcasts"];
-        CHECK(words[sends ? "transfer_words" : "pe_broadcast_words"] == moves * kBlock);
-        CHECK(launches_of(report, sends ? "bus.send" : "bus.broadcast_from") == moves);
+        CHECK(communication["rotations"] == 0);
+        CHECK(communication["transfers"] ==
+              (by_transfers ? 4 * kTestWidth : 0));  // one per PE and neighbour; one broadcast reaches all
+        CHECK(communication["pe_broadcasts"] == (by_transfers ? 0 : kTestWidth));
+        const std::uint64_t moves = by_transfers ? communication["transfers"] : communication["pe_broadcasts"];
+        CHECK(communication[by_transfers ? "transfer_words" : "pe_broadcast_words"] == moves * kBlock);
+        CHECK(launches_of(report, by_transfers ? "bus.send" : "bus.broadcast_from") == moves);
         CHECK(report["modelled_ms"]["communication"] ==
               Approx(static_cast<double>(moves) * (0.1845 + kBlock / 6e3)).epsilon(1e-9));
-        const std::string line = sends ? " transfers between PEs, " : " broadcasts by PEs, ";
+        const std::string line = by_transfers ? " transfers between PEs, " : " broadcasts by PEs, ";
         CHECK_THAT(files->run().out, Catch::Contains("bus     " + std::to_string(moves) + line +
                                                      std::to_string(moves * kBlock) + " words"));
     }
 }
 
 TEST_CASE("render --antialias supersample: the counts of the report are consistent", "[cli]") {
-    const RenderFiles files("planes", supersample({"--offset", "3"}));
-    const Document report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
+    const RenderFiles files("planes", supersample_options({"--offset", "3"}));
+    const Document report = files.report(), plain_report = RenderFiles("planes", {"--offset", "3"}).report();
     const Document &antialias = report["antialias"], &load = report["load"];
     const std::uint64_t recomputed = antialias["recomputed_pixels"];
     CHECK(antialias["method"] == "supersample");
@@ -122,7 +123,7 @@ TEST_CASE("render --antialias supersample: the counts of the report are consiste
     CHECK(recomputed < kPixels);
     CHECK(antialias["recomputed_share"] == double(recomputed) / double(kPixels));
     CHECK(report["rays"]["primary"] == kPixels + 4 * recomputed);
-    CHECK(load["trace"] == plain["load"]["trace"]);
+    CHECK(load["trace"] == plain_report["load"]["trace"]);
     CHECK(load["per_pe"].get<Loads>() ==
           sum_of(load["trace"]["per_pe"].get<Loads>(), load["supersample"]["per_pe"].get<Loads>()));
     CHECK(report["communication"]["rotations"] == 2 + 2 * 3);
@@ -134,15 +135,15 @@ TEST_CASE("render --antialias supersample: the counts of the report are consiste
 }
 
 TEST_CASE("render --threshold, --points: change the supersampled pixels and the sample points", "[cli]") {
-    const Document all = RenderFiles("planes", supersample({"--threshold", "0"})).report();
+    const Document all = RenderFiles("planes", supersample_options({"--threshold", "0"})).report();
     CHECK(all["antialias"]["threshold"] == 0.0);
     CHECK(all["antialias"]["recomputed_pixels"] == kPixels);
     CHECK(all["antialias"]["recomputed_share"] == 1.0);
-    const Document axes = RenderFiles("planes", supersample()).report();
-    const Document coarse = RenderFiles("planes", supersample({"--threshold", "0.5"})).report();
+    const Document axes = RenderFiles("planes", supersample_options()).report();
+    const Document coarse = RenderFiles("planes", supersample_options({"--threshold", "0.5"})).report();
     CHECK(coarse["antialias"]["threshold"] == 0.5);
     CHECK(coarse["antialias"]["recomputed_pixels"] < axes["antialias"]["recomputed_pixels"]);
-    const Document diagonals = RenderFiles("planes", supersample({"--points", "diagonals"})).report();
+    const Document diagonals = RenderFiles("planes", supersample_options({"--points", "diagonals"})).report();
     CHECK(diagonals["antialias"]["points"] == "diagonals");
     CHECK(diagonals["antialias"]["recomputed_pixels"] == axes["antialias"]["recomputed_pixels"]);
     CHECK(diagonals["image"]["hash"] != axes["image"]["hash"]);
@@ -152,7 +153,7 @@ TEST_CASE("render --mask: white where pixels were supersampled, black elsewhere"
     const std::string extension = GENERATE(".png", ".exr", ".pfm");
     const ScratchFolder folder;
     const std::string mask_file = folder / ("mask" + extension);
-    const Document antialias = RenderFiles("planes", supersample({"--mask", mask_file})).report()["antialias"];
+    const Document antialias = RenderFiles("planes", supersample_options({"--mask", mask_file})).report()["antialias"];
     const Image mask = read_image(mask_file);
     CAPTURE(extension);
     CHECK(folder.entries() == 1);
@@ -176,12 +177,12 @@ TEST_CASE("render: refuses options of supersampling out of range and without --a
     };
     refused({"--antialias", "blur"}, {"--antialias blur", "none, filter or supersample"});
     refused({"--antialias", ""}, {"--antialias", "must not be empty"});
-    refused(supersample({"--points", "corners"}), {"--points corners", "axes or diagonals"});
-    refused(supersample({"--exchange", "torus"}), {"--exchange torus", "ring, bus or bus-broadcast"});
+    refused(supersample_options({"--points", "corners"}), {"--points corners", "axes or diagonals"});
+    refused(supersample_options({"--exchange", "torus"}), {"--exchange torus", "ring, bus or bus-broadcast"});
     refused({"--exchange", "bus"}, {"--exchange", "add --antialias filter or supersample"});
     for (const std::string value : {"-0.1", "1.001", "nan", "inf"})
-        refused(supersample({"--threshold", value}), {"--threshold", "must be 0..1"});
-    refused(supersample({"--threshold", "0.125x"}), {"--threshold 0.125x: not a number", "0..1"});
+        refused(supersample_options({"--threshold", value}), {"--threshold", "must be 0..1"});
+    refused(supersample_options({"--threshold", "0.125x"}), {"--threshold 0.125x: not a number", "0..1"});
     for (const Arguments& option : {Arguments{"--threshold", "0.125"}, Arguments{"--points", "diagonals"},
                                     Arguments{"--points", "axes"}, Arguments{"--mask", outputs / "mask.png"}})
         for (const std::string method : {"none", "filter"}) {
@@ -194,9 +195,10 @@ TEST_CASE("render: refuses options of supersampling out of range and without --a
 TEST_CASE("render --mask: refuses a file that it cannot write, before rendering", "[cli]") {
     const ScratchFolder outputs;
     const auto refused = [&](const std::string& mask, const Arguments& message) {
-        check_refused(outputs, render_into(outputs, scene_file("planes"), supersample({"--mask", mask})), 2, message);
+        check_refused(outputs, render_into(outputs, scene_file("planes"), supersample_options({"--mask", mask})), 2,
+                      message);
     };
-    for (const char* other : {"x.json", "./x.pfm"}) refused(outputs / other, {other, "--mask", "the same file as"});
+    for (const char* file : {"x.json", "./x.pfm"}) refused(outputs / file, {file, "--mask", "the same file as"});
     refused(scene_file("planes"), {"--mask", "would overwrite the input SCENE", "planes.nff"});
     refused("", {"--mask", "must not be empty"});
     refused(outputs / "mask.gif", {"mask.gif", ".png", ".exr", ".pfm", ".jpg"});
@@ -213,7 +215,7 @@ TEST_CASE("render --antialias: refuses a PE memory that is too small, with the n
     refused({"--antialias", "filter", "--size", "256", "--pes", "1"},
             {"planes.nff with --antialias filter", "needs 153", " KB in every PE", "the SPA has 32 KB", "more PEs",
              "--machine grande"});
-    refused(supersample({"--size", "256", "--pes", "1"}),
+    refused(supersample_options({"--size", "256", "--pes", "1"}),
             {"planes.nff with --antialias supersample", "needs 83", " KB in every PE", "the SPA has 32 KB", "more PEs",
              "--machine grande"});
 }

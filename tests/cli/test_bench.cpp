@@ -18,9 +18,10 @@ Arguments small_bench(const Arguments& more) {
     return arguments;
 }
 
-/// Writes a copy of base.json in which the rate of the row is multiplied by `factor`, or the hash replaced. Returns the
-/// path of the copy.
-std::string changed(const ScratchFolder& folder, const std::string& name, double factor, const std::string& hash = {}) {
+/// Writes a copy of base.json in which the rate of the row is multiplied by `factor`, and the hash replaced by
+/// `hash` unless that is empty. Returns the path of the copy.
+std::string write_changed_baseline(const ScratchFolder& folder, const std::string& name, double factor,
+                                   const std::string& hash = {}) {
     Document json = json_of(folder / "base.json");
     for (const char* part : {"best", "median"})
         json["rows"][0]["ms"][part] = json["rows"][0]["ms"][part].get<double>() / factor;
@@ -45,9 +46,9 @@ TEST_CASE("bench: refuses options that it would ignore", "[cli]") {
 TEST_CASE("bench --report, --compare: a later run is compared with the rows of the report", "[cli]") {
     const ScratchFolder folder;
     const std::string base = folder / "base.json";
-    const RunOutcome first = run_raya(small_bench({"--report", base}));
-    INFO(first.describe());
-    REQUIRE(first.code == 0);
+    const RunOutcome baseline_run = run_raya(small_bench({"--report", base}));
+    INFO(baseline_run.describe());
+    REQUIRE(baseline_run.code == 0);
     const Document report = json_of(base);
     CHECK(report["kind"] == "raya bench");
     CHECK(report["raya"] == raya_version());
@@ -66,31 +67,34 @@ TEST_CASE("bench --report, --compare: a later run is compared with the rows of t
           Approx(row["rays"].get<double>() / row["ms"]["best"].get<double>() * 1e-3));
     CHECK_THAT(row["build_options"].get<std::string>(), Catch::Contains("-DRAYA_LANES=4"));
     // The baseline is a thousand times slower than this computer, so no run is reported as slower.
-    const RunOutcome second = run_raya(small_bench({"--compare", changed(folder, "slow.json", 1e-3)}));
-    INFO(second.describe());
-    CHECK(second.code == 0);
-    CHECK(second.messages().empty());
-    CHECK_THAT(second.out,
+    const RunOutcome faster_run =
+        run_raya(small_bench({"--compare", write_changed_baseline(folder, "slow.json", 1e-3)}));
+    INFO(faster_run.describe());
+    CHECK(faster_run.code == 0);
+    CHECK(faster_run.messages().empty());
+    CHECK_THAT(faster_run.out,
                Catch::Contains("faster") && Catch::Contains("1 row compared, none slower by more than 10 %"));
     // The baseline is a thousand times faster, so every run is reported as slower.
-    const RunOutcome third = run_raya(small_bench(
-        {"--compare", changed(folder, "fast.json", 1e3), "--tolerance", "50", "--report", folder / "now.json"}));
-    INFO(third.describe());
-    CHECK(third.code == 4);
+    const RunOutcome slower_run = run_raya(small_bench({"--compare", write_changed_baseline(folder, "fast.json", 1e3),
+                                                        "--tolerance", "50", "--report", folder / "now.json"}));
+    INFO(slower_run.describe());
+    CHECK(slower_run.code == 4);
     // -99.9 %; printed as -100.0 % if other programs slowed the run down.
-    CHECK_THAT(third.out, Catch::Contains("SLOWER") && (Catch::Contains("-99.") || Catch::Contains("-100.0 %")));
-    CHECK_THAT(third.err, Catch::Contains("fast.json: 1 of 1 row slower by more than 50 %, 0 with a different image"));
+    CHECK_THAT(slower_run.out, Catch::Contains("SLOWER") && (Catch::Contains("-99.") || Catch::Contains("-100.0 %")));
+    CHECK_THAT(slower_run.err,
+               Catch::Contains("fast.json: 1 of 1 row slower by more than 50 %, 0 with a different image"));
     CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // written although the run is slower
-    const RunOutcome fourth = run_raya(small_bench({"--compare", changed(folder, "other.json", 1e-3, "0123456789")}));
-    INFO(fourth.describe());
-    CHECK(fourth.code == 4);
-    CHECK_THAT(fourth.out, Catch::Contains("OTHER IMAGE: ") && Catch::Contains(", was 01234567"));
+    const RunOutcome other_image_run =
+        run_raya(small_bench({"--compare", write_changed_baseline(folder, "other.json", 1e-3, "0123456789")}));
+    INFO(other_image_run.describe());
+    CHECK(other_image_run.code == 4);
+    CHECK_THAT(other_image_run.out, Catch::Contains("OTHER IMAGE: ") && Catch::Contains(", was 01234567"));
     // Rows with other options have no baseline.
-    const RunOutcome fifth = run_raya(small_bench({"--compare", base, "--bounces", "1"}));
-    INFO(fifth.describe());
-    CHECK(fifth.code == 2);
-    CHECK_THAT(fifth.err, Catch::Contains("contains no row of this run") && Catch::Contains("8 bounces, accel none") &&
-                              Catch::Contains("1 bounces"));
+    const RunOutcome other_options_run = run_raya(small_bench({"--compare", base, "--bounces", "1"}));
+    INFO(other_options_run.describe());
+    CHECK(other_options_run.code == 2);
+    CHECK_THAT(other_options_run.err, Catch::Contains("contains no row of this run") &&
+                                          Catch::Contains("8 bounces, accel none") && Catch::Contains("1 bounces"));
 }
 
 TEST_CASE("bench: refuses invalid baselines, reports and tolerances", "[cli]") {
@@ -148,7 +152,7 @@ TEST_CASE("bench --denormals: times every row twice, with the same image if no v
     CHECK(rows[0]["hash"] == rows[1]["hash"]);
 }
 
-TEST_CASE("bench --build: lists compile times, and ends with 4 if a kernel takes longer than --limit", "[cli]") {
+TEST_CASE("bench --build: lists compile times, and exits with 4 if a kernel takes longer than --limit", "[cli]") {
     const ScratchFolder folder, outputs;
     const auto build = [&](const Arguments& more) {
         Arguments arguments = {"bench",   RAYA_SOURCE_DIR "/scenes/planes.nff",
@@ -176,10 +180,10 @@ TEST_CASE("bench --build: lists compile times, and ends with 4 if a kernel takes
         CHECK_FALSE(contains(builds[i]["build_options"].get<std::string>(), "RAYA_BUILT"));
         CHECK_THAT(run.out, Catch::Contains(kernels[i]));
     }
-    const RunOutcome late = run_raya(build({"--limit", "0.001"}));
-    CHECK(late.code == 4);
-    CHECK_THAT(late.err, Catch::StartsWith("raya: ring/trace.cl, none, fp32, 4 lanes: ") &&
-                             Catch::Contains("to compile, above --limit 0.001 s"));
+    const RunOutcome limited_run = run_raya(build({"--limit", "0.001"}));
+    CHECK(limited_run.code == 4);
+    CHECK_THAT(limited_run.err, Catch::StartsWith("raya: ring/trace.cl, none, fp32, 4 lanes: ") &&
+                                    Catch::Contains("to compile, above --limit 0.001 s"));
     check_refused(outputs, build({"--limit", "0"}), 2, {"--limit 0: must be above 0"});
     check_refused(outputs, {"bench", "--limit", "1"}, 2, {"--limit requires --build"});
     check_refused(outputs, build({"--compare", folder / "b.json"}), 2, {"--compare", "excludes", "--build"});

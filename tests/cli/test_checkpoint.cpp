@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Arguments render_of(const ScratchFolder& folder, const Arguments& more = {}) {
+Arguments render_arguments(const ScratchFolder& folder, const Arguments& more = {}) {
     Arguments arguments = {"render",         scene_file("centre"), "--size",         "256", "--lanes", "1", "-o",
                            folder / "x.pfm", "--report",           folder / "x.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -19,7 +19,7 @@ Arguments render_of(const ScratchFolder& folder, const Arguments& more = {}) {
 
 TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][checkpoint]") {
     const ScratchFolder folder;
-    REQUIRE(run_raya(render_of(folder)).code == 0);
+    REQUIRE(run_raya(render_arguments(folder)).code == 0);
     const std::string picture = file_contents(folder / "x.pfm");
     const Arguments checkpoint = {"--checkpoint", folder / "s.rst", "--checkpoint-every", "0"};
     // Interrupts the render, each time after a longer delay, until a checkpoint exists.
@@ -30,7 +30,7 @@ TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][c
         RunOptions run_options;
         run_options.signal = SIGINT;
         run_options.signal_after_ms = ms;
-        const RunOutcome run = run_raya(render_of(folder, checkpoint), run_options);
+        const RunOutcome run = run_raya(render_arguments(folder, checkpoint), run_options);
         INFO(run.describe());
         REQUIRE((run.code == 0 || run.code == 128 + SIGINT));
         if (run.code == 0) {
@@ -42,7 +42,7 @@ TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][c
     REQUIRE(interrupted);
     Arguments resume = checkpoint;
     resume.emplace_back("--resume");
-    const RunOutcome run = run_raya(render_of(folder, resume));
+    const RunOutcome run = run_raya(render_arguments(folder, resume));
     INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK((file_contents(folder / "x.pfm") == picture));
@@ -52,10 +52,10 @@ TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][c
     CHECK(report["measured"]["earlier_s"] < report["measured"]["render_s"]);
 }
 
-TEST_CASE("render --checkpoint: refuses options that do not fit it", "[cli][checkpoint]") {
+TEST_CASE("render --checkpoint: refuses options that exclude it", "[cli][checkpoint]") {
     const ScratchFolder folder;
     const auto refused = [&](const Arguments& more, const Arguments& message) {
-        check_refused(folder, render_of(folder, more), 2, message);
+        check_refused(folder, render_arguments(folder, more), 2, message);
     };
     refused({"--resume"}, {"--resume", "--checkpoint FILE.rst"});
     refused({"--checkpoint-every", "5"}, {"--checkpoint-every", "--checkpoint FILE.rst"});
@@ -73,11 +73,12 @@ TEST_CASE("render --checkpoint: refuses a file that is not a checkpoint, and lea
     const std::string file = folder / "s.rst";
     const auto refused = [&](const Arguments& more, const std::string& message) {
         const std::string before = file_contents(file);
-        const RunOutcome run = run_raya(render_of(folder, more));
+        const RunOutcome run = run_raya(render_arguments(folder, more));
         INFO(run.describe());
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Catch::Contains("--checkpoint " + file) && Catch::Contains(message));
-        CHECK_THAT(run.err, !Catch::Contains("remove"));  // must not advise to remove it: it may be a scene
+        CHECK_THAT(run.err,
+                   !Catch::Contains("remove"));  // the file may be a scene, so raya must not advise to remove it
         CHECK(file_contents(file) == before);
         CHECK(folder.entries() == 1);
     };

@@ -49,35 +49,35 @@ TEST_CASE("raya --help: names every command and the exit codes", "[cli]") {
 TEST_CASE("COMMAND --help, --help-all: give unit, default and range of every option", "[cli]") {
     struct Row {
         Arguments command;
-        Arguments texts;
+        Arguments texts;  // in the help of the command
     };
-    const Arguments of_a_render = {"--machine NAME spa: 256 PEs",
-                                   "256 PEs of 32 KB",
-                                   "grande",
-                                   "--size N|WxH",
-                                   "in pixels, 1..16384 a side; default: the scene's",
-                                   "1..W*H; default: the machine's, or A*B of a grid",
-                                   "in pixels, 0..W-1; default: 16",
-                                   "--mapping NAME",
-                                   "cyclic:p, column",
-                                   "grid:AxB",
-                                   "tiles:WxH",
-                                   "random:seed",
-                                   "cyclic|block",
-                                   "(c P div W); default: cyclic",
-                                   "--format NAME",
-                                   "0..31; default: 8",
-                                   "centres|corners",
-                                   "default: centres",
-                                   "1, 4, 8 or 16; default",
-                                   "1..1024; default: as the device was tuned, else 1 on a CPU",
-                                   "RAYA_DEVICE",
-                                   "--kernel-dir DIR"};
-    Arguments render = of_a_render;
+    const Arguments shared_texts = {"--machine NAME spa: 256 PEs",
+                                    "256 PEs of 32 KB",
+                                    "grande",
+                                    "--size N|WxH",
+                                    "in pixels, 1..16384 a side; default: the scene's",
+                                    "1..W*H; default: the machine's, or A*B of a grid",
+                                    "in pixels, 0..W-1; default: 16",
+                                    "--mapping NAME",
+                                    "cyclic:p, column",
+                                    "grid:AxB",
+                                    "tiles:WxH",
+                                    "random:seed",
+                                    "cyclic|block",
+                                    "(c P div W); default: cyclic",
+                                    "--format NAME",
+                                    "0..31; default: 8",
+                                    "centres|corners",
+                                    "default: centres",
+                                    "1, 4, 8 or 16; default",
+                                    "1..1024; default: as raya tune stored it, else 1 on a CPU",
+                                    "RAYA_DEVICE",
+                                    "--kernel-dir DIR"};
+    Arguments render = shared_texts;
     render.insert(render.end(), {"SCENE", ".exr or .pfm (linear)", "modelled cycles of each pixel",
                                  "--report FILE.json", "--profile", "--trace FILE.json[.gz]", "--trace-events N",
                                  "default: 1000000", "--trace-pes N", "default: 16", "--quiet"});
-    Arguments bench = of_a_render;
+    Arguments bench = shared_texts;
     bench.insert(bench.end(), {"--samples N", "are printed; default: 7", "default: 30 spheres and a plane, 512 x 512"});
     const std::vector<Row> rows = {
         {{"render"}, render},
@@ -92,8 +92,8 @@ TEST_CASE("COMMAND --help, --help-all: give unit, default and range of every opt
         {{"generate", "centre"}, {"-o, --output SCENE.nff"}}};
     for (const Row& row : rows) {
         Arguments arguments = row.command;
-        const bool many_options = row.command == Arguments{"render"} || row.command == Arguments{"bench"};
-        arguments.emplace_back(many_options ? "--help-all" : "--help");
+        const bool has_long_help = row.command == Arguments{"render"} || row.command == Arguments{"bench"};
+        arguments.emplace_back(has_long_help ? "--help-all" : "--help");
         const std::string help = squeezed(run_successfully(arguments).out);
         for (const std::string& text : row.texts) CHECK_THAT(help, Catch::Contains(text));
     }
@@ -105,8 +105,8 @@ TEST_CASE("devices: lists each device with its default lanes", "[cli]") {
     for (const char* column : {"device", "platform", "lanes", "local KB", "div/sqrt exact", "profiling"})
         CHECK_THAT(out, Catch::Contains(column));
     CHECK(lines_that_start_with(out, "0").size() == 1);
-    CHECK_THAT(out,
-               Catch::Contains("0: OpenCL") && Catch::Contains("--device takes a number, a type or a part of a name"));
+    CHECK_THAT(out, Catch::Contains("0: OpenCL") &&
+                        Catch::Contains("--device and RAYA_DEVICE take a number, a type, or part of a name"));
 }
 
 TEST_CASE("render: prints a summary of at most 8 lines", "[cli]") {
@@ -145,7 +145,7 @@ TEST_CASE("render --profile: prints launches and times of every labelled command
     const auto commands = files.report()["measured"]["commands"];
     for (const auto& command : commands) CHECK_THAT(out, Catch::Contains(command["label"].get<std::string>()));
     CHECK_THAT(out, Catch::Contains("kernel build "));
-    CHECK(lines_that_start_with(out, "roof").size() == 1);  // one line per kernel; trace is the only one
+    CHECK(lines_that_start_with(out, "roof").size() == 1);  // one line per kernel; trace is the only kernel
 }
 
 TEST_CASE("generate: every kind of scene can be rendered", "[cli]") {

@@ -23,30 +23,31 @@ struct Damage {
     std::string text, reason;
 };
 
-// Returns damage that the JSON parser detects, and therefore every reader.
+// Returns texts that the JSON parser refuses, and therefore every reader.
 std::vector<Damage> malformed_texts() {
-    const auto deep = [](std::size_t levels) { return std::string(levels, '['); };
-    return {{"", "x.json:1: not valid JSON (byte 1)"},
-            {"\n \n", "x.json:3: not valid JSON"},
-            {"{\"kind\":\n1e400}", "x.json:2: kind: 1e400 is outside the range of double precision"},
-            {"{\"kind\":\n-1e400}", "x.json:2: kind: -1e400 is outside the range of double precision"},
-            {"{\"kind\": [1" + std::string(400, '0') + "]}", "x.json:1: kind[0]: 1000"},
-            {"{\"kind\": \"raya bench\",\n", "x.json:2: not valid JSON"},
-            {"{\"kind\": \"raya bench\"}\n}", "x.json:2: not valid JSON"},
-            {std::string("{\"kind\": \"raya bench\"}\n\0", 24), "x.json:2: not valid JSON (byte 24)"},
-            {std::string("{\"kind\": \"raya\0bench\"}", 23), "x.json:1: not valid JSON"},
-            {"{\"kind\": \"\xff\xfe\"}", "x.json:1: not valid JSON"},
-            {"{\"kind\": \"\\ud800\"}", "x.json:1: not valid JSON"},
-            {"{\"kind\": \"a\nb\"}", "x.json:1: not valid JSON"},
-            {"{\"kind\": \"raya bench\",\n\"kind\": 1}", "x.json:2: kind: the object has this member twice"},
-            {deep(101), "x.json:1: nested more than 100 levels deep"},
-            {deep(1'000'000), "x.json:1: nested more than 100 levels deep"},
-            {"NaN", "x.json:1: not valid JSON"},
-            {"{'kind': 1}", "x.json:1: not valid JSON"}};
+    const auto nested_lists = [](std::size_t levels) { return std::string(levels, '['); };
+    return {
+        {"", "x.json:1: not valid JSON (byte 1)"},
+        {"\n \n", "x.json:3: not valid JSON"},
+        {"{\"kind\":\n1e400}", "x.json:2: kind: 1e400 is outside the range of double precision"},
+        {"{\"kind\":\n-1e400}", "x.json:2: kind: -1e400 is outside the range of double precision"},
+        {"{\"kind\": [1" + std::string(400, '0') + "]}", "x.json:1: kind[0]: 1000"},
+        {"{\"kind\": \"raya bench\",\n", "x.json:2: not valid JSON"},
+        {"{\"kind\": \"raya bench\"}\n}", "x.json:2: not valid JSON"},
+        {std::string("{\"kind\": \"raya bench\"}\n\0", 24), "x.json:2: not valid JSON (byte 24)"},
+        {std::string("{\"kind\": \"raya\0bench\"}", 23), "x.json:1: not valid JSON"},
+        {"{\"kind\": \"\xff\xfe\"}", "x.json:1: not valid JSON"},
+        {"{\"kind\": \"\\ud800\"}", "x.json:1: not valid JSON"},
+        {"{\"kind\": \"a\nb\"}", "x.json:1: not valid JSON"},
+        {"{\"kind\": \"raya bench\",\n\"kind\": 1}", "x.json:2: kind: member 'kind' occurs twice in this JSON object"},
+        {nested_lists(101), "x.json:1: nested more than 100 levels deep"},
+        {nested_lists(1'000'000), "x.json:1: nested more than 100 levels deep"},
+        {"NaN", "x.json:1: not valid JSON"},
+        {"{'kind': 1}", "x.json:1: not valid JSON"}};
 }
 
 // Returns valid JSON texts that are not reports.
-std::vector<std::string> other_documents() {
+std::vector<std::string> other_json_texts() {
     return {"null",
             "3",
             "[]",
@@ -92,12 +93,12 @@ TEST_CASE("readers of JSON: refuse damaged files with file and line", "[cli][jso
         }
     };
     for (const Damage& damage : malformed_texts()) check(damage);
-    for (const std::string& text : other_documents()) check({text, "x.json"});
+    for (const std::string& text : other_json_texts()) check({text, "x.json"});
     unsetenv("XDG_CACHE_HOME");
     setenv("RAYA_TUNED", "off", 1);
 }
 
-TEST_CASE("page, bench, render: end with 2 at a JSON number that no double holds", "[cli][json]") {
+TEST_CASE("page, bench, render: exit with 2 for a JSON number outside the range of a double", "[cli][json]") {
     const ScratchFolder folder;
     const std::string file = folder / "x.json";
     std::ofstream(file) << "{\"kind\": \"raya bench\",\n\"rows\": [1e400]}";

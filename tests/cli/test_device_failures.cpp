@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/cli/failing_device.hpp"
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
@@ -15,7 +15,7 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-TEST_CASE("render: a kernel that does not compile ends with device, options and build log", "[cli]") {
+TEST_CASE("render: for a kernel that does not compile, the error names device, options and build log", "[cli]") {
     const ScratchFolder kernels, outputs;
     const SourcePatch mistake{"geometry/sphere.clh", "#include \"kernels/geometry/ray.clh\"", "no_such_type broken;"};
     const std::string broken = write_kernels(kernels / "kernels", {mistake}), planes = scene_file("planes");
@@ -29,9 +29,9 @@ TEST_CASE("render: a kernel that does not compile ends with device, options and 
 
 TEST_CASE("render: a device that ends a loop early is detected by its pixel count, and no file is written", "[cli]") {
     const ScratchFolder kernels, outputs;
-    const SourcePatch early{"ring/trace.cl", "store.points = points;",
-                            "store.points = points; store.end -= group == 3 && store.end > 0;"};
-    const std::string broken = write_kernels(kernels / "kernels", {early}), planes = scene_file("planes");
+    const SourcePatch early_end{"ring/trace.cl", "store.points = points;",
+                                "store.points = points; store.end -= group == 3 && store.end > 0;"};
+    const std::string broken = write_kernels(kernels / "kernels", {early_end}), planes = scene_file("planes");
     for (const char* method : {"none", "supersample"}) {
         CAPTURE(method);
         check_refused(outputs,
@@ -57,7 +57,7 @@ TEST_CASE("RAYA_BUILD_OPTIONS: is used in every build and shown in the report an
 }
 
 TEST_CASE("RAYA_BUILD_OPTIONS: options that may change results cause a warning, also in the report", "[cli]") {
-    const auto warnings = [](const std::string& options) {
+    const auto warnings_for = [](const std::string& options) {
         const ScratchFolder outputs;
         const RunOutcome run = run_raya({"render", scene_file("planes"), "-o", outputs / "x.pfm", "--report",
                                          outputs / "x.json", "--size", "8", "--pes", "8", "--lanes", "4", "-q"},
@@ -66,14 +66,14 @@ TEST_CASE("RAYA_BUILD_OPTIONS: options that may change results cause a warning, 
         CHECK(run.code == 0);
         std::vector<std::string> all =
             Document::parse(file_contents(outputs / "x.json")).value("warnings", Arguments());
-        for (const std::string& one : all) CHECK_THAT(run.err, Catch::Contains("raya: warning: " + one));
+        for (const std::string& text : all) CHECK_THAT(run.err, Catch::Contains("raya: warning: " + text));
         return all;
     };
-    CHECK(warnings("").empty());
-    CHECK(warnings("-cl-opt-disable -w -cl-fp32-correctly-rounded-divide-sqrt").empty());
+    CHECK(warnings_for("").empty());
+    CHECK(warnings_for("-cl-opt-disable -w -cl-fp32-correctly-rounded-divide-sqrt").empty());
     for (const char* option : {"-cl-fast-relaxed-math", "-cl-unsafe-math-optimizations", "-cl-finite-math-only",
                                "-cl-mad-enable", "-cl-no-signed-zeros", "-cl-denorms-are-zero", "-DRAYA_OTHER=1"})
-        CHECK(warnings(std::string("-cl-opt-disable ") + option) ==
+        CHECK(warnings_for(std::string("-cl-opt-disable ") + option) ==
               Arguments{std::string("RAYA_BUILD_OPTIONS: ") + option + " may change pixels and counts"});
     for (const Arguments& arguments :
          {Arguments{"bench", "--size", "8", "--pes", "8", "--samples", "1", "--lanes", "4", "--format", "fp32"},
@@ -99,16 +99,16 @@ TEST_CASE("devices: lists a driver with two ICD entries once, and numbers equal 
     const fs::path entry = "/etc/OpenCL/vendors/pocl.icd";
     if (!fs::exists(entry)) return;
     for (const char* name : {"a.icd", "b.icd"}) fs::copy_file(entry, vendors / name);
-    const auto devices = [&](const char* of_pocl) {
+    const auto devices = [&](const char* pocl_devices) {
         const RunOutcome run =
-            run_raya({"devices"}, {.variables = {{"OCL_ICD_VENDORS", vendors.path()}, {"POCL_DEVICES", of_pocl}}});
+            run_raya({"devices"}, {.variables = {{"OCL_ICD_VENDORS", vendors.path()}, {"POCL_DEVICES", pocl_devices}}});
         INFO(run.describe());
         CHECK(run.code == 0);
         return std::count(run.out.begin(), run.out.end(), '\n');
     };
-    const auto one = devices("pthread");
-    CHECK(devices("pthread basic") == one + 2);  // one table row and one version line more
-    CHECK(devices("pthread pthread") == one + 2);
+    const auto lines_of_one_device = devices("pthread");
+    CHECK(devices("pthread basic") == lines_of_one_device + 2);  // one more table row and version line
+    CHECK(devices("pthread pthread") == lines_of_one_device + 2);
     const ScratchFolder outputs;
     const auto render = [&](const char* device) {
         return run_raya({"render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8",
@@ -121,7 +121,7 @@ TEST_CASE("devices: lists a driver with two ICD entries once, and numbers equal 
     CHECK_THAT(none.err, Catch::Contains("\n  1: ") && !Catch::Contains("\n  2: "));
 }
 
-TEST_CASE("--device: an unknown device ends with the list of devices", "[cli]") {
+TEST_CASE("--device: the error for an unknown device lists the devices", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
     const Arguments message = {"no OpenCL device matches 'nosuch'", "remedy: a number, a type or a part of a name",
@@ -133,7 +133,7 @@ TEST_CASE("--device: an unknown device ends with the list of devices", "[cli]") 
                   {"no OpenCL device matches '999'", "\n  0: "});
 }
 
-TEST_CASE("render, devices, bench: without OpenCL they end with the remedy", "[cli]") {
+TEST_CASE("render, devices, bench: without OpenCL the error contains the remedy", "[cli]") {
     const ScratchFolder no_drivers, outputs;
     const RunOptions without{.variables = {{"OCL_ICD_VENDORS", no_drivers.path()}}};
     const Arguments message = {"no OpenCL device found", "apt install pocl-opencl-icd", "OCL_ICD_VENDORS"};
@@ -142,18 +142,18 @@ TEST_CASE("render, devices, bench: without OpenCL they end with the remedy", "[c
     check_refused(outputs, {"bench"}, 3, message, without);
 }
 
-TEST_CASE("render: a driver that crashes ends with 3, and the message names the failed call", "[cli]") {
+TEST_CASE("render: if the driver crashes, raya exits with 3 and names the failed call", "[cli]") {
     if (kSanitized) return;  // the address sanitizer handles SIGSEGV itself
     const ScratchFolder outputs;
-    // A crash or stack overflow in the calling thread, and stack overflows in two driver threads at once. After a stack
-    // overflow the signal handler needs a stack of its own.
+    // A crash or stack overflow in the calling thread, and stack overflows in two driver threads at once. After a
+    // stack overflow the signal handler needs a separate stack, because the thread's stack is full.
     for (const char* crash : {"crash", "overflow", "overflows"}) {
         CAPTURE(crash);
         check_refused(outputs,
                       render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4"}), 3,
                       {"raya: the OpenCL driver crashed (SIGSEGV) while ", "launching kernel 'trace'",
                        "remedy: ", "POCL_CACHE_DIR"},
-                      failing_device(std::string("clEnqueueNDRangeKernel 1 ") + crash));
+                      device_with_fault(std::string("clEnqueueNDRangeKernel 1 ") + crash));
     }
 }
 
@@ -162,7 +162,7 @@ TEST_CASE("render --group: refuses a group that the kernel does not allow, with 
     const Arguments arguments =
         render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4", "--group", "16"});
     check_refused(outputs, arguments, 3, {"groups of 16 work-items", "allows groups of 1..8", "--group 8"},
-                  failing_device("clGetKernelWorkGroupInfo 4528 8"));
+                  device_with_fault("clGetKernelWorkGroupInfo 4528 8"));
 }
 
 /// Returns the bytes of the image of a render with groups of `group` work-items on the PoCL device `device`.
@@ -178,7 +178,7 @@ std::string image_of(const std::string& group, const std::string& device, const 
 }
 
 // PoCL keeps the private memory of a whole work-group on the stack of one thread, so large groups may overflow it.
-TEST_CASE("render --group: the largest group with the most lanes renders the same image", "[cli]") {
+TEST_CASE("render --group: the largest group with 16 lanes renders the same image", "[cli]") {
     const Arguments grande = {"--machine", "grande"};
     CHECK(image_of("1024", "pthread", grande) == image_of("1", "pthread", grande));
 }
@@ -195,7 +195,7 @@ TEST_CASE("render --group: the largest group with the most private memory render
         }
 }
 
-TEST_CASE("render: a damaged kernel cache of the driver ends with a remedy", "[cli]") {
+TEST_CASE("render: the error for a damaged kernel cache of the driver contains the remedy", "[cli]") {
     if (kSanitized) return;
     const ScratchFolder cache, outputs;
     const RunOptions run_options{.variables = {{"POCL_CACHE_DIR", cache.path()}}};
@@ -217,13 +217,13 @@ TEST_CASE("render: a damaged kernel cache of the driver ends with a remedy", "[c
 TEST_CASE("render: ends if memory runs out during a build, although the driver keeps its lock", "[cli]") {
     if (kSanitized) return;
     const ScratchFolder cache, outputs;
-    RunOptions run_options = failing_device("new 1000000 0");
+    RunOptions run_options = device_with_fault("new 1000000 0");
     run_options.variables.emplace_back("POCL_CACHE_DIR", cache.path());
     check_refused(outputs, render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8"}), 2,
                   {"out of memory on the host"}, run_options);
 }
 
-TEST_CASE("render: names an unwritable PoCL cache first, and finds a folder if none is set", "[cli]") {
+TEST_CASE("render: the error names an unwritable PoCL cache first; if none is set, raya uses another folder", "[cli]") {
     const ScratchFolder home, outputs;
     ::chmod(outputs.path().c_str(), 0777);
     ::chmod(home.path().c_str(), 0555);

@@ -1,5 +1,5 @@
 // Every option of every command with unusual values: raya accepts the value, or refuses it in one line that names the
-// option, and has no internal error. The parser runs in this process, because there are thousands of cases.
+// option, and never ends with an internal error. The parser runs in this process, because there are thousands of cases.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -45,13 +45,13 @@ struct ExposedApp : CLI::App {
 std::string refusal(const Arguments& arguments, bool runs) {
     const std::shared_ptr<CLI::App> program = make_full_parser();
     if (!runs)
-        for (CLI::App* at = program.get(); at != nullptr;) {
-            at->callback(
-                [owner = at->*(&ExposedApp::final_callback_)] {});  // the callback owns the variables of the options
-            const auto next = at->get_subcommands([&](const CLI::App* one) {
-                return std::find(arguments.begin(), arguments.end(), one->get_name()) != arguments.end();
+        for (CLI::App* command = program.get(); command != nullptr;) {
+            command->callback(
+                [owner = command->*(&ExposedApp::final_callback_)] {});  // keeps the options' variables alive
+            const auto selected = command->get_subcommands([&](const CLI::App* subcommand) {
+                return std::find(arguments.begin(), arguments.end(), subcommand->get_name()) != arguments.end();
             });
-            at = next.empty() ? nullptr : next.front();
+            command = selected.empty() ? nullptr : selected.front();
         }
     try {
         parse_arguments(*program, arguments);
@@ -87,7 +87,7 @@ TEST_CASE("every flag: refuses a value", "[cli][every]") {
                         check_refused_in_process(command.path + Arguments{name + '=' + value}, option);
 }
 
-TEST_CASE("every option: refuses an empty value, one of 1 MB, and a repeated one", "[cli][every]") {
+TEST_CASE("every option: refuses an empty value, a value of 1 MB, and two values", "[cli][every]") {
     for (const Command& command : all_commands())
         for (const OptionText& option : command.text.options) {
             if (option.is_flag()) continue;
@@ -114,24 +114,24 @@ TEST_CASE("every option: odd values cause no internal error", "[cli][every]") {
 
 TEST_CASE("render: refuses odd values before it opens a device", "[cli][every]") {
     const ScratchFolder folder;
-    const std::set<std::string> any_text = {"--output", "--device", "--kernel-dir"};
-    const std::set<std::string> may_be_negative = {"--exposure", "--turn"};
+    const std::set<std::string> accept_any_text = {"--output", "--device", "--kernel-dir"};
+    const std::set<std::string> accept_negative = {"--exposure", "--turn"};
     const auto commands = all_commands();
     const auto render =
         std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.path == Arguments{"render"}; });
     for (const OptionText& option : render->text.options) {
         const std::string& name = option.names.back();
         const bool is_file = contains(option.value, "FILE") || contains(option.value, "IMAGE");
-        if (option.is_flag() || is_file || any_text.count(name) > 0) continue;
+        if (option.is_flag() || is_file || accept_any_text.count(name) > 0) continue;
         for (const std::string& value : kOddValues)
-            if (value != "-1" || may_be_negative.count(name) == 0)
+            if (value != "-1" || accept_negative.count(name) == 0)
                 check_refused_in_process(
                     {"render", scene_file("planes"), "-o", folder / "x.ppm", "--device", kNoDevice, name, value},
                     option, true);
     }
 }
 
-TEST_CASE("--: arguments after it are positional, and a refusal says so", "[cli][every]") {
+TEST_CASE("--: arguments after it are positional, and the error for a wrong one names --", "[cli][every]") {
     CHECK_THAT(refusal({"render", "--", "-x.nff", "--size", "16"}, false),
                Catch::Contains("unexpected argument '--size' after --"));
     CHECK(refusal({"render", "-o", "x.ppm", "--size", "16", "--", "-x.nff"}, false).empty());
@@ -139,17 +139,18 @@ TEST_CASE("--: arguments after it are positional, and a refusal says so", "[cli]
 }
 
 TEST_CASE("refusals: name the closest value, option or command", "[cli][every]") {
-    const auto of_render = [&](const std::string& option, const std::string& value) {
+    const auto render_refusal = [&](const std::string& option, const std::string& value) {
         return refusal({"render", scene_file("planes"), "-o", "x.ppm", "--device", kNoDevice, option, value}, true);
     };
-    CHECK_THAT(of_render("--machine", "sap"), Catch::Contains("--machine sap (did you mean spa?): no such machine"));
-    CHECK_THAT(of_render("--mapping", "block"), Catch::Contains("(did you mean blocks?)"));
-    CHECK_THAT(of_render("--accel", "gird"), Catch::Contains("(did you mean grid?)"));
-    CHECK_THAT(of_render("--fold", "blok"), Catch::Contains("(did you mean block?)"));
-    CHECK_THAT(of_render("--format", "sap22"), Catch::Contains("(did you mean spa22?)"));
-    CHECK_THAT(of_render("--tone", "rheinhard"), Catch::Contains("(did you mean reinhard?)"));
-    CHECK_THAT(of_render("--mapping", "grid:4"), !Catch::Contains("did you mean"));
-    CHECK_THAT(of_render("--width", "4"), Catch::Contains("no option --width (did you mean --size?)"));
+    CHECK_THAT(render_refusal("--machine", "sap"),
+               Catch::Contains("--machine sap (did you mean spa?): no such machine"));
+    CHECK_THAT(render_refusal("--mapping", "block"), Catch::Contains("(did you mean blocks?)"));
+    CHECK_THAT(render_refusal("--accel", "gird"), Catch::Contains("(did you mean grid?)"));
+    CHECK_THAT(render_refusal("--fold", "blok"), Catch::Contains("(did you mean block?)"));
+    CHECK_THAT(render_refusal("--format", "sap22"), Catch::Contains("(did you mean spa22?)"));
+    CHECK_THAT(render_refusal("--tone", "rheinhard"), Catch::Contains("(did you mean reinhard?)"));
+    CHECK_THAT(render_refusal("--mapping", "grid:4"), !Catch::Contains("did you mean"));
+    CHECK_THAT(render_refusal("--width", "4"), Catch::Contains("no option --width (did you mean --size?)"));
     CHECK_THAT(refusal({"version"}, false), Catch::Contains("no command version (did you mean --version?)"));
 }
 

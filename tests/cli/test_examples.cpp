@@ -14,24 +14,25 @@ namespace fs = std::filesystem;
 
 /// Returns the arguments of each call of raya in a shell command line.
 std::vector<Arguments> calls_in(std::string line) {
-    for (const char* sign : {"<(", ")", "|", "&&", ">"})
-        for (std::size_t at = 0; (at = line.find(sign, at)) != std::string::npos; at += std::string(sign).size() + 2)
-            line.replace(at, std::string(sign).size(), std::string(" ") + sign + ' ');
+    for (const char* separator : {"<(", ")", "|", "&&", ">"})
+        for (std::size_t at = 0; (at = line.find(separator, at)) != std::string::npos;
+             at += std::string(separator).size() + 2)
+            line.replace(at, std::string(separator).size(), std::string(" ") + separator + ' ');
     std::vector<Arguments> calls;
-    bool inside = false;
+    bool in_call = false;
     for (const std::string& token : tokens_of(line)) {
         if (token == "raya")
             calls.emplace_back();
-        else if (inside && token != "|" && token != "&&" && token != ">" && token != ")")
+        else if (in_call && token != "|" && token != "&&" && token != ">" && token != ")")
             calls.back().push_back(token);
-        inside = token == "raya" || (inside && token != "|" && token != "&&" && token != ">" && token != ")");
+        in_call = token == "raya" || (in_call && token != "|" && token != "&&" && token != ">" && token != ")");
     }
     return calls;
 }
 
 struct Accepted {};  // thrown instead of running the command
 
-/// Returns the message with which the parser refuses the call; empty if it accepts it.
+/// Returns the message with which the parser refuses the call; empty if the parser accepts the call.
 std::string refusal_of(const Arguments& call) {
     const std::shared_ptr<CLI::App> program = make_full_parser();
     program->parse_complete_callback([] { throw Accepted{}; });
@@ -89,7 +90,7 @@ TEST_CASE("help: the parser accepts every example, and its scenes exist", "[cli]
     });
 }
 
-TEST_CASE("help: the parser refuses wrong examples", "[cli][help]") {
+TEST_CASE("help: the parser refuses wrong examples (control)", "[cli][help]") {
     CHECK(calls_in("a=b raya x -o - | raya y >z && raya w") == std::vector<Arguments>{{"x", "-o", "-"}, {"y"}, {"w"}});
     CHECK(calls_in("source <(raya completion bash)") == std::vector<Arguments>{{"completion", "bash"}});
     for (const Arguments& call :

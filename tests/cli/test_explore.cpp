@@ -32,10 +32,10 @@ TEST_CASE("explore: writes a page and prints the mapping that it opens with", "[
           "\"pes\": 20", "raya render spheres.nff -o image.png --size 24x16"})
         CHECK_THAT(html, Contains(member));
     CHECK(folder.entries() == 1);
-    const RunOutcome again =
+    const RunOutcome second_run =
         run_raya(explore_arguments({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block", "--quiet"}));
-    CHECK(again.code == 0);
-    CHECK(again.out.empty());
+    CHECK(second_run.code == 0);
+    CHECK(second_run.out.empty());
     CHECK(file_contents(page) == html);  // a second run writes the same page
 }
 

@@ -1,5 +1,6 @@
-// No output of a command overwrites its input or another output, also under another name of the file. Tests all pairs
-// of file options of all commands. The parser runs in this process and refuses before any command's callback runs.
+// No output of a command overwrites its input or another output, even under another name of the same file. Tests all
+// pairs of file options of all commands. The parser runs in this process and refuses before any command's callback
+// runs.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -25,10 +26,10 @@ using Path = std::vector<std::string>;  // command path: {"generate", "random"}
 
 void for_each_command(CLI::App& command, const Path& path, const std::function<void(CLI::App&, const Path&)>& visit) {
     visit(command, path);
-    for (CLI::App* one : command.get_subcommands({})) {
-        Path below = path;
-        below.push_back(one->get_name());
-        for_each_command(*one, below, visit);
+    for (CLI::App* subcommand : command.get_subcommands({})) {
+        Path subcommand_path = path;
+        subcommand_path.push_back(subcommand->get_name());
+        for_each_command(*subcommand, subcommand_path, visit);
     }
 }
 
@@ -50,7 +51,7 @@ TEST_CASE("file options: every option with a file or folder declares its use", "
 /// Returns arguments that set `two_options` of a command to `two_values`, and its other required options to arbitrary
 /// valid values.
 Arguments arguments_for(CLI::App& command, const Path& path, const Arguments& two_options, const Arguments& two_values,
-                        const ScratchFolder& others) {
+                        const ScratchFolder& other_files) {
     Arguments arguments = path;
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
@@ -60,7 +61,7 @@ Arguments arguments_for(CLI::App& command, const Path& path, const Arguments& tw
         if (at != two_options.end())
             arguments.push_back(two_values[static_cast<std::size_t>(at - two_options.begin())]);
         else
-            arguments.push_back(option->get_type_name() == "COUNT" ? "5" : others / name);
+            arguments.push_back(option->get_type_name() == "COUNT" ? "5" : other_files / name);
     }
     return arguments;
 }
@@ -77,20 +78,21 @@ void check_refused_by_parser(const Arguments& arguments, const Arguments& option
     for (const std::string& option : options) CHECK_THAT(message, Catch::Contains(option));
 }
 
-std::vector<Arguments> pairs_of(CLI::App& command, FileUse one, FileUse other) {
+std::vector<Arguments> pairs_of(CLI::App& command, FileUse first_use, FileUse second_use) {
     std::vector<Arguments> pairs;
     for (CLI::Option* a : command.get_options())
         for (CLI::Option* b : command.get_options())
-            if (file_use_of(*a) == one && file_use_of(*b) == other && (one != other || a->get_name() < b->get_name()))
+            if (file_use_of(*a) == first_use && file_use_of(*b) == second_use &&
+                (first_use != second_use || a->get_name() < b->get_name()))
                 pairs.push_back({a->get_name(), b->get_name()});
     return pairs;
 }
 
 /// Calls `visit` with two names of the same file, for several kinds of names. `exists`: the file exists.
 void for_each_two_names(bool exists, const std::function<void(const Arguments&)>& visit) {
-    Arguments others = {"file", "./file", "sub/../file", "folder_link/file", "link", "link2"};
-    if (exists) others.push_back("hard");
-    for (const std::string& other : quick_rotating(others)) {
+    Arguments names = {"file", "./file", "sub/../file", "folder_link/file", "link", "link2"};
+    if (exists) names.push_back("hard");
+    for (const std::string& name : quick_rotating(names)) {
         const ScratchFolder folder;
         fs::create_directory(folder / "sub");
         fs::create_directory_symlink(".", folder / "folder_link");
@@ -98,8 +100,8 @@ void for_each_two_names(bool exists, const std::function<void(const Arguments&)>
         fs::create_symlink(fs::path(folder / "link"), folder / "link2");
         if (exists) write_whole_file(folder / "file", "content");
         if (exists) fs::create_hard_link(folder / "file", folder / "hard");
-        visit({folder / "file", folder / other});
-        visit({folder / other, folder / "file"});
+        visit({folder / "file", folder / name});
+        visit({folder / name, folder / "file"});
         CHECK(fs::exists(folder / "file") == exists);
         if (exists) CHECK(file_contents(folder / "file") == "content");
     }
@@ -107,14 +109,14 @@ void for_each_two_names(bool exists, const std::function<void(const Arguments&)>
 
 TEST_CASE("file options: no command overwrites a file that it reads or writes, under any name", "[cli][file_options]") {
     const auto parser = make_full_parser();
-    const ScratchFolder others;
+    const ScratchFolder other_files;
     std::size_t pairs = 0;
     for_each_command(*parser, {}, [&](CLI::App& command, const Path& path) {
-        const auto check = [&](FileUse one, bool exists) {
-            for (const Arguments& options : pairs_of(command, one, FileUse::kWritten)) {
+        const auto check = [&](FileUse use, bool exists) {
+            for (const Arguments& options : pairs_of(command, use, FileUse::kWritten)) {
                 ++pairs;
                 for_each_two_names(exists, [&](const Arguments& names) {
-                    check_refused_by_parser(arguments_for(command, path, options, names, others), options);
+                    check_refused_by_parser(arguments_for(command, path, options, names, other_files), options);
                 });
             }
         };
@@ -123,30 +125,30 @@ TEST_CASE("file options: no command overwrites a file that it reads or writes, u
         check(FileUse::kWritten, false);
     });
     CHECK(pairs > 70);
-    CHECK(others.entries() == 0);
+    CHECK(other_files.entries() == 0);
 }
 
 TEST_CASE("file options: no command overwrites kernels that it reads, or an input in its output folder",
           "[cli][file_options]") {
     const auto parser = make_full_parser();
-    const ScratchFolder others, kernels, folder;
+    const ScratchFolder other_files, kernels, folder;
     write_kernels(kernels.path());
     const std::string kernel = file_contents(kernels / "ring/trace.cl");
-    fs::create_symlink(fs::path(kernels / "ring/trace.cl"), others / "link");
+    fs::create_symlink(fs::path(kernels / "ring/trace.cl"), other_files / "link");
     write_whole_file(folder / "fig7.csv", "content");
-    fs::create_symlink(fs::path(folder / "fig7.csv"), others / "scene.nff");
+    fs::create_symlink(fs::path(folder / "fig7.csv"), other_files / "scene.nff");
     std::size_t pairs = 0;
     for_each_command(*parser, {}, [&](CLI::App& command, const Path& path) {
-        const auto check = [&](FileUse one, FileUse other, const Arguments& values) {
-            for (const Arguments& options : pairs_of(command, one, other)) {
+        const auto check = [&](FileUse first_use, FileUse second_use, const Arguments& values) {
+            for (const Arguments& options : pairs_of(command, first_use, second_use)) {
                 ++pairs;
-                check_refused_by_parser(arguments_for(command, path, options, values, others), options);
+                check_refused_by_parser(arguments_for(command, path, options, values, other_files), options);
             }
         };
         check(FileUse::kKernelFolder, FileUse::kWritten, {kernels.path(), kernels / "ring/trace.cl"});
-        check(FileUse::kKernelFolder, FileUse::kWritten, {kernels.path(), others / "link"});
+        check(FileUse::kKernelFolder, FileUse::kWritten, {kernels.path(), other_files / "link"});
         check(FileUse::kRead, FileUse::kWrittenFolder, {folder / "fig7.csv", folder.path()});
-        check(FileUse::kRead, FileUse::kWrittenFolder, {others / "scene.nff", folder.path()});
+        check(FileUse::kRead, FileUse::kWrittenFolder, {other_files / "scene.nff", folder.path()});
     });
     CHECK(pairs > 25);
     CHECK((file_contents(kernels / "ring/trace.cl") == kernel));
@@ -173,23 +175,23 @@ TEST_CASE("file options: derived output names (frames, replay) overwrite no inpu
         return folder / name;
     };
     const Arguments frames = {"-o", image, "--frames", "1:4", "--turn", "90", "--size", "4"};
-    const auto of = [&](const std::string& input, Arguments arguments) {
+    const auto render_with = [&](const std::string& input, Arguments arguments) {
         arguments.insert(arguments.begin(), {"render", input});
         return arguments;
     };
-    const std::string third = copy("a-0003.ppm"), record = copy("a-frames.json"), report = copy("r-0002.json"),
-                      platform = copy("p.xml"), history = copy("p.replay");
-    check_unchanged(third, of(third, frames), {"--output", "a-0003.ppm", "SCENE"});
-    check_unchanged(record, of(record, frames), {"--frames", "a-frames.json", "SCENE"});
+    const std::string third_frame = copy("a-0003.ppm"), frame_record = copy("a-frames.json"),
+                      report = copy("r-0002.json"), platform = copy("p.xml"), history = copy("p.replay");
+    check_unchanged(third_frame, render_with(third_frame, frames), {"--output", "a-0003.ppm", "SCENE"});
+    check_unchanged(frame_record, render_with(frame_record, frames), {"--frames", "a-frames.json", "SCENE"});
     Arguments reports = frames;
     reports.insert(reports.end(), {"--report", folder / "r.json"});
-    check_unchanged(report, of(report, reports), {"--report", "r-0002.json", "SCENE"});
+    check_unchanged(report, render_with(report, reports), {"--report", "r-0002.json", "SCENE"});
     fs::create_symlink("r-0003.json", folder / "a-0004.ppm");
-    check_unchanged(scene, of(scene, reports), {"--report", "r-0003.json", "--output", "a-0004.ppm"});
+    check_unchanged(scene, render_with(scene, reports), {"--report", "r-0003.json", "--output", "a-0004.ppm"});
     const Arguments packets = {"-o",       image,    "--machine", "torus", "--packets", folder / "p.csv.gz",
                                "--replay", "simgrid"};
     for (const std::string& file : {platform, history})
-        check_unchanged(file, of(file, packets), {"--replay", file, "SCENE"});
+        check_unchanged(file, render_with(file, packets), {"--replay", file, "SCENE"});
     CHECK_FALSE(fs::exists(image));
 }
 

@@ -51,12 +51,12 @@ struct Installation {
              .program = program});
     }
 
-    void check_refused(const std::string& named) const {
+    void check_refused(const std::string& text) const {
         for (const RunOutcome& outcome : {run(), run_as_rank()}) {
             INFO(outcome.describe());
             CHECK(outcome.code == 2);
             CHECK_THAT(outcome.err, Contains("refused to load '" + modules.string() + "/raya_"));
-            CHECK_THAT(outcome.err, Contains(named));
+            CHECK_THAT(outcome.err, Contains(text));
         }
     }
 
@@ -72,26 +72,26 @@ TEST_CASE("modules: are loaded from one folder of an installation only", "[cli][
         CAPTURE(program, modules);
         const ScratchFolder scratch;
         const Installation foreign(scratch / "foreign", program, modules);
-        const RunOutcome picture = foreign.run(), rank = foreign.run_as_rank();
-        INFO(picture.describe() + rank.describe());
-        CHECK(picture.code == 2);
-        CHECK_THAT(picture.err, Contains("there is no file '") && Contains("/raya_pictures.so'") && Contains(".ppm"));
-        CHECK(rank.code == 2);
-        CHECK_THAT(rank.err, Contains("there is no file '") && Contains("/raya_mpi.so'"));
+        const RunOutcome image_run = foreign.run(), rank_run = foreign.run_as_rank();
+        INFO(image_run.describe() + rank_run.describe());
+        CHECK(image_run.code == 2);
+        CHECK_THAT(image_run.err, Contains("there is no file '") && Contains("/raya_pictures.so'") && Contains(".ppm"));
+        CHECK(rank_run.code == 2);
+        CHECK_THAT(rank_run.err, Contains("there is no file '") && Contains("/raya_mpi.so'"));
     }
 }
 
 TEST_CASE("modules: refused if others may write or replace them", "[cli][module]") {
     const ScratchFolder folder;
     const Installation flat(folder / "flat", ".", "."), prefix(folder / "prefix", "bin", "lib/raya");
-    const auto check_mode = [](const Installation& one, const fs::path& changed, mode_t mode,
-                               const std::string& named) {
-        CAPTURE(changed, mode);
+    const auto check_mode = [](const Installation& installation, const fs::path& path, mode_t mode,
+                               const std::string& text) {
+        CAPTURE(path, mode);
         struct stat before {};
-        REQUIRE(::stat(changed.c_str(), &before) == 0);
-        ::chmod(changed.c_str(), mode);
-        one.check_refused("other users may write '" + named);
-        ::chmod(changed.c_str(), before.st_mode & 07777);
+        REQUIRE(::stat(path.c_str(), &before) == 0);
+        ::chmod(path.c_str(), mode);
+        installation.check_refused("other users may write '" + text);
+        ::chmod(path.c_str(), before.st_mode & 07777);
     };
     check_mode(flat, flat.top, 0777, flat.top.string() + "' (mode 0777)");
     check_mode(flat, flat.top, 01777, flat.top.string() + "' (mode 1777)");
@@ -115,12 +115,12 @@ TEST_CASE("modules: group write permission is accepted if the owner is the group
     const Installation flat(folder / "flat", ".", ".");
     ::chmod(flat.top.c_str(), 0775);
     CHECK(flat.run().code == 0);  // root's group may write
-    constexpr gid_t kNoNumber = 54'321;
-    REQUIRE(::chown(flat.top.c_str(), 0, kNoNumber) == 0);
+    constexpr gid_t kUnnamedGroup = 54'321;
+    REQUIRE(::chown(flat.top.c_str(), 0, kUnnamedGroup) == 0);
     CHECK(flat.run().code == 0);
     REQUIRE(::chown(flat.top.c_str(), 0, kNobody) == 0);
     flat.check_refused("(mode 0775)");
-    REQUIRE(::chown(flat.top.c_str(), 0, 1) == 0);  // now group 1, that of the user daemon
+    REQUIRE(::chown(flat.top.c_str(), 0, 1) == 0);  // group 1 is that of the user daemon
     flat.check_refused("(mode 0775)");
 }
 
@@ -162,9 +162,9 @@ struct CacheRun {
                         "4", "-q"});
     }
 
-    /// Returns the path of the private cache folder that raya creates in TMPDIR, with `end` appended.
-    fs::path own(const std::string& end = "") const {
-        return temporary / ("raya-pocl-cache-" + std::to_string(::geteuid() == 0 ? kNobody : ::geteuid()) + end);
+    /// Returns the path of the private cache folder that raya creates in TMPDIR, with `suffix` appended.
+    fs::path private_folder(const std::string& suffix = "") const {
+        return temporary / ("raya-pocl-cache-" + std::to_string(::geteuid() == 0 ? kNobody : ::geteuid()) + suffix);
     }
 };
 
@@ -176,36 +176,38 @@ TEST_CASE("kernel cache: a private folder replaces PoCL's default if others may 
     const CacheRun run;
     const ScratchFolder homes;
     ::chmod(homes.path().c_str(), 0755);
-    const auto check_own = [&](const std::string& home, const std::string& cache, const std::string& why) {
+    const auto check_private_folder = [&](const std::string& home, const std::string& cache,
+                                          const std::string& reason) {
         CAPTURE(home, cache);
-        fs::remove_all(run.own());
+        fs::remove_all(run.private_folder());
         const RunOutcome outcome = run(home, cache);
         INFO(outcome.describe());
         CHECK(outcome.code == 0);
-        CHECK_THAT(outcome.err, Contains("raya: warning: ") && Contains(why) && Contains(run.own().string()));
-        struct stat is {};
-        REQUIRE(::stat(run.own().c_str(), &is) == 0);
-        CHECK(is.st_mode == (S_IFDIR | 0700));
+        CHECK_THAT(outcome.err,
+                   Contains("raya: warning: ") && Contains(reason) && Contains(run.private_folder().string()));
+        struct stat status {};
+        REQUIRE(::stat(run.private_folder().c_str(), &status) == 0);
+        CHECK(status.st_mode == (S_IFDIR | 0700));
     };
     CHECK_FALSE(fs::exists("/tmp/pocl"));
-    check_own("", "", "'/tmp");
+    check_private_folder("", "", "'/tmp");
     CHECK_FALSE(fs::exists("/tmp/pocl"));
     fs::create_directories(homes / "writable/.cache/pocl");
     give_to_nobody(homes / "writable/.cache/pocl");
     ::chmod((homes / "writable/.cache/pocl").c_str(), 0777);
-    check_own(homes / "writable", "", "other users may write");
-    check_own(homes / "elsewhere", homes / "writable/.cache", "other users may write");
+    check_private_folder(homes / "writable", "", "other users may write");
+    check_private_folder(homes / "elsewhere", homes / "writable/.cache", "other users may write");
     fs::create_directories(homes / "above/.cache/pocl/kcache");
     for (const char* name : {"above/.cache/pocl/kcache", "above/.cache/pocl", "above/.cache"})
         give_to_nobody(homes / name);
     ::chmod((homes / "above").c_str(), 0777);
-    check_own(homes / "above", "", "/above' (mode 0777)");
-    check_own(homes.path(), "", "is not writable");
+    check_private_folder(homes / "above", "", "/above' (mode 0777)");
+    check_private_folder(homes.path(), "", "is not writable");
     if (::geteuid() != 0) return;
     fs::create_directories(homes / "foreign/.cache/pocl");
     REQUIRE(::chown((homes / "foreign/.cache/pocl").c_str(), 1, 1) == 0);
     ::chmod((homes / "foreign/.cache/pocl").c_str(), 0777);
-    check_own(homes / "foreign", "", "belongs to user ");
+    check_private_folder(homes / "foreign", "", "belongs to user ");
 }
 
 TEST_CASE("kernel cache: PoCL's default folder is used if only this user may write it", "[cli][cache]") {
@@ -218,7 +220,7 @@ TEST_CASE("kernel cache: PoCL's default folder is used if only this user may wri
         INFO(outcome.describe());
         CHECK(outcome.code == 0);
         CHECK(outcome.err.empty());
-        CHECK_FALSE(fs::exists(run.own()));
+        CHECK_FALSE(fs::exists(run.private_folder()));
     }
     CHECK(fs::exists(home / ".cache/pocl/kcache"));
     CHECK(fs::exists(home / "cache/pocl/kcache"));
@@ -226,36 +228,37 @@ TEST_CASE("kernel cache: PoCL's default folder is used if only this user may wri
 
 TEST_CASE("kernel cache: raya skips private folders that it does not own", "[cli][cache]") {
     const CacheRun run;
-    fs::create_directory(run.own());
-    ::chmod(run.own().c_str(), 0777);  // owned by root, who is another user for nobody
-    if (::geteuid() != 0) ::chmod(run.own().c_str(), 0755);
-    fs::create_directory_symlink(run.temporary.path(), run.own("-1"));
-    std::ofstream(run.own("-2")) << "x";
-    fs::create_directory(run.own("-3"));
-    give_to_nobody(run.own("-3"));
-    ::chmod(run.own("-3").c_str(), 0750);
+    fs::create_directory(run.private_folder());
+    ::chmod(run.private_folder().c_str(), 0777);  // owned by root, not by nobody, who runs raya
+    if (::geteuid() != 0) ::chmod(run.private_folder().c_str(), 0755);
+    fs::create_directory_symlink(run.temporary.path(), run.private_folder("-1"));
+    std::ofstream(run.private_folder("-2")) << "x";
+    fs::create_directory(run.private_folder("-3"));
+    give_to_nobody(run.private_folder("-3"));
+    ::chmod(run.private_folder("-3").c_str(), 0750);
     const RunOutcome outcome = run.render();
     INFO(outcome.describe());
     CHECK(outcome.code == 0);
-    CHECK_THAT(outcome.err, Contains(run.own("-4").string()));
-    CHECK(fs::is_empty(run.own()));
-    CHECK(fs::is_empty(run.own("-3")));
-    CHECK_FALSE(fs::is_empty(run.own("-4")));
+    CHECK_THAT(outcome.err, Contains(run.private_folder("-4").string()));
+    CHECK(fs::is_empty(run.private_folder()));
+    CHECK(fs::is_empty(run.private_folder("-3")));
+    CHECK_FALSE(fs::is_empty(run.private_folder("-4")));
 }
 
-TEST_CASE("kernel cache: without a safe folder the message names those that were tried", "[cli][cache]") {
+TEST_CASE("kernel cache: without a safe folder, the error names the folders that raya tried", "[cli][cache]") {
     const auto check_none = [](const CacheRun& run) {
         const RunOutcome outcome = run("");
         INFO(outcome.describe());
         CHECK(outcome.code == 3);
-        CHECK_THAT(outcome.err, Contains(run.own().string()) && Contains("name another folder in POCL_CACHE_DIR") &&
+        CHECK_THAT(outcome.err, Contains(run.private_folder().string()) &&
+                                    Contains("name another folder in POCL_CACHE_DIR") &&
                                     !Contains("no OpenCL device found"));
     };
     check_none(CacheRun(0777));  // without sticky bit: others can replace its files
-    const CacheRun taken;
+    const CacheRun occupied;
     for (const char* end : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
-        std::ofstream(taken.own(end)) << "x";
-    check_none(taken);
+        std::ofstream(occupied.private_folder(end)) << "x";
+    check_none(occupied);
 }
 
 }  // namespace

@@ -40,16 +40,16 @@ TEST_CASE("--frames: ranges and file names", "[cli][frames]") {
 TEST_CASE("--turn: a frame's camera depends on its number, not on the range", "[cli][frames]") {
     const View view = read_nff(scene_file("centre")).view;
     const auto frames = [&](const char* range) { return frames_of({range, "", 360.0}, view); };
-    const std::vector<Frame> all = frames("1:24"), some = frames("7:9/24"), from_zero = frames("0:23");
-    REQUIRE(all.size() == 24);
-    REQUIRE(some.size() == 3);
-    CHECK(all.front().view == view);
-    for (std::size_t i = 0; i < some.size(); ++i) {
-        CHECK(some[i].number == 7 + i);
-        CHECK(some[i].view == all[6 + i].view);
+    const std::vector<Frame> all_frames = frames("1:24"), three_frames = frames("7:9/24"), from_zero = frames("0:23");
+    REQUIRE(all_frames.size() == 24);
+    REQUIRE(three_frames.size() == 3);
+    CHECK(all_frames.front().view == view);
+    for (std::size_t i = 0; i < three_frames.size(); ++i) {
+        CHECK(three_frames[i].number == 7 + i);
+        CHECK(three_frames[i].view == all_frames[6 + i].view);
     }
-    for (std::size_t i = 0; i < all.size(); ++i) CHECK(from_zero[i].view == all[i].view);
-    const Vec3 arm = view.from - view.at, opposite = all[12].view.from - view.at;
+    for (std::size_t i = 0; i < all_frames.size(); ++i) CHECK(from_zero[i].view == all_frames[i].view);
+    const Vec3 arm = view.from - view.at, opposite = all_frames[12].view.from - view.at;
     CHECK((opposite + arm).dot(view.up) == Approx(2 * arm.dot(view.up)));
     CHECK((opposite - (view.up * (2 * arm.dot(view.up) / view.up.dot(view.up)) - arm)).length() < 1e-12);
 }
@@ -77,7 +77,7 @@ TEST_CASE("--camera-path: each line is a camera; a wrong line is refused with it
     CHECK(numbers("2:3") == std::vector<std::uint32_t>{2, 3});
     CHECK_THROWS_WITH(numbers("2:4"), Catch::Contains("has 3 cameras"));
     CHECK_THROWS_AS(numbers("0:2"), UserError);
-    const std::pair<const char*, const char*> wrong[] = {
+    const std::pair<const char*, const char*> wrong_lines[] = {
         {"from 1,2", "line 1: --from 1,2: must be"},
         {"\nfrom", "line 2: from has no value"},
         {"to 1,2,3", "line 1: 'to': must be from"},
@@ -87,7 +87,7 @@ TEST_CASE("--camera-path: each line is a camera; a wrong line is refused with it
         {"\nangle 3 angle 3", "line 2: 'angle' is given twice"},
         {"", "no camera"},
         {"from 1,1,1 at 1,1,1", "line 1: --from 1,1,1 --at 1,1,1"}};
-    for (const auto& [text, message] : wrong) {
+    for (const auto& [text, message] : wrong_lines) {
         CAPTURE(text);
         write_whole_file(path, text);
         CHECK_THROWS_WITH(read_camera_path(path, view), Catch::Contains(message));
@@ -119,20 +119,20 @@ class Sequence {
         return all;
     }
 
-    /// Renders the sequence with `more` options and returns how many frames raya rendered.
-    int rendered(const Arguments& more) const {
+    /// Renders the sequence with `more` options and returns the number of frames that raya rendered.
+    int rendered_frames(const Arguments& more) const {
         const RunOutcome run = run_raya(arguments(more));
         INFO(run.describe());
         REQUIRE(run.code == 0);
         CHECK(run.messages().empty());
-        const std::size_t at = run.out.find(" frames, ");
-        REQUIRE(at != std::string::npos);
-        return std::stoi(run.out.substr(at + 9));
+        const std::size_t position = run.out.find(" frames, ");
+        REQUIRE(position != std::string::npos);
+        return std::stoi(run.out.substr(position + 9));
     }
 
     std::string file(const std::string& name) const { return folder_ / name; }
     const ScratchFolder& folder() const { return folder_; }
-    std::string bytes(int frame) const { return file_contents(file(fmt::format("t-{:04}.ppm", frame))); }
+    std::string image_bytes(int frame) const { return file_contents(file(fmt::format("t-{:04}.ppm", frame))); }
     Document record() const { return Document::parse(file_contents(file("t-frames.json"))); }
 
   private:
@@ -140,58 +140,58 @@ class Sequence {
 };
 
 TEST_CASE("render --frames: frames equal single renders, and existing ones are skipped", "[cli][frames]") {
-    const Sequence s;
-    REQUIRE(s.rendered({"--frames", "1:4"}) == 4);
-    CHECK(s.folder().entries() == 5);
-    Arguments single = s.arguments();
+    const Sequence sequence;
+    REQUIRE(sequence.rendered_frames({"--frames", "1:4"}) == 4);
+    CHECK(sequence.folder().entries() == 5);
+    Arguments single = sequence.arguments();
     single.resize(single.size() - 2);  // without --turn
     REQUIRE(run_raya(single).code == 0);
-    CHECK((file_contents(s.file("t.ppm")) == s.bytes(1)));
-    CHECK((s.bytes(2) != s.bytes(1)));
-    const Document record = s.record();
+    CHECK((file_contents(sequence.file("t.ppm")) == sequence.image_bytes(1)));
+    CHECK((sequence.image_bytes(2) != sequence.image_bytes(1)));
+    const Document record = sequence.record();
     REQUIRE(record["frames"].size() == 4);
     CHECK(record["frames"][0]["number"] == 1);
     CHECK(record["frames"][1]["imbalance"] > 0);
 
-    CHECK(s.rendered({"--frames", "1:4"}) == 0);
-    CHECK(s.rendered({"--frames", "2:3/4"}) == 0);
-    CHECK(s.rendered({"--frames", "0:3"}) == 4);  // another sequence: its frames have other cameras
-    CHECK(s.rendered({"--frames", "1:4"}) == 3);  // frame 4 was not replaced; 1 to 3 were
-    CHECK(s.record()["frames"].size() == 5);
-    CHECK(s.rendered({"--frames", "1:8"}) == 7);  // only frame 1 has the same camera
+    CHECK(sequence.rendered_frames({"--frames", "1:4"}) == 0);
+    CHECK(sequence.rendered_frames({"--frames", "2:3/4"}) == 0);
+    CHECK(sequence.rendered_frames({"--frames", "0:3"}) == 4);  // another sequence: its frames have other cameras
+    CHECK(sequence.rendered_frames({"--frames", "1:4"}) == 3);  // frames 1 to 3 had been replaced, frame 4 had not
+    CHECK(sequence.record()["frames"].size() == 5);
+    CHECK(sequence.rendered_frames({"--frames", "1:8"}) == 7);  // only frame 1 has the same camera
 }
 
 TEST_CASE("render --frames: renders again the frames whose file or settings changed, and only those", "[cli][frames]") {
-    const Sequence s;
+    const Sequence sequence;
     const Arguments frames = {"--frames", "1:3"};
-    REQUIRE(s.rendered(frames) == 3);
-    const std::string second = s.bytes(2);
-    write_whole_file(s.file("t-0002.ppm"), "P6 1 1 255\nabc");
-    CHECK(s.rendered(frames) == 1);
-    CHECK((s.bytes(2) == second));
-    fs::remove(s.file("t-0003.ppm"));
-    CHECK(s.rendered(frames) == 1);
+    REQUIRE(sequence.rendered_frames(frames) == 3);
+    const std::string second = sequence.image_bytes(2);
+    write_whole_file(sequence.file("t-0002.ppm"), "P6 1 1 255\nabc");
+    CHECK(sequence.rendered_frames(frames) == 1);
+    CHECK((sequence.image_bytes(2) == second));
+    fs::remove(sequence.file("t-0003.ppm"));
+    CHECK(sequence.rendered_frames(frames) == 1);
     for (const Arguments& changed :
          {Arguments{"--bounces", "2"}, Arguments{"--exposure", "1"}, Arguments{"--from", "5,-9,4"},
           Arguments{"--light", "1,1,9"}, Arguments{"--mapping", "rows"}, Arguments{"--strict"},
-          Arguments{"--report", s.file("t.json")}, Arguments{"--cost", s.file("c.pfm")}}) {
+          Arguments{"--report", sequence.file("t.json")}, Arguments{"--cost", sequence.file("c.pfm")}}) {
         Arguments arguments = frames;
         arguments.insert(arguments.end(), changed.begin(), changed.end());
         CAPTURE(changed.front());
-        CHECK(s.rendered(arguments) == 3);
-        CHECK(s.rendered(arguments) == 0);
+        CHECK(sequence.rendered_frames(arguments) == 3);
+        CHECK(sequence.rendered_frames(arguments) == 0);
     }
-    CHECK(fs::exists(s.file("t-0002.json")));
-    CHECK(fs::exists(s.file("c-0003.pfm")));
-    const Document report = Document::parse(file_contents(s.file("t-0002.json")));
-    CHECK(report["image"]["file"] == s.file("t-0002.ppm"));
+    CHECK(fs::exists(sequence.file("t-0002.json")));
+    CHECK(fs::exists(sequence.file("c-0003.pfm")));
+    const Document report = Document::parse(file_contents(sequence.file("t-0002.json")));
+    CHECK(report["image"]["file"] == sequence.file("t-0002.ppm"));
 }
 
 TEST_CASE("render --frames: renders again if the content of the scene file changed", "[cli][frames]") {
-    const Sequence s;
-    const std::string scene = s.file("scene.nff");
+    const Sequence sequence;
+    const std::string scene = sequence.file("scene.nff");
     fs::copy_file(scene_file("spheres"), scene);
-    Arguments arguments = s.arguments({"--frames", "1:2"});
+    Arguments arguments = sequence.arguments({"--frames", "1:2"});
     arguments[1] = scene;
     const auto out = [&] { return run_raya(arguments).out; };
     CHECK_THAT(out(), Catch::Contains("2 frames, 2 rendered"));
@@ -202,37 +202,37 @@ TEST_CASE("render --frames: renders again if the content of the scene file chang
 }
 
 TEST_CASE("render --frames: with --kernel-dir every frame is rendered again", "[cli][frames]") {
-    const Sequence s;
+    const Sequence sequence;
     const Arguments arguments = {"--frames", "1:2", "--kernel-dir", RAYA_SOURCE_DIR "/kernels"};
-    CHECK(s.rendered(arguments) == 2);
-    CHECK(s.rendered(arguments) == 2);
+    CHECK(sequence.rendered_frames(arguments) == 2);
+    CHECK(sequence.rendered_frames(arguments) == 2);
 }
 
-TEST_CASE("render --frames: an interrupted sequence continues with the missing frames", "[cli][frames]") {
-    const Sequence whole;
+TEST_CASE("render --frames: an interrupted sequence resumes with the missing frames", "[cli][frames]") {
+    const Sequence complete;
     const Arguments frames = {"--frames", "1:60"};
-    REQUIRE(whole.rendered(frames) == 60);
+    REQUIRE(complete.rendered_frames(frames) == 60);
     // Interrupts the render, each time after a longer delay, until some frames exist.
     std::optional<Sequence> stopped;
-    int left = 60;
-    for (int ms = 60; left == 60 && ms <= 5000; ms += ms / 2) {
+    int missing_frames = 60;
+    for (int ms = 60; missing_frames == 60 && ms <= 5000; ms += ms / 2) {
         stopped.emplace();
         const RunOutcome run = run_raya(stopped->arguments(frames), {.signal = SIGINT, .signal_after_ms = ms});
         INFO(run.describe());
         REQUIRE(run.code == 128 + SIGINT);
-        left = stopped->rendered(frames);
+        missing_frames = stopped->rendered_frames(frames);
     }
-    REQUIRE((left > 0 && left < 60));
+    REQUIRE((missing_frames > 0 && missing_frames < 60));
     for (int frame = 1; frame <= 60; ++frame) {
         CAPTURE(frame);
-        CHECK((stopped->bytes(frame) == whole.bytes(frame)));
+        CHECK((stopped->image_bytes(frame) == complete.image_bytes(frame)));
     }
 }
 
 TEST_CASE("render --frames --machine torus: existing frames are skipped", "[cli][frames]") {
-    const Sequence s;
+    const Sequence sequence;
     const Arguments torus = {"--frames", "1:2", "--machine", "torus", "--nodes", "2x2x1"};
-    Arguments arguments = s.arguments(torus);
+    Arguments arguments = sequence.arguments(torus);
     std::erase_if(arguments, [](const std::string& argument) { return argument == "--pes"; });
     arguments.erase(std::find(arguments.begin(), arguments.end(), "16"));
     const auto out = [&] { return run_raya(arguments).out; };
@@ -240,7 +240,7 @@ TEST_CASE("render --frames --machine torus: existing frames are skipped", "[cli]
     CHECK_THAT(out(), Catch::Contains("2 frames, 0 rendered"));
 }
 
-TEST_CASE("FrameRecord: has the frames of all processes that write it at once", "[cli][frames]") {
+TEST_CASE("FrameRecord: contains the frames of all processes that write it concurrently", "[cli][frames]") {
     const ScratchFolder folder;
     const std::string file = folder / "t-frames.json";
     constexpr std::uint32_t kProcesses = 8, kFrames = 12;
@@ -269,34 +269,34 @@ TEST_CASE("FrameRecord: has the frames of all processes that write it at once", 
     CHECK(folder.entries() == 1);  // no lock file is left
 }
 
-TEST_CASE("FrameRecord: merges its frames with those that others wrote meanwhile, the last writer first",
+TEST_CASE("FrameRecord: adds the frames that others wrote meanwhile; of two entries for a frame, the later counts",
           "[cli][frames]") {
     const ScratchFolder folder;
-    FrameRecord one(folder / "t-frames.json"), other(folder / "t-frames.json");
-    one.add({1, "one", "pixels", 1, 1, {}}, {});
-    one.add({2, "one", "pixels", 1, 1, {}}, {});
-    one.write();
-    other.add({2, "other", "pixels", 1, 1, {}}, {});
-    other.write();
-    for (const FrameRecord& record : {other, FrameRecord(folder / "t-frames.json")}) {
+    FrameRecord first_record(folder / "t-frames.json"), second_record(folder / "t-frames.json");
+    first_record.add({1, "one", "pixels", 1, 1, {}}, {});
+    first_record.add({2, "one", "pixels", 1, 1, {}}, {});
+    first_record.write();
+    second_record.add({2, "other", "pixels", 1, 1, {}}, {});
+    second_record.write();
+    for (const FrameRecord& record : {second_record, FrameRecord(folder / "t-frames.json")}) {
         CHECK(record.find(1, "one", {}) != nullptr);
         CHECK(record.find(2, "other", {}) != nullptr);  // the entry that was written last
     }
 }
 
 TEST_CASE("render --frames: several processes share a folder, and its record has all frames", "[cli][frames]") {
-    const Sequence s;
+    const Sequence sequence;
     std::vector<std::thread> processes;
     std::array<int, 3> codes{};
     for (int part = 0; part < 3; ++part)
         processes.emplace_back([&, part] {
             const std::string range = fmt::format("{}:{}/6", 2 * part + 1, 2 * part + 2);
-            codes[static_cast<std::size_t>(part)] = run_raya(s.arguments({"--frames", range})).code;
+            codes[static_cast<std::size_t>(part)] = run_raya(sequence.arguments({"--frames", range})).code;
         });
     for (std::thread& process : processes) process.join();
     CHECK(codes == std::array<int, 3>{});
-    CHECK(s.record()["frames"].size() == 6);
-    CHECK(s.rendered({"--frames", "1:6"}) == 0);
+    CHECK(sequence.record()["frames"].size() == 6);
+    CHECK(sequence.rendered_frames({"--frames", "1:6"}) == 0);
 }
 
 TEST_CASE("render --frames: refuses invalid sequences before rendering", "[cli][frames]") {

@@ -22,11 +22,11 @@ std::string help_of(Arguments arguments, const std::string& columns = "") {
 
 /// Returns the output of raya on a terminal with `columns` columns.
 std::string output_on_terminal(Arguments arguments, unsigned short columns) {
-    winsize size{};
-    size.ws_col = columns;
-    size.ws_row = 24;
+    winsize window{};
+    window.ws_col = columns;
+    window.ws_row = 24;
     int terminal = -1;
-    const pid_t child = ::forkpty(&terminal, nullptr, nullptr, &size);
+    const pid_t child = ::forkpty(&terminal, nullptr, nullptr, &window);
     REQUIRE(child >= 0);
     if (child == 0) {
         ::unsetenv("COLUMNS");
@@ -36,8 +36,8 @@ std::string output_on_terminal(Arguments arguments, unsigned short columns) {
     }
     std::string text;
     std::array<char, 4096> block{};
-    for (ssize_t got = 0; (got = ::read(terminal, block.data(), block.size())) > 0;)
-        text.append(block.data(), static_cast<std::size_t>(got));
+    for (ssize_t bytes_read = 0; (bytes_read = ::read(terminal, block.data(), block.size())) > 0;)
+        text.append(block.data(), static_cast<std::size_t>(bytes_read));
     int status = 0;
     ::waitpid(child, &status, 0);
     ::close(terminal);
@@ -66,16 +66,16 @@ TEST_CASE("help: refuses unknown commands, with the closest name", "[cli][help]"
     check_refused(outputs, {"help", "render", "fig7"}, 2, {"render has no command fig7; see raya help render"});
 }
 
-TEST_CASE("help: is COLUMNS wide, clamped to 40..120, and 80 wide by default", "[cli][help]") {
-    const std::string by_default = help_of({"help", "render"});
-    CHECK(longest_line(by_default) <= 80);
-    CHECK(longest_line(by_default) > 70);
-    for (const char* none : {"0", "x", "80x", "-3", "99999999", "184467440737095516150"})
-        CHECK(help_of({"help", "render"}, none) == by_default);
+TEST_CASE("help: is as wide as COLUMNS, clamped to 40..120; by default 80 columns", "[cli][help]") {
+    const std::string default_help = help_of({"help", "render"});
+    CHECK(longest_line(default_help) <= 80);
+    CHECK(longest_line(default_help) > 70);
+    for (const char* invalid : {"0", "x", "80x", "-3", "99999999", "184467440737095516150"})
+        CHECK(help_of({"help", "render"}, invalid) == default_help);
     CHECK(longest_line(help_of({"help", "render"}, "100")) > 90);
     CHECK(help_of({"help", "render"}, "10") == help_of({"help", "render"}, "40"));
     CHECK(help_of({"help", "render"}, "300") == help_of({"help", "render"}, "120"));
-    CHECK(help_of({"help", "render"}, "60") != by_default);
+    CHECK(help_of({"help", "render"}, "60") != default_help);
 }
 
 TEST_CASE("help: is as wide as the terminal", "[cli][help]") {
@@ -119,57 +119,57 @@ TEST_CASE("help: commands with more than 25 options have a short help of at most
         CAPTURE(path);
         CHECK((command.options.size() > 25) == !command.short_help.empty());
         if (command.short_help.empty()) return;
-        Arguments words = tokens_of(path);
-        words.erase(words.begin());  // removes "raya"
-        Arguments all = words;
-        words.emplace_back("--help");
-        all.emplace_back("--help-all");
-        const std::string text = help_of(words);
+        Arguments command_words = tokens_of(path);
+        command_words.erase(command_words.begin());  // removes "raya"
+        Arguments arguments_for_all = command_words;
+        command_words.emplace_back("--help");
+        arguments_for_all.emplace_back("--help-all");
+        const std::string text = help_of(command_words);
         CHECK(lines_of(text).size() <= 80);
         CHECK(longest_line(text) <= 80);
         CHECK_THAT(text, Catch::Contains(path + " --help-all prints all "));
         CHECK(text == help_text(short_form(command, path), path, 80));
-        CHECK(help_of(all) == help_text(command, path, 80));
+        CHECK(help_of(arguments_for_all) == help_text(command, path, 80));
     });
 }
 
 TEST_CASE("help render: common options first, in the order of use", "[cli][help]") {
     const CommandText program = text_of_all_commands();
     const auto& render = *std::find_if(program.commands.begin(), program.commands.end(),
-                                       [](const CommandText& one) { return one.name == "render"; });
-    Arguments first;
+                                       [](const CommandText& command) { return command.name == "render"; });
+    Arguments option_names;
     for (const OptionText& option : short_form(render, "raya render").options)
-        if (first.size() < 11) first.push_back(option.names.back());
-    CHECK(first == Arguments{"--output", "--size", "--machine", "--pes", "--mapping", "--offset", "--format", "--accel",
-                             "--antialias", "--device", "--report"});
+        if (option_names.size() < 11) option_names.push_back(option.names.back());
+    CHECK(option_names == Arguments{"--output", "--size", "--machine", "--pes", "--mapping", "--offset", "--format",
+                                    "--accel", "--antialias", "--device", "--report"});
 }
 
 TEST_CASE("help render: the groups of options and their order", "[cli][help]") {
     const CommandText program = text_of_all_commands();
     const auto& render = *std::find_if(program.commands.begin(), program.commands.end(),
-                                       [](const CommandText& one) { return one.name == "render"; });
+                                       [](const CommandText& command) { return command.name == "render"; });
     CHECK(groups_of(render) == Arguments{"Files", "Image", "Camera and light", "Machine and mapping",
                                          "Kernels and device", "Frames", "Checkpoints", "Torus machine", "Diagnostics",
                                          "General options"});
-    const std::vector<std::pair<std::string, std::string>> rows = {{"--output", "Files"},
-                                                                   {"--strict", "Files"},
-                                                                   {"--size", "Image"},
-                                                                   {"--exposure", "Image"},
-                                                                   {"--antialias", "Image"},
-                                                                   {"--from", "Camera and light"},
-                                                                   {"--light", "Camera and light"},
-                                                                   {"--machine", "Machine and mapping"},
-                                                                   {"--mapping", "Machine and mapping"},
-                                                                   {"--accel", "Machine and mapping"},
-                                                                   {"--format", "Kernels and device"},
-                                                                   {"--device", "Kernels and device"},
-                                                                   {"--no-tuned", "Kernels and device"},
-                                                                   {"--nodes", "Torus machine"},
-                                                                   {"--report", "Diagnostics"},
-                                                                   {"--page", "Diagnostics"},
-                                                                   {"--profile", "Diagnostics"},
-                                                                   {"--trace", "Diagnostics"}};
-    for (const auto& [name, group] : rows) {
+    const std::vector<std::pair<std::string, std::string>> expected_groups = {{"--output", "Files"},
+                                                                              {"--strict", "Files"},
+                                                                              {"--size", "Image"},
+                                                                              {"--exposure", "Image"},
+                                                                              {"--antialias", "Image"},
+                                                                              {"--from", "Camera and light"},
+                                                                              {"--light", "Camera and light"},
+                                                                              {"--machine", "Machine and mapping"},
+                                                                              {"--mapping", "Machine and mapping"},
+                                                                              {"--accel", "Machine and mapping"},
+                                                                              {"--format", "Kernels and device"},
+                                                                              {"--device", "Kernels and device"},
+                                                                              {"--no-tuned", "Kernels and device"},
+                                                                              {"--nodes", "Torus machine"},
+                                                                              {"--report", "Diagnostics"},
+                                                                              {"--page", "Diagnostics"},
+                                                                              {"--profile", "Diagnostics"},
+                                                                              {"--trace", "Diagnostics"}};
+    for (const auto& [name, group] : expected_groups) {
         CAPTURE(name);
         const auto option = std::find_if(render.options.begin(), render.options.end(),
                                          [&, &wanted = name](const OptionText& o) { return o.names.back() == wanted; });

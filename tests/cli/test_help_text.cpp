@@ -4,11 +4,12 @@
 #include <stdexcept>
 
 #include "host/cli/command_text.hpp"
+#include "tests/cli/run_program.hpp"
 
 namespace raya {
 namespace {
 
-OptionText option(std::vector<std::string> names, std::string value, std::string help, std::string group) {
+OptionText make_option(std::vector<std::string> names, std::string value, std::string help, std::string group) {
     OptionText text;
     text.names = std::move(names);
     text.value = std::move(value);
@@ -24,12 +25,13 @@ CommandText small_command() {
     command.examples = {
         {"raya draw scene.nff --output picture.png --colour red", "A red picture of a scene, in a file"},
         {"raya draw x", "Nothing"}};
-    command.arguments = {option({"SCENE"}, "SCENE.nff", "What is drawn", "Files")};
+    command.arguments = {make_option({"SCENE"}, "SCENE.nff", "What is drawn", "Files")};
     command.arguments[0].required = true;
-    command.options = {option({"-o", "--output"}, "FILE", "Where it goes to; a long text that is about files", "Files"),
-                       option({"--colour"}, "red|green", "What colour it has", "Looks"),
-                       option({"--a-name-as-long-as-this"}, "VALUE", "What stands below its name", "Looks"),
-                       option({"-q", "--quiet"}, "", "Say nothing", "Common options")};
+    command.options = {
+        make_option({"-o", "--output"}, "FILE", "Where it goes to; a long text that is about files", "Files"),
+        make_option({"--colour"}, "red|green", "What colour it has", "Looks"),
+        make_option({"--a-name-as-long-as-this"}, "VALUE", "What stands below its name", "Looks"),
+        make_option({"-q", "--quiet"}, "", "Say nothing", "Common options")};
     command.options[0].required = true;
     command.options[1].default_value = "red";
     command.footer = "Exit codes: 0 done, 2 bad option or input, 3 device.\n\nEnvironment:\n  RAYA_X   what it is\n";

@@ -30,9 +30,9 @@ TEST_CASE("render: loads OpenCL drivers before the image encoder module", "[cli]
     const RunOutcome run =
         run_raya({"render", scene_file("planes"), "-o", scratch / "x.png", "--size", "4", "--pes", "1"}, log_libraries);
     CHECK(run.code == 0);
-    const std::size_t driver = run.err.find("/libpocl"), pictures = run.err.find("raya_pictures.so");
-    CHECK(driver < pictures);
-    CHECK(pictures != std::string::npos);
+    const std::size_t driver = run.err.find("/libpocl"), module = run.err.find("raya_pictures.so");
+    CHECK(driver < module);
+    CHECK(module != std::string::npos);
 }
 
 TEST_CASE("render: PNG and EXR have the settings as attributes", "[cli]") {
@@ -43,13 +43,13 @@ TEST_CASE("render: PNG and EXR have the settings as attributes", "[cli]") {
         CAPTURE(path);
         const auto image = OIIO::ImageInput::open(path);
         REQUIRE(image);
-        const auto text = [&](const char* key) { return std::string(image->spec().get_string_attribute(key)); };
-        CHECK(text("raya:scene") == "centre.nff");
-        CHECK(text("raya:machine") == "spa");
-        CHECK(text("raya:mapping") == "cyclic");
-        CHECK(text("raya:offset") == "3");
-        CHECK(text("raya:format") == "e6m15");
-        CHECK(std::stod(text("raya:u")) == Approx(u).margin(0.5e-6));  // printed with six decimal places
+        const auto attribute = [&](const char* key) { return std::string(image->spec().get_string_attribute(key)); };
+        CHECK(attribute("raya:scene") == "centre.nff");
+        CHECK(attribute("raya:machine") == "spa");
+        CHECK(attribute("raya:mapping") == "cyclic");
+        CHECK(attribute("raya:offset") == "3");
+        CHECK(attribute("raya:format") == "e6m15");
+        CHECK(std::stod(attribute("raya:u")) == Approx(u).margin(0.5e-6));  // printed with six decimal places
     }
 }
 
@@ -72,8 +72,8 @@ TEST_CASE("render: scales a scene that exceeds the range of the format, and repo
     const ScratchFolder folder;
     Scene scene = read_nff(scene_file("mirrors"));
     scene.planes.clear();
-    const std::string plain = folder / "plain.nff", large = folder / "large.nff", tiny = folder / "tiny.nff";
-    write_whole_file(plain, write_nff(scene));
+    const std::string original = folder / "plain.nff", large = folder / "large.nff", tiny = folder / "tiny.nff";
+    write_whole_file(original, write_nff(scene));
     write_whole_file(large, write_nff(scaled_scene(scene, 0x1p14)));
     write_whole_file(tiny, write_nff(scaled_scene(scene, 0x1p-20)));
     const std::string light_years = folder / "light-years.nff", atoms = folder / "atoms.nff";
@@ -95,19 +95,22 @@ TEST_CASE("render: scales a scene that exceeds the range of the format, and repo
                   (report["machine"]["length_exponent"] != 0));
             return report;
         };
-        const Document as_is = report_of(plain), beyond = report_of(large), below = report_of(tiny);
-        CHECK(as_is["machine"]["length_exponent"] == 0);
-        CHECK((beyond["machine"]["length_exponent"] < 0) == (machine == std::string("spa")));  // others use fp32
-        CHECK((below["machine"]["length_exponent"] > 0) == (machine == std::string("spa")));
-        CHECK(beyond["image"]["hash"] == as_is["image"]["hash"]);
-        CHECK(below["image"]["hash"] == as_is["image"]["hash"]);
-        CHECK(report_of(light_years)["image"]["hash"] == as_is["image"]["hash"]);
-        CHECK(report_of(atoms)["image"]["hash"] == as_is["image"]["hash"]);
-        CHECK(as_is["rays"]["primary_hits"] > 0);
+        const Document unscaled_report = report_of(original), large_report = report_of(large),
+                       tiny_report = report_of(tiny);
+        CHECK(unscaled_report["machine"]["length_exponent"] == 0);
+        CHECK((large_report["machine"]["length_exponent"] < 0) ==
+              (machine == std::string("spa")));  // the other machines use fp32
+        CHECK((tiny_report["machine"]["length_exponent"] > 0) == (machine == std::string("spa")));
+        CHECK(large_report["image"]["hash"] == unscaled_report["image"]["hash"]);
+        CHECK(tiny_report["image"]["hash"] == unscaled_report["image"]["hash"]);
+        CHECK(report_of(light_years)["image"]["hash"] == unscaled_report["image"]["hash"]);
+        CHECK(report_of(atoms)["image"]["hash"] == unscaled_report["image"]["hash"]);
+        CHECK(unscaled_report["rays"]["primary_hits"] > 0);
     }
 }
 
-TEST_CASE("render: warns of objects that the format cannot represent, and refuses a scene with no others", "[cli]") {
+TEST_CASE("render: warns of objects that the format cannot represent, and refuses a scene of only such objects",
+          "[cli]") {
     const ScratchFolder folder;
     const std::string scene = folder / "far.nff";
     const auto render = [&](const std::string& spheres, const std::string& format) {
@@ -151,9 +154,9 @@ TEST_CASE("render: warns of and reports foreign lines of a scene; --strict refus
     Arguments strict = arguments;
     strict.push_back("--strict");
     CHECK(run_raya(strict).code == 2);
-    for (const Arguments& other :
+    for (const Arguments& command :
          {Arguments{"bench", scene, "--strict"}, Arguments{"explore", scene, "--strict", "-o", folder / "s.html"}}) {
-        const RunOutcome refused = run_raya(other);
+        const RunOutcome refused = run_raya(command);
         INFO(refused.describe());
         CHECK(refused.code == 2);
         CHECK_THAT(refused.err, Catch::Contains("t.nff:8: unknown entity 'la'"));
@@ -165,11 +168,11 @@ TEST_CASE("render: refuses two names of one file", "[cli]") {
     const ScratchFolder folder;
     std::filesystem::create_directory(folder / "d");
     std::filesystem::create_symlink("x.pfm", folder / "link.pfm");
-    for (const auto& [one, other] :
+    for (const auto& [first_name, second_name] :
          {std::pair<std::string, std::string>{"x.pfm", "./x.pfm"}, {"x.pfm", "d/../x.pfm"}, {"link.pfm", "x.pfm"}}) {
-        CAPTURE(one, other);
-        const RunOutcome run = run_raya(
-            {"render", scene_file("planes"), "-o", folder / one, "--report", (folder.path() / other).string()});
+        CAPTURE(first_name, second_name);
+        const RunOutcome run = run_raya({"render", scene_file("planes"), "-o", folder / first_name, "--report",
+                                         (folder.path() / second_name).string()});
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Catch::Contains("the same file as"));
     }

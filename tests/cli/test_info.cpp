@@ -60,11 +60,11 @@ void check_against_render(const Document& machine, const Document& need, const R
         return;
     }
     REQUIRE(rendered.run.code == 0);
-    const Document& made = rendered.report["machine"];
-    CHECK(made["pe_memory_used_bytes"] == need["pe_memory_used_bytes"]);
-    CHECK(made["pe_memory_bytes"] == machine["pe_memory_bytes"]);
-    CHECK(made["pes"] == machine["pes"]);
-    CHECK(made["format"] == machine["format"]);
+    const Document& machine_report = rendered.report["machine"];
+    CHECK(machine_report["pe_memory_used_bytes"] == need["pe_memory_used_bytes"]);
+    CHECK(machine_report["pe_memory_bytes"] == machine["pe_memory_bytes"]);
+    CHECK(machine_report["pes"] == machine["pes"]);
+    CHECK(machine_report["format"] == machine["format"]);
     CHECK(need["missing_bytes"] == 0);
     CHECK(need["refusal"].is_null());
     if (machine["name"] == "torus") return;
@@ -78,7 +78,7 @@ void check_against_render(const Document& machine, const Document& need, const R
 TEST_CASE("info: figures equal those of renders, for every machine and accelerator", "[cli][slow]") {
     const ScratchFolder folder;
     const std::string random = folder / "random.nff";
-    REQUIRE(run_raya({"generate", "random", "2000", "-o", random}).code == 0);  // more than the 32 KB of a PE
+    REQUIRE(run_raya({"generate", "random", "2000", "-o", random}).code == 0);  // needs more than the 32 KB of a PE
     for (const std::string& scene : {random, scene_file("centre")}) {
         CAPTURE(scene);
         const Document info = info_of(scene, {"--size", "16", "--bounces", "1"});
@@ -110,12 +110,12 @@ TEST_CASE("info: takes the options of a render into account", "[cli][slow]") {
         REQUIRE(info["machines"].size() == 1);
         const Document& machine = info["machines"][0];
         const RenderedScene rendered(folder, scene, options);
-        const std::string kind = machine["name"] == "torus" ? "voxels"
-                                 : rendered.run.code == 0   ? rendered.report["accel"]["kind"].get<std::string>()
-                                                            : "none";
+        const std::string accel_kind = machine["name"] == "torus" ? "voxels"
+                                       : rendered.run.code == 0   ? rendered.report["accel"]["kind"].get<std::string>()
+                                                                  : "none";
         for (const Document& need : machine["needs"])
-            if (need["accel"].get<std::string>().starts_with(kind)) {
-                if (kind == "grid") {
+            if (need["accel"].get<std::string>().starts_with(accel_kind)) {
+                if (accel_kind == "grid") {
                     CHECK(need["accel"] == "grid:3x2x1");
                     CHECK(rendered.report["machine"]["pe_memory_used_bytes"] == need["pe_memory_used_bytes"]);
                 } else {
@@ -194,17 +194,17 @@ TEST_CASE("info: shows a scene that does not fit a format, with the render's mes
 }
 
 TEST_CASE("info: refuses invalid machines and options", "[cli]") {
-    const ScratchFolder none;
+    const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
-    check_refused(none, {"info", scene, "--format", "e9m9"}, 2, {"e9m9"});
-    check_refused(none, {"info", scene, "--accel", "octree"}, 2, {"--accel octree"});
-    check_refused(none, {"info", scene, "--machine", "spa", "--nodes", "2x2x2"}, 2,
+    check_refused(outputs, {"info", scene, "--format", "e9m9"}, 2, {"e9m9"});
+    check_refused(outputs, {"info", scene, "--accel", "octree"}, 2, {"--accel octree"});
+    check_refused(outputs, {"info", scene, "--machine", "spa", "--nodes", "2x2x2"}, 2,
                   {"--nodes 2x2x2 with --machine spa"});
-    check_refused(none, {"info", scene, "--machine", "cap", "--offset", "3"}, 2, {"--offset 3"});
-    check_refused(none, {"info", scene, "--machine", "cray"}, 2, {"--machine cray: no such machine"});
-    check_refused(none, {"info", scene, "--from", "1,2"}, 2, {"--from 1,2"});
-    check_refused(none, {"info", scene, "--device", "0"}, 2, {"no option --device"});
-    check_refused(none, {"info", none / "no.nff"}, 2, {"no.nff: cannot read the scene"});
+    check_refused(outputs, {"info", scene, "--machine", "cap", "--offset", "3"}, 2, {"--offset 3"});
+    check_refused(outputs, {"info", scene, "--machine", "cray"}, 2, {"--machine cray: no such machine"});
+    check_refused(outputs, {"info", scene, "--from", "1,2"}, 2, {"--from 1,2"});
+    check_refused(outputs, {"info", scene, "--device", "0"}, 2, {"no option --device"});
+    check_refused(outputs, {"info", outputs / "no.nff"}, 2, {"no.nff: cannot read the scene"});
     const RunOutcome run = run_raya({"info", scene, "--offset", "3"}, kNoDriver);
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("cap: --offset 3"));  // only the row of cap has the error

@@ -59,19 +59,19 @@ TEST_CASE("render --cache-kernels: the next render uses the binary and makes the
     const ProgramCopy copy;
     CHECK_FALSE(used_binary(copy.render({})));
     CHECK_FALSE(fs::exists(copy.folder / "kernels"));
-    const std::string right = copy.hash();
+    const std::string expected_hash = copy.hash();
     CHECK_FALSE(used_binary(copy.render({"--cache-kernels"})));
     CHECK(used_binary(copy.render({})));
-    CHECK(copy.hash() == right);
+    CHECK(copy.hash() == expected_hash);
     CHECK_FALSE(used_binary(copy.render({}, "off")));
-    CHECK(copy.hash() == right);
+    CHECK(copy.hash() == expected_hash);
     CHECK_FALSE(used_binary(copy.render({"--bounces", "1"})));  // other options need another OpenCL program
 }
 
-TEST_CASE("kernel binaries: damaged ones and those that others may write are not used", "[cli]") {
+TEST_CASE("kernel binaries: raya does not use damaged ones, or ones that other users can write", "[cli]") {
     const ProgramCopy copy;
     copy.render({"--cache-kernels"});
-    const std::string right = copy.hash();
+    const std::string expected_hash = copy.hash();
     const fs::path binary = copy.binary();
     ::chmod(binary.c_str(), 0666);
     CHECK_FALSE(used_binary(copy.render({})));
@@ -79,13 +79,13 @@ TEST_CASE("kernel binaries: damaged ones and those that others may write are not
     CHECK(used_binary(copy.render({})));
     std::ofstream(binary) << "no binary";
     CHECK_FALSE(used_binary(copy.render({})));
-    CHECK(copy.hash() == right);
+    CHECK(copy.hash() == expected_hash);
     copy.render({"--cache-kernels"});  // writes the binary again
     CHECK(used_binary(copy.render({})));
     fs::remove(binary);
     fs::create_directory(binary);  // cannot be read as a file
     CHECK_FALSE(used_binary(copy.render({})));
-    CHECK(copy.hash() == right);
+    CHECK(copy.hash() == expected_hash);
 }
 
 TEST_CASE("RAYA_BINARIES: refuses values other than off", "[cli]") {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "tests/base/scratch_folder.hpp"
-#include "tests/cli/failing_device.hpp"
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 
@@ -20,18 +20,18 @@ Arguments checks_with(const RunOutcome& run, const std::string& beginning) {
     return names;
 }
 
-long count_of(const Arguments& names, const std::string& part) {
+long count_containing(const Arguments& names, const std::string& part) {
     return std::count_if(names.begin(), names.end(), [&](const std::string& name) { return contains(name, part); });
 }
 
-RunOutcome verify_with_fault(const std::string& fault, const std::string& only) {
-    return run_raya({"verify", "--only", only}, failing_device(fault));
+RunOutcome verify_with_fault(const std::string& fault, const std::string& check_name) {
+    return run_raya({"verify", "--only", check_name}, device_with_fault(fault));
 }
 
 TEST_CASE("verify: the checks of copies detect lost copies", "[cli][verify]") {
     struct Row {
         const char* fault;
-        long rings, transfers, blocks, links;
+        long rings, transfers, blocks, links;  // number of failed checks of each kind
     };
     for (const Row& row :
          {Row{"clEnqueueCopyBuffer 2 lost", 3, 0, 0, 0}, Row{"clEnqueueCopyBuffer 40 astray", 1, 0, 0, 0},
@@ -39,24 +39,24 @@ TEST_CASE("verify: the checks of copies detect lost copies", "[cli][verify]") {
         const RunOutcome run = verify_with_fault(row.fault, "machine");
         INFO(run.describe());
         CHECK(run.code == 4);
-        const Arguments wrong = checks_with(run, "FAIL  machine   ");
-        CHECK(count_of(wrong, "ring: rotations of") == row.rings);
-        CHECK(count_of(wrong, "bus: transfers") == row.transfers);
-        CHECK(count_of(wrong, "copies of blocks") == row.blocks);
-        CHECK(count_of(wrong, "exchange of") == row.links);
-        CHECK(row.rings + row.transfers + row.blocks + row.links == static_cast<long>(wrong.size()));
+        const Arguments failed_checks = checks_with(run, "FAIL  machine   ");
+        CHECK(count_containing(failed_checks, "ring: rotations of") == row.rings);
+        CHECK(count_containing(failed_checks, "bus: transfers") == row.transfers);
+        CHECK(count_containing(failed_checks, "copies of blocks") == row.blocks);
+        CHECK(count_containing(failed_checks, "exchange of") == row.links);
+        CHECK(row.rings + row.transfers + row.blocks + row.links == static_cast<long>(failed_checks.size()));
         CHECK(contains(run.out, "words at wrong places"));
     }
 }
 
 TEST_CASE("verify: the image checks of both machines detect lost copies", "[cli][verify]") {
     using Run = std::pair<const char*, const char*>;
-    for (const auto& [only, fault] : {Run{"glass fp32 filter", "clEnqueueCopyBuffer 20 lost"},
-                                      Run{"polygons fp32: torus3d 2x2x2", "clEnqueueCopyBufferRect 20 lost"}}) {
-        const RunOutcome lost = verify_with_fault(fault, only);
-        INFO(lost.describe());
-        CHECK(lost.code == 4);
-        CHECK(checks_with(lost, "FAIL  image     ").size() == 1);
+    for (const auto& [check_name, fault] : {Run{"glass fp32 filter", "clEnqueueCopyBuffer 20 lost"},
+                                            Run{"polygons fp32: torus3d 2x2x2", "clEnqueueCopyBufferRect 20 lost"}}) {
+        const RunOutcome run = verify_with_fault(fault, check_name);
+        INFO(run.describe());
+        CHECK(run.code == 4);
+        CHECK(checks_with(run, "FAIL  image     ").size() == 1);
     }
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("render: a bus transfer to the wrong PE changes the image", "[cli][ver
         const RunOutcome run = run_raya(
             {"render", scene_file("planes"), "-o", folder / "i.pfm", "--report", folder / "r.json", "--size", "20x12",
              "--pes", "20", "--offset", "3", "--lanes", "4", "--antialias", "filter", "--exchange", exchange},
-            failing_device(fault));
+            device_with_fault(fault));
         INFO(run.describe());
         REQUIRE(run.code == 0);
         return Document::parse(file_contents(folder / "r.json"))["image"]["hash"].get<std::string>();

@@ -27,12 +27,12 @@ TEST_CASE("stdout: a lost line is exit code 2", "[cli]") {
 }
 
 TEST_CASE("stderr: closed or full, it does not change the exit code", "[cli]") {
-    for (const char* lost : {"2>/dev/full", "2>&-"}) {
-        CAPTURE(lost);
-        CHECK(code_of("rendr", lost) == 2);
-        CHECK(code_of("render none.nff -o x.pfm", lost) == 2);
-        CHECK(code_of("devices --nonsense", lost) == 2);
-        CHECK(code_of("--version", std::string(">/dev/null ") + lost) == 0);
+    for (const char* redirection : {"2>/dev/full", "2>&-"}) {
+        CAPTURE(redirection);
+        CHECK(code_of("rendr", redirection) == 2);
+        CHECK(code_of("render none.nff -o x.pfm", redirection) == 2);
+        CHECK(code_of("devices --nonsense", redirection) == 2);
+        CHECK(code_of("--version", std::string(">/dev/null ") + redirection) == 0);
     }
 }
 

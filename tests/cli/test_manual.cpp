@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-using Kind = ValueText::Kind;
+using Kind = ValueCompletion::Kind;
 
 OptionText option(std::vector<std::string> names, std::string value, std::string help = "Says so") {
     OptionText text;
@@ -35,7 +35,7 @@ CommandText small_program() {
 }
 
 TEST_CASE("value_of: the kind of a value follows from its placeholder in help", "[manual]") {
-    const auto value = [](const std::string& placeholder) { return value_of(option({"--x"}, placeholder)); };
+    const auto value = [](const std::string& placeholder) { return value_completion(option({"--x"}, placeholder)); };
     CHECK(value("ring|bus-broadcast").choices == std::vector<std::string>{"ring", "bus-broadcast"});
     CHECK(value("none|bvh|grid[:AxBxC]").choices == std::vector<std::string>{"none", "bvh", "grid"});
     CHECK(value("none,grid").kind == Kind::kList);
@@ -49,9 +49,9 @@ TEST_CASE("value_of: the kind of a value follows from its placeholder in help", 
         CHECK(value(other).kind == Kind::kOther);
     OptionText named = option({"--x"}, "NAME");
     named.choices = {"a", "b"};
-    CHECK(value_of(named).kind == Kind::kChoice);
+    CHECK(value_completion(named).kind == Kind::kChoice);
     named.repeated = true;
-    CHECK(value_of(named).kind == Kind::kList);
+    CHECK(value_completion(named).kind == Kind::kList);
 }
 
 TEST_CASE("brief: cuts a help text after its first part, between words", "[manual]") {

@@ -1,4 +1,4 @@
-// The modelled times of a report: they equal times computed here from the report's counts.
+// The modelled times of a report: they equal times computed in this file from the report's counts.
 #include <numeric>
 
 #include "tests/cli/render_files.hpp"
@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// Adds 6 cycles per division, 8 per square root and 3 per branch (host/model/budget.hpp).
+/// Returns the modelled cycles: 6 per division, 8 per square root, 3 per branch, otherwise 1 (host/model/budget.hpp).
 std::uint64_t cycles_of(const Document& budget) {
     return budget["multiply_accumulates"].get<std::uint64_t>() + 6 * budget["divisions"].get<std::uint64_t>() +
            8 * budget["roots"].get<std::uint64_t>() + budget["moves"].get<std::uint64_t>() +
@@ -19,7 +19,7 @@ std::uint64_t sum_of_loads(const Document& load) {
     return std::accumulate(per_pe.begin(), per_pe.end(), std::uint64_t{0});
 }
 
-Approx about(double value) { return Approx(value).epsilon(1e-9); }
+Approx approximately(double value) { return Approx(value).epsilon(1e-9); }
 
 TEST_CASE("report: the cycles of the budget equal the sum of the loads", "[cli]") {
     const std::string scene = GENERATE("glass", "polygons", "cones");
@@ -32,24 +32,27 @@ TEST_CASE("report: modelled times follow from counted cycles and words", "[cli]"
     const std::string antialias = GENERATE("none", "filter", "supersample");
     CAPTURE(antialias);
     const Document report = RenderFiles("centre", {"--pes", "8", "--offset", "3", "--antialias", antialias}).report();
-    const Document &time = report["modelled_ms"], &words = report["communication"], &load = report["load"];
-    INFO(time.dump());
+    const Document &modelled_ms = report["modelled_ms"], &communication = report["communication"],
+                   &load = report["load"];
+    INFO(modelled_ms.dump());
     const bool filter = antialias == "filter", supersample = antialias == "supersample";
-    const double share = 3 * 12;          // pixels of the busiest PE: 3 of 20 columns, 12 rows
-    const double host = 140 / 196'608.0;  // ms per word between host and PEs
-    CHECK(time["filter"] == about(filter ? 42e-4 * share : 0));
-    CHECK(time["compare"] == about(supersample ? 121e-4 * share : 0));
-    double busiest = load["trace"]["max"];
-    if (supersample) busiest += load["supersample"]["max"].get<double>();
-    CHECK(time["compute"] == about(1e-4 * busiest + time["filter"].get<double>() + time["compare"].get<double>()));
-    CHECK(time["objects"] == about(host * words["broadcast_words"].get<double>()));
-    CHECK(time["image"] == about(host * words["gather_words"].get<double>()));
-    CHECK(time["communication"] ==
-          about(0.1845 * words["rotations"].get<double>() + words["rotation_words"].get<double>() / 8 / 6e3));
-    CHECK((time["communication"] > 0) == (antialias != "none"));
-    CHECK(time["total"] == about(time["objects"].get<double>() + time["compute"].get<double>() +
-                                 time["communication"].get<double>() + time["image"].get<double>()));
-    CHECK(time["factor"] == 1.0);
+    const double max_pixels = 3 * 12;            // number of pixels of the busiest PE: 3 of 20 columns, 12 rows
+    const double ms_per_word = 140 / 196'608.0;  // between host and PEs
+    CHECK(modelled_ms["filter"] == approximately(filter ? 42e-4 * max_pixels : 0));
+    CHECK(modelled_ms["compare"] == approximately(supersample ? 121e-4 * max_pixels : 0));
+    double max_load = load["trace"]["max"];
+    if (supersample) max_load += load["supersample"]["max"].get<double>();
+    CHECK(modelled_ms["compute"] ==
+          approximately(1e-4 * max_load + modelled_ms["filter"].get<double>() + modelled_ms["compare"].get<double>()));
+    CHECK(modelled_ms["objects"] == approximately(ms_per_word * communication["broadcast_words"].get<double>()));
+    CHECK(modelled_ms["image"] == approximately(ms_per_word * communication["gather_words"].get<double>()));
+    CHECK(modelled_ms["communication"] == approximately(0.1845 * communication["rotations"].get<double>() +
+                                                        communication["rotation_words"].get<double>() / 8 / 6e3));
+    CHECK((modelled_ms["communication"] > 0) == (antialias != "none"));
+    CHECK(modelled_ms["total"] ==
+          approximately(modelled_ms["objects"].get<double>() + modelled_ms["compute"].get<double>() +
+                        modelled_ms["communication"].get<double>() + modelled_ms["image"].get<double>()));
+    CHECK(modelled_ms["factor"] == 1.0);
 }
 
 TEST_CASE("render: the summary has the modelled time if the machine has one", "[cli]") {

@@ -6,7 +6,8 @@
 namespace raya {
 namespace {
 
-TEST_CASE("nearest_name: returns the name with the minimum edit distance, or with that prefix", "[parse]") {
+TEST_CASE("nearest_name: returns the name with the minimum edit distance, or the name that begins with the text",
+          "[parse]") {
     const std::vector<std::string> names = {"render", "devices", "generate", "bench", "study", "verify"};
     CHECK(nearest_name("rendr", names) == "render");
     CHECK(nearest_name("redner", names) == "render");  // two characters are swapped

@@ -1,4 +1,5 @@
-// raya page, and --page of the commands that write reports: both make equal pages, and raya page refuses other files.
+// raya page, and --page of the commands that write reports: both make equal pages. raya page refuses files that are not
+// reports.
 #include <catch2/catch.hpp>
 
 #include "tests/base/scratch_folder.hpp"
@@ -18,7 +19,7 @@ Arguments joined(Arguments arguments, const Arguments& more) {
     return arguments;
 }
 
-Arguments render_of_24(const ScratchFolder& folder, const Arguments& more = {}) {
+Arguments render_24x16(const ScratchFolder& folder, const Arguments& more = {}) {
     return joined(
         {"render", scene_file("planes"), "--size", "24x16", "--lanes", "4", "--quiet", "-o", folder / "c.pfm"}, more);
 }
@@ -32,16 +33,16 @@ RunOutcome page_of_file(const std::string& report, const std::string& page, cons
 // Runs the command with --report and --page, makes the page again from the report, checks that both pages are equal,
 // and returns the page.
 std::string check_page(const ScratchFolder& folder, const Arguments& command, int code = 0) {
-    const std::string report = folder / "r.json", page = folder / "r.html", again = folder / "again.html";
+    const std::string report = folder / "r.json", page = folder / "r.html", second_page = folder / "again.html";
     const RunOutcome run = run_raya(joined(command, {"--report", report, "--page", page}));
     INFO(run.describe());
     REQUIRE(run.code == code);
-    const RunOutcome made = page_of_file(report, again);
-    INFO(made.describe());
-    REQUIRE(made.code == 0);
-    CHECK_THAT(made.out, StartsWith("page    " + again));
+    const RunOutcome page_run = page_of_file(report, second_page);
+    INFO(page_run.describe());
+    REQUIRE(page_run.code == 0);
+    CHECK_THAT(page_run.out, StartsWith("page    " + second_page));
     const std::string html = file_contents(page);
-    CHECK(html == file_contents(again));
+    CHECK(html == file_contents(second_page));
     CHECK(html.size() < 1'000'000);
     CHECK_THAT(html, StartsWith("<!doctype html>"));
     return html;
@@ -51,7 +52,7 @@ TEST_CASE("render --page: equals the page that raya page makes from the report",
     const ScratchFolder folder;
     for (const Arguments& more : {Arguments{"--pes", "20"}, Arguments{"--machine", "torus", "--nodes", "2x2x2"},
                                   Arguments{"--mapping", "dynamic:4", "--pes", "6"}}) {
-        const std::string html = check_page(folder, render_of_24(folder, more));
+        const std::string html = check_page(folder, render_24x16(folder, more));
         const Document report = Document::parse(file_contents(folder / "r.json"));
         for (const std::string& part :
              {report["image"]["hash"].get<std::string>(), report["device"]["driver"].get<std::string>(),
@@ -64,14 +65,14 @@ TEST_CASE("render --page: equals the page that raya page makes from the report",
 
 TEST_CASE("render --page: needs no --report, and raya page needs only the report", "[cli][page]") {
     const ScratchFolder folder;
-    const RunOutcome run = run_raya(render_of_24(folder, {"--page", folder / "r.html"}));
+    const RunOutcome run = run_raya(render_24x16(folder, {"--page", folder / "r.html"}));
     INFO(run.describe());
     CHECK(run.code == 0);
     CHECK(folder.entries() == 2);
-    REQUIRE(run_raya(render_of_24(folder, {"--report", folder / "r.json"})).code == 0);
-    const RunOutcome made = page_of_file(folder / "r.json", folder / "again.html", {"--quiet"});
-    CHECK(made.code == 0);
-    CHECK(made.out.empty());
+    REQUIRE(run_raya(render_24x16(folder, {"--report", folder / "r.json"})).code == 0);
+    const RunOutcome page_run = page_of_file(folder / "r.json", folder / "again.html", {"--quiet"});
+    CHECK(page_run.code == 0);
+    CHECK(page_run.out.empty());
     CHECK_THAT(file_contents(folder / "again.html"), !Contains("copy_bytes_per_s\":"));
 }
 
@@ -96,33 +97,35 @@ TEST_CASE("bench --page: has rates, comparison and roofline", "[cli][page]") {
     CHECK(Document::parse(file_contents(folder / "r.json"))["compared"]["rows"].size() == 1);
 }
 
-TEST_CASE("page: refuses other files with the reason, and writes none", "[cli][page]") {
-    const ScratchFolder folder, written;
-    REQUIRE(run_raya(render_of_24(written, {"--report", written / "r.json"})).code == 0);
-    const Document good = Document::parse(file_contents(written / "r.json"));
-    const auto changed = [&](const std::string& name, const auto& change) {
-        Document report = good;
+TEST_CASE("page: refuses files that are not reports with the reason, and writes no page", "[cli][page]") {
+    const ScratchFolder folder, inputs;
+    REQUIRE(run_raya(render_24x16(inputs, {"--report", inputs / "r.json"})).code == 0);
+    const Document valid_report = Document::parse(file_contents(inputs / "r.json"));
+    const auto write_changed_report = [&](const std::string& name, const auto& change) {
+        Document report = valid_report;
         change(report);
-        std::ofstream(written / name) << report.dump();
-        return written / name;
+        std::ofstream(inputs / name) << report.dump();
+        return inputs / name;
     };
     struct Row {
         std::string report, page, reason;
     };
     const std::string page = folder / "p.html";
-    std::ofstream(written / "broken.json") << "{\"kind\": \"raya render\",";
-    std::ofstream(written / "list.json") << "[1, 2]";
+    std::ofstream(inputs / "broken.json") << "{\"kind\": \"raya render\",";
+    std::ofstream(inputs / "list.json") << "[1, 2]";
     const std::vector<Row> rows = {
-        {written / "none.json", page, "cannot be read: No such file"},
-        {written / "c.pfm", page, "not valid JSON (byte"},
-        {written / "broken.json", page, "not valid JSON (byte"},
-        {written / "list.json", page, "not a report of raya render, bench, verify or gpu_day"},
+        {inputs / "none.json", page, "cannot be read: No such file"},
+        {inputs / "c.pfm", page, "not valid JSON (byte"},
+        {inputs / "broken.json", page, "not valid JSON (byte"},
+        {inputs / "list.json", page, "not a report of raya render, bench, verify or gpu_day"},
         {scene_file("planes"), page, "not valid JSON"},
-        {written / "r.json", folder / "p.png", "choose a name that ends in .html"},
-        {written / "r.json", folder / "no/p.html", "does not exist; make it first"},
-        {changed("old.json", [](Document& r) { r.erase("kind"), r.erase("raya"); }), page, "a report of an older raya"},
-        {changed("other.json", [](Document& r) { r["kind"] = "raya ping"; }), page, "not a report of raya render"},
-        {changed("said.json", [](Document& r) { r["warnings"] = {1}; }), page, "warnings"}};
+        {inputs / "r.json", folder / "p.png", "choose a name that ends in .html"},
+        {inputs / "r.json", folder / "no/p.html", "does not exist; make it first"},
+        {write_changed_report("old.json", [](Document& r) { r.erase("kind"), r.erase("raya"); }), page,
+         "a report of an older raya"},
+        {write_changed_report("other.json", [](Document& r) { r["kind"] = "raya ping"; }), page,
+         "not a report of raya render"},
+        {write_changed_report("said.json", [](Document& r) { r["warnings"] = {1}; }), page, "warnings"}};
     for (const Row& row : rows) {
         const RunOutcome run = page_of_file(row.report, row.page);
         INFO(run.describe());
@@ -130,12 +133,16 @@ TEST_CASE("page: refuses other files with the reason, and writes none", "[cli][p
         CHECK_THAT(run.err, Contains(row.reason));
         CHECK(folder.entries() == 0);
     }
-    const RunOutcome known = page_of_file(changed("more.json", [](Document& r) { r["later"] = {{"a", 1}}; }), page);
-    INFO(known.describe());
-    CHECK(known.code == 0);
-    const RunOutcome twice = run_raya(render_of_24(folder, {"--report", page, "--page", page}));
-    CHECK(twice.code == 2);
-    CHECK_THAT(twice.err, Contains("the same file as --report"));
+    const RunOutcome unknown_member_run = page_of_file(write_changed_report("more.json",
+                                                                            [](Document& r) {
+                                                                                r["later"] = {{"a", 1}};
+                                                                            }),
+                                                       page);
+    INFO(unknown_member_run.describe());
+    CHECK(unknown_member_run.code == 0);
+    const RunOutcome same_file_run = run_raya(render_24x16(folder, {"--report", page, "--page", page}));
+    CHECK(same_file_run.code == 2);
+    CHECK_THAT(same_file_run.err, Contains("the same file as --report"));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using Catch::Equals;
 
 namespace {
 
-/// Parses "--it TEXT" for an option --it that sets `value`. Returns the parser's error message; "": no error.
+/// Parses "--it TEXT" for an option --it that sets `value`. Returns the parser's error message, "" if there is none.
 template <class Value>
 std::string refusal_of_value(Value& value, const std::string& text) {
     CLI::App app;
@@ -55,7 +55,7 @@ TEST_CASE("parse_links, parse_antialias, parse_points, parse_sampling: read thei
     }
 }
 
-TEST_CASE("parse_image_size: one side or two", "[parse]") {
+TEST_CASE("parse_image_size: reads N and WxH", "[parse]") {
     CHECK(parse_image_size("512") == ImageSize{512, 512});
     CHECK(parse_image_size("512x256") == ImageSize{512, 256});
     for (const std::string text : {"", "x", "0", "512x", "1x2x3", "-1", "12y"})
@@ -63,33 +63,33 @@ TEST_CASE("parse_image_size: one side or two", "[parse]") {
 }
 
 TEST_CASE("add_value: the type of the variable decides what a value may be, not the placeholder in help", "[parse]") {
-    std::optional<std::uint32_t> whole;
-    CHECK(refusal_of_value(whole, "7").empty());
-    CHECK(whole == 7u);
+    std::optional<std::uint32_t> optional_count;
+    CHECK(refusal_of_value(optional_count, "7").empty());
+    CHECK(optional_count == 7u);
     for (const std::string text : {"-1", "+1", "1.5", "x", "1 "})
         CHECK_THAT(
-            refusal_of_value(whole, text),
+            refusal_of_value(optional_count, text),
             Equals("--it " + text + (text == "-1" ? ": out of range" : ": not a whole number") + "; --it: A value"));
-    CHECK_THAT(refusal_of_value(whole, "4294967296"), Contains("--it 4294967296: out of range"));
-    std::uint64_t plain = 0;
-    CHECK_THAT(refusal_of_value(plain, "-1"), Contains("out of range"));
-    CHECK_THAT(refusal_of_value(plain, "18446744073709551616"), Contains("out of range"));
-    CHECK(refusal_of_value(plain, "18446744073709551615").empty());
-    CHECK(plain == UINT64_MAX);
-    std::vector<std::uint32_t> several;
-    CHECK_THAT(refusal_of_value(several, "x"), Contains("not a whole number"));
-    int number = 0;  // the command checks the range, not the parser
-    CHECK(refusal_of_value(number, "-1").empty());
-    CHECK(number == -1);
-    std::optional<double> real;
-    CHECK(refusal_of_value(real, "-1.5").empty());
-    CHECK(real == -1.5);
-    CHECK_THAT(refusal_of_value(real, "1.5x"), Contains("--it 1.5x: not a number"));
-    CHECK_THAT(refusal_of_value(real, "1e999"), Contains("--it 1e999: out of range"));
+    CHECK_THAT(refusal_of_value(optional_count, "4294967296"), Contains("--it 4294967296: out of range"));
+    std::uint64_t large_count = 0;
+    CHECK_THAT(refusal_of_value(large_count, "-1"), Contains("out of range"));
+    CHECK_THAT(refusal_of_value(large_count, "18446744073709551616"), Contains("out of range"));
+    CHECK(refusal_of_value(large_count, "18446744073709551615").empty());
+    CHECK(large_count == UINT64_MAX);
+    std::vector<std::uint32_t> counts;
+    CHECK_THAT(refusal_of_value(counts, "x"), Contains("not a whole number"));
+    int signed_number = 0;  // the command checks the range, not the parser
+    CHECK(refusal_of_value(signed_number, "-1").empty());
+    CHECK(signed_number == -1);
+    std::optional<double> optional_real;
+    CHECK(refusal_of_value(optional_real, "-1.5").empty());
+    CHECK(optional_real == -1.5);
+    CHECK_THAT(refusal_of_value(optional_real, "1.5x"), Contains("--it 1.5x: not a number"));
+    CHECK_THAT(refusal_of_value(optional_real, "1e999"), Contains("--it 1e999: out of range"));
     std::string word;
     CHECK(refusal_of_value(word, "x").empty());
     CHECK(word == "x");
-    CHECK_THAT(refusal_of_value(whole, ""), Contains("must not be empty"));
+    CHECK_THAT(refusal_of_value(optional_count, ""), Contains("must not be empty"));
     CHECK_THAT(refusal_of_value(word, ""), Contains("must not be empty"));
-    CHECK_THAT(refusal_of_value(real, ""), Contains("must not be empty"));
+    CHECK_THAT(refusal_of_value(optional_real, ""), Contains("must not be empty"));
 }

@@ -87,7 +87,7 @@ TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with
         const double shares[] = {0, 0.5, 1, random.uniform(0, 1)};
         const DynamicPlan plan{1 + random_below(random, kMaxChunk >> random.next() % 28),
                                random.next() % 2 * random_below(random, kMaxOverhead + 1), shares[i % 4]};
-        CAPTURE(kSeed, i, plan.chunk, plan.overhead, plan.static_share, dynamic_text(plan));
+        CAPTURE(kSeed, i, plan.chunk, plan.overhead, plan.static_fraction, dynamic_text(plan));
         CHECK(parse_dynamic(dynamic_text(plan)) == plan);
     }
     for (const std::string text : {"dynamic",

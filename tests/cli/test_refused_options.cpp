@@ -61,7 +61,7 @@ TEST_CASE("render --mapping: refuses wrong syntax, and conflicts with image, PEs
            "use cyclic, column, rows, blocks, grid or tiles"}}});
 }
 
-TEST_CASE("render: refuses a very large number like any other outside the range", "[cli]") {
+TEST_CASE("render: refuses a very large number with the range", "[cli]") {
     check_render_options({{{"--lanes", "4000000000"}, {"--lanes 4000000000", "1, 4, 8 or 16"}},
                           {{"--group", "4000000000"}, {"--group 4000000000", "1..1024"}},
                           {{"--bounces", "4000000000"}, {"--bounces 4000000000", "0..31"}}});
@@ -140,12 +140,12 @@ TEST_CASE("render: without OpenImageIO it refuses PNG and EXR before rendering, 
     std::ofstream(broken) << "no library";
     const RunOptions run_options{.variables = {{"LD_LIBRARY_PATH", libraries.path()}}};
     const std::string scene = scene_file("planes");
-    for (const auto& [image, instead] : {std::pair{"x.png", "name a .ppm file"},
-                                         {"x.tif", "name a .ppm file"},
-                                         {"x.jpg", "name a .ppm file"},
-                                         {"x.exr", "name a .pfm file"}})
+    for (const auto& [image, remedy] : {std::pair{"x.png", "name a .ppm file"},
+                                        {"x.tif", "name a .ppm file"},
+                                        {"x.jpg", "name a .ppm file"},
+                                        {"x.exr", "name a .pfm file"}})
         check_refused(outputs, {"render", scene, "-o", outputs / image}, 2,
-                      {outputs / image, "libOpenImageIO", "remedy: install OpenImageIO ", instead}, run_options);
+                      {outputs / image, "libOpenImageIO", "remedy: install OpenImageIO ", remedy}, run_options);
     for (const char* image : {"x.pfm", "x.ppm"}) {
         const RunOutcome run = run_raya(
             {"render", scene, "-o", outputs / image, "--size", "4", "--pes", "4", "--lanes", "4"}, run_options);

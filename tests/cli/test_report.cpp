@@ -15,19 +15,19 @@ namespace {
 void check_rays_and_tests(const Document& report, const Scene& scene) {
     const Document &rays = report["rays"], &tests = report["tests"], &shading = report["shading"];
     const std::uint64_t primary = rays["primary"], reflected = rays["reflected"], refracted = rays["refracted"],
-                        shadow = rays["shadow"], stopped = rays["shadow_hits"], hits = shading["hits"];
-    const std::uint64_t all = primary + reflected + refracted + shadow;
+                        shadow = rays["shadow"], shadow_hits = rays["shadow_hits"], hits = shading["hits"];
+    const std::uint64_t all_rays = primary + reflected + refracted + shadow;
     CHECK(primary == report["image"]["width"].get<std::uint64_t>() * report["image"]["height"].get<std::uint64_t>());
     CHECK(rays["primary_hits"] <= primary);
     CHECK(rays["primary_hits"] <= hits);
     CHECK(hits <= primary + reflected + refracted);
     CHECK(shadow <= hits * scene.lights.size());
-    CHECK(shading["lit"] == shadow - stopped);
+    CHECK(shading["lit"] == shadow - shadow_hits);
     CHECK(shading["highlights"] <= shading["lit"]);
-    CHECK(tests["sphere"] == all * scene.spheres.size());
-    CHECK(tests["plane"] == all * scene.planes.size());
-    CHECK(tests["polygon"] == all * scene.polygons.size());
-    CHECK(tests["cone"] == all * scene.cones.size());
+    CHECK(tests["sphere"] == all_rays * scene.spheres.size());
+    CHECK(tests["plane"] == all_rays * scene.planes.size());
+    CHECK(tests["polygon"] == all_rays * scene.polygons.size());
+    CHECK(tests["cone"] == all_rays * scene.cones.size());
 }
 
 using Loads = std::vector<std::uint64_t>;
@@ -47,11 +47,11 @@ void check_load(const Document& report) {
     CHECK(load["unit"] == "cycles");
     CHECK(load["min"] == *min);
     CHECK(load["max"] == *max);
-    const auto close = [&](const char* key) { return Approx(load[key].get<double>()).epsilon(1e-12); };
-    CHECK(sum / pes == close("mean"));
-    CHECK((maximum - sum / pes) / (sum / pes) == close("imbalance"));
-    CHECK(sum / maximum == close("speedup"));
-    CHECK(sum / maximum / pes == close("efficiency"));
+    const auto approx = [&](const char* key) { return Approx(load[key].get<double>()).epsilon(1e-12); };
+    CHECK(sum / pes == approx("mean"));
+    CHECK((maximum - sum / pes) / (sum / pes) == approx("imbalance"));
+    CHECK(sum / maximum == approx("speedup"));
+    CHECK(sum / maximum / pes == approx("efficiency"));
 }
 
 void check_communication(const Document& report) {
@@ -149,7 +149,7 @@ TEST_CASE("report: names a mapping with slots by name and offset, others by thei
 }
 
 TEST_CASE("report: marks dynamic and hybrid mappings as simulated", "[cli]") {
-    const Document fixed = RenderFiles("planes", {"--mapping", "cyclic"}).report();
+    const Document static_report = RenderFiles("planes", {"--mapping", "cyclic"}).report();
     for (const char* mapping : {"dynamic:4", "dynamic:4,100", "hybrid:4,0,0.5"}) {
         const Document report = RenderFiles("planes", {"--mapping", mapping, "--pes", "9"}).report();
         INFO(report["load"].dump());
@@ -158,13 +158,13 @@ TEST_CASE("report: marks dynamic and hybrid mappings as simulated", "[cli]") {
         CHECK(report["load"]["simulated"] == true);
         CHECK(report["load"]["requests"].get<int>() <= (kTestWidth * kTestHeight + 3) / 4);
         CHECK(report["load"]["per_pe"].size() == 9);
-        CHECK(report["image"]["hash"] == fixed["image"]["hash"]);
+        CHECK(report["image"]["hash"] == static_report["image"]["hash"]);
     }
-    CHECK(fixed["load"]["simulated"] == false);
+    CHECK(static_report["load"]["simulated"] == false);
     CHECK(RenderFiles("planes", {"--machine", "links"}).report()["machine"]["mapping"] == "dynamic:1");
 }
 
-TEST_CASE("report: the hash is that of the image file, and the cost image sums to the load", "[cli]") {
+TEST_CASE("report: the hash is that of the image file, and the costs in the cost image sum to the load", "[cli]") {
     const std::string extension = GENERATE(".exr", ".pfm");
     CAPTURE(extension);
     const RenderFiles files("centre", {"--pes", "5"}, extension, extension);
@@ -179,17 +179,17 @@ TEST_CASE("report: the hash is that of the image file, and the cost image sums t
 }
 
 TEST_CASE("render --pes 1: one PE of the SPA gathers its image in blocks", "[cli]") {
-    const Document one = RenderFiles("centre", {"--size", "256", "--pes", "1"}).report();
-    const Document many = RenderFiles("centre", {"--size", "256", "--pes", "256"}).report();
-    CHECK(one["communication"]["gathers"] > 1);
-    CHECK(many["communication"]["gathers"] == 1);
-    CHECK(one["machine"]["pe_memory_used_bytes"] <= 32768);
-    check_communication(one);
-    check_measured(one);
-    CHECK(one["image"]["hash"] == many["image"]["hash"]);
-    CHECK(one["rays"] == many["rays"]);
-    CHECK(one["load"]["speedup"] == 1.0);
-    CHECK(one["load"]["max"] == sum_of(loads_of(many)));
+    const Document one_pe = RenderFiles("centre", {"--size", "256", "--pes", "1"}).report();
+    const Document many_pes = RenderFiles("centre", {"--size", "256", "--pes", "256"}).report();
+    CHECK(one_pe["communication"]["gathers"] > 1);
+    CHECK(many_pes["communication"]["gathers"] == 1);
+    CHECK(one_pe["machine"]["pe_memory_used_bytes"] <= 32768);
+    check_communication(one_pe);
+    check_measured(one_pe);
+    CHECK(one_pe["image"]["hash"] == many_pes["image"]["hash"]);
+    CHECK(one_pe["rays"] == many_pes["rays"]);
+    CHECK(one_pe["load"]["speedup"] == 1.0);
+    CHECK(one_pe["load"]["max"] == sum_of(loads_of(many_pes)));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <functional>
 
-#include "tests/cli/failing_device.hpp"
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/thorough.hpp"
 
@@ -14,14 +14,14 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr double kLimit_s = 1;
+constexpr double kMaxEnd_s = 1;  // maximum time from the signal to the end of the program
 
 /// The phase of a command in which it receives the signal.
 struct Phase {
     std::string name;
     Arguments arguments;
-    std::function<bool()> reached;  // true in this phase
-    int more_ms = 0;                // delay from when `reached` is true
+    std::function<bool()> reached;  // returns true in this phase
+    int delay_ms = 0;               // delay after `reached` returned true
     RunOptions run_options{};
 };
 
@@ -37,8 +37,8 @@ struct Folders {
 
 /// Returns true if the folder or a folder below it has a file whose name contains `part`.
 bool has_file(const std::string& folder, const std::string& part) {
-    std::error_code gone;
-    for (const auto& entry : fs::recursive_directory_iterator(folder, gone))
+    std::error_code error;
+    for (const auto& entry : fs::recursive_directory_iterator(folder, error))
         if (contains(entry.path().filename().string(), part)) return true;
     return false;
 }
@@ -48,17 +48,17 @@ void check_signal(const Folders& folders, const Phase& phase, int signal) {
     RunOptions run_options = phase.run_options;
     run_options.signal = signal;
     run_options.signal_when = phase.reached;
-    run_options.signal_after_ms = phase.more_ms;
+    run_options.signal_after_ms = phase.delay_ms;
     run_options.signal_count = 2;
     RunOutcome run;
-    for (int tries = 0; tries == 0 || (run.after_signal_s > kLimit_s && tries < 3); ++tries)
+    for (int tries = 0; tries == 0 || (run.after_signal_s > kMaxEnd_s && tries < 3); ++tries)
         run = run_raya(phase.arguments, run_options);
     INFO(phase.name + "\n" + run.describe());
     CHECK(run.code == 128 + signal);
-    CHECK(run.after_signal_s < kLimit_s);
+    CHECK(run.after_signal_s < kMaxEnd_s);
     if (run_options.error_file.empty()) CHECK(run.err.ends_with("raya: interrupted\n"));
     CHECK_FALSE(has_file(folders.outputs.path(), ".tmp"));
-    CHECK_FALSE(has_file(folders.inputs.path(), ".tmp"));  // a study may have written complete files
+    CHECK_FALSE(has_file(folders.inputs.path(), ".tmp"));  // inputs may contain complete files of a study
     if (phase.arguments[0] != "manual") CHECK(folders.outputs.entries() == 0);
 }
 
@@ -70,7 +70,7 @@ void check_phases(const Folders& folders, const std::vector<Phase>& phases, cons
 const std::initializer_list<int> kSignals = {SIGQUIT, SIGINT, SIGTERM, SIGHUP};
 
 /// Returns, for every command that reads input, the phase in which it waits for the input.
-std::vector<Phase> reading(const Folders& folders) {
+std::vector<Phase> reading_phases(const Folders& folders) {
     const std::string fifo = folders.fifo("never.nff"), out = folders.outputs / "x.ppm",
                       page = folders.outputs / "x.html";
     std::vector<Phase> phases;
@@ -88,50 +88,52 @@ Arguments long_work(const std::string& command, const Arguments& more) {
     return arguments;
 }
 
-/// Returns, for every command that uses a device, the phase in which it compiles kernels (`builds`) or computes.
-std::vector<Phase> computing(const Folders& folders, bool builds) {
+/// Returns, for every command that uses a device, the phase in which it compiles kernels (if `builds`) or computes.
+std::vector<Phase> computing_phases(const Folders& folders, bool builds) {
     const std::string out = folders.outputs / "x.ppm", cache = folders.cache.path();
-    std::vector<Arguments> calls = {long_work("render", {"-o", out, "--machine", "grande"}),
-                                    long_work("render", {"-o", out, "--machine", "torus", "--nodes", "2x2x1"}),
-                                    long_work("bench", {}),
-                                    {"verify", "--full", "--lanes", "1"},
-                                    long_work("explore", {"-o", folders.outputs / "x.html"})};
-    if (RAYA_STUDIES) calls.push_back({"study", "scale", "-o", folders.inputs / "scale"});
+    std::vector<Arguments> commands = {long_work("render", {"-o", out, "--machine", "grande"}),
+                                       long_work("render", {"-o", out, "--machine", "torus", "--nodes", "2x2x1"}),
+                                       long_work("bench", {}),
+                                       {"verify", "--full", "--lanes", "1"},
+                                       long_work("explore", {"-o", folders.outputs / "x.html"})};
+    if (RAYA_STUDIES) commands.push_back({"study", "scale", "-o", folders.inputs / "scale"});
     std::vector<Phase> phases;
-    for (const Arguments& arguments : calls) {
-        const std::string own = cache + "/" + std::to_string(phases.size());
-        fs::create_directories(own);
-        const RunOptions run_options{.variables = {{"POCL_CACHE_DIR", own}}};
+    for (const Arguments& arguments : commands) {
+        const std::string command_cache = cache + "/" + std::to_string(phases.size());
+        fs::create_directories(command_cache);
+        const RunOptions run_options{.variables = {{"POCL_CACHE_DIR", command_cache}}};
         if (builds)
-            phases.push_back(
-                {arguments[0] + " builds", arguments, [own] { return has_file(own, "tempfile"); }, 0, run_options});
+            phases.push_back({arguments[0] + " builds", arguments,
+                              [command_cache] { return has_file(command_cache, "tempfile"); }, 0, run_options});
         else
-            phases.push_back(
-                {arguments[0] + " traces", arguments, [own] { return has_file(own, ".so"); }, 1000, run_options});
+            phases.push_back({arguments[0] + " traces", arguments,
+                              [command_cache] { return has_file(command_cache, ".so"); }, 1000, run_options});
     }
     return phases;
 }
 
 /// Returns, for every command that writes a file, the phase in which it is blocked in `call`: write() or rename().
-std::vector<Phase> writing(const Folders& folders, const std::string& call) {
-    const std::string folder = fs::canonical(folders.outputs.path()).string(), x = folder + "/x";
+std::vector<Phase> writing_phases(const Folders& folders, const std::string& call) {
+    const std::string folder = fs::canonical(folders.outputs.path()).string(), output_path = folder + "/x";
     const Arguments small = {scene_file("planes"), "--size", "16", "--lanes", "4", "--format", "fp32"};
-    const auto with = [&](const std::string& command, const Arguments& more) {
+    const auto small_command = [&](const std::string& command, const Arguments& more) {
         Arguments arguments = {command};
         if (command != "verify") arguments.insert(arguments.end(), small.begin(), small.end());
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     };
     const std::string report = folders.inputs / "report.json";
-    if (!fs::exists(report)) run_raya(with("render", {"-o", folders.inputs / "y.ppm", "--report", report}));
+    if (!fs::exists(report)) run_raya(small_command("render", {"-o", folders.inputs / "y.ppm", "--report", report}));
     std::vector<Phase> phases;
     for (const Arguments& arguments :
-         {with("render", {"-o", x + ".ppm"}), with("render", {"-o", folders.inputs / "y.ppm", "--report", x + ".json"}),
-          with("bench", {"--samples", "1", "--report", x + ".json"}),
-          Arguments{"verify", "--brief", "--only", "number", "--report", x + ".json"},
-          with("explore", {"-o", x + ".html"}), Arguments{"page", report, "-o", x + ".html"},
-          Arguments{"generate", "random", "9", "-o", x + ".nff"}, Arguments{"manual", "-o", folder},
-          Arguments{"completion", "bash", "-o", x}})
+         {small_command("render", {"-o", output_path + ".ppm"}),
+          small_command("render", {"-o", folders.inputs / "y.ppm", "--report", output_path + ".json"}),
+          small_command("bench", {"--samples", "1", "--report", output_path + ".json"}),
+          Arguments{"verify", "--brief", "--only", "number", "--report", output_path + ".json"},
+          small_command("explore", {"-o", output_path + ".html"}),
+          Arguments{"page", report, "-o", output_path + ".html"},
+          Arguments{"generate", "random", "9", "-o", output_path + ".nff"}, Arguments{"manual", "-o", folder},
+          Arguments{"completion", "bash", "-o", output_path}})
         phases.push_back({arguments[0] + " in " + call,
                           arguments,
                           [folder] { return has_file(folder, ".tmp"); },
@@ -144,13 +146,13 @@ std::vector<Phase> writing(const Folders& folders, const std::string& call) {
 
 TEST_CASE("signals: end every command that waits for its input", "[cli][signals]") {
     const Folders folders;
-    check_phases(folders, reading(folders), quick(1, kSignals));
+    check_phases(folders, reading_phases(folders), quick(1, kSignals));
 }
 
 TEST_CASE("signals: end a render that compiles or traces", "[cli][signals]") {
     const Folders folders;
     for (const bool builds : {true, false}) {
-        std::vector<Phase> phases = computing(folders, builds);
+        std::vector<Phase> phases = computing_phases(folders, builds);
         phases.resize(1);
         check_phases(folders, phases, quick(1, kSignals));
     }
@@ -160,14 +162,14 @@ TEST_CASE("signals: end every command that compiles or computes", "[cli][signals
     for (const bool builds : {true, false})
         for (const int signal : kSignals) {
             const Folders folders;
-            check_phases(folders, computing(folders, builds), {signal});
+            check_phases(folders, computing_phases(folders, builds), {signal});
         }
 }
 
 TEST_CASE("signals: during a write they leave no part of the file", "[cli][signals]") {
     const Folders folders;
     for (const char* call : {"write", "rename"}) {
-        std::vector<Phase> phases = writing(folders, call);
+        std::vector<Phase> phases = writing_phases(folders, call);
         if (!thorough()) phases.erase(phases.begin() + 1, phases.end() - 3);
         check_phases(folders, phases, quick(1, kSignals));
     }
@@ -191,7 +193,7 @@ class FullPipe {
 TEST_CASE("signals: end every command that is blocked on its output", "[cli][signals]") {
     const Folders folders;
     const std::string pipe = folders.fifo("pipe"), planes = scene_file("planes");
-    const FullPipe full(pipe);
+    const FullPipe full_pipe(pipe);
     std::vector<Phase> phases;
     for (const Arguments& arguments :
          {Arguments{"info", planes}, Arguments{"devices"}, Arguments{"help", "render"}, Arguments{"manual"},
@@ -205,7 +207,7 @@ TEST_CASE("signals: end every command that is blocked on its output", "[cli][sig
 
 TEST_CASE("signals: end a command whose driver does not respond", "[cli][signals]") {
     const Folders folders;
-    check_phases(folders, {{"devices", {"devices"}, {}, 300, failing_device("clGetPlatformIDs 1 slow")}},
+    check_phases(folders, {{"devices", {"devices"}, {}, 300, device_with_fault("clGetPlatformIDs 1 slow")}},
                  quick(1, kSignals));
 }
 

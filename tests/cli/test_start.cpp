@@ -7,7 +7,7 @@
 #include <set>
 
 #include "tests/base/scratch_folder.hpp"
-#include "tests/cli/failing_device.hpp"
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/run_program.hpp"
 
 namespace raya {
@@ -33,7 +33,7 @@ Names libraries_of(const std::vector<std::string>& arguments, int code = 0) {
 }
 
 /// Returns those of `names` that contain one of `parts`.
-Names matching(const Names& names, const std::vector<std::string>& parts) {
+Names names_containing(const Names& names, const std::vector<std::string>& parts) {
     Names found;
     std::copy_if(names.begin(), names.end(), std::inserter(found, found.end()), [&](const std::string& name) {
         return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) { return contains(name, part); });
@@ -41,29 +41,31 @@ Names matching(const Names& names, const std::vector<std::string>& parts) {
     return found;
 }
 
-std::vector<std::string> render_of_4(const std::string& image) {
+std::vector<std::string> render_4x4(const std::string& image) {
     return {"render", scene_file("planes"), "-o", image, "--size", "4", "--pes", "4", "--lanes", "4"};
 }
 
-TEST_CASE("--version: loads the OpenCL loader, three small libraries, those of C and C++, and no others", "[cli]") {
+TEST_CASE("--version: loads the OpenCL loader, three small libraries and the C and C++ libraries only", "[cli]") {
     Names names = libraries_of({"--version"});
-    for (const std::string& sanitizer : matching(names, {"libasan", "libubsan"})) names.erase(sanitizer);
-    if (kSanitized)  // with less inlining, raya depends on Imath
-        for (const std::string& imath : matching(names, {"libImath"})) names.erase(imath);
+    for (const std::string& sanitizer : names_containing(names, {"libasan", "libubsan"})) names.erase(sanitizer);
+    if (kSanitized)  // the sanitizer build inlines less and needs Imath
+        for (const std::string& imath : names_containing(names, {"libImath"})) names.erase(imath);
     CHECK(names.size() <= 9);
     const std::vector<std::string> known = {"libOpenCL.", "libfmt.", "libxxhash.", "libz.",       "libstdc++.", "libm.",
                                             "libgcc_s.",  "libc.",   "libdl.",     "libpthread.", "ld-linux"};
-    CHECK(matching(names, known) == names);
+    CHECK(names_containing(names, known) == names);
 }
 
-TEST_CASE("devices, renders to PFM and PPM: load neither OpenImageIO nor TBB nor MPI; a render to PNG does", "[cli]") {
+TEST_CASE(
+    "devices, renders to PFM and PPM: load neither OpenImageIO nor TBB nor MPI; a render to PNG loads OpenImageIO",
+    "[cli]") {
     const ScratchFolder outputs;
-    const std::vector<std::string> heavy = {"raya_", "OpenImageIO", "libtbb", "libmpi",
-                                            "libopen-"};  // libopen-*: libraries of Open MPI
-    CHECK(matching(libraries_of({"devices"}), heavy).empty());
+    const std::vector<std::string> large_libraries = {"raya_", "OpenImageIO", "libtbb", "libmpi",
+                                                      "libopen-"};  // libopen-*: libraries of Open MPI
+    CHECK(names_containing(libraries_of({"devices"}), large_libraries).empty());
     for (const char* image : {"x.pfm", "x.ppm"})
-        CHECK(matching(libraries_of(render_of_4(outputs / image)), heavy).empty());
-    CHECK(matching(libraries_of(render_of_4(outputs / "x.png")), {"raya_pictures", "OpenImageIO"}).size() >= 2);
+        CHECK(names_containing(libraries_of(render_4x4(outputs / image)), large_libraries).empty());
+    CHECK(names_containing(libraries_of(render_4x4(outputs / "x.png")), {"raya_pictures", "OpenImageIO"}).size() >= 2);
 }
 
 TEST_CASE("commands: refuse wrong inputs before they load a driver or OpenImageIO", "[cli]") {
@@ -87,7 +89,8 @@ TEST_CASE("commands: refuse wrong inputs before they load a driver or OpenImageI
         {"verify", "--kernel-dir", missing}};
     for (const std::vector<std::string>& arguments : refused) {
         CAPTURE(arguments);
-        CHECK(matching(libraries_of(arguments, 2), {"raya_pictures", "OpenImageIO", "libtbb", "libpocl"}).empty());
+        CHECK(names_containing(libraries_of(arguments, 2), {"raya_pictures", "OpenImageIO", "libtbb", "libpocl"})
+                  .empty());
     }
 }
 

@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-/// A folder in which a shell runs command lines.
+/// Runs command lines in `folder` with a shell and returns their exit codes.
 struct Shell {
     const ScratchFolder& folder;
 
@@ -47,24 +47,24 @@ TEST_CASE("render - -o -: reads stdin and writes stdout with the same bytes as f
     CHECK(file_contents(folder / "log").empty());
 }
 
-TEST_CASE("render: each of its files can go to stdout", "[cli]") {
+TEST_CASE("render: every output file can go to stdout", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     const std::string scene = scene_file("planes");
-    const auto streamed = [&](const std::string& option, const std::string& file, const std::string& more = "") {
+    const auto stdout_of = [&](const std::string& option, const std::string& file, const std::string& more = "") {
         CAPTURE(option);
         REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " " + file + kSmall + more + "> log") == 0);
         REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " -" + kSmall + more + "> out 2> log") == 0);
         CHECK(contains(file_contents(folder / "log"), "rays    "));
         return file_contents(folder / "out");
     };
-    const std::string cost = streamed("--cost", "cost.pfm");
+    const std::string cost = stdout_of("--cost", "cost.pfm");
     CHECK(cost == file_contents(folder / "cost.pfm"));
-    const Document report = Document::parse(streamed("--report", "r.json"));
+    const Document report = Document::parse(stdout_of("--report", "r.json"));
     CHECK(report["image"]["hash"] == json_of(folder / "r.json")["image"]["hash"]);
-    const std::string mask = streamed("--mask", "m.ppm", "--antialias supersample ");
+    const std::string mask = stdout_of("--mask", "m.ppm", "--antialias supersample ");
     CHECK(mask == file_contents(folder / "m.ppm"));
-    CHECK(Document::parse(streamed("--trace", "t.json")).is_object());
+    CHECK(Document::parse(stdout_of("--trace", "t.json")).is_object());
 }
 
 TEST_CASE("render --packets -: writes the same bytes to stdout as to a file", "[cli]") {
@@ -131,10 +131,10 @@ TEST_CASE("./-: is a file named -", "[cli]") {
 TEST_CASE("-: refused for two outputs, two inputs, and files that cannot be streams", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
-    for (const Arguments& two : {Arguments{"-o", "-", "--report", "-"}, Arguments{"-o", "-", "--cost", "-"},
-                                 Arguments{"-o", "x.pfm", "--cost", "-", "--trace", "-"}}) {
+    for (const Arguments& options : {Arguments{"-o", "-", "--report", "-"}, Arguments{"-o", "-", "--cost", "-"},
+                                     Arguments{"-o", "x.pfm", "--cost", "-", "--trace", "-"}}) {
         Arguments arguments = {"render", scene};
-        arguments.insert(arguments.end(), two.begin(), two.end());
+        arguments.insert(arguments.end(), options.begin(), options.end());
         check_refused(outputs, arguments, 2, {"only one file can go to stdout"});
     }
     check_refused(outputs, {"bench", "--compare", "-"}, 2, {"stdin:1: not valid JSON"});
@@ -180,11 +180,11 @@ TEST_CASE("-: messages name stdin and the line", "[cli]") {
 TEST_CASE("-o -: a failed write to stdout is exit code 2", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
-    for (const std::string lost : {"> /dev/full", ">&-"}) {
-        CAPTURE(lost);
-        CHECK(shell(kRender + scene_file("planes") + " -o - --quiet" + kSmall + lost + " 2> log") == 2);
+    for (const std::string redirection : {"> /dev/full", ">&-"}) {
+        CAPTURE(redirection);
+        CHECK(shell(kRender + scene_file("planes") + " -o - --quiet" + kSmall + redirection + " 2> log") == 2);
         CHECK(contains(file_contents(folder / "log"), "cannot write 'stdout'"));
-        CHECK(shell(kRaya + "generate random 5 -o - " + lost + " 2> log") == 2);
+        CHECK(shell(kRaya + "generate random 5 -o - " + redirection + " 2> log") == 2);
     }
     CHECK(shell(kRaya + "generate random 5 -o - 2>&- > out.nff") == 0);
     CHECK(contains(file_contents(folder / "out.nff"), "s "));

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "host/version.hpp"
-#include "tests/cli/failing_device.hpp"
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/paths.h"
@@ -23,7 +23,7 @@ Files files_in(const std::filesystem::path& folder) {
     return files;
 }
 
-Arguments study(const std::string& name, const ScratchFolder& outputs, const Arguments& options = {}) {
+Arguments study_arguments(const std::string& name, const ScratchFolder& outputs, const Arguments& options = {}) {
     Arguments arguments = {"study", name, "-o", outputs / "made/x"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return arguments;
@@ -31,7 +31,7 @@ Arguments study(const std::string& name, const ScratchFolder& outputs, const Arg
 
 TEST_CASE("study: writes figures, tables, JSON and a document", "[cli]") {
     const ScratchFolder outputs;
-    const RunOutcome run = run_raya(study("fig8", outputs, {"--size", "32"}));
+    const RunOutcome run = run_raya(study_arguments("fig8", outputs, {"--size", "32"}));
     INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
@@ -63,23 +63,23 @@ TEST_CASE("study: writes figures, tables, JSON and a document", "[cli]") {
     CHECK_THAT(markdown, Catch::Contains("## Main figures") && Catch::Contains("(fig8-all.svg)"));
 }
 
-// raya searches the SimGrid program in its own folder, so a copy of raya in another folder does not find it.
-TEST_CASE("study simgrid: without SimGrid it says what to install, and study all skips it", "[cli]") {
-    const ScratchFolder outputs, elsewhere;
-    const RunOptions copy{.program = elsewhere / "raya"};
-    std::filesystem::copy_file(RAYA_PROGRAM, copy.program);
+// raya looks for the SimGrid program in its own folder, so a copy of raya in another folder does not find it.
+TEST_CASE("study simgrid: without SimGrid the error names the package to install, and study all skips it", "[cli]") {
+    const ScratchFolder outputs, copy_folder;
+    const RunOptions copy_options{.program = copy_folder / "raya"};
+    std::filesystem::copy_file(RAYA_PROGRAM, copy_options.program);
     std::filesystem::create_directory_symlink(std::filesystem::path(RAYA_PROGRAM).parent_path() / "python",
-                                              elsewhere / "python");
-    check_refused(outputs, study("simgrid", outputs), 2, {"study simgrid", "tools/setup --studies", "libsimgrid-dev"},
-                  copy);
-    check_refused(outputs, study("all", outputs, {outputs / "missing.nff"}), 2,
-                  {"study simgrid is skipped", "missing.nff"}, copy);
+                                              copy_folder / "python");
+    check_refused(outputs, study_arguments("simgrid", outputs), 2,
+                  {"study simgrid", "tools/setup --studies", "libsimgrid-dev"}, copy_options);
+    check_refused(outputs, study_arguments("all", outputs, {outputs / "missing.nff"}), 2,
+                  {"study simgrid is skipped", "missing.nff"}, copy_options);
 }
 
 TEST_CASE("study NAME SCENE: uses the given scene", "[cli]") {
     const ScratchFolder outputs;
     const std::string name = GENERATE(from_range(quick(1, {"fig13", "fig7", "fig8", "fig12"})));
-    const RunOutcome run = run_raya(study(name, outputs, {scene_file("glass"), "--size", "20"}));
+    const RunOutcome run = run_raya(study_arguments(name, outputs, {scene_file("glass"), "--size", "20"}));
     INFO(run.describe());
     REQUIRE(run.code == 0);
     const auto json = Document::parse(file_contents(outputs / "made/x" / (name + ".json")));
@@ -90,7 +90,7 @@ TEST_CASE("study NAME SCENE: uses the given scene", "[cli]") {
 
 TEST_CASE("study FILE.py: runs a user's study", "[cli]") {
     const ScratchFolder outputs;
-    const RunOutcome run = run_raya(study(RAYA_SOURCE_DIR "/docs/my_study.py", outputs, {"--size", "32"}));
+    const RunOutcome run = run_raya(study_arguments(RAYA_SOURCE_DIR "/docs/my_study.py", outputs, {"--size", "32"}));
     INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK(files_in(outputs / "made/x") ==
@@ -99,38 +99,39 @@ TEST_CASE("study FILE.py: runs a user's study", "[cli]") {
 
 TEST_CASE("study: refuses wrong names, sizes, scenes and devices, and leaves no folder", "[cli]") {
     const ScratchFolder outputs;
-    check_refused(outputs, study("fig6", outputs), 2, {"no study fig6 (did you mean fig7?)", "FILE.py"});
-    check_refused(outputs, study(outputs / "none.py", outputs), 2, {"none.py: no such file"});
+    check_refused(outputs, study_arguments("fig6", outputs), 2, {"no study fig6 (did you mean fig7?)", "FILE.py"});
+    check_refused(outputs, study_arguments(outputs / "none.py", outputs), 2, {"none.py: no such file"});
     for (const char* size : quick(1, {"16", "0", "8", "5000"}))
-        check_refused(outputs, study("fig8", outputs, {"--size", size}), 2,
+        check_refused(outputs, study_arguments("fig8", outputs, {"--size", size}), 2,
                       {std::string("--size ") + size + ":", "17..4096"});
     for (const char* size : quick(1, {"32x16", "-1", "1e2", "wide", ""}))
-        check_refused(outputs, study("fig8", outputs, {"--size", size}), 2, {"--size"});
+        check_refused(outputs, study_arguments("fig8", outputs, {"--size", size}), 2, {"--size"});
     for (const char* network : quick(1, {"1,nan", "30", "1,2,3", "-1,0", "2e9,1", "fast,1"}))
-        check_refused(outputs, study("ranks", outputs, {"--network", network}), 2, {"--network"});
-    check_refused(outputs, study("fig8", outputs, {"--size", "99999999999"}), 2, {"--size", "99999999999"});
-    check_refused(outputs, study("fig8", outputs, {outputs / "none.nff"}), 2, {"none.nff", "cannot read"});
-    check_refused(outputs, study("images", outputs, {scene_file("glass"), outputs / "none.nff"}), 2, {"none.nff"});
-    check_refused(outputs, study("fig8", outputs, {scene_file("glass"), scene_file("cones")}), 2,
+        check_refused(outputs, study_arguments("ranks", outputs, {"--network", network}), 2, {"--network"});
+    check_refused(outputs, study_arguments("fig8", outputs, {"--size", "99999999999"}), 2, {"--size", "99999999999"});
+    check_refused(outputs, study_arguments("fig8", outputs, {outputs / "none.nff"}), 2, {"none.nff", "cannot read"});
+    check_refused(outputs, study_arguments("images", outputs, {scene_file("glass"), outputs / "none.nff"}), 2,
+                  {"none.nff"});
+    check_refused(outputs, study_arguments("fig8", outputs, {scene_file("glass"), scene_file("cones")}), 2,
                   {"fig8 takes one scene", "2 were given"});
     check_refused(outputs, {"study", "fig8"}, 2, {"--output is required"});
     check_refused(outputs, {"study", "fig8", "-o", ""}, 2, {"--output", "must not be empty"});
-    check_refused(outputs, study("fig8", outputs, {"--device", "no such device"}), 3, {"no such device"});
-    check_refused(outputs, study("fig8", outputs, {"--size", "17"}), 3, {"CL_OUT_OF_RESOURCES"},
-                  failing_device("clEnqueueNDRangeKernel 1 -5"));
-    check_refused(outputs, study("fig8", outputs), 2, {"cannot start /nonexistent", "python3", "RAYA_PYTHON"},
+    check_refused(outputs, study_arguments("fig8", outputs, {"--device", "no such device"}), 3, {"no such device"});
+    check_refused(outputs, study_arguments("fig8", outputs, {"--size", "17"}), 3, {"CL_OUT_OF_RESOURCES"},
+                  device_with_fault("clEnqueueNDRangeKernel 1 -5"));
+    check_refused(outputs, study_arguments("fig8", outputs), 2, {"cannot start /nonexistent", "python3", "RAYA_PYTHON"},
                   {.variables = {{"RAYA_PYTHON", "/nonexistent"}}});
 }
 
 TEST_CASE("study: refuses a folder that it cannot create or write, before rendering", "[cli]") {
     const ScratchFolder outputs;
     check_refused(outputs, {"study", "fig8", "-o", "/dev/null/x"}, 2, {"/dev/null/x", "cannot create directory"});
-    const ScratchFolder closed;
-    ::chmod(closed.path().c_str(), 0555);
+    const ScratchFolder read_only;
+    ::chmod(read_only.path().c_str(), 0555);
     for (const char* name : quick(1, {"all", "fig8"}))
-        check_refused(closed, {"study", name, "-o", closed.path(), "--size", "32"}, 2, {"not writable"},
+        check_refused(read_only, {"study", name, "-o", read_only.path(), "--size", "32"}, 2, {"not writable"},
                       {.variables = {}, .as_nobody = true});
-    ::chmod(closed.path().c_str(), 0755);
+    ::chmod(read_only.path().c_str(), 0755);
 }
 
 }  // namespace

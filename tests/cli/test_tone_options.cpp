@@ -1,4 +1,5 @@
-// render --exposure, --gamma, --tone: they change the codes of 8-bit images; report and image file contain them.
+// render --exposure, --gamma, --tone: they change the codes of 8-bit images, and report and image contain these
+// options.
 #include <OpenImageIO/imageio.h>
 
 #include "tests/cli/refusals.hpp"
@@ -7,20 +8,22 @@
 namespace raya {
 namespace {
 
-TEST_CASE("render --tone: changes the codes, not the hash; report and image record it", "[cli]") {
+TEST_CASE("render --tone: changes the codes, not the hash; report and image contain the options", "[cli]") {
     const Arguments tone = {"--exposure", "-1.5", "--gamma", "2.2", "--tone", "reinhard"};
-    const RenderFiles plain("planes", {}, ".ppm");
-    CHECK(plain.report()["image"]["codes"] == Document({{"exposure", 0.0}, {"tone", "clip"}, {"gamma", nullptr}}));
+    const RenderFiles default_render("planes", {}, ".ppm");
+    CHECK(default_render.report()["image"]["codes"] ==
+          Document({{"exposure", 0.0}, {"tone", "clip"}, {"gamma", nullptr}}));
     for (const std::string extension : {".ppm", ".png", ".tif", ".jpg"}) {
         CAPTURE(extension);
-        const RenderFiles toned("planes", tone, extension);
-        CHECK(toned.report()["image"]["hash"] == plain.report()["image"]["hash"]);
-        CHECK(toned.report()["image"]["codes"] == Document({{"exposure", -1.5}, {"tone", "reinhard"}, {"gamma", 2.2}}));
+        const RenderFiles toned_render("planes", tone, extension);
+        CHECK(toned_render.report()["image"]["hash"] == default_render.report()["image"]["hash"]);
+        CHECK(toned_render.report()["image"]["codes"] ==
+              Document({{"exposure", -1.5}, {"tone", "reinhard"}, {"gamma", 2.2}}));
         if (extension == ".ppm") {
-            CHECK(file_contents(toned.image()) != file_contents(plain.image()));
+            CHECK(file_contents(toned_render.image()) != file_contents(default_render.image()));
             continue;
         }
-        const auto image = OIIO::ImageInput::open(toned.image());
+        const auto image = OIIO::ImageInput::open(toned_render.image());
         REQUIRE(image);
         if (extension != ".png") {
             const std::string description = image->spec().get_string_attribute("ImageDescription");

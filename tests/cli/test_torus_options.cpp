@@ -23,31 +23,31 @@ void check_refused_on(const std::string& machine, const std::vector<TorusRow>& r
 }
 
 TEST_CASE("render --machine torus: refuses options of rings, with reason and remedy", "[cli]") {
-    const std::string with = " with --machine torus";
-    check_refused_on("torus",
-                     {{{"--mapping", "rows"}, {"--mapping rows" + with, "voxels of the scene, not pixels", "--voxels"}},
-                      {{"--offset", "16"}, {"--offset 16" + with, "not pixels", "leave it out"}},
-                      {{"--fold", "block"}, {"--fold block" + with, "not pixels", "leave it out"}},
-                      {{"--pes", "64"}, {"--pes 64" + with, "nodes", "--nodes IxJxK"}},
-                      {{"--antialias", "filter"}, {"--antialias filter" + with, "neighbours", "choose a ring"}},
-                      {{"--exchange", "bus"}, {"--exchange bus" + with, "neighbours", "choose a ring"}},
-                      {{"--threshold", "0.5"}, {"--threshold 0.5" + with, "neighbours", "choose a ring"}},
-                      {{"--points", "axes"}, {"--points axes" + with, "neighbours", "choose a ring"}},
-                      {{"--mask", "m.png"}, {"--mask m.png" + with, "neighbours", "choose a ring"}},
-                      {{"--cost", "c.exr"}, {"--cost c.exr" + with, "nodes work for a pixel", "choose a ring"}}});
+    const std::string suffix = " with --machine torus";
+    check_refused_on(
+        "torus", {{{"--mapping", "rows"}, {"--mapping rows" + suffix, "voxels of the scene, not pixels", "--voxels"}},
+                  {{"--offset", "16"}, {"--offset 16" + suffix, "not pixels", "leave it out"}},
+                  {{"--fold", "block"}, {"--fold block" + suffix, "not pixels", "leave it out"}},
+                  {{"--pes", "64"}, {"--pes 64" + suffix, "nodes", "--nodes IxJxK"}},
+                  {{"--antialias", "filter"}, {"--antialias filter" + suffix, "neighbours", "choose a ring"}},
+                  {{"--exchange", "bus"}, {"--exchange bus" + suffix, "neighbours", "choose a ring"}},
+                  {{"--threshold", "0.5"}, {"--threshold 0.5" + suffix, "neighbours", "choose a ring"}},
+                  {{"--points", "axes"}, {"--points axes" + suffix, "neighbours", "choose a ring"}},
+                  {{"--mask", "m.png"}, {"--mask m.png" + suffix, "neighbours", "choose a ring"}},
+                  {{"--cost", "c.exr"}, {"--cost c.exr" + suffix, "nodes work for a pixel", "choose a ring"}}});
 }
 
 TEST_CASE("render --machine spa: refuses options of the torus, with reason and remedy", "[cli]") {
-    const std::string with = " with --machine spa", remedy = "choose --machine torus";
-    check_refused_on("spa", {{{"--nodes", "4x4x4"}, {"--nodes 4x4x4" + with, "ring", "--pes"}},
-                             {{"--voxels", "4x4x4"}, {"--voxels 4x4x4" + with, remedy}},
-                             {{"--links", "torus2d"}, {"--links torus2d" + with, remedy}},
-                             {{"--inject", "root"}, {"--inject root" + with, remedy}},
-                             {{"--returns", "rays"}, {"--returns rays" + with, remedy}},
-                             {{"--link-exchange", "kernel"}, {"--link-exchange kernel" + with, remedy}},
-                             {{"--packet-words", "22"}, {"--packet-words 22" + with, remedy}},
-                             {{"--queue", "64"}, {"--queue 64" + with, remedy}},
-                             {{"--packets", "p.csv.gz"}, {"--packets p.csv.gz" + with, remedy}}});
+    const std::string suffix = " with --machine spa", remedy = "choose --machine torus";
+    check_refused_on("spa", {{{"--nodes", "4x4x4"}, {"--nodes 4x4x4" + suffix, "ring", "--pes"}},
+                             {{"--voxels", "4x4x4"}, {"--voxels 4x4x4" + suffix, remedy}},
+                             {{"--links", "torus2d"}, {"--links torus2d" + suffix, remedy}},
+                             {{"--inject", "root"}, {"--inject root" + suffix, remedy}},
+                             {{"--returns", "rays"}, {"--returns rays" + suffix, remedy}},
+                             {{"--link-exchange", "kernel"}, {"--link-exchange kernel" + suffix, remedy}},
+                             {{"--packet-words", "22"}, {"--packet-words 22" + suffix, remedy}},
+                             {{"--queue", "64"}, {"--queue 64" + suffix, remedy}},
+                             {{"--packets", "p.csv.gz"}, {"--packets p.csv.gz" + suffix, remedy}}});
     check_refused_on("grande", {{{"--inject", "all"}, {"--inject all with --machine grande", remedy}}});
 }
 
@@ -94,7 +94,7 @@ TEST_CASE("render --packets: refuses a file that it cannot write, before renderi
         {outputs.path(), "it is a folder"});
 }
 
-TEST_CASE("render --queue: a deadlock ends with a queue length that works", "[cli]") {
+TEST_CASE("render --queue: the error for a deadlock names a queue length that works", "[cli]") {
     const std::string file = scene_file("mirrors");
     const auto lights = static_cast<std::uint32_t>(read_nff(file).lights.size());
     const std::string queue = std::to_string(raya_min_queue(lights, 4));
@@ -124,10 +124,10 @@ TEST_CASE("render --help: has the options of the torus with units and defaults",
     const std::string help = squeezed(run.out);
     for (const char* text :
          {"Torus machine", "torus: nodes of 4 MB",
-          "--nodes IxJxK Nodes along x, y and z of the scene, at most 65,536 in total; default: 4x4x4",
-          "--voxels AxBxC", "fewer leave nodes empty", "one for each node", "torus3d|torus2d", "default: torus3d",
-          "root|all", "default: all", "--queue N", "Maximum packets queued", "--pe-memory BYTES", "4194304",
-          "--packets FILE.csv.gz", "docs/packets.md", "--async", "--replay simgrid"})
+          "--nodes IxJxK Number of nodes along x, y and z of the scene, at most 65,536 in total; default: 4x4x4",
+          "--voxels AxBxC", "fewer voxels leave nodes empty", "one for each node", "torus3d|torus2d",
+          "default: torus3d", "root|all", "default: all", "--queue N", "Maximum number of packets queued",
+          "--pe-memory BYTES", "4194304", "--packets FILE.csv.gz", "docs/packets.md", "--async", "--replay simgrid"})
         CHECK_THAT(help, Catch::Contains(text));
     CHECK_THAT(run_raya({"bench", "--help-all"}).out, !Catch::Contains("--nodes"));
 }

@@ -15,37 +15,37 @@ struct TracedRun {
     Document trace, report;
 };
 
-TracedRun traced(const std::string& scene, const Arguments& options, const std::string& ending = ".json") {
+TracedRun run_with_trace(const std::string& scene, const Arguments& options, const std::string& ending = ".json") {
     const ScratchFolder folder;
     const std::string file = folder / ("t" + ending), report = folder / "r.json";
     Arguments arguments = {"render", scene_file(scene), "-o", folder / "x.pfm", "--size", "24x16", "--lanes",
                            "4",      "--trace",         file, "--report",       report};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    TracedRun t{run_raya(arguments), {}, {}};
-    INFO(t.run.describe());
-    REQUIRE(t.run.code == 0);
+    TracedRun traced{run_raya(arguments), {}, {}};
+    INFO(traced.run.describe());
+    REQUIRE(traced.run.code == 0);
     CHECK(folder.entries() == 3);
     const std::string text = file_contents(file);
-    t.trace = Document::parse(ending.ends_with(".gz") ? gunzip(text) : text);
-    t.report = Document::parse(file_contents(report));
-    return t;
+    traced.trace = Document::parse(ending.ends_with(".gz") ? gunzip(text) : text);
+    traced.report = Document::parse(file_contents(report));
+    return traced;
 }
 
-// [total nanoseconds, number] of the commands with the key "label/kind".
+// Key: "label/kind"; value: total nanoseconds and number of the commands.
 using Sums = std::map<std::string, std::pair<std::int64_t, std::int64_t>>;
 
 Sums sums_of_trace(const Document& trace) {
     Sums sums;
-    for (const Document& e : trace["traceEvents"]) {
-        if (e["ph"] != "X" || e["pid"] != kTraceDevice) continue;
-        auto& [ns, commands] = sums[e["name"].get<std::string>() + "/" + e["args"]["kind"].get<std::string>()];
-        ns += std::llround(1000 * e["dur"].get<double>());
+    for (const Document& event : trace["traceEvents"]) {
+        if (event["ph"] != "X" || event["pid"] != kTraceDevice) continue;
+        auto& [ns, commands] = sums[event["name"].get<std::string>() + "/" + event["args"]["kind"].get<std::string>()];
+        ns += std::llround(1000 * event["dur"].get<double>());
         ++commands;
-        const Document& a = e["args"];
+        const Document& a = event["args"];
         CHECK(a["queued_ns"] <= a["submitted_ns"]);
         CHECK(a["submitted_ns"] <= a["started_ns"]);
         CHECK(a["ended_ns"].get<std::int64_t>() - a["started_ns"].get<std::int64_t>() ==
-              std::llround(1000 * e["dur"].get<double>()));
+              std::llround(1000 * event["dur"].get<double>()));
     }
     return sums;
 }
@@ -57,14 +57,14 @@ Sums sums_of_report(const Document& report) {
     return sums;
 }
 
-void check(const TracedRun& t) {
-    INFO(t.run.describe());
-    const TraceSchema schema(t.trace);
+void check_trace(const TracedRun& traced) {
+    INFO(traced.run.describe());
+    const TraceSchema schema(traced.trace);
     CHECK(schema.faults() == std::vector<std::string>{});
-    CHECK(sums_of_trace(t.trace) == sums_of_report(t.report));
+    CHECK(sums_of_trace(traced.trace) == sums_of_report(traced.report));
     for (const std::int64_t pid : {1, 2, 3}) CHECK_FALSE(schema.slices_of(pid).empty());
-    CHECK(t.trace["otherData"]["events_left_out"] == 0);
-    CHECK(t.trace["otherData"]["device_clock"].is_object());
+    CHECK(traced.trace["otherData"]["events_left_out"] == 0);
+    CHECK(traced.trace["otherData"]["device_clock"].is_object());
 }
 
 // Checks that the host's step "render" contains all commands of the device: both clocks agree.
@@ -81,31 +81,33 @@ void check_clocks(const Document& trace) {
 }
 
 const Document& kernel_of(const Document& trace, const std::string& label) {
-    for (const Document& e : trace["traceEvents"])
-        if (e["ph"] == "X" && e["name"] == label && e["args"].value("kind", "") == "kernel") return e["args"];
+    for (const Document& event : trace["traceEvents"])
+        if (event["ph"] == "X" && event["name"] == label && event["args"].value("kind", "") == "kernel")
+            return event["args"];
     throw std::runtime_error("no kernel " + label);
 }
 
 }  // namespace
 
 TEST_CASE("render --trace: the trace of a ring follows the schema and sums to the report", "[cli]") {
-    const TracedRun t = traced("centre", {"--pes", "24"});
-    check(t);
-    check_clocks(t.trace);
-    CHECK(kernel_of(t.trace, "trace")["groups"] == 24);
-    CHECK(kernel_of(t.trace, "trace")["kernel"] == "trace");
-    CHECK(kernel_of(t.trace, "trace")["arguments"].size() == 16);
-    const auto steps = TraceSchema(t.trace).slices_of(kTraceHost);
+    const TracedRun traced = run_with_trace("centre", {"--pes", "24"});
+    check_trace(traced);
+    check_clocks(traced.trace);
+    CHECK(kernel_of(traced.trace, "trace")["groups"] == 24);
+    CHECK(kernel_of(traced.trace, "trace")["kernel"] == "trace");
+    CHECK(kernel_of(traced.trace, "trace")["arguments"].size() == 16);
+    const auto steps = TraceSchema(traced.trace).slices_of(kTraceHost);
     for (const std::string name : {"read scene", "pack scene", "set up device", "build ring/trace.cl", "render",
                                    "trace", "gather", "write images"})
         CHECK(std::count_if(steps.begin(), steps.end(), [&](const auto& s) { return s.name == name; }) == 1);
 }
 
 TEST_CASE("render --trace: works with anti-aliasing, gzip and --profile", "[cli]") {
-    check(traced("centre", {"--pes", "24", "--offset", "4", "--antialias", "filter"}, ".json.gz"));
-    const TracedRun t = traced("centre", {"--pes", "24", "--antialias", "supersample", "--profile"}, ".json.gz");
-    check(t);
-    const Document& measured = t.report["measured"];
+    check_trace(run_with_trace("centre", {"--pes", "24", "--offset", "4", "--antialias", "filter"}, ".json.gz"));
+    const TracedRun traced =
+        run_with_trace("centre", {"--pes", "24", "--antialias", "supersample", "--profile"}, ".json.gz");
+    check_trace(traced);
+    const Document& measured = traced.report["measured"];
     CHECK(measured["builds"].size() >= 2);
     CHECK(measured["peak"]["copy_bytes_per_s"] > 0);
     Arguments labels;
@@ -114,29 +116,30 @@ TEST_CASE("render --trace: works with anti-aliasing, gzip and --profile", "[cli]
     for (const Document& row : measured["roofline"]) {
         CHECK(row["operations"] > 0);
         CHECK(row["share_of_roof"] > 0);
-        CHECK_THAT(t.run.out, Catch::Contains("roof    " + row["label"].get<std::string>() + ": "));
+        CHECK_THAT(traced.run.out, Catch::Contains("roof    " + row["label"].get<std::string>() + ": "));
     }
 }
 
 TEST_CASE("render --trace --machine torus: has nodes, packets and links", "[cli]") {
-    const TracedRun t = traced("centre", {"--machine", "torus", "--nodes", "2x2x2", "--trace-pes", "5", "--profile"});
-    check(t);
-    check_clocks(t.trace);
-    const TraceSchema schema(t.trace);
+    const TracedRun traced =
+        run_with_trace("centre", {"--machine", "torus", "--nodes", "2x2x2", "--trace-pes", "5", "--profile"});
+    check_trace(traced);
+    check_clocks(traced.trace);
+    const TraceSchema schema(traced.trace);
     CHECK(schema.flows() > 0);
     CHECK(std::count_if(schema.tracks().begin(), schema.tracks().end(),
                         [](const auto& track) { return track.first.first == kTraceMachine; }) == 6);
     for (const char* label : {"inject", "trace_voxel", "route", "accept", "compose"})
-        CHECK_THAT(t.run.out, Catch::Contains(std::string("roof    ") + label + ": "));
+        CHECK_THAT(traced.run.out, Catch::Contains(std::string("roof    ") + label + ": "));
 }
 
 TEST_CASE("render --trace-events: limits the events, and a message counts those left out", "[cli]") {
-    const TracedRun t = traced("centre", {"--pes", "24", "--trace-events", "20"});
-    CHECK(t.trace["otherData"]["events"] == 20);
-    const std::uint64_t left_out = t.trace["otherData"]["events_left_out"];
+    const TracedRun traced = run_with_trace("centre", {"--pes", "24", "--trace-events", "20"});
+    CHECK(traced.trace["otherData"]["events"] == 20);
+    const std::uint64_t left_out = traced.trace["otherData"]["events_left_out"];
     CHECK(left_out > 0);
-    CHECK(TraceSchema(t.trace).faults() == std::vector<std::string>{});
-    CHECK_THAT(t.run.err,
+    CHECK(TraceSchema(traced.trace).faults() == std::vector<std::string>{});
+    CHECK_THAT(traced.run.err,
                Catch::Contains(std::to_string(left_out) + " of " + std::to_string(20 + left_out) + " events omitted"));
 }
 

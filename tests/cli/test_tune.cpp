@@ -1,7 +1,7 @@
-// raya tune: it drops candidates that render a wrong image, fail, crash or hang; renders use the stored values.
+// raya tune: it drops candidates that render a wrong image, fail, crash or hang; later renders use the stored values.
 #include <set>
 
-#include "tests/cli/failing_device.hpp"
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
@@ -11,8 +11,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns the options of a run on a device with 4 native lanes, with `cache` as cache folder.
-RunOptions tuned_in(const ScratchFolder& cache) {
-    RunOptions run_options = failing_device("clGetDeviceInfo 4154 4");
+RunOptions options_with_cache(const ScratchFolder& cache) {
+    RunOptions run_options = device_with_fault("clGetDeviceInfo 4154 4");  // 4154: CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT
     run_options.variables.emplace_back("XDG_CACHE_HOME", cache.path());
     run_options.variables.emplace_back("RAYA_TUNED", "");
     run_options.variables.emplace_back("RAYA_BUILD_OPTIONS", "-cl-opt-disable");  // to compile faster
@@ -33,20 +33,22 @@ const SourcePatch kFaults = {"shading/tree.clh", "    t->sum = vec_choose(m, vec
 #endif
     t->sum = vec_choose(m, vec_mad(value, weight, t->sum), t->sum);)"};
 
-/// Returns the outcomes in a T4 report of the candidates whose tuning parameter `parameter` has this value.
+/// Returns the outcomes of the candidates whose tuning parameter `parameter` has this value. `report`: in the T4 format
+/// of Kernel Tuner (docs/tuning.md).
 std::set<std::string> outcomes_of(const Document& report, const std::string& parameter, std::uint32_t value) {
     std::set<std::string> outcomes;
-    for (const Document& one : report["results"])
-        if (one["configuration"][parameter] == value) outcomes.insert(one["invalidity"]);
+    for (const Document& result : report["results"])
+        if (result["configuration"][parameter] == value) outcomes.insert(result["invalidity"]);
     return outcomes;
 }
 
-TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; renders use the result", "[cli][slow]") {
+TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; later renders use the stored values",
+          "[cli][slow]") {
     const ScratchFolder kernels, cache, outputs;
-    const std::string copy = write_kernels(kernels / "kernels", {kFaults}), report = outputs / "t4.json";
-    const RunOptions run_options = tuned_in(cache);
+    const std::string patched_kernels = write_kernels(kernels / "kernels", {kFaults}), report = outputs / "t4.json";
+    const RunOptions run_options = options_with_cache(cache);
     const RunOutcome run = run_raya({"tune", "--variants", "none", "--format", "fp32", "--size", "16", "--pes", "1",
-                                     "--candidate-seconds", "12", "--kernel-dir", copy, "--report", report},
+                                     "--candidate-seconds", "12", "--kernel-dir", patched_kernels, "--report", report},
                                     run_options);
     INFO(run.describe());
     REQUIRE(run.code == 0);
@@ -72,7 +74,7 @@ TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; re
     CHECK((stored[0]["values"]["group"] == 1 && stored[0]["values"]["local_words"] == 1 &&
            stored[0]["values"]["batch"] == 0));
 
-    const auto rendered = [&](const Arguments& more) {
+    const auto report_of_render = [&](const Arguments& more) {
         Arguments arguments = {
             "render", scene_file("spheres"), "-o",     outputs / "x.pfm", "--size", "16",       "--pes",
             "4",      "--machine",           "grande", "--accel",         "none",   "--report", outputs / "r.json"};
@@ -83,7 +85,8 @@ TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; re
         CHECK(contains(render.out, "\ntuned   " + file) == more.empty());
         return Document::parse(file_contents(outputs / "r.json"));
     };
-    const Document tuned = rendered({}), defaults = rendered({"--no-tuned"}), options = rendered({"--lanes", "4"});
+    const Document tuned = report_of_render({}), defaults = report_of_render({"--no-tuned"}),
+                   options = report_of_render({"--lanes", "4"});
     CHECK_THAT(tuned["device"]["tuned"].get<std::string>(), Catch::StartsWith(file + ", 20"));
     CHECK(tuned["device"]["lanes"] == lanes);
     CHECK(defaults["device"]["tuned"] == "defaults");
@@ -92,23 +95,24 @@ TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; re
     CHECK(tuned["warnings"].empty());
 
     std::ofstream(file) << "{";
-    const Document damaged = rendered({"--no-tuned"});
+    const Document damaged = report_of_render({"--no-tuned"});
     CHECK(damaged["warnings"].empty());
-    const RunOutcome warned =
+    const RunOutcome warned_run =
         run_raya({"render", scene_file("spheres"), "-o", outputs / "x.pfm", "--size", "16", "--pes", "4", "--machine",
                   "grande", "--accel", "none", "--report", outputs / "r.json"},
                  run_options);
-    CHECK(warned.code == 0);
-    CHECK_THAT(warned.err, Catch::Contains("raya: warning: " + file + ":1: not valid JSON"));
+    CHECK(warned_run.code == 0);
+    CHECK_THAT(warned_run.err, Catch::Contains("raya: warning: " + file + ":1: not valid JSON"));
     CHECK(Document::parse(file_contents(outputs / "r.json"))["warnings"].size() == 1);
 }
 
 TEST_CASE("tune: refuses a device whose defaults fail", "[cli]") {
     const ScratchFolder kernels, cache, outputs;
-    const std::string copy =
+    const std::string patched_kernels =
         write_kernels(kernels / "kernels", {{"shading/tree.clh", "#ifndef RAYA_TREE_CLH\n", "#error \"none\"\n"}});
     const RunOutcome run =
-        run_raya({"tune", "--variants", "none", "--size", "8", "--pes", "4", "--kernel-dir", copy}, tuned_in(cache));
+        run_raya({"tune", "--variants", "none", "--size", "8", "--pes", "4", "--kernel-dir", patched_kernels},
+                 options_with_cache(cache));
     INFO(run.describe());
     CHECK(run.code == 3);
     CHECK_THAT(run.err,

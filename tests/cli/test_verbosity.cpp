@@ -9,14 +9,14 @@
 namespace raya {
 namespace {
 
-Arguments render_of_16(const ScratchFolder& folder, const Arguments& options) {
+Arguments render_16x16(const ScratchFolder& folder, const Arguments& options) {
     Arguments arguments = {
         "render", scene_file("planes"), "-o", folder / "x.ppm", "--size", "16", "--pes", "4", "--lanes", "4"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return arguments;
 }
 
-RunOutcome run_of(const Arguments& arguments) {
+RunOutcome run_without_error(const Arguments& arguments) {
     RunOutcome run = run_raya(arguments);
     INFO(run.describe());
     REQUIRE(run.code == 0);
@@ -39,13 +39,13 @@ std::string scene_with_warning(const ScratchFolder& folder) {
 
 TEST_CASE("render -v: prints the steps of the host on stderr, and does not change stdout", "[cli][verbosity]") {
     const ScratchFolder folder;
-    const RunOutcome plain = run_of(render_of_16(folder, {}));
-    CHECK(plain.messages().empty());
-    const std::string picture = file_contents(folder / "x.ppm");
-    const RunOutcome run = run_of(render_of_16(folder, {"-v"}));
+    const RunOutcome default_run = run_without_error(render_16x16(folder, {}));
+    CHECK(default_run.messages().empty());
+    const std::string image = file_contents(folder / "x.ppm");
+    const RunOutcome run = run_without_error(render_16x16(folder, {"-v"}));
     INFO(run.err);
-    CHECK(without_times(run.out) == without_times(plain.out));
-    CHECK(file_contents(folder / "x.ppm") == picture);
+    CHECK(without_times(run.out) == without_times(default_run.out));
+    CHECK(file_contents(folder / "x.ppm") == image);
     for (const std::string& line : lines_of(run.err)) CHECK_THAT(line, Catch::StartsWith("raya: "));
     for (const char* text : {"planes.nff: ", " objects, ", " lights, ", "raya: device ", ", driver "})
         CHECK_THAT(run.err, Catch::Contains(text));
@@ -61,13 +61,14 @@ TEST_CASE("render: announces the first compilation and its duration, also withou
     const Arguments arguments = {
         "render", scene_file("planes"), "-o", folder / "x.ppm", "--size", "16", "--lanes", "16", "--accel",
         "bvh"};  // takes seconds to compile
-    const RunOutcome first = run_raya(arguments, {.variables = variables}),
-                     second = run_raya(arguments, {.variables = variables});
-    INFO(first.describe() + second.describe());
-    CHECK(first.code == 0);
-    CHECK(std::regex_match(first.err, std::regex("raya: compiling kernels for .* \\(first run only\\) \\.\\.\\.\n"
-                                                 "raya: compiling kernels took [0-9]+\\.[0-9] s\n")));
-    CHECK(second.err.empty());
+    const RunOutcome compiling_run = run_raya(arguments, {.variables = variables}),
+                     cached_run = run_raya(arguments, {.variables = variables});
+    INFO(compiling_run.describe() + cached_run.describe());
+    CHECK(compiling_run.code == 0);
+    CHECK(
+        std::regex_match(compiling_run.err, std::regex("raya: compiling kernels for .* \\(first run only\\) \\.\\.\\.\n"
+                                                       "raya: compiling kernels took [0-9]+\\.[0-9] s\n")));
+    CHECK(cached_run.err.empty());
     for (const auto& entry : std::filesystem::directory_iterator(cache.path())) std::filesystem::remove_all(entry);
     Arguments quiet = arguments;
     quiet.emplace_back("-q");
@@ -77,7 +78,7 @@ TEST_CASE("render: announces the first compilation and its duration, also withou
 TEST_CASE("render -vv: prints builds and device times too", "[cli][verbosity]") {
     const ScratchFolder folder;
     for (const Arguments& twice : {Arguments{"-vv"}, Arguments{"--verbose", "-v"}}) {
-        const RunOutcome run = run_of(render_of_16(folder, twice));
+        const RunOutcome run = run_without_error(render_16x16(folder, twice));
         INFO(run.err);
         for (const std::string& line : lines_of(run.err)) CHECK_THAT(line, Catch::StartsWith("raya: "));
         CHECK_THAT(run.err, Catch::Contains("raya: build ring/trace.cl: options -cl-std=CL1.2 "));
@@ -88,15 +89,15 @@ TEST_CASE("render -vv: prints builds and device times too", "[cli][verbosity]") 
 TEST_CASE("render -q: prints warnings and errors; -qq: only errors", "[cli][verbosity]") {
     const ScratchFolder folder;
     const std::string scene = scene_with_warning(folder);
-    Arguments arguments = render_of_16(folder, {});
+    Arguments arguments = render_16x16(folder, {});
     arguments[1] = scene;
-    CHECK_THAT(run_of(arguments).err, Catch::Contains("raya: warning: "));
+    CHECK_THAT(run_without_error(arguments).err, Catch::Contains("raya: warning: "));
     arguments.emplace_back("-q");
-    const RunOutcome quiet = run_of(arguments);
+    const RunOutcome quiet = run_without_error(arguments);
     CHECK(quiet.out.empty());
     CHECK_THAT(quiet.err, Catch::Contains("raya: warning: "));
     arguments.emplace_back("-q");
-    const RunOutcome quieter = run_of(arguments);
+    const RunOutcome quieter = run_without_error(arguments);
     CHECK(quieter.out.empty());
     CHECK(quieter.err.empty());
     arguments.emplace_back("--strict");
@@ -107,8 +108,9 @@ TEST_CASE("render -q: prints warnings and errors; -qq: only errors", "[cli][verb
 
 TEST_CASE("messages: escape control characters in file names", "[cli][verbosity]") {
     const ScratchFolder folder;
-    const std::string odd = "a\x1b[31m\a\xc2\x9b-\xc3\xa9", shown = "a\\x1b[31m\\x07\\x9b-\xc3\xa9";  // last: e acute
-    const std::string scene = folder / (odd + ".nff"), report = folder / (odd + ".json");
+    const std::string unusual = "a\x1b[31m\a\xc2\x9b-\xc3\xa9",
+                      escaped = "a\\x1b[31m\\x07\\x9b-\xc3\xa9";  // last: e acute
+    const std::string scene = folder / (unusual + ".nff"), report = folder / (unusual + ".json");
     std::filesystem::copy_file(scene_with_warning(folder), scene);
     const Arguments size = {"--size", "16", "--pes", "4", "--lanes", "4"};
     const auto with_size = [&](Arguments arguments) {
@@ -117,20 +119,20 @@ TEST_CASE("messages: escape control characters in file names", "[cli][verbosity]
     };
     std::vector<Arguments> runs = {
         {"info", scene, "-v"},
-        with_size({"render", scene, "-v", "-o", folder / (odd + ".ppm"), "--report", report}),
-        with_size({"render", scene, "--frames", "1:2", "--turn", "9", "-o", folder / (odd + ".ppm")}),
-        {"page", report, "-o", folder / (odd + ".html")},
-        {"explore", scene, "--size", "16", "-o", folder / (odd + ".html")},
-        {"info", folder / (odd + "missing.nff")},
-        {"info", scene, "--machine", odd},
-        {"info", scene, odd},
-        {"render", scene, "-o", folder / ("missing" + odd) / "x.ppm"},
-        {odd}};
+        with_size({"render", scene, "-v", "-o", folder / (unusual + ".ppm"), "--report", report}),
+        with_size({"render", scene, "--frames", "1:2", "--turn", "9", "-o", folder / (unusual + ".ppm")}),
+        {"page", report, "-o", folder / (unusual + ".html")},
+        {"explore", scene, "--size", "16", "-o", folder / (unusual + ".html")},
+        {"info", folder / (unusual + "missing.nff")},
+        {"info", scene, "--machine", unusual},
+        {"info", scene, unusual},
+        {"render", scene, "-o", folder / ("missing" + unusual) / "x.ppm"},
+        {unusual}};
     for (const Arguments& arguments : runs) {
         const RunOutcome run = run_raya(arguments);
         INFO(run.describe());
         CHECK((run.code == 0 || run.code == 2));
-        CHECK_THAT(run.out + run.err, Catch::Contains(shown));
+        CHECK_THAT(run.out + run.err, Catch::Contains(escaped));
         for (const char* control : {"\x1b", "\a", "\xc2\x9b"}) CHECK_FALSE(contains(run.out + run.err, control));
     }
 }
@@ -140,17 +142,17 @@ TEST_CASE("messages: use the singular for one", "[cli][verbosity]") {
     const std::string scene = scene_file("planes"), path = folder / "path.txt";
     std::ofstream(path) << "angle 40\n";
     const Arguments one = {"--size", "4", "--bounces", "1", "--format", "fp32", "--lanes", "1"};
-    const auto with_one = [&](Arguments arguments) {
+    const auto with_options = [&](Arguments arguments) {
         arguments.insert(arguments.end(), one.begin(), one.end());
         return arguments;
     };
     const std::vector<Arguments> runs = {
-        with_one({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--antialias", "filter", "-v"}),
-        with_one({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--accel", "bvh"}),
-        with_one({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--accel", "grid:1x1x1"}),
-        with_one({"render", scene, "-o", folder / "y.ppm", "--pes", "1", "--camera-path", path}),
-        with_one({"render", scene, "-o", folder / "x.ppm", "--camera-path", path, "--frames", "1:2"}),
-        with_one({"bench", scene, "--pes", "1", "--samples", "1"}),
+        with_options({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--antialias", "filter", "-v"}),
+        with_options({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--accel", "bvh"}),
+        with_options({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--accel", "grid:1x1x1"}),
+        with_options({"render", scene, "-o", folder / "y.ppm", "--pes", "1", "--camera-path", path}),
+        with_options({"render", scene, "-o", folder / "x.ppm", "--camera-path", path, "--frames", "1:2"}),
+        with_options({"bench", scene, "--pes", "1", "--samples", "1"}),
         {"verify", "--only", "machine bus", "--lanes", "1"}};
     for (const Arguments& arguments : runs) {
         const RunOutcome run = run_raya(arguments);
@@ -164,45 +166,45 @@ TEST_CASE("messages: use the singular for one", "[cli][verbosity]") {
 TEST_CASE("-q with -v: refused in either order", "[cli][verbosity]") {
     const ScratchFolder outputs;
     for (const Arguments& both : {Arguments{"-q", "-v"}, Arguments{"--verbose", "--quiet"}, Arguments{"-vq"}})
-        check_refused(outputs, render_of_16(outputs, both), 2, {"--quiet and --verbose: give one of them"});
+        check_refused(outputs, render_16x16(outputs, both), 2, {"--quiet and --verbose: give one of them"});
     check_refused(outputs, {"-v", "devices", "-q"}, 2, {"--quiet and --verbose"});
 }
 
 TEST_CASE("-q, -v: have the same effect before and after the command", "[cli][verbosity]") {
     for (const Arguments& arguments : {Arguments{"devices", "-v"}, Arguments{"-v", "devices"}}) {
-        const RunOutcome run = run_of(arguments);
+        const RunOutcome run = run_without_error(arguments);
         CHECK_THAT(run.out, Catch::Contains("platform"));
     }
     const ScratchFolder folder;
-    Arguments arguments = render_of_16(folder, {});
+    Arguments arguments = render_16x16(folder, {});
     arguments.insert(arguments.begin(), "-q");
-    const RunOutcome run = run_of(arguments);
+    const RunOutcome run = run_without_error(arguments);
     CHECK(run.out.empty());
     CHECK(run.err.empty());
 }
 
 TEST_CASE("verify -q: prints failures and the last line", "[cli][verify][verbosity]") {
     const Arguments machine = {"verify", "--only", "machine bus", "--lanes", "4", "-q"};
-    const RunOutcome right = run_of(machine);
-    REQUIRE(lines_of(right.out).size() == 1);
-    CHECK_THAT(right.out, Catch::Matches(".*: [0-9]+ checks passed, 0 failed, [0-9]+ skipped in [0-9.]+ s\n"));
+    const RunOutcome passing_run = run_without_error(machine);
+    REQUIRE(lines_of(passing_run.out).size() == 1);
+    CHECK_THAT(passing_run.out, Catch::Matches(".*: [0-9]+ checks passed, 0 failed, [0-9]+ skipped in [0-9.]+ s\n"));
     const ScratchFolder folder;
-    const RunOutcome wrong = run_raya(
+    const RunOutcome failing_run = run_raya(
         {"verify", "--only", "machine", "-q", "--kernel-dir", write_kernels(folder / "kernels", {kMappingFault})});
-    INFO(wrong.describe());
-    CHECK(wrong.code == 4);
-    CHECK_THAT(wrong.out, Catch::StartsWith("FAIL  machine ") && !Catch::Contains("PASS"));
-    CHECK_THAT(lines_of(wrong.out).back(), Catch::Contains(" 2 failed, "));
+    INFO(failing_run.describe());
+    CHECK(failing_run.code == 4);
+    CHECK_THAT(failing_run.out, Catch::StartsWith("FAIL  machine ") && !Catch::Contains("PASS"));
+    CHECK_THAT(lines_of(failing_run.out).back(), Catch::Contains(" 2 failed, "));
 }
 
 TEST_CASE("explore, study, render --frames: print nothing with -q", "[cli][verbosity]") {
     const ScratchFolder folder;
-    std::vector<Arguments> calls = {
+    std::vector<Arguments> commands = {
         {"explore", scene_file("planes"), "--size", "16", "-o", folder / "x.html", "--quiet"},
-        render_of_16(folder, {"--frames", "1:2", "--turn", "90", "-q"})};
-    if (RAYA_STUDIES) calls.push_back({"study", "fig7", "--size", "32", "-o", folder / "fig7", "-q"});
-    for (const Arguments& arguments : calls) {
-        const RunOutcome run = run_of(arguments);
+        render_16x16(folder, {"--frames", "1:2", "--turn", "90", "-q"})};
+    if (RAYA_STUDIES) commands.push_back({"study", "fig7", "--size", "32", "-o", folder / "fig7", "-q"});
+    for (const Arguments& arguments : commands) {
+        const RunOutcome run = run_without_error(arguments);
         INFO(run.describe());
         CHECK(run.out.empty());
         CHECK(run.err.empty());

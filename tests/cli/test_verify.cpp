@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "tests/cli/failing_device.hpp"
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
@@ -18,7 +18,7 @@ TEST_CASE("verify: prints a line per check and ends with the counts", "[cli][ver
     CHECK(has_line(run.out, ".*: [0-9]+ checks passed, 0 failed, [0-9]+ skipped in [0-9.]+ s"));
 }
 
-TEST_CASE("verify: ends with 4 if a check fails, and shows the difference and remedies", "[cli][verify]") {
+TEST_CASE("verify: exits with 4 if a check fails, and shows the difference and remedies", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string file = scratch / "report.json", kernels = write_kernels(scratch / "kernels", {kMappingFault});
     const RunOutcome run = run_raya({"verify", "--only", "machine", "--kernel-dir", kernels, "--report", file});
@@ -52,7 +52,8 @@ TEST_CASE("verify --kernel-dir: refuses a folder without all kernels, before any
                       2, {folder, "cannot read kernel file", "--kernel-dir must be a folder like"});
 }
 
-TEST_CASE("verify --kernel-dir: a wrong count ends with 4, and the remedy names the kernels only", "[cli][verify]") {
+TEST_CASE("verify --kernel-dir: a wrong count causes exit code 4, and the remedy names the kernels only",
+          "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string file = scratch / "report.json";
     const std::string kernels = write_kernels(scratch / "kernels", {kCountFaults.front().patch});
@@ -89,18 +90,19 @@ TEST_CASE("verify --only: refuses a name without checks, and lists the checks", 
                    "\n  image glass fp32: ", "--full has more"});
 }
 
-TEST_CASE("verify: skips checks that the device does not support; only skipped checks end with 4", "[cli][verify]") {
-    const RunOptions small_groups = failing_device("clGetDeviceInfo 4100 8");
-    const RunOutcome some = run_raya({"verify", "--only", "machine local memory"}, small_groups);
-    INFO(some.describe());
-    CHECK(some.code == 0);
-    CHECK_THAT(some.out, Catch::Contains("SKIP  machine   local memory and barriers, 32 work-items") &&
-                             Catch::Contains("needs groups of 32 work-items, the device allows 8") &&
-                             Catch::Contains(": 1 check passed, 0 failed, 1 skipped"));
-    const RunOutcome none = run_raya({"verify", "--only", "32 work-items"}, small_groups);
-    INFO(none.describe());
-    CHECK(none.code == 4);
-    CHECK_THAT(none.out, Catch::Contains(": 0 checks passed, 0 failed, 1 skipped"));
+TEST_CASE("verify: skips checks that the device does not support; if all are skipped, the exit code is 4",
+          "[cli][verify]") {
+    const RunOptions small_groups = device_with_fault("clGetDeviceInfo 4100 8");
+    const RunOutcome partial_run = run_raya({"verify", "--only", "machine local memory"}, small_groups);
+    INFO(partial_run.describe());
+    CHECK(partial_run.code == 0);
+    CHECK_THAT(partial_run.out, Catch::Contains("SKIP  machine   local memory and barriers, 32 work-items") &&
+                                    Catch::Contains("needs groups of 32 work-items, the device allows 8") &&
+                                    Catch::Contains(": 1 check passed, 0 failed, 1 skipped"));
+    const RunOutcome skipped_run = run_raya({"verify", "--only", "32 work-items"}, small_groups);
+    INFO(skipped_run.describe());
+    CHECK(skipped_run.code == 4);
+    CHECK_THAT(skipped_run.out, Catch::Contains(": 0 checks passed, 0 failed, 1 skipped"));
 }
 
 TEST_CASE("verify --device all: checks every usable device", "[cli][verify]") {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <csignal>
 
-#include "tests/cli/failing_device.hpp"
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
@@ -14,7 +14,7 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-TEST_CASE("verify: a driver crash fails the running check, and the others continue", "[cli][verify]") {
+TEST_CASE("verify: a driver crash fails the running check, and raya runs the other checks", "[cli][verify]") {
     struct Row {
         const char *fault, *ending;
     };
@@ -22,7 +22,8 @@ TEST_CASE("verify: a driver crash fails the running check, and the others contin
                            Row{"clEnqueueCopyBufferRect 1 exit", "ended by exit code 1"}}) {
         const ScratchFolder scratch;
         const std::string file = scratch / "report.json";
-        const RunOutcome run = run_raya({"verify", "--only", "machine", "--report", file}, failing_device(row.fault));
+        const RunOutcome run =
+            run_raya({"verify", "--only", "machine", "--report", file}, device_with_fault(row.fault));
         INFO(run.describe());
         CHECK(run.code == 4);
         for (const char* part : {"PASS  machine   torus routes", "FAIL  machine   copies of blocks",
@@ -38,14 +39,14 @@ TEST_CASE("verify: a driver crash fails the running check, and the others contin
     }
 }
 
-TEST_CASE("verify: a driver crash before any check ends with 3", "[cli][verify]") {
+TEST_CASE("verify: a driver crash before any check causes exit code 3", "[cli][verify]") {
     const ScratchFolder scratch;
-    const RunOptions crash = failing_device("clGetPlatformIDs 1 crash");
+    const RunOptions crash = device_with_fault("clGetPlatformIDs 1 crash");
     check_refused(scratch, {"verify", "--report", scratch / "report.json"}, 3,
                   {"looking for devices", "signal 11 (SIGSEGV)", "remedy"}, crash);
 }
 
-TEST_CASE("--worker: refused from users", "[cli][verify]") {
+TEST_CASE("--worker: raya refuses it from users", "[cli][verify]") {
     const ScratchFolder outputs;
     check_refused(outputs, {"--worker", "x"}, 2, {"--worker:1: not valid JSON"});
     check_refused(outputs, {"--worker", "{}"}, 2, {"--worker", "verbosity"});
@@ -66,8 +67,8 @@ bool is_running_with(const std::string& argument) {
 TEST_CASE("verify: SIGINT and SIGTERM end it and its worker process at once", "[cli][verify]") {
     using namespace std::chrono;
     const ScratchFolder kernels, outputs;
-    const std::string copy = write_kernels(kernels / "kernels");
-    const Arguments command = {"verify", "--full", "--kernel-dir", copy, "--report", outputs / "report.json"};
+    const std::string kernel_folder = write_kernels(kernels / "kernels");
+    const Arguments command = {"verify", "--full", "--kernel-dir", kernel_folder, "--report", outputs / "report.json"};
     for (const auto& [signal, after_ms] : {std::pair(SIGINT, 0), std::pair(SIGINT, 1500), std::pair(SIGTERM, 1500)}) {
         CAPTURE(signal, after_ms);
         const RunOutcome run = run_raya(command, {.signal = signal, .signal_after_ms = after_ms});
@@ -75,8 +76,8 @@ TEST_CASE("verify: SIGINT and SIGTERM end it and its worker process at once", "[
         CHECK(run.code == 128 + signal);
         CHECK_THAT(run.err, Catch::Contains("raya: interrupted\n"));
         CHECK(outputs.entries() == 0);
-        const auto late = steady_clock::now() + seconds(5);
-        while (is_running_with(kernels.path()) && steady_clock::now() < late)
+        const auto deadline = steady_clock::now() + seconds(5);
+        while (is_running_with(kernels.path()) && steady_clock::now() < deadline)
             std::this_thread::sleep_for(milliseconds(20));
         CHECK_FALSE(is_running_with(kernels.path()));
     }
@@ -100,24 +101,25 @@ std::string text_on_terminal(const Arguments& arguments, RunOptions run_options)
     return text;
 }
 
-long count_of(const std::string& text, const std::string& part) {
+long count_occurrences(const std::string& text, const std::string& part) {
     long count = 0;
-    for (std::size_t at = 0; (at = text.find(part, at)) != text.npos; at += part.size()) ++count;
+    for (std::size_t position = 0; (position = text.find(part, position)) != text.npos; position += part.size())
+        ++count;
     return count;
 }
 
-TEST_CASE("progress: slow commands show it on a terminal within two seconds, at most 10 times a second",
+TEST_CASE("progress: slow commands print it on a terminal within two seconds, at most 10 times a second",
           "[cli][slow]") {
     const ScratchFolder folder;
-    const RunOptions slow = failing_device("clCreateContext 1 slow");
+    const RunOptions slow = device_with_fault("clCreateContext 1 slow");
     const Arguments render = {"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--lanes", "4"};
-    const auto with = [&](Arguments arguments, const Arguments& more) {
+    const auto extended = [&](Arguments arguments, const Arguments& more) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     };
     for (const auto& [arguments, progress] :
-         quick(2, {std::pair<Arguments, std::string>{with(render, {"--pes", "4"}), "preparing ... 1 s"},
-                   {with(render, {"--machine", "torus"}), "preparing ... 1 s"},
+         quick(2, {std::pair<Arguments, std::string>{extended(render, {"--pes", "4"}), "preparing ... 1 s"},
+                   {extended(render, {"--machine", "torus"}), "preparing ... 1 s"},
                    {{"bench", "--size", "8", "--pes", "8", "--lanes", "4", "--format", "fp32", "--samples", "1"},
                     "preparing ... 1 s"}})) {
         const auto start = std::chrono::steady_clock::now();
@@ -125,13 +127,13 @@ TEST_CASE("progress: slow commands show it on a terminal within two seconds, at 
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         CAPTURE(arguments[0], text);
         CHECK_THAT(text, Catch::Contains(progress) && Catch::EndsWith("\r\033[K"));
-        CHECK(static_cast<double>(count_of(text, "\r\033[K")) <= 10 * seconds + 1);
+        CHECK(static_cast<double>(count_occurrences(text, "\r\033[K")) <= 10 * seconds + 1);
     }
 }
 
 TEST_CASE("progress: none with -q", "[cli][verbosity][slow]") {
     const ScratchFolder folder;
-    const RunOptions slow = failing_device("clCreateContext 1 slow");
+    const RunOptions slow = device_with_fault("clCreateContext 1 slow");
     for (const Arguments& arguments : {Arguments{"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12",
                                                  "--pes", "4", "--lanes", "4", "-q"},
                                        Arguments{"verify", "--only", "machine bus", "--lanes", "4", "-q"}})
@@ -140,7 +142,7 @@ TEST_CASE("progress: none with -q", "[cli][verbosity][slow]") {
 
 TEST_CASE("progress: verify names a slow check on a terminal, and not in a file", "[cli][verify][slow]") {
     const Arguments one_check = {"verify", "--only", "machine bus"};
-    const RunOptions slow = failing_device("clFinish 1 slow");
+    const RunOptions slow = device_with_fault("clFinish 1 slow");
     CHECK_THAT(
         text_on_terminal(one_check, slow),
         Catch::Contains("\r\033[Krunning machine bus: broadcast and gather ... 1 s") && Catch::EndsWith("\r\033[K"));

@@ -33,38 +33,38 @@ ViewOptions options_of(const Scene& scene) {
 
 /// Returns the scene with a random camera, background and lights.
 Scene with_random_view(const Scene& scene, SplitMix& random) {
-    Scene other = scene;
-    other.view.from = random_vector(random, 4, 9);
-    other.view.at = random_vector(random, -1, 1);
-    other.view.up = random_vector(random, -1, 1) + Vec3(0, 0, 3);
-    other.view.angle_degrees = random.uniform(10, 80);
-    other.background = random_vector(random, 0, 1);
-    other.lights.clear();
+    Scene changed = scene;
+    changed.view.from = random_vector(random, 4, 9);
+    changed.view.at = random_vector(random, -1, 1);
+    changed.view.up = random_vector(random, -1, 1) + Vec3(0, 0, 3);
+    changed.view.angle_degrees = random.uniform(10, 80);
+    changed.background = random_vector(random, 0, 1);
+    changed.lights.clear();
     for (std::uint64_t n = 1 + random.next() % 3; n > 0; --n) {
         Light light{random_vector(random, -20, 20), {}};
         if (random.next() % 2 == 0) light.colour = random_vector(random, 0, 2);
-        other.lights.push_back(light);
+        changed.lights.push_back(light);
     }
-    return other;
+    return changed;
 }
 
 TEST_CASE("change_view: replaces the given values of the scene exactly, and no others", "[cli]") {
     const Scene scene = read_nff(scene_file("centre"));
     SplitMix random(5);
     for (int i = 0; i < 200; ++i) {
-        const Scene other = with_random_view(scene, random);
+        const Scene random_scene = with_random_view(scene, random);
         CAPTURE(i);
         Scene changed = scene;
-        change_view(options_of(other), changed);
-        REQUIRE(changed == other);
+        change_view(options_of(random_scene), changed);
+        REQUIRE(changed == random_scene);
         change_view({}, changed);
-        REQUIRE(changed == other);
-        ViewOptions one;
-        one.at = text_of(other.view.at);
-        Scene partly = scene, expected = scene;
-        expected.view.at = other.view.at;
-        change_view(one, partly);
-        REQUIRE(partly == expected);
+        REQUIRE(changed == random_scene);
+        ViewOptions only_at;
+        only_at.at = text_of(random_scene.view.at);
+        Scene changed_at = scene, expected = scene;
+        expected.view.at = random_scene.view.at;
+        change_view(only_at, changed_at);
+        REQUIRE(changed_at == expected);
     }
 }
 
@@ -115,8 +115,8 @@ TEST_CASE("render: view options make the image of a scene with these values, and
     const ScratchFolder folder;
     const Scene scene = read_nff(scene_file("centre"));
     SplitMix random(6);
-    const Scene other = with_random_view(scene, random);
-    write_whole_file(folder / "other.nff", write_nff(other));
+    const Scene random_scene = with_random_view(scene, random);
+    write_whole_file(folder / "other.nff", write_nff(random_scene));
     const auto report_of = [&](const std::string& file, Arguments arguments) {
         arguments.insert(arguments.begin(), {"render", file, "-o", folder / "x.pfm", "--size", "16", "--lanes", "4",
                                              "--format", "fp32", "--report", folder / "x.json"});
@@ -127,29 +127,29 @@ TEST_CASE("render: view options make the image of a scene with these values, and
     };
     for (const char* machine : {"grande", "torus"}) {
         CAPTURE(machine);
-        const Document by_file = report_of(folder / "other.nff", {"--machine", machine});
-        Arguments arguments = arguments_of(options_of(other));
+        const Document file_report = report_of(folder / "other.nff", {"--machine", machine});
+        Arguments arguments = arguments_of(options_of(random_scene));
         arguments.insert(arguments.end(), {"--machine", machine});
-        const Document by_options = report_of(scene_file("centre"), arguments);
-        CHECK(by_options["image"]["hash"] == by_file["image"]["hash"]);
-        CHECK(by_options["view"] == by_file["view"]);
-        CHECK(report_of(scene_file("centre"), {"--machine", machine})["image"]["hash"] != by_file["image"]["hash"]);
+        const Document options_report = report_of(scene_file("centre"), arguments);
+        CHECK(options_report["image"]["hash"] == file_report["image"]["hash"]);
+        CHECK(options_report["view"] == file_report["view"]);
+        CHECK(report_of(scene_file("centre"), {"--machine", machine})["image"]["hash"] != file_report["image"]["hash"]);
 
-        const Document& view = by_options["view"];
+        const Document& view = options_report["view"];
         const auto vector = [](const Document& v) {
             return fmt::format("{},{},{}", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
         };
-        ViewOptions again{.from = vector(view["from"]),
-                          .at = vector(view["at"]),
-                          .up = vector(view["up"]),
-                          .background = vector(view["background"]),
-                          .angle = view["angle_degrees"].get<double>(),
-                          .lights = {}};
+        ViewOptions options_of_report{.from = vector(view["from"]),
+                                      .at = vector(view["at"]),
+                                      .up = vector(view["up"]),
+                                      .background = vector(view["background"]),
+                                      .angle = view["angle_degrees"].get<double>(),
+                                      .lights = {}};
         for (const Document& light : view["lights"])
-            again.lights.push_back(vector(light["position"]) + "," + vector(light["colour"]));
-        arguments = arguments_of(again);
+            options_of_report.lights.push_back(vector(light["position"]) + "," + vector(light["colour"]));
+        arguments = arguments_of(options_of_report);
         arguments.insert(arguments.end(), {"--machine", machine});
-        CHECK(report_of(scene_file("centre"), arguments)["image"]["hash"] == by_file["image"]["hash"]);
+        CHECK(report_of(scene_file("centre"), arguments)["image"]["hash"] == file_report["image"]["hash"]);
     }
 }
 
@@ -164,10 +164,10 @@ TEST_CASE("bench: uses view options, and --light does not take the scene as a se
         REQUIRE(run.code == 0);
         return Document::parse(file_contents(folder / "b.json"))["rows"][0]["hash"];
     };
-    const std::string plain = hash_of({scene_file("planes")});
-    const std::string lit = hash_of({"--light", "1,2,3", "--light=-4,5,6,1,1,0", scene_file("planes")});
-    CHECK(lit != plain);
-    CHECK(hash_of({scene_file("planes"), "--angle", "20"}) != plain);
+    const std::string default_hash = hash_of({scene_file("planes")});
+    const std::string lit_hash = hash_of({"--light", "1,2,3", "--light=-4,5,6,1,1,0", scene_file("planes")});
+    CHECK(lit_hash != default_hash);
+    CHECK(hash_of({scene_file("planes"), "--angle", "20"}) != default_hash);
 }
 
 }  // namespace

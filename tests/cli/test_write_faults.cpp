@@ -91,19 +91,20 @@ struct FaultRun {
     std::string printed;  // stdout, only for commands with `prints`
 };
 
-/// Runs command `index` in a new folder. `fault`: value of RAYA_WRITE_FAULT; `old`: files that exist before.
-FaultRun run_with(std::size_t index, const std::string& fault, const Contents& old, const std::string& saved) {
-    const ScratchFolder folder, notes;
+/// Runs command `index` in a new folder. `fault`: value of RAYA_WRITE_FAULT; `old`: files that exist before the run,
+/// with kOld as content.
+FaultRun run_with(std::size_t index, const std::string& fault, const Contents& old, const std::string& saved_report) {
+    const ScratchFolder folder, logs;
     const WritingCommand command = commands(folder.path().string())[index];
     for (const auto& [name, content] : old) std::ofstream(folder / name) << kOld;
-    if (!command.input.empty()) std::ofstream(folder / command.input) << saved;
+    if (!command.input.empty()) std::ofstream(folder / command.input) << saved_report;
     FaultRun result;
     result.run =
         run_raya(command.arguments, {.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
                                                    {"RAYA_WRITE_FAULT", fault},
-                                                   {"RAYA_WRITE_CALLS", notes / "calls"},
+                                                   {"RAYA_WRITE_CALLS", logs / "calls"},
                                                    {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}});
-    std::ifstream calls(notes / "calls");
+    std::ifstream calls(logs / "calls");
     for (std::string line; std::getline(calls, line);) result.calls.push_back(line);
     result.files = files_of(folder.path());
     result.files.erase(command.input);
@@ -111,25 +112,25 @@ FaultRun run_with(std::size_t index, const std::string& fault, const Contents& o
     return result;
 }
 
-void check_fault(const std::string& fault, const FaultRun& one, const FaultRun& good) {
-    const bool fails =
-        std::any_of(one.calls.begin(), one.calls.end(), [](auto& call) { return call.ends_with("fails"); });
-    const bool of_stdout = std::find(one.calls.begin(), one.calls.end(), "stdout fails") != one.calls.end();
+void check_fault(const std::string& fault, const FaultRun& faulty, const FaultRun& faultless) {
+    const bool call_failed =
+        std::any_of(faulty.calls.begin(), faulty.calls.end(), [](auto& call) { return call.ends_with("fails"); });
+    const bool stdout_fails = std::find(faulty.calls.begin(), faulty.calls.end(), "stdout fails") != faulty.calls.end();
     const bool repeated = fault.ends_with(" short") || fault.ends_with(" " + std::to_string(EINTR));
-    INFO(one.run.describe());
-    if (!fails || (repeated && !of_stdout)) {
-        CHECK(one.run.code == 0);
-        if (!good.printed.empty()) CHECK((one.run.out == good.printed));
-        REQUIRE(one.files.size() == good.files.size());
+    INFO(faulty.run.describe());
+    if (!call_failed || (repeated && !stdout_fails)) {
+        CHECK(faulty.run.code == 0);
+        if (!faultless.printed.empty()) CHECK((faulty.run.out == faultless.printed));
+        REQUIRE(faulty.files.size() == faultless.files.size());
     } else {
-        CHECK(one.run.code == 2);
+        CHECK(faulty.run.code == 2);
         const int error = std::stoi(fault.substr(fault.find(' ')));
-        const std::string reason = of_stdout ? "stdout" : std::generic_category().message(error);
-        CHECK_THAT(one.run.err, Catch::Contains("raya: cannot ") && Catch::Contains(reason));
+        const std::string reason = stdout_fails ? "stdout" : std::generic_category().message(error);
+        CHECK_THAT(faulty.run.err, Catch::Contains("raya: cannot ") && Catch::Contains(reason));
     }
-    for (const auto& [name, content] : one.files) {
+    for (const auto& [name, content] : faulty.files) {
         CAPTURE(name);
-        CHECK((is_complete(name, content, good.files) || (one.run.code == 2 && content == kOld)));
+        CHECK((is_complete(name, content, faultless.files) || (faulty.run.code == 2 && content == kOld)));
     }
 }
 
@@ -139,31 +140,35 @@ TEST_CASE("every command that writes: repeats a call that failed once, or keeps 
     REQUIRE(run_raya({"render", scene_file("centre"), "--size", "16", "--lanes", "4", "-o", folder / "x.ppm",
                       "--report", report})
                 .code == 0);
-    const std::string saved = file_contents(report);
+    const std::string saved_report = file_contents(report);
     const std::vector<std::string> errors = {std::to_string(ENOSPC), std::to_string(EIO), std::to_string(EINTR),
                                              "short"};
-    const std::vector<WritingCommand> all = commands("");
-    for (std::size_t index = 0; index < all.size(); ++index) {
-        if (all[index].thorough && !thorough()) continue;
-        CAPTURE(all[index].name);
-        const FaultRun good = run_with(index, "0 0", {}, saved);
-        INFO(good.run.describe());
-        REQUIRE(good.run.code == 0);
-        REQUIRE(!good.calls.empty());
-        const Contents old = all[index].replaces ? good.files : Contents{};
+    const std::vector<WritingCommand> tested_commands = commands("");
+    for (std::size_t index = 0; index < tested_commands.size(); ++index) {
+        if (tested_commands[index].thorough && !thorough()) continue;
+        CAPTURE(tested_commands[index].name);
+        const FaultRun faultless = run_with(index, "0 0", {}, saved_report);
+        INFO(faultless.run.describe());
+        REQUIRE(faultless.run.code == 0);
+        REQUIRE(!faultless.calls.empty());
+        const Contents old = tested_commands[index].replaces ? faultless.files : Contents{};
         std::size_t calls = 0;
-        for (std::size_t call = 1; call <= good.calls.size(); ++call) {
+        for (std::size_t call = 1; call <= faultless.calls.size(); ++call) {
             // In a sequence of equal calls only the first two and the last fail, unless the test is thorough and the
             // command is not slow.
-            const auto is = [&](std::size_t at) { return at <= good.calls.size() ? good.calls[at - 1] : "end"; };
-            const bool all_writes = thorough() && !all[index].thorough;
-            if (!all_writes && call > 2 && is(call) == is(call - 1) && is(call) == is(call + 1)) continue;
+            const auto call_name = [&](std::size_t number) {
+                return number <= faultless.calls.size() ? faultless.calls[number - 1] : "end";
+            };
+            const bool all_writes = thorough() && !tested_commands[index].thorough;
+            if (!all_writes && call > 2 && call_name(call) == call_name(call - 1) &&
+                call_name(call) == call_name(call + 1))
+                continue;
             ++calls;
             for (std::size_t error = 0; error < errors.size(); ++error) {
                 if (!thorough() && error != calls % errors.size()) continue;
                 const std::string fault = std::to_string(call) + " " + errors[error];
-                CAPTURE(fault, good.calls[call - 1]);
-                check_fault(fault, run_with(index, fault, old, saved), good);
+                CAPTURE(fault, faultless.calls[call - 1]);
+                check_fault(fault, run_with(index, fault, old, saved_report), faultless);
             }
         }
     }

@@ -8,8 +8,8 @@ namespace {
 
 using Document = nlohmann::ordered_json;
 
-// Prefix of a string value whose rest is written to the file verbatim, without quotes: text that the JSON library
-// cannot write.
+// Prefix of a string value that stands for text which the JSON library cannot write. text_of() writes the characters
+// after the prefix without quotes.
 constexpr const char* kRaw = "\x01raw";
 
 const char* const kRawValues[] = {"1e400",
@@ -39,9 +39,9 @@ const char* const kRawValues[] = {"1e400",
                                   "//",
                                   "tru"};
 
-const std::int64_t kWhole[] = {0,     1,          -1,         2,          3,          4,         7,
-                               8,     16,         255,        256,        1024,       16384,     16385,
-                               65536, 2147483647, 2147483648, 4294967295, 4294967296, INT64_MAX, INT64_MIN};
+const std::int64_t kIntegers[] = {0,     1,          -1,         2,          3,          4,         7,
+                                  8,     16,         255,        256,        1024,       16384,     16385,
+                                  65536, 2147483647, 2147483648, 4294967295, 4294967296, INT64_MAX, INT64_MIN};
 
 const char* const kTexts[] = {"",
                               "a",
@@ -78,28 +78,29 @@ const char* const kTexts[] = {"",
                               "iVBORw0KGgo=",
                               "474a384374e81c5144a0e5405232a750"};
 
-// Reference to a value of a document: its container, and its index or key.
-struct Spot {
-    Document* holder;
+// Reference to a value of a document: the array or object that contains the value, and the value's index or key.
+struct ValueReference {
+    Document* container;
     std::string key;
     std::size_t index = 0;
 };
 
-void add_spots(Document& value, std::vector<Spot>& spots) {
+void add_references(Document& value, std::vector<ValueReference>& references) {
     if (value.is_object())
         for (auto& [key, member] : value.items()) {
-            spots.push_back({&value, key});
-            add_spots(member, spots);
+            references.push_back({&value, key});
+            add_references(member, references);
         }
     if (value.is_array())
         for (std::size_t i = 0; i < value.size(); ++i) {
-            spots.push_back({&value, {}, i});
-            add_spots(value[i], spots);
+            references.push_back({&value, {}, i});
+            add_references(value[i], references);
         }
 }
 
-Document& value_at(const Spot& spot) {
-    return spot.holder->is_object() ? (*spot.holder)[spot.key] : (*spot.holder)[spot.index];
+Document& value_at(const ValueReference& reference) {
+    return reference.container->is_object() ? (*reference.container)[reference.key]
+                                            : (*reference.container)[reference.index];
 }
 
 Document wrapped(Document value, std::size_t levels) {
@@ -113,9 +114,9 @@ Document other_value(const Document& value, Random& random) {
         static const std::size_t kLevels[] = {1, 2, 98, 99, 100, 101, 300};
         return wrapped(value, random.pick(kLevels));
     }
-    const bool other_kind = random.one_in(3);
-    if (value.is_number_integer() != other_kind) return random.pick(kWhole);
-    if (value.is_number() != other_kind) return static_cast<double>(random.pick(kWhole)) / 3;
+    const bool other_kind = random.one_in(3);  // choose a value of another kind
+    if (value.is_number_integer() != other_kind) return random.pick(kIntegers);
+    if (value.is_number() != other_kind) return static_cast<double>(random.pick(kIntegers)) / 3;
     if (value.is_string() != other_kind) return random.pick(kTexts);
     static const Document kOthers[] = {nullptr, true, false, Document::array(), Document::object(), 1.5};
     return random.pick(kOthers);
@@ -129,34 +130,36 @@ void mutate_text(Document& value, Random& random) {
     value = text;
 }
 
-// Repeats a value: inserts up to two copies of an array's element (no more, because long arrays make large pages), or
-// one copy of an object's member under another name.
-void repeat(const Spot& spot, const Document& value, Random& random) {
-    if (spot.holder->is_array())
+// Repeats a value: inserts up to two copies of an array's element, or one copy of an object's member under another
+// name. More copies could make pages of the report too large.
+void repeat(const ValueReference& reference, const Document& value, Random& random) {
+    if (reference.container->is_array())
         for (std::size_t n = random.below(3); n > 0; --n)
-            spot.holder->insert(spot.holder->begin() + static_cast<std::ptrdiff_t>(spot.index), value);
+            reference.container->insert(reference.container->begin() + static_cast<std::ptrdiff_t>(reference.index),
+                                        value);
     else
-        (*spot.holder)[spot.key + "2"] = value;
+        (*reference.container)[reference.key + "2"] = value;
 }
 
 void damage(Document& document, Random& random) {
-    std::vector<Spot> spots;
-    add_spots(document, spots);
-    if (spots.empty()) {
+    std::vector<ValueReference> references;
+    add_references(document, references);
+    if (references.empty()) {
         document = other_value(document, random);
         return;
     }
-    const Spot spot = random.pick(spots);
-    Document& value = value_at(spot);
+    const ValueReference reference = random.pick(references);
+    Document& value = value_at(reference);
     switch (random.below(7)) {
         case 0:
-            spot.holder->is_object() ? static_cast<void>(spot.holder->erase(spot.key)) : spot.holder->erase(spot.index);
+            reference.container->is_object() ? static_cast<void>(reference.container->erase(reference.key))
+                                             : reference.container->erase(reference.index);
             break;
         case 1:
-            repeat(spot, Document(value), random);
+            repeat(reference, Document(value), random);
             break;
         case 2:
-            value = Document(value_at(random.pick(spots)));
+            value = Document(value_at(random.pick(references)));
             break;
         case 3:
             mutate_text(value, random);
@@ -168,9 +171,9 @@ void damage(Document& document, Random& random) {
 
 std::string text_of(const Document& document, Random& random) {
     std::string text = document.dump(random.one_in(3) ? -1 : 1, ' ', false, Document::error_handler_t::replace);
-    const std::string begin = "\"\\u0001raw";
-    for (std::size_t at; (at = text.find(begin)) != std::string::npos;) {
-        std::size_t end = at + begin.size();
+    const std::string raw_prefix = "\"\\u0001raw";
+    for (std::size_t at; (at = text.find(raw_prefix)) != std::string::npos;) {
+        std::size_t end = at + raw_prefix.size();
         std::string raw;
         for (; end < text.size() && text[end] != '"'; ++end) raw += text[end] == '\\' ? text[++end] : text[end];
         text.replace(at, end + 1 - at, raw);

@@ -5,6 +5,7 @@
 namespace raya::fuzz {
 namespace {
 
+// A token or line of a text.
 struct Piece {
     std::size_t start, size;
 };
@@ -35,7 +36,7 @@ std::vector<Piece> lines_of(const std::string& text) {
     return pieces;
 }
 
-// Numbers at the limits of double, float, the integer types and the readers.
+// Valid and invalid numbers, many at the limits of double, float, the integer types and the readers.
 const char* const kNumbers[] = {"0",          "-0",
                                 "1",          "-1",
                                 "2",          "3",

@@ -13,18 +13,18 @@
 namespace raya::fuzz {
 
 /// Prints a finding and aborts.
-[[noreturn]] inline void complain(const char* what, std::string_view detail) {
+[[noreturn]] inline void report_finding(const char* what, std::string_view detail) {
     std::fprintf(stderr, "finding: %s: %.*s\n", what, static_cast<int>(detail.size()), detail.data());
     std::abort();
 }
 
-/// Requires that an error message contains the file's name and after it a reason, and has at most 2000 characters.
+/// Requires that an error message contains the file's name, then a reason, and has at most 2000 characters.
 inline void check_refusal(std::string_view message, std::string_view file) {
     const std::size_t at = message.find(file);
-    if (at == std::string_view::npos) complain("an error message without the file's name", message);
-    if (message.size() < at + file.size() + 4) complain("an error message without a reason", message);
-    constexpr std::size_t kLongest = 2000;  // a message must not repeat the whole input
-    if (message.size() > kLongest) complain("an error message that is too long", message);
+    if (at == std::string_view::npos) report_finding("an error message without the file's name", message);
+    if (message.size() < at + file.size() + 4) report_finding("an error message without a reason", message);
+    constexpr std::size_t kMaxLength = 2000;  // a message must not repeat the whole input
+    if (message.size() > kMaxLength) report_finding("an error message that is too long", message);
 }
 
 /// Same as check_refusal(); the message must also contain a line number: "FILE:LINE: " or "FILE, line LINE: ".
@@ -35,30 +35,32 @@ inline void check_refusal_with_line(std::string_view message, std::string_view f
     rest.remove_prefix(rest.starts_with(kLine) ? kLine.size() : 1);
     const std::size_t end = rest.find_first_not_of("0123456789");
     if (end == 0 || end == std::string_view::npos || rest[0] == '0')
-        complain("an error message without a line", message);
+        report_finding("an error message without a line", message);
 }
 
 /// A temporary folder in /dev/shm, for readers that take a file name.
 class ScratchFolder {
   public:
-    ScratchFolder() : folder_(in_memory()) {}
+    ScratchFolder() : folder_(prefix_in_memory()) {}
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
     /// Writes the file and returns its path.
     std::string write(const std::string& name, std::string_view bytes) const {
         std::ofstream file(path(name), std::ios::binary | std::ios::trunc);
         file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        if (!file.flush()) complain("the scratch file cannot be written", path(name));
+        if (!file.flush()) report_finding("the scratch file cannot be written", path(name));
         return path(name);
     }
 
   private:
-    static const char* in_memory() {
+    // Returns the prefix of the folder's name, after TMPDIR is set to a file system in memory.
+    static const char* prefix_in_memory() {
         ::setenv("TMPDIR", "/dev/shm", 0);
         return "raya-fuzz";
     }
     TemporaryFolder folder_;
 };
 
+/// Returns the input of a fuzz target as text.
 inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
     return {reinterpret_cast<const char*>(data), size};
 }

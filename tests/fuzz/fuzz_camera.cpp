@@ -19,10 +19,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         const std::vector<View> cameras = read_camera_path(file, view);
         const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
-        if (cameras.empty() || cameras.size() > lines) complain("wrong number of cameras", text);
+        if (cameras.empty() || cameras.size() > lines) report_finding("wrong number of cameras", text);
         for (const View& camera : cameras)
-            if (const std::string fault = view_error(camera); !fault.empty())
-                complain("an invalid camera is accepted", fault);
+            if (const std::string reason = view_error(camera); !reason.empty())
+                report_finding("an invalid camera is accepted", reason);
     } catch (const UserError& error) {
         const std::string_view message = error.what();
         if (message.find("no camera") != std::string_view::npos)

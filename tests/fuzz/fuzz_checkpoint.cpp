@@ -10,8 +10,8 @@ using namespace raya::fuzz;
 
 namespace {
 
-// The vector sizes of the checkpoints in the corpus.
-RingState sizes() {
+// Returns a state whose vectors have the sizes of those in the corpus's checkpoints.
+RingState sized_state() {
     RingState state;
     state.image.resize(3);
     state.pixels.resize(2);
@@ -34,11 +34,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const CheckpointOptions options{.file = folder.write("render.rst", text_of(data, size)), .resume = true};
     try {
         const CheckpointFile file(options);
-        const auto state = file.checkpointing()->resume(settings, sizes());
-        if (!state) complain("an existing file is not found", options.file);
+        const auto state = file.checkpointing()->resume(settings, sized_state());
+        if (!state) report_finding("an existing file is not found", options.file);
         const std::string written = state_bytes(*state, settings);
-        if (state_bytes(read_state(written, settings, sizes()), settings) != written)
-            complain("changed by being written and read", text_of(data, size).substr(0, 200));
+        if (state_bytes(read_state(written, settings, sized_state()), settings) != written)
+            report_finding("changed by being written and read", text_of(data, size).substr(0, 200));
     } catch (const UserError& error) {
         check_refusal(error.what(), options.file);
     }

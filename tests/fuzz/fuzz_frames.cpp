@@ -1,5 +1,5 @@
 // Fuzz target for frame records as `raya render --frames` reads them: the reader must either return a record, which
-// must not change if written and read again, or throw an error.
+// must not change if written and read reread, or throw an error.
 #include "host/base/whole_file.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/error.hpp"
@@ -20,15 +20,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         record.write();
         const std::string written = read_file(file);
-        FrameRecord again(file);
-        again.write();
-        if (read_file(file) != written) complain("changed by being written and read", written);
-        again.add({.number = 1, .settings = "settings", .pixels = {}, .files = {}}, {frame});
-        again.write();
-        if (again.find(1, "settings", {frame}) == nullptr) complain("a frame that was added is not found", written);
-        if (again.find(1, "others", {frame}) != nullptr) complain("a frame of other settings is found", written);
+        FrameRecord reread(file);
+        reread.write();
+        if (read_file(file) != written) report_finding("changed by being written and read", written);
+        reread.add({.number = 1, .settings = "settings", .pixels = {}, .files = {}}, {frame});
+        reread.write();
+        if (reread.find(1, "settings", {frame}) == nullptr)
+            report_finding("a frame that was added is not found", written);
+        if (reread.find(1, "others", {frame}) != nullptr) report_finding("a frame of other settings is found", written);
         if (FrameRecord(file + ".none").find(1, "settings", {}) != nullptr)
-            complain("a frame is found without a record", written);
+            report_finding("a frame is found without a record", written);
     } catch (const UserError& error) {
         check_refusal(error.what(), file);
     }

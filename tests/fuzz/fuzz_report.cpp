@@ -1,5 +1,5 @@
-// Fuzz target for reports as `raya page` and `raya bench --compare` read them: they must be either read or rejected
-// with an error.
+// Fuzz target for reports as `raya page` and `raya bench --compare` read them: the commands must either read a report
+// or reject it with an error.
 #include "host/cli/page.hpp"
 #include "host/error.hpp"
 #include "host/report/bench_compare.hpp"
@@ -13,7 +13,7 @@ using namespace raya::fuzz;
 
 void check_page(std::string_view text) try {
     const std::string page = page_of_report(std::string(text), "report.json");
-    if (!page.ends_with("</html>\n")) complain("an incomplete page", page.substr(0, 200));
+    if (!page.ends_with("</html>\n")) report_finding("an incomplete page", page.substr(0, 200));
 } catch (const UserError& error) {
     check_refusal(error.what(), "report.json");
 }
@@ -22,19 +22,21 @@ void check_bench(const ScratchFolder& folder, std::string_view text) {
     const std::string file = folder.write("bench.json", text);
     try {
         BenchReport report = read_bench_report(file);
-        // Parts that a reader skips.
+        // Adds parts that the reader skips.
         report.rows.front().roofline.emplace().unavailable = "not measured";
         report.builds.emplace_back();
         const std::string written = to_json(report).dump();
-        const BenchReport again = read_bench_report(folder.write("again.json", written));
-        // The skipped parts are lost. Seconds are stored as milliseconds, so they may be rounded.
+        const BenchReport reread = read_bench_report(folder.write("again.json", written));
+        // Removes the skipped parts from the expected report. Seconds are stored as milliseconds, so they may be
+        // rounded.
         report.rows.front().roofline.reset();
         report.builds.clear();
-        if (to_json(read_bench_report(folder.write("again.json", to_json(again).dump()))).dump().size() + 64 <
+        if (to_json(read_bench_report(folder.write("again.json", to_json(reread).dump()))).dump().size() + 64 <
             to_json(report).dump().size())
-            complain("changed by being written and read", written);
-        const BenchComparison same = compare_bench(report, again, 1e-6);
-        if (same.slower != 0 || same.other_images != 0) complain("differs from itself", same.text);
+            report_finding("changed by being written and read", written);
+        const BenchComparison comparison = compare_bench(report, reread, 1e-6);
+        if (comparison.slower != 0 || comparison.other_images != 0)
+            report_finding("differs from itself", comparison.text);
     } catch (const UserError& error) {
         check_refusal(error.what(), file);
     }

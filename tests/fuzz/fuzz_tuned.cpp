@@ -1,5 +1,5 @@
-// Fuzz target for tuned files as `raya render` reads and `raya tune` extends them: they must be either used or ignored
-// with a warning.
+// Fuzz target for tuned files as `raya render` reads and `raya tune` extends them: a file must be either used, or
+// ignored with a warning.
 #include "host/error.hpp"
 #include "host/tune/store.hpp"
 #include "host/version.hpp"
@@ -21,11 +21,11 @@ const DeviceInfo kDevice = {.name = "device",
                             .max_allocation_bytes = 1u << 28,
                             .max_group_size = 4096};
 
-/// Replaces the corpus's placeholder @version@ by raya's version.
+/// Replaces the placeholder @version@ of the corpus's files with raya's version.
 std::string with_version(std::string text) {
-    constexpr std::string_view kPlace = "@version@";
-    if (const std::size_t at = text.find(kPlace); at != std::string::npos)
-        text.replace(at, kPlace.size(), raya_version());
+    constexpr std::string_view kPlaceholder = "@version@";
+    if (const std::size_t at = text.find(kPlaceholder); at != std::string::npos)
+        text.replace(at, kPlaceholder.size(), raya_version());
     return text;
 }
 
@@ -38,16 +38,17 @@ void check_choices(const std::string& file) {
     for (const bool torus : {false, true})
         for (const std::uint32_t accel : {0u, 1u, 2u}) {
             const auto choice = source(kDevice, {.torus = torus, .accel = accel, .fp32 = true});
-            if (choice && warnings > 0) complain("used despite a warning", choice->origin);
+            if (choice && warnings > 0) report_finding("used despite a warning", choice->origin);
         }
-    if (warnings > 1) complain("warned more than once", file);
+    if (warnings > 1) report_finding("warned more than once", file);
 }
 
 /// Checks device names, folders and environment variables with unusual values.
 void check_environment(const ScratchFolder& folder) {
-    DeviceInfo odd = kDevice;
-    odd.name = "--a  b/c(R)-- 1.0+x";
-    if (tuned_file_name(odd).find_first_of("/ ()") != std::string::npos) complain("a file name", tuned_file_name(odd));
+    DeviceInfo device = kDevice;
+    device.name = "--a  b/c(R)-- 1.0+x";
+    if (tuned_file_name(device).find_first_of("/ ()") != std::string::npos)
+        report_finding("a file name", tuned_file_name(device));
     const auto is_refused = [](auto call) {
         try {
             call();
@@ -57,39 +58,39 @@ void check_environment(const ScratchFolder& folder) {
         return false;
     };
     ::setenv("RAYA_TUNED", "maybe", 1);
-    if (!is_refused([] { stored_choices({}); })) complain("accepted", "RAYA_TUNED=maybe");
+    if (!is_refused([] { stored_choices({}); })) report_finding("accepted", "RAYA_TUNED=maybe");
     ::setenv("RAYA_TUNED", "off", 1);
-    if (stored_choices({})) complain("used", "RAYA_TUNED=off");
+    if (stored_choices({})) report_finding("used", "RAYA_TUNED=off");
     ::unsetenv("RAYA_TUNED");
     ::setenv("XDG_CACHE_HOME", "no/absolute/path", 1);
     ::setenv("HOME", folder.path("").c_str(), 1);
-    if (is_refused([] { tuned_path(kDevice); })) complain("refused", "HOME");
-    if (const TunedSource source = stored_choices({}); source && source(kDevice, {})) complain("used", "no file");
+    if (is_refused([] { tuned_path(kDevice); })) report_finding("refused", "HOME");
+    if (const TunedSource source = stored_choices({}); source && source(kDevice, {})) report_finding("used", "no file");
     ::unsetenv("HOME");
-    if (!is_refused([] { tuned_path(kDevice); }) || stored_choices({})) complain("accepted", "no folder");
+    if (!is_refused([] { tuned_path(kDevice); }) || stored_choices({})) report_finding("accepted", "no folder");
     ::setenv("XDG_CACHE_HOME", "/dev/null", 1);
-    if (!is_refused([] { tuned_path(kDevice); })) complain("accepted", "/dev/null");
+    if (!is_refused([] { tuned_path(kDevice); })) report_finding("accepted", "/dev/null");
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const ScratchFolder folder;
-    static const bool once = (check_environment(folder), true);
-    if (!once) return 0;
+    static const bool environment_checked = (check_environment(folder), true);
+    if (!environment_checked) return 0;
     ::setenv("XDG_CACHE_HOME", folder.path("").c_str(), 1);
     static const std::string file = tuned_path(kDevice).string();
     const std::string text = with_version(std::string(text_of(data, size)));
     folder.write("raya/" + tuned_file_name(kDevice), text);
     check_choices(file);
     try {
-        const TunedFile read = read_tuned(text, "tuned.json", kDevice);
-        const std::string written = tuned_text(kDevice, read);
+        const TunedFile tuned = read_tuned(text, "tuned.json", kDevice);
+        const std::string written = tuned_text(kDevice, tuned);
         if (tuned_text(kDevice, read_tuned(written, "tuned.json", kDevice)) != written)
-            complain("changed by being written and read", written);
+            report_finding("changed by being written and read", written);
         save_tuned(kDevice, {.date = "2026-11-24", .entries = {TunedEntry{.key = {}, .values = {}, .scene = "s"}}});
     } catch (const UserError& error) {
-        if (std::string_view(error.what()).empty()) complain("an error message without a reason", text);
+        if (std::string_view(error.what()).empty()) report_finding("an error message without a reason", text);
     }
     return 0;
 }

@@ -1,4 +1,4 @@
-// Code shared by the custom libFuzzer mutators: random choices, and mutations of any text.
+// Code shared by the custom libFuzzer mutators: random choices, and mutations of texts.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -13,6 +13,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace raya::fuzz {
 
+/// Random choices.
 class Random {
   public:
     explicit Random(unsigned seed) : engine_(seed + 1) {}
@@ -34,14 +35,15 @@ inline void mutate_bytes(std::string& text, std::size_t max_size = 4096) {
     text.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(text.data()), size, text.size()));
 }
 
-/// Copies the text to libFuzzer's buffer of max_size bytes, cut to that size; returns the number of bytes copied.
+/// Copies the text to libFuzzer's buffer of max_size bytes, cut to max_size. Returns the number of bytes copied.
 inline std::size_t store(const std::string& text, std::uint8_t* data, std::size_t max_size) {
     const std::size_t size = std::min(text.size(), max_size);
     if (size > 0) std::memcpy(data, text.data(), size);
     return size;
 }
 
-/// Mutates tokens and lines of a text: removes, repeats, swaps and replaces them. keywords: those of the format.
+/// Mutates tokens and lines of a text: removes, repeats, swaps and replaces them. `keywords`: keywords of the
+/// text's format, used as replacements.
 void damage_tokens(std::string& text, const std::vector<std::string>& keywords, Random& random);
 
 /// Mutates values of a JSON text: removes, repeats or renames them, or changes their value or type. Returns false if

@@ -1,4 +1,4 @@
-// Mutates the header or the values of checkpoints and recomputes the hash, because the reader refuses a file with a
+// Mutates the header or the values of a checkpoint. Then recomputes the hash, because the reader refuses a file with a
 // wrong hash.
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace {
 using namespace raya;
 using namespace raya::fuzz;
 
-constexpr std::size_t kHashLetters = 32;
+constexpr std::size_t kHashDigits = 32;
 
 void damage_values(std::string& values, Random& random) {
     static const std::uint64_t kCounts[] = {
@@ -28,18 +28,18 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     Random random(seed);
     std::string text(reinterpret_cast<const char*>(data), size);
     const std::size_t magic = text.find('\n'), header = magic == std::string::npos ? magic : text.find('\n', magic + 1);
-    if (header == std::string::npos || text.size() < header + 1 + kHashLetters || random.one_in(10)) {
+    if (header == std::string::npos || text.size() < header + 1 + kHashDigits || random.one_in(10)) {
         mutate_bytes(text);
         return store(text, data, max_size);
     }
     std::string line = text.substr(magic + 1, header - magic - 1);
-    std::string values = text.substr(header + 1, text.size() - header - 1 - kHashLetters);
+    std::string values = text.substr(header + 1, text.size() - header - 1 - kHashDigits);
     if (random.one_in(2))
         damage_values(values, random);
     else if (!damage_json(line, random))
         mutate_bytes(line);
     std::replace(line.begin(), line.end(), '\n', ' ');  // the header is one line
-    std::string whole = text.substr(0, magic + 1) + line + "\n" + values;
-    if (whole.size() + kHashLetters > max_size) whole.resize(max_size - kHashLetters);
-    return store(whole + bytes_hash(whole), data, max_size);
+    std::string mutated = text.substr(0, magic + 1) + line + "\n" + values;
+    if (mutated.size() + kHashDigits > max_size) mutated.resize(max_size - kHashDigits);
+    return store(mutated + bytes_hash(mutated), data, max_size);
 }

@@ -14,7 +14,7 @@ const std::vector<std::string> kKeywords = {"v",     "from",  "at",      "up",  
                                             "#raya", "plane", "checker", "#",     "nff",      "pl",       "k",
                                             "tt",    "g",     "light",   "From:", "Subject:", "viewpoint"};
 
-// Generates entities that the reader accepts.
+// Generates scenes and entities that the reader accepts.
 class Grammar {
   public:
     explicit Grammar(Random& random) : random_(random) {}
@@ -54,15 +54,15 @@ class Grammar {
     }
 
   private:
-    std::string format(const char* form, double value) {
+    std::string format(const char* printf_format, double value) {
         char text[64];
-        std::snprintf(text, sizeof text, form, value);
+        std::snprintf(text, sizeof text, printf_format, value);
         return text;
     }
 
     std::string number(double value) {
-        static const char* const kForms[] = {"%g", "%.3f", "%.17g", "%e", "%+g"};
-        return format(random_.pick(kForms), value);
+        static const char* const kFormats[] = {"%g", "%.3f", "%.17g", "%e", "%+g"};
+        return format(random_.pick(kFormats), value);
     }
 
     std::string coordinate() {
@@ -72,10 +72,10 @@ class Grammar {
     }
 
     std::string positive() { return number(static_cast<double>(1 + random_.below(1000)) / 100); }
-    std::string share() { return number(static_cast<double>(random_.below(11)) / 10); }
+    std::string fraction() { return number(static_cast<double>(random_.below(11)) / 10); }
     std::string blank() { return random_.one_in(20) ? "\n" : random_.one_in(20) ? "\t" : " "; }
     std::string vector() { return coordinate() + blank() + coordinate() + blank() + coordinate(); }
-    std::string colour() { return share() + " " + share() + " " + share(); }
+    std::string colour() { return fraction() + " " + fraction() + " " + fraction(); }
 
     std::string view() {
         std::string parts[] = {"from " + vector(), "at 0 0 0",
@@ -90,18 +90,18 @@ class Grammar {
     std::string light() { return "l " + vector() + (random_.one_in(2) ? " " + colour() : "") + "\n"; }
 
     std::string surface() {
-        return "f " + colour() + " " + share() + " " + share() + " " + positive() + " " + share() + " " + positive() +
-               "\n";
+        return "f " + colour() + " " + fraction() + " " + fraction() + " " + positive() + " " + fraction() + " " +
+               positive() + "\n";
     }
 
     std::string cone() {
-        const std::string radius = random_.one_in(4) ? "0" : positive(),
-                          other = random_.one_in(4) ? radius : positive();
-        return "c " + vector() + blank() + radius + "\n" + vector() + blank() + other + "\n";
+        const std::string base_radius = random_.one_in(4) ? "0" : positive(),
+                          apex_radius = random_.one_in(4) ? base_radius : positive();
+        return "c " + vector() + blank() + base_radius + "\n" + vector() + blank() + apex_radius + "\n";
     }
 
-    // The corners lie on an ellipse in a random plane; some are moved inwards. Rounding makes the polygon slightly
-    // non-planar.
+    // Returns a polygon whose corners lie on an ellipse in a random plane, but some are moved inwards. Rounding makes
+    // the polygon slightly non-planar.
     std::string polygon(bool patch) {
         const std::size_t corners = 3 + random_.below(random_.one_in(8) ? 20 : 5);
         double axes[3][3];
@@ -109,11 +109,11 @@ class Grammar {
             for (double& value : axis) value = random_.one_in(3) ? 0 : static_cast<double>(random_.below(21)) - 10;
         std::string text = (patch ? "pp " : "p ") + std::to_string(corners) + "\n";
         for (std::size_t i = 0; i < corners; ++i) {
-            const double turn = 2 * M_PI * static_cast<double>(i) / static_cast<double>(corners);
-            const double pull = random_.one_in(5) ? 0.3 : 1;
+            const double angle = 2 * M_PI * static_cast<double>(i) / static_cast<double>(corners);
+            const double radius = random_.one_in(5) ? 0.3 : 1;
             for (int k = 0; k < 3; ++k)
                 text += format(random_.one_in(2) ? "%.17g" : "%.6g",
-                               axes[2][k] + pull * (std::cos(turn) * axes[0][k] + std::sin(turn) * axes[1][k])) +
+                               axes[2][k] + radius * (std::cos(angle) * axes[0][k] + std::sin(angle) * axes[1][k])) +
                         " ";
             text += (patch ? vector() : "") + "\n";
         }
@@ -126,6 +126,7 @@ class Grammar {
     Random& random_;
 };
 
+// Returns the start of a random line, or the end of the text.
 std::size_t line_start(const std::string& text, Random& random) {
     const std::size_t end = text.rfind('\n', random.below(text.size() + 1));
     return end == std::string::npos ? text.size() : end + 1;

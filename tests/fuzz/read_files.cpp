@@ -1,6 +1,7 @@
 // Runs a fuzz target on files, as libFuzzer does, but without clang:
-//   fuzz_READER FILE|FOLDER...     a FOLDER stands for its files
-// Prints the number of files. Exit codes: 0 done; 2 a file cannot be read, or there are no files; a finding aborts.
+//   fuzz_READER FILE|FOLDER...     FOLDER: runs the target on each file of the folder
+// Prints the number of files. Exit codes: 0: no finding; 2: a file cannot be read, or there are no files. A finding
+// aborts the program.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

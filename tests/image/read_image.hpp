@@ -1,5 +1,5 @@
-// Reads image files with OpenImageIO. A separate library (raya_read_image), so that other tests do not load
-// OpenImageIO.
+// Reads image files with OpenImageIO. This code is a separate library (raya_read_image), so that other tests do not
+// load OpenImageIO.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -9,9 +9,10 @@
 
 namespace raya {
 
-/// Read an image with three channels, or one, as floats. 8-bit codes are converted to linear values. Throw
-/// std::runtime_error if the file cannot be read or has another number of channels.
+/// Reads an image with three channels as floats. 8-bit codes are converted to linear values. Throws std::runtime_error
+/// if the file cannot be read or has another number of channels.
 Image read_image(const std::filesystem::path& path);
+/// Reads an image with one channel in the same way.
 GreyImage read_grey_image(const std::filesystem::path& path);
 
 /// Returns the linear value, in 0..1, of an 8-bit sRGB code.

@@ -1,4 +1,4 @@
-// pixel_hash(): a known value, and a change with every flipped bit.
+// pixel_hash(): a known value; the hash depends on the size and on every bit.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>

@@ -31,7 +31,7 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Returns an image with values that are negative, above 1, -0, infinite or denormal, among others.
+/// Returns an image whose values include negative ones, values above 1, -0, infinity and a denormal number.
 Image special_image() {
     Image image{5, 3, {}};
     for (int i = 0; i < 45; ++i) image.rgb.push_back(static_cast<float>(i - 5) * 0.37f);
@@ -47,10 +47,10 @@ TEST_CASE("EXR, PFM: preserve every bit", "[image_io]") {
     for (const char* name : {"a.exr", "a.pfm", "A.EXR"}) {
         CAPTURE(name);
         write_image(folder / name, image, kAttributes);
-        const Image back = read_image(folder / name);
-        CHECK(back.width == 5);
-        CHECK(back.height == 3);
-        CHECK(pixel_hash(back) == pixel_hash(image));
+        const Image read = read_image(folder / name);
+        CHECK(read.width == 5);
+        CHECK(read.height == 3);
+        CHECK(pixel_hash(read) == pixel_hash(image));
     }
 }
 
@@ -60,10 +60,10 @@ TEST_CASE("EXR, PFM: preserve grey images; EXR has a float channel Y", "[image_i
     for (const char* name : {"cost.exr", "cost.pfm"}) {
         CAPTURE(name);
         write_image(folder / name, image, kAttributes);
-        const GreyImage back = read_grey_image(folder / name);
-        CHECK(back.width == 3);
-        CHECK(back.height == 2);
-        CHECK(back.values == image.values);
+        const GreyImage read = read_grey_image(folder / name);
+        CHECK(read.width == 3);
+        CHECK(read.height == 2);
+        CHECK(read.values == image.values);
     }
     const auto file = OIIO::ImageInput::open((folder / "cost.exr").string());
     REQUIRE(file);
@@ -80,7 +80,7 @@ TEST_CASE("PFM: little-endian floats, bottom row first", "[image_io]") {
     CHECK(contents(folder / "rgb.pfm").size() == 12 + 24);
 }
 
-TEST_CASE("PPM: the codes of the PNG, top row first", "[image_io]") {
+TEST_CASE("PPM: stores the same codes as PNG, top row first", "[image_io]") {
     const ScratchFolder folder;
     write_image(folder / "two.ppm", Image{2, 2, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0.5f}}, {});
     CHECK(contents(folder / "two.ppm") ==
@@ -92,7 +92,7 @@ TEST_CASE("PPM: the codes of the PNG, top row first", "[image_io]") {
     CHECK(ppm.rgb == png.rgb);
 }
 
-TEST_CASE("TIFF: the codes of the PNG, with either extension", "[image_io]") {
+TEST_CASE("TIFF: stores the same codes as PNG, with either extension", "[image_io]") {
     const ScratchFolder folder;
     Image image{31, 17, {}};
     for (int i = 0; i < 3 * 31 * 17; ++i) image.rgb.push_back(static_cast<float>(i % 101) / 97);
@@ -114,7 +114,7 @@ std::string sampling_factors(const std::string& jpeg) {
     return {jpeg[frame + 11], jpeg[frame + 14], jpeg[frame + 17]};
 }
 
-TEST_CASE("JPEG: within 4 codes of the PNG, without chroma subsampling", "[image_io]") {
+TEST_CASE("JPEG: differs from PNG by at most 4 codes, without chroma subsampling", "[image_io]") {
     const ScratchFolder folder;
     Image image{64, 48, {}};
     for (int y = 0; y < 48; ++y)
@@ -126,11 +126,11 @@ TEST_CASE("JPEG: within 4 codes of the PNG, without chroma subsampling", "[image
     CHECK(sampling_factors(contents(folder / "a.jpg")) == "\x11\x11\x11");
     const Image png = read_image(folder / "a.png"), jpeg = read_image(folder / "a.jpg");
     REQUIRE(jpeg.rgb.size() == png.rgb.size());
-    double worst = 0;
+    double max_difference = 0;  // codes
     for (std::size_t i = 0; i < png.rgb.size(); ++i)
-        worst = std::max(worst, std::abs(double(srgb_code(jpeg.rgb[i])) - srgb_code(png.rgb[i])));
-    CHECK(worst > 0);  // JPEG is lossy
-    CHECK(worst <= 4);
+        max_difference = std::max(max_difference, std::abs(double(srgb_code(jpeg.rgb[i])) - srgb_code(png.rgb[i])));
+    CHECK(max_difference > 0);  // JPEG is lossy
+    CHECK(max_difference <= 4);
 }
 
 TEST_CASE("TIFF, JPEG: the description has an attribute per line", "[image_io]") {
@@ -147,7 +147,7 @@ TEST_CASE("TIFF, JPEG: the description has an attribute per line", "[image_io]")
     }
 }
 
-TEST_CASE("8-bit files: have the codes of the tone; PNG has its gamma", "[image_io]") {
+TEST_CASE("8-bit files: store the codes of the tone; PNG also stores the gamma", "[image_io]") {
     const ScratchFolder folder;
     const Tone tone{1, ToneCurve::kReinhard, 2.2};
     const Image image = special_image();
@@ -237,7 +237,7 @@ TEST_CASE("PNG: preserves all 256 codes", "[image_io]") {
     for (std::size_t i = 0; i < codes.size(); ++i) REQUIRE(codes[i] == i / 3);
 }
 
-TEST_CASE("PNG, EXR: have attributes with the prefix raya:", "[image_io]") {
+TEST_CASE("PNG, EXR: store attributes with the prefix raya:", "[image_io]") {
     const ScratchFolder folder;
     for (const char* name : {"a.png", "a.exr"}) {
         CAPTURE(name);
@@ -261,7 +261,7 @@ TEST_CASE("image files: contain no date, host or software version", "[image_io]"
     }
 }
 
-TEST_CASE("write_image: refuses an unknown extension with the known ones", "[image_io]") {
+TEST_CASE("write_image: refuses an unknown extension and names the known extensions", "[image_io]") {
     const ScratchFolder folder;
     const auto message = Contains("use one of .png, .exr, .pfm, .ppm, .tif, .tiff, .jpg, .jpeg");
     for (const char* name : {"a.gif", "a", ".png", "a.png.gz"}) {
@@ -275,7 +275,7 @@ TEST_CASE("write_image: refuses an unknown extension with the known ones", "[ima
     CHECK(folder.entries() == 0);
 }
 
-TEST_CASE("write_image: refuses a file that it cannot write, and leaves no part of it", "[image_io]") {
+TEST_CASE("write_image: refuses a file that it cannot write, and leaves no partial file", "[image_io]") {
     const ScratchFolder folder;
     fs::create_symlink("/dev/full", folder / "full.png");
     check_image_name(folder / "new.png", kImageExtensions);

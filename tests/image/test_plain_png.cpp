@@ -1,4 +1,4 @@
-// PNG files that raya writes without a library, read with OpenImageIO.
+// PNG files that raya writes without OpenImageIO, read with OpenImageIO.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("plain_png: has the codes of all pixels", "[image]") {
+TEST_CASE("plain_png: stores the sRGB codes of all pixels", "[image]") {
     std::mt19937 random(11);
     const ScratchFolder folder;
     for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {1, 3}, {37, 21}, {300, 200}}) {

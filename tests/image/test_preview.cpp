@@ -1,4 +1,4 @@
-// Previews: their size, and pixels that are means of the image's pixels.
+// Previews: their size, and their pixels, which are means of the image's pixels.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-Image of_one_colour(int width, int height, float value) {
+Image uniform_image(int width, int height, float value) {
     return {width, height,
             std::vector<float>(3u * static_cast<unsigned>(width) * static_cast<unsigned>(height), value)};
 }
@@ -21,10 +21,10 @@ TEST_CASE("preview_of: keeps proportions, and leaves small images unchanged", "[
     };
     for (const Row& row : {Row{256, 256, 256, 256}, Row{512, 512, 256, 256}, Row{1000, 500, 256, 128},
                            Row{3, 16384, 1, 256}, Row{257, 1, 256, 1}, Row{20, 12, 20, 12}}) {
-        const Image small = preview_of(of_one_colour(row.width, row.height, 0.25f));
+        const Image small = preview_of(uniform_image(row.width, row.height, 0.25f));
         CHECK(small.width == row.small_width);
         CHECK(small.height == row.small_height);
-        CHECK(small.rgb == of_one_colour(small.width, small.height, 0.25f).rgb);
+        CHECK(small.rgb == uniform_image(small.width, small.height, 0.25f).rgb);
     }
     CHECK_THROWS_AS(preview_of({0, 0, {}}), std::logic_error);
 }
@@ -47,24 +47,25 @@ TEST_CASE("preview_of: a pixel is the mean of its clamped source pixels", "[imag
         }
 }
 
-TEST_CASE("as_displayed: the image has the codes of the tone", "[image]") {
+TEST_CASE("as_displayed: the displayed image has, with the default tone, the codes of the image with the given tone",
+          "[image]") {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> light(-0.5f, 4);
-    Image image = of_one_colour(40, 30, 0);
+    Image image = uniform_image(40, 30, 0);
     for (float& value : image.rgb) value = light(random);
     for (const Tone& tone : {Tone{}, Tone{.exposure = -1.5, .curve = ToneCurve::kReinhard}, Tone{.gamma = 1.8}}) {
-        const Image shown = as_displayed(image, tone);
+        const Image displayed = as_displayed(image, tone);
         const ToneCodes codes(tone), default_codes(Tone{});
-        REQUIRE(shown.rgb.size() == image.rgb.size());
+        REQUIRE(displayed.rgb.size() == image.rgb.size());
         for (std::size_t at = 0; at < image.rgb.size(); at += 3)
-            if (codes(&image.rgb[at]) != default_codes(&shown.rgb[at])) FAIL("pixel " << at / 3);
+            if (codes(&image.rgb[at]) != default_codes(&displayed.rgb[at])) FAIL("pixel " << at / 3);
     }
 }
 
 TEST_CASE("preview_of: keeps the mean brightness", "[image]") {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> light(0, 1);
-    Image image = of_one_colour(768, 512, 0);
+    Image image = uniform_image(768, 512, 0);
     for (float& value : image.rgb) value = light(random);
     const Image small = preview_of(image);
     const auto mean = [](const Image& i) {

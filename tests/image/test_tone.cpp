@@ -13,7 +13,7 @@ namespace {
 using Codes = std::array<std::uint8_t, 3>;
 
 /// Returns combinations of exposure, curve and gamma.
-std::vector<Tone> some_tones() {
+std::vector<Tone> tone_combinations() {
     std::vector<Tone> tones;
     for (const double exposure : {0.0, -2.0, 1.0, 0.3})
         for (const ToneCurve curve : {ToneCurve::kClip, ToneCurve::kReinhard})
@@ -22,7 +22,7 @@ std::vector<Tone> some_tones() {
     return tones;
 }
 
-/// Returns a dark or bright random colour; some have a component of 0.
+/// Returns a random colour, dark or bright. Some of the colours have a component of 0.
 std::array<float, 3> random_colour(SplitMix& random) {
     std::array<float, 3> rgb{};
     const double scale = std::exp2(random.uniform(-10, 4));
@@ -41,9 +41,9 @@ TEST_CASE("ToneCodes: the default tone gives the sRGB code of each value", "[ton
     }
 }
 
-TEST_CASE("ToneCodes: equal the formulas up to rounding", "[tone]") {
+TEST_CASE("ToneCodes: codes equal those of the formulas up to rounding", "[tone]") {
     SplitMix random(42);
-    for (const Tone& tone : some_tones()) {
+    for (const Tone& tone : tone_combinations()) {
         const ToneCodes codes(tone);
         CAPTURE(tone.exposure, tone_curve_name(tone.curve), tone.gamma.value_or(0));
         for (int i = 0; i < 500; ++i) {
@@ -65,7 +65,7 @@ TEST_CASE("ToneCodes: equal the formulas up to rounding", "[tone]") {
 
 TEST_CASE("ToneCodes: one stop more is twice the light", "[tone]") {
     SplitMix random(43);
-    for (Tone tone : some_tones()) {
+    for (Tone tone : tone_combinations()) {
         const ToneCodes codes(tone);
         tone.exposure += 1;
         const ToneCodes brighter(tone);
@@ -79,20 +79,20 @@ TEST_CASE("ToneCodes: one stop more is twice the light", "[tone]") {
 }
 
 TEST_CASE("ToneCodes: codes of greys are monotonic and grey", "[tone]") {
-    for (const Tone& tone : some_tones()) {
+    for (const Tone& tone : tone_combinations()) {
         const ToneCodes codes(tone);
-        int last = 0;
+        int previous_code = 0;
         for (double v = 1e-6; v < 1e6; v *= 1.01) {
             const auto value = static_cast<float>(v);
             const std::array<float, 3> grey = {value, value, value};
             const Codes found = codes(grey.data());
             CAPTURE(v, tone.exposure);
-            REQUIRE(found[0] >= last);
+            REQUIRE(found[0] >= previous_code);
             REQUIRE(found[0] == found[1]);
             REQUIRE(found[1] == found[2]);
-            last = found[0];
+            previous_code = found[0];
         }
-        CHECK(last == 255);
+        CHECK(previous_code == 255);
     }
 }
 
@@ -108,22 +108,22 @@ TEST_CASE("ToneCodes: Reinhard's curve preserves differences of bright greys, an
     CHECK(found[1] / 0.75 == Approx(found[2] / 0.3).margin(3));
 }
 
-TEST_CASE("ToneCodes: infinities and NaNs have codes", "[tone]") {
+TEST_CASE("ToneCodes: an infinity is converted like the largest float, NaN like 0", "[tone]") {
     const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-    for (const Tone& tone : some_tones()) {
+    for (const Tone& tone : tone_combinations()) {
         const ToneCodes codes(tone);
-        const std::array<float, 3> white = {inf, inf, inf}, black = {nan, -inf, -1}, part = {nan, 1e30f, 0};
+        const std::array<float, 3> white = {inf, inf, inf}, black = {nan, -inf, -1}, mixed = {nan, 1e30f, 0};
         CAPTURE(tone.exposure, tone_curve_name(tone.curve));
         CHECK(codes(white.data()) == Codes{255, 255, 255});
         CHECK(codes(black.data()) == Codes{0, 0, 0});
-        CHECK(codes(part.data()) == Codes{0, 255, 0});
+        CHECK(codes(mixed.data()) == Codes{0, 255, 0});
     }
 }
 
 TEST_CASE("tone_attributes: only values that are not the default", "[tone]") {
     CHECK(tone_attributes({}).empty());
-    const ImageAttributes all = {{"exposure", "-1.5"}, {"tone", "reinhard"}, {"gamma", "2.2"}};
-    CHECK(tone_attributes({-1.5, ToneCurve::kReinhard, 2.2}) == all);
+    const ImageAttributes expected = {{"exposure", "-1.5"}, {"tone", "reinhard"}, {"gamma", "2.2"}};
+    CHECK(tone_attributes({-1.5, ToneCurve::kReinhard, 2.2}) == expected);
 }
 
 }  // namespace

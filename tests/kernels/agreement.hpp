@@ -1,5 +1,5 @@
-// Compares the numbers that a kernel computes for a ray with those of the reference, and excuses larger differences
-// that rounding explains.
+// Compares the numbers that a kernel computes for a ray with those of the reference, and excuses differences above the
+// limits that rounding explains.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,11 +18,11 @@ inline void append(Found& found, const Vec3& v) {
 }
 
 /// Compares rays and counts them. A ray's result may differ from the reference by more than the limits only if moving
-/// the ray sideways by `reach` changes the reference's result as much. Then the ray grazes an edge, an outline or a
-/// shadow, or its distance is ill-conditioned.
+/// the ray sideways by `reach` changes the reference's result as much: such a ray grazes an edge, an outline or a
+/// shadow, or the distance of its hit is ill-conditioned.
 struct Agreement {
-    double reach = 0;  // scene units
-    std::size_t rays = 0;
+    double reach = 0;         // scene units
+    std::size_t rays = 0;     // number of rays compared
     std::size_t grazing = 0;  // number of rays whose results differ by more than a limit
     double largest = 0;       // largest difference within the limits, as a fraction of its limit
 
@@ -40,12 +40,12 @@ struct Agreement {
   private:
     bool within(const Found& expected, const Found& actual, const Found& limits) {
         if (expected.size() != actual.size()) return false;
-        double share = 0;
+        double fraction = 0;
         for (std::size_t i = 0; i < expected.size(); ++i) {
             if (!(std::abs(actual[i] - expected[i]) <= limits[i])) return false;  // false for NaN
-            if (limits[i] > 0) share = std::max(share, std::abs(actual[i] - expected[i]) / limits[i]);
+            if (limits[i] > 0) fraction = std::max(fraction, std::abs(actual[i] - expected[i]) / limits[i]);
         }
-        largest = std::max(largest, share);
+        largest = std::max(largest, fraction);
         return true;
     }
 

@@ -1,5 +1,5 @@
 // Detects denormal operands by the sticky DE flag of x86. PoCL's basic device runs kernels in the thread that waits for
-// them, so that thread's flag covers kernels too.
+// them, so the flag of this thread covers kernels too.
 #pragma once
 #if defined(__x86_64__)
 #include <xmmintrin.h>

@@ -1,6 +1,7 @@
 // kernel_builds TO [GROUP [KERNELS]]: writes the source of every kernel file to the folder TO, as host/cl passes it to
-// a GPU's driver, and the build options to TO/builds.json. For tools/gpu_check, which compiles without a device. GROUP:
-// work-items per work-group, 0 for raya's default on a GPU. KERNELS: a folder to use instead of kernels/.
+// a GPU's driver, and the build options to TO/builds.json. tools/gpu_check, which compiles without a device, runs this
+// program. GROUP: number of work-items in a work-group, 0 for raya's default on a GPU. KERNELS: a folder that is used
+// instead of kernels/.
 #include <fmt/core.h>
 
 #include <cstdio>
@@ -25,7 +26,7 @@ struct Build {
 };
 
 // Returns the properties of a typical current GPU.
-DeviceInfo a_gpu() {
+DeviceInfo typical_gpu() {
     DeviceInfo device;
     device.name = "a GPU";
     device.type = "gpu";
@@ -37,12 +38,12 @@ DeviceInfo a_gpu() {
 
 const std::vector<std::pair<std::string, std::uint32_t>> kAccelerators = {{" grid", RAYA_ACCEL_GRID},
                                                                           {" bvh", RAYA_ACCEL_BVH}};
-constexpr std::uint32_t kDepth = 5;  // depth of a BVH of up to 16^5 objects
+constexpr std::uint32_t kBvhDepth = 5;  // number of levels of nodes, for up to 16^5 objects
 
 KernelOptions with_accel(KernelOptions options, std::uint32_t accel) {
     options.words_local = false;  // scenes that need a grid or BVH rarely fit in local memory
     options.accel = accel;
-    options.stack = accel == RAYA_ACCEL_BVH ? (RAYA_BVH_WIDTH - 1) * kDepth : 0;
+    options.stack = accel == RAYA_ACCEL_BVH ? (RAYA_BVH_WIDTH - 1) * kBvhDepth : 0;
     return options;
 }
 
@@ -71,12 +72,12 @@ std::vector<Build> builds_in(const std::string& format, const KernelOptions& all
 
 std::vector<Build> all_builds(std::uint32_t group) {
     KernelOptions options;
-    options.lanes = default_lanes(a_gpu());
-    options.group_size = group ? group : default_group_size(a_gpu());
+    options.lanes = default_lanes(typical_gpu());
+    options.group_size = group ? group : default_group_size(typical_gpu());
     std::vector<Build> all;
-    for (const char* moves :
+    for (const char* file :
          {"torus/route.cl", "torus/accept.cl", "torus/exchange.cl", "checks/machine.cl"})  // independent of the format
-        all.push_back({moves, "any", options});
+        all.push_back({file, "any", options});
     for (const NumberFormat& format : {NumberFormat{}, NumberFormat{6, 15, false}}) {
         options.format = format;
         options.filter = filters_are_valid(format, 1);
@@ -99,7 +100,7 @@ void write(const std::filesystem::path& to, std::uint32_t group, const KernelSou
                         {"file", build.file},
                         {"variant", build.variant},
                         {"group", build.options.group_size},
-                        {"options", build_options(build.options, a_gpu())}});
+                        {"options", build_options(build.options, typical_gpu())}});
     }
     write_whole_file(to / "builds.json", list.dump(1));
 }

@@ -16,12 +16,12 @@
 
 namespace raya {
 
-/// A base class that owns the session, so that the session exists before the other base class uses it.
-struct OwnSession {
+/// A base class of KernelRunner that owns the session, so that the session exists before CheckRunner uses it.
+struct SessionOwner {
     Session session{choose_device("")};
 };
 
-/// Build options of a kernel. All variants with the same format must give the same bits.
+/// Build options of a kernel. All variants with the same format and no patches must give the same bits.
 struct Variant {
     std::uint32_t lanes = 1;
     bool optimised = true;
@@ -34,7 +34,7 @@ struct Variant {
     }
 };
 
-/// All variants in fp32. Tests compare each with the first.
+/// All variants in fp32. Tests compare the results of each variant with those of the first.
 inline const std::vector<Variant>& variants() {
     static const std::vector<Variant> all = {{1, true},  {4, true},  {8, true},  {16, true},
                                              {1, false}, {4, false}, {8, false}, {16, false}};
@@ -42,7 +42,7 @@ inline const std::vector<Variant>& variants() {
 }
 
 /// Builds and runs a file of test kernels on the default device.
-class KernelRunner : private OwnSession, public CheckRunner {
+class KernelRunner : private SessionOwner, public CheckRunner {
   public:
     /// Builds `file`, a path relative to the project's root. Throws std::runtime_error if the file is missing,
     /// DeviceError if the build fails.

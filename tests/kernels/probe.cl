@@ -1,5 +1,5 @@
-// Test kernels that apply the geometry and shading headers to given rays (kernels/checks/rays.clh). They add to the
-// kernels of hits.cl.
+// Test kernels that apply the geometry and shading headers to given rays (kernels/checks/rays.clh). The file also has
+// the kernels of hits.cl.
 #include "kernels/checks/hits.cl"
 #include "kernels/shading/shade.clh"
 
@@ -31,13 +31,13 @@ void find_places(__global const uint* restrict job,
     store_vec(to + 15, 18, surface_colour(job, struck, &p));
 }
 
-// Does one step of a ray tree: traces and shades the given rays, as rays of the given level and weight 1/2.
+// Does one step of a ray tree: traces and shades the given rays, as rays of level `level` and weight 1/2.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void shade_once(__global const uint* restrict job,
                 __global const float* restrict rays,
                 const uint level,
                 __global uint* restrict state,     // [ray][3 + RAYA_EVENTS]: active (0 or 1), level, pending, events
-                __global float* restrict numbers)  // [ray][17]: sum, current ray, ray pending at `level`
+                __global float* restrict numbers)  // [ray][17]: sum, current ray, pending ray made at `level`
 {
     const uint first = first_ray();
     const ray r = load_ray(rays, first);

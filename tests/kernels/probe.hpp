@@ -33,7 +33,7 @@ inline std::vector<int> object_numbers(const Scene& scene) {
     return numbers;
 }
 
-/// The default limit of rays. Kernels return the limit as the distance of a miss.
+/// The default limit of rays. Kernels return a ray's limit as its distance if the ray hits nothing.
 inline constexpr float kFarLimit = 0x1p60F;
 
 /// Returns the rays as an array [ray][7]: origin, direction, limit.
@@ -54,20 +54,20 @@ struct ProbedHits {
 
 inline ProbedHits closest_hits(KernelRunner& runner, const std::vector<std::uint32_t>& job,
                                const std::vector<float>& rays) {
-    const Hits hits = find_hits(runner, "hits_of_all", job, Rays{rays});
+    const Hits hits = find_hits(runner, "hits_without_accel", job, Rays{rays});
     ProbedHits probed{hits.objects, {}};
     for (const std::uint32_t bits : hits.distances) probed.distances.push_back(std::bit_cast<float>(bits));
     return probed;
 }
 
 struct ProbedPlaces {
-    enum Which : std::size_t { kPoint, kOuter, kInner, kGeometric, kNormal, kColour };
-    std::vector<std::uint32_t> leaving;
-    std::vector<float> places;  // [ray][6][3]: as find_places in probe.cl
+    enum Vector : std::size_t { kPoint, kOuter, kInner, kGeometric, kNormal, kColour };
+    std::vector<std::uint32_t> leaving;  // [ray]: 1 if the ray leaves the object
+    std::vector<float> places;           // [ray][6][3]: as stored by find_places in probe.cl
 
-    Vec3 vector(std::size_t ray, Which which) const {
-        const float* from = &places[ray * 18 + which * 3];
-        return {from[0], from[1], from[2]};
+    Vec3 vector(std::size_t ray, Vector index) const {
+        const float* numbers = &places[ray * 18 + index * 3];
+        return {numbers[0], numbers[1], numbers[2]};
     }
 };
 
@@ -92,8 +92,8 @@ struct ProbedRay {
 struct ProbedSteps {
     static constexpr std::size_t kStateWords = 3 + RAYA_EVENTS;
     static constexpr std::size_t kNumberWords = 17;
-    std::vector<std::uint32_t> state;  // [ray][kStateWords]: as shade_once in probe.cl
-    std::vector<float> numbers;        // [ray][kNumberWords]: as shade_once in probe.cl
+    std::vector<std::uint32_t> state;  // [ray][kStateWords]: as stored by shade_once in probe.cl
+    std::vector<float> numbers;        // [ray][kNumberWords]: as stored by shade_once in probe.cl
 
     bool active(std::size_t ray) const { return state[ray * kStateWords] != 0; }
     std::uint32_t level(std::size_t ray) const { return state[ray * kStateWords + 1]; }
@@ -101,7 +101,7 @@ struct ProbedSteps {
     std::uint32_t events(std::size_t ray, std::size_t kind) const { return state[ray * kStateWords + 3 + kind]; }
     Colour sum(std::size_t ray) const { return vector(ray, 0); }
     ProbedRay followed(std::size_t ray) const { return {vector(ray, 3), vector(ray, 6), number(ray, 9)}; }
-    ProbedRay waiting(std::size_t ray) const { return {vector(ray, 10), vector(ray, 13), number(ray, 16)}; }
+    ProbedRay pending(std::size_t ray) const { return {vector(ray, 10), vector(ray, 13), number(ray, 16)}; }
 
   private:
     double number(std::size_t ray, std::size_t word) const { return numbers[ray * kNumberWords + word]; }

@@ -17,6 +17,7 @@ namespace raya {
 /// Maximum absolute coordinate of all objects and ray origins.
 inline constexpr double kSceneReach = 3;
 
+/// Returns a random integer 0 .. below - 1.
 inline double whole_uniform(SplitMix& random, int below) { return std::floor(random.uniform(0, below)); }
 
 inline Vec3 random_point(SplitMix& random, double reach) {
@@ -90,8 +91,8 @@ inline void add_patch(Scene& scene, SplitMix& random) {
 /// -1 if only the inside is visible, else 1.
 inline void add_cone(Scene& scene, SplitMix& random, double sign, double taper) {
     const Vec3 base = random_point(random, 1.5), axis = random_direction(random);
-    const double r0 = random.uniform(0.2, 0.9), chosen = std::max(0.0, random.uniform(-0.4, 1.5));
-    const double r1 = r0 * (taper < 0 ? chosen : taper);
+    const double r0 = random.uniform(0.2, 0.9), random_taper = std::max(0.0, random.uniform(-0.4, 1.5));
+    const double r1 = r0 * (taper < 0 ? random_taper : taper);
     scene.cones.push_back({base, sign * r0, base + random.uniform(0.4, 1.5) * axis, sign * r1, round_surface(random)});
 }
 
@@ -142,8 +143,8 @@ inline Scene mixed_scene(std::uint64_t seed) {
     return scene;
 }
 
-/// Returns rays from random origins towards the middle of the scene. Their numbers are rounded to fp32, so that kernel
-/// and reference trace the same rays.
+/// Returns rays from random origins towards the middle of the scene. Origins and directions are rounded to fp32, so
+/// that kernel and reference trace the same rays.
 inline std::vector<reference::Ray> random_rays(std::uint64_t seed, std::size_t count) {
     SplitMix random(seed);
     std::vector<reference::Ray> rays;

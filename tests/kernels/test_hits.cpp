@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t kRays = 10'000;
 
-// The rounding error of a coordinate is at most 2^-25 of the scene's extent, 3e-8, and a hit takes about thirty
-// roundings: 9e-7 in all.
-constexpr double kDistanceLimit = 1e-6;  // of the scene's extent
+// The rounding error of a coordinate is at most 2^-25 of the scene's extent, 3e-8, and the computation of a hit rounds
+// about thirty times: 9e-7 in all.
+constexpr double kDistanceLimit = 1e-6;  // relative to the scene's extent
 
 // The maximum fraction of rays that may differ by more because they graze an edge or an outline. A band of 1e-6 of the
 // extent around the outlines of twenty objects covers about 1e-4 of the view.
@@ -38,17 +38,17 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
     const std::vector<int> numbers = object_numbers(scene);
     const auto find = [&](const reference::Ray& ray) { return reference_hit(scene, ray); };
     Agreement agreement{.reach = limit};
-    std::size_t struck = 0;
+    std::size_t hit_count = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         CAPTURE(i, hits.objects[i], hits.distances[i]);
         const bool hit = hits.objects[i] != kNoObject;
-        struck += hit;
+        hit_count += hit;
         if (hit) REQUIRE(hits.objects[i] < numbers.size());
         if (!hit) REQUIRE(hits.distances[i] == kFarLimit);
         const Found found = hit ? Found{double(numbers[hits.objects[i]]), hits.distances[i]} : Found{-1};
         CHECK(agreement.accepts(find, rays[i], found, {0, limit}));
     }
-    CHECK(struck > kRays / 10);
+    CHECK(hit_count > kRays / 10);
     CHECK(static_cast<double>(agreement.grazing) <= kMaxGrazing * kRays);
     return agreement.grazing;
 }
@@ -59,7 +59,7 @@ TEST_CASE("closest hits agree with the reference, with the same bits in all vari
     const std::vector<reference::Ray> rays = random_rays(11, kRays);
     const std::vector<float> words = ray_words(rays);
     std::map<std::string, ProbedHits> first;
-    std::string grazing;
+    std::string grazing;  // numbers of grazing rays, for each kind of object
     for (const Variant& variant : variants()) {
         KernelRunner runner("tests/kernels/probe.cl", variant);
         for (std::size_t k = 0; k < object_kinds().size(); ++k) {
@@ -75,31 +75,33 @@ TEST_CASE("closest hits agree with the reference, with the same bits in all vari
         }
     }
     grazing.pop_back();
-    fmt::print("Of {} rays against each kind of object graze and differ:{}.\n", kRays, grazing);
+    fmt::print("Number of {} rays per kind of object that graze and differ by more than the limit:{}.\n", kRays,
+               grazing);
 }
 
 TEST_CASE("on a tie the lowest object number wins", "[kernels]") {
     constexpr std::uint64_t kSeed = 21;
-    const Scene once = mixed_scene(kSeed);
-    Scene twice = empty_scene();  // every object occurs twice, with consecutive numbers
-    const auto doubled = [](const auto& objects, auto& to) {
-        for (const auto& object : objects) to.insert(to.end(), 2, object);
+    const Scene single_scene = mixed_scene(kSeed);
+    Scene double_scene = empty_scene();  // every object occurs twice, with consecutive numbers
+    const auto double_objects = [](const auto& objects, auto& doubled) {
+        for (const auto& object : objects) doubled.insert(doubled.end(), 2, object);
     };
-    doubled(once.spheres, twice.spheres);
-    doubled(once.planes, twice.planes);
-    doubled(once.polygons, twice.polygons);
-    doubled(once.cones, twice.cones);
+    double_objects(single_scene.spheres, double_scene.spheres);
+    double_objects(single_scene.planes, double_scene.planes);
+    double_objects(single_scene.polygons, double_scene.polygons);
+    double_objects(single_scene.cones, double_scene.cones);
     const std::vector<float> rays = ray_words(random_rays(22, 1600));
-    const std::vector<int> single = object_numbers(once), numbers = object_numbers(twice);
+    const std::vector<int> single_numbers = object_numbers(single_scene), numbers = object_numbers(double_scene);
     for (const std::uint32_t lanes : {1u, 16u}) {
         KernelRunner runner("tests/kernels/probe.cl", {lanes, true});
-        const ProbedHits expected = closest_hits(runner, job_words(once), rays);
-        const ProbedHits hits = closest_hits(runner, job_words(twice), rays);
+        const ProbedHits expected = closest_hits(runner, job_words(single_scene), rays);
+        const ProbedHits hits = closest_hits(runner, job_words(double_scene), rays);
         CHECK(bits(hits.distances) == bits(expected.distances));
         for (std::size_t i = 0; i < hits.objects.size(); ++i) {
             CAPTURE(kSeed, lanes, i);
             REQUIRE((hits.objects[i] == kNoObject) == (expected.objects[i] == kNoObject));
-            if (hits.objects[i] != kNoObject) CHECK(numbers[hits.objects[i]] == 2 * single[expected.objects[i]]);
+            if (hits.objects[i] != kNoObject)
+                CHECK(numbers[hits.objects[i]] == 2 * single_numbers[expected.objects[i]]);
         }
     }
 }

@@ -32,20 +32,20 @@ TEST_CASE("every tunable of the kernels has a -D option", "[ring]") {
                                              "-DRAYA_LANES=1", "-DRAYA_GROUP=1", "-DRAYA_BOUNCES=8",
                                              "-DRAYA_WORDS_LOCAL=1", "-DRAYA_POLYGONS=1", "-DRAYA_PATCHES=1",
                                              "-DRAYA_CONES=1"});
-    const KernelOptions other{.lanes = 16,
-                              .group_size = 64,
-                              .bounces = 31,
-                              .format = {6, 15, true},
-                              .words_local = false,
-                              .filter = true,
-                              .polygons = false,
-                              .patches = false,
-                              .cones = false};
-    CHECK(build_options(other, kCpu) == Options{"-cl-std=CL1.2", "-DRAYA_EXPONENT_BITS=6", "-DRAYA_FRACTION_BITS=15",
-                                                "-DRAYA_TRUNCATE=1", "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0",
-                                                "-DRAYA_LANES=16", "-DRAYA_GROUP=64", "-DRAYA_BOUNCES=31",
-                                                "-DRAYA_WORDS_LOCAL=0", "-DRAYA_POLYGONS=0", "-DRAYA_PATCHES=0",
-                                                "-DRAYA_CONES=0", "-DRAYA_FILTER=1"});
+    const KernelOptions all_changed{.lanes = 16,
+                                    .group_size = 64,
+                                    .bounces = 31,
+                                    .format = {6, 15, true},
+                                    .words_local = false,
+                                    .filter = true,
+                                    .polygons = false,
+                                    .patches = false,
+                                    .cones = false};
+    CHECK(build_options(all_changed, kCpu) ==
+          Options{"-cl-std=CL1.2", "-DRAYA_EXPONENT_BITS=6", "-DRAYA_FRACTION_BITS=15", "-DRAYA_TRUNCATE=1",
+                  "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0", "-DRAYA_LANES=16", "-DRAYA_GROUP=64",
+                  "-DRAYA_BOUNCES=31", "-DRAYA_WORDS_LOCAL=0", "-DRAYA_POLYGONS=0", "-DRAYA_PATCHES=0",
+                  "-DRAYA_CONES=0", "-DRAYA_FILTER=1"});
     DeviceInfo exact = kCpu;
     exact.correctly_rounded_divide_sqrt = exact.fused_multiply_add = true;
     const auto arithmetic = [&](const KernelOptions& options) {
@@ -62,13 +62,13 @@ TEST_CASE("every tunable of the kernels has a -D option", "[ring]") {
 TEST_CASE("correctly rounded division is requested only if the device supports it", "[ring]") {
     const std::string option = "-cl-fp32-correctly-rounded-divide-sqrt";
     DeviceInfo device = kCpu;
-    const auto asked = [&] {
+    const auto option_count = [&] {
         const auto options = build_options({}, device);
         return std::count(options.begin(), options.end(), option);
     };
-    CHECK(asked() == 0);
+    CHECK(option_count() == 0);
     device.correctly_rounded_divide_sqrt = true;
-    CHECK(asked() == 1);
+    CHECK(option_count() == 1);
 }
 
 TEST_CASE("lanes, group sizes and bounces out of range are refused", "[ring]") {
@@ -112,14 +112,14 @@ TEST_CASE("llvmpipe, which vectorises over work-items, has groups of 8 and one l
     CHECK(default_group_size(llvmpipe, true) == 1);
     CHECK(default_group_size(a_device("cpu", 16, 4096), true) == 1);
     for (const bool torus : {false, true}) {
-        const KernelChoice whole = chosen({}, llvmpipe, {.torus = torus});
-        CHECK(whole.group_size == default_group_size(llvmpipe, torus));
-        CHECK(whole.more.sphere_batch == (torus ? 0 : 16));
-        const KernelChoice named = chosen({.lanes = 4}, llvmpipe, {.torus = torus});
-        CHECK((named.lanes == 4 && named.group_size == whole.group_size));
-        CHECK(named.more.sphere_batch == whole.more.sphere_batch);
+        const KernelChoice defaults = chosen({}, llvmpipe, {.torus = torus});
+        CHECK(defaults.group_size == default_group_size(llvmpipe, torus));
+        CHECK(defaults.tuning.sphere_batch == (torus ? 0 : 16));
+        const KernelChoice with_lanes = chosen({.lanes = 4}, llvmpipe, {.torus = torus});
+        CHECK((with_lanes.lanes == 4 && with_lanes.group_size == defaults.group_size));
+        CHECK(with_lanes.tuning.sphere_batch == defaults.tuning.sphere_batch);
     }
     for (const TuningKey& what :
          {TuningKey{.accel = RAYA_ACCEL_GRID}, TuningKey{.accel = RAYA_ACCEL_BVH}, {.fp32 = false}})
-        CHECK(chosen({}, llvmpipe, what).more.sphere_batch == 0);
+        CHECK(chosen({}, llvmpipe, what).tuning.sphere_batch == 0);
 }

@@ -65,7 +65,7 @@ TEST_CASE("files may include each other", "[kernels]") {
 TEST_CASE("the trace kernel's source contains every line of its files, with file and line number", "[kernels]") {
     std::istringstream source(kernel_source("ring/trace.cl"));
     std::map<std::string, std::vector<std::string>> files;
-    std::map<std::string, std::size_t> taken;
+    std::map<std::string, std::size_t> line_counts;  // number of each file's lines in the source
     std::string file;
     std::size_t number = 0;
     for (const std::string& line : lines_of(source)) {
@@ -81,13 +81,13 @@ TEST_CASE("the trace kernel's source contains every line of its files, with file
         REQUIRE(number <= files[file].size());
         REQUIRE(files[file][number - 1] == line);
         ++number;
-        ++taken[file];
+        ++line_counts[file];
     }
     CHECK(files.size() > 10);
     for (const auto& [name, lines] : files) {
         CAPTURE(name);
         const auto includes = std::count_if(lines.begin(), lines.end(), is_include);
-        CHECK(taken[name] + static_cast<std::size_t>(includes) == lines.size());
+        CHECK(line_counts[name] + static_cast<std::size_t>(includes) == lines.size());
     }
 }
 
@@ -103,7 +103,7 @@ TEST_CASE("the program embeds the kernels of the project's folder", "[kernels]")
     CHECK(kernels > 0);
 }
 
-TEST_CASE("the error for a missing file or include names it", "[kernels]") {
+TEST_CASE("the error for a missing file or include names the file", "[kernels]") {
     CHECK_THROWS_AS(kernel_source("ring/tarce.cl"), UserError);
     CHECK_THROWS_WITH(kernel_source("ring/tarce.cl"), Contains("'ring/tarce.cl'"));
     CHECK_THROWS_AS(expand_kernel_source("#include \"none.clh\"\n", "t.cl"), UserError);
@@ -114,7 +114,7 @@ TEST_CASE("the error for a missing file or include names it", "[kernels]") {
                       Contains((folder / "ring/trace.cl").string()) && Contains("--kernel-dir"));
 }
 
-TEST_CASE("a patch changes its file wherever it is included, and nothing else", "[kernels]") {
+TEST_CASE("a patch changes its file wherever that file is included, and nothing else", "[kernels]") {
     const ScratchFolder folder;
     write(folder / "inner.clh", "inner 1\ninner 2\n");
     write(folder / "outer.cl", "#include \"inner.clh\"\nouter 2\n");
@@ -128,9 +128,9 @@ TEST_CASE("a patch changes its file wherever it is included, and nothing else", 
     const SourcePatch include{"outer.cl", "outer 2", "#include \"more.clh\""};
     write(folder / "more.clh", "more 1\n");
     CHECK_THAT(kernel_source("outer.cl", {folder.path(), {include}}), Contains("\"more.clh\"\nmore 1\n"));
-    // A patch applies to embedded kernels too.
-    const SourcePatch own{"ring/trace.cl", "void trace(", "void retrace("};
-    CHECK_THAT(kernel_source("ring/trace.cl", {.patches = {own}}), Contains("void retrace("));
+    // Patches apply to embedded kernels too.
+    const SourcePatch renaming{"ring/trace.cl", "void trace(", "void retrace("};
+    CHECK_THAT(kernel_source("ring/trace.cl", {.patches = {renaming}}), Contains("void retrace("));
 }
 
 TEST_CASE("a patch that does not find its text exactly once is refused", "[kernels]") {

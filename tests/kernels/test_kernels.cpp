@@ -1,4 +1,4 @@
-// Every DescribedKernel agrees with its kernel in the kernel file, and each file is built once.
+// Every DescribedKernel agrees with the kernel of its name in the kernel file, and each file is built once.
 #include <catch2/catch.hpp>
 
 #include "host/cl/kernels.hpp"
@@ -29,8 +29,8 @@ bool has_parameter_name(const cl::Kernel& kernel, cl_uint index) {
 }
 
 struct NamedParameters {
-    int described = 0;
-    int kept = 0;  // parameters whose names the driver reports
+    int described = 0;  // number of parameters that have a name in a description
+    int reported = 0;   // number of these parameters whose names the driver reports
 };
 
 // Checks that the parameters have the same names in the kernel file, if the driver stores names. PoCL 3.1 reports
@@ -42,7 +42,7 @@ void check_parameter_names(const Kernel<Params...>& kernel, NamedParameters& cou
         if (!expected.empty()) {
             ++counts.described;
             if (has_parameter_name(kernel.handle(), index)) {
-                ++counts.kept;
+                ++counts.reported;
                 CHECK_THAT(argument_name(kernel.handle(), index), Catch::EndsWith(expected));
             }
         }
@@ -68,19 +68,19 @@ TEST_CASE("parameters have the same names in kernels and in their descriptions",
           std::type_identity<node_kernels::TraceVoxel>{}, std::type_identity<node_kernels::Route>{},
           std::type_identity<node_kernels::Accept>{}, std::type_identity<ExchangeKernel>{});
     CHECK(counts.described == 41);
-    CHECK((counts.kept == 0 || counts.kept == counts.described));
+    CHECK((counts.reported == 0 || counts.reported == counts.described));
     CHECK(log.spans().size() == 9);  // one program for each file; the filter's two kernels share one
 }
 
 TEST_CASE("a kernel with other parameters, another name or another file is refused", "[kernels]") {
     Session session(choose_device(""));
     Kernels kernels(session, {});
-    using Few = DescribedKernel<"torus/compose.cl", "compose", Buffer<float>&>;
-    using Other = DescribedKernel<"torus/compose.cl", "decompose", Buffer<float>&>;
-    using Nowhere = DescribedKernel<"torus/decompose.cl", "compose", Buffer<float>&>;
-    CHECK_THROWS_AS(kernels.get<Few>(), DeviceError);
-    CHECK_THROWS_WITH(kernels.get<Other>(), Catch::Contains("decompose") && Catch::Contains("torus/compose.cl"));
-    CHECK_THROWS_AS(kernels.get<Nowhere>(), UserError);
+    using TooFewParameters = DescribedKernel<"torus/compose.cl", "compose", Buffer<float>&>;
+    using OtherName = DescribedKernel<"torus/compose.cl", "decompose", Buffer<float>&>;
+    using OtherFile = DescribedKernel<"torus/decompose.cl", "compose", Buffer<float>&>;
+    CHECK_THROWS_AS(kernels.get<TooFewParameters>(), DeviceError);
+    CHECK_THROWS_WITH(kernels.get<OtherName>(), Catch::Contains("decompose") && Catch::Contains("torus/compose.cl"));
+    CHECK_THROWS_AS(kernels.get<OtherFile>(), UserError);
 }
 
 TEST_CASE("sources and more options reach every build", "[kernels]") {
@@ -93,10 +93,9 @@ TEST_CASE("sources and more options reach every build", "[kernels]") {
     CHECK_NOTHROW(kernels.get<Renamed>());
     CHECK_THAT(kernels.program(Renamed::kFile).options(),
                Catch::Contains("-DRAYA_GROUP=4") && Catch::Contains("-DRAYA_NAME=decompose"));
-    const Program own = kernels.build("own.cl", "#include \"kernels/torus/compose.cl\"\n");
-    CHECK_NOTHROW(
-        own.kernel<const Buffer<float>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&, Buffer<std::uint32_t>&>(
-            "decompose"));
+    const Program including_program = kernels.build("including.cl", "#include \"kernels/torus/compose.cl\"\n");
+    CHECK_NOTHROW(including_program.kernel<const Buffer<float>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&,
+                                           Buffer<std::uint32_t>&>("decompose"));
     CHECK_THROWS_AS(Kernels(session, {.lanes = 3}), UserError);
 }
 

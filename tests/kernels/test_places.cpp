@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t kPlaceRays = 4'000;
 
-constexpr double kPlaceLimit = 1e-6;         // of the scene's extent, as for the distance of a hit
+constexpr double kPlaceLimit = 1e-6;         // relative to the scene's extent, as for the distance of a hit
 constexpr double kColourLimit = 1e-7;        // rounding of the scene's words
-constexpr double kMaxPlacesGrazing = 0.002;  // as for hits, and sides of checker squares
+constexpr double kMaxPlacesGrazing = 0.002;  // fraction of rays, as for hits, and at the sides of checker squares
 
 Found reference_place(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
@@ -33,15 +33,15 @@ Found reference_place(const Scene& scene, const reference::Ray& ray) {
     return found;
 }
 
-// Returns an upper bound of the curvature at the point. The radius of a cone may go to 0 at its apex. The radii of
-// spheres are at least 0.2, and normals of patches turn no faster than on a sphere of that radius.
+// Returns an upper bound of the curvature of an object at a point. The radius of a cone may go to 0 at the apex. The
+// radii of spheres are at least 0.2, and normals of patches turn no faster than on a sphere of that radius.
 double curvature(const Scene& scene, std::size_t object, const Vec3& point) {
     const std::size_t first_cone = scene.object_count() - scene.cones.size();
     if (object < first_cone) return 5;
     const Cone& cone = scene.cones[object - first_cone];
     const Vec3 along = cone.apex - cone.base;
-    const double share = (point - cone.base).dot(along) / along.length2();  // 0 at the base, 1 at the apex
-    const double radius = std::abs(cone.base_radius + share * (cone.apex_radius - cone.base_radius));
+    const double height_fraction = (point - cone.base).dot(along) / along.length2();  // 0 at the base, 1 at the apex
+    const double radius = std::abs(cone.base_radius + height_fraction * (cone.apex_radius - cone.base_radius));
     return std::max(5.0, 1 / radius);
 }
 
@@ -65,9 +65,9 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
         if (hits.objects[i] == kNoObject) continue;
         const int object = numbers[hits.objects[i]];
         Found found{double(object), double(places.leaving[i])};
-        for (const auto which :
+        for (const auto vector :
              {ProbedPlaces::kPoint, ProbedPlaces::kGeometric, ProbedPlaces::kNormal, ProbedPlaces::kColour})
-            append(found, places.vector(i, which));
+            append(found, places.vector(i, vector));
         CAPTURE(i, hits.objects[i], hits.distances[i]);
         const Found limits = limits_of(scene, static_cast<std::size_t>(object), places.vector(i, ProbedPlaces::kPoint));
         CHECK(agreement.accepts(find, rays[i], found, limits));
@@ -125,8 +125,8 @@ TEST_CASE("places, normals, sides and colours agree with the reference, with the
         }
     }
     grazing.pop_back();
-    fmt::print("Of {} places on each kind of object differ by more than the limits, at edges:{}.\n", kPlaceRays,
-               grazing);
+    fmt::print("Number of {} rays per kind of object whose places differ by more than the limits, at edges:{}.\n",
+               kPlaceRays, grazing);
 }
 
 }  // namespace raya

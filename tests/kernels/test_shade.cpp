@@ -23,14 +23,14 @@ constexpr double kWeight = 0.5;  // weight of the rays that probe.cl shades
 constexpr std::uint32_t kLastLevel = 8;
 
 // If the normal turns by an angle, the reflected direction turns by twice that angle and the refracted direction by at
-// most 1.5 times. The error of the normal is the error of the hit point divided by the radius of curvature, which is at
-// least 0.2 except near the tips of cones.
+// most 1.5 times that angle. The error of the normal is the error of the hit point divided by the radius of curvature,
+// which is at least 0.2 except near the tips of cones.
 constexpr double kDirectionLimit = 2 * kPlaceLimit * 4 / 0.2;
-// A highlight multiplies that error by its exponent, at most 100, and by Ks, ray weight and light intensity, together
-// 0.1.
+// A highlight multiplies this error by its exponent, at most 100, and by Ks, ray weight and light intensity, whose
+// product is at most 0.1.
 constexpr double kSumLimit = 100 * 0.1 * kDirectionLimit;
 constexpr double kWeightLimit = 1e-7;
-constexpr double kMaxShadesGrazing = 0.01;  // as for hits, and edges of shadows, tips of cones, critical angles
+constexpr double kMaxShadesGrazing = 0.01;  // as for hits, and at shadow edges, cone tips, critical angles
 
 void append_ray(Found& found, const ProbedRay& ray) {
     append(found, ray.origin);
@@ -38,12 +38,13 @@ void append_ray(Found& found, const ProbedRay& ray) {
     found.push_back(ray.weight);
 }
 
-// The numbers of a step are: object, shadow rays, shadow hits, reflected rays, refracted rays, sum, then the reflected
-// ray and the refracted ray, if they were made. The numbers of a miss are object and sum.
-constexpr std::size_t kWholeNumbers = 5, kSumAt = 5, kRaysAt = 8, kRayNumbers = 7;
+// The numbers of a step are: object number; numbers of shadow rays, shadow hits, reflected rays and refracted rays;
+// sum; then the reflected ray and the refracted ray, if they were made. The numbers of a miss are object number and
+// sum.
+constexpr std::size_t kIntegers = 5, kSumAt = 5, kRaysAt = 8, kRayNumbers = 7;
 
 Found limits_for(const Found& found, double extent) {
-    Found limits(kWholeNumbers, 0);
+    Found limits(kIntegers, 0);
     limits.insert(limits.end(), 3, kSumLimit);
     for (std::size_t at = kRaysAt; at < found.size(); at += kRayNumbers) {
         limits.insert(limits.end(), 3, kPlaceLimit * extent);
@@ -53,14 +54,14 @@ Found limits_for(const Found& found, double extent) {
     return found.size() > kSumAt ? limits : Found(found.size(), kWeightLimit);
 }
 
-struct Lit {
+struct DirectLight {
     Colour sum;
     int shadow_rays = 0, shadow_hits = 0;
 };
 
-Lit reference_light(const Scene& scene, const reference::Hit& hit, const Vec3& start, const Vec3& mirror) {
+DirectLight reference_light(const Scene& scene, const reference::Hit& hit, const Vec3& start, const Vec3& mirror) {
     const Surface& surface = scene.surfaces[static_cast<std::size_t>(hit.surface)];
-    Lit lit{ambient_intensity(scene) * surface.diffuse * hit.colour};
+    DirectLight lit{ambient_intensity(scene) * surface.diffuse * hit.colour};
     for (const Light& light : scene.lights) {
         const Vec3 arm = light.position - start, to_light = arm.normalized();
         if (hit.shading.dot(to_light) <= 0) continue;
@@ -87,19 +88,19 @@ Found reference_step(const Scene& scene, const reference::Ray& ray) {
     const Surface& surface = scene.surfaces[static_cast<std::size_t>(hit->surface)];
     double largest = scene_extent(scene);
     for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(hit->point[axis]));
-    const Vec3 aside = 0x1p-20 * largest * hit->geometric;
+    const Vec3 margin = 0x1p-20 * largest * hit->geometric;
     const Vec3 mirror = reference::reflected_direction(ray.direction, hit->shading);
     const double e = hit->leaving ? surface.refraction : 1 / surface.refraction;
     std::optional<Vec3> through;
     if (surface.transmittance > 0) through = reference::refracted_direction(ray.direction, hit->shading, e);
-    const double share = surface.specular + (surface.transmittance > 0 && !through ? surface.transmittance : 0);
-    const Lit lit = reference_light(scene, *hit, hit->point + aside, mirror);
-    for (const double whole :
-         {double(lit.shadow_rays), double(lit.shadow_hits), double(share > 0), double(through.has_value())})
-        found.push_back(whole);
+    const double reflectance = surface.specular + (surface.transmittance > 0 && !through ? surface.transmittance : 0);
+    const DirectLight lit = reference_light(scene, *hit, hit->point + margin, mirror);
+    for (const double number :
+         {double(lit.shadow_rays), double(lit.shadow_hits), double(reflectance > 0), double(through.has_value())})
+        found.push_back(number);
     append(found, kWeight * lit.sum);
-    if (share > 0) append_ray(found, ProbedRay{hit->point + aside, mirror, kWeight * share});
-    if (through) append_ray(found, ProbedRay{hit->point - aside, *through, kWeight * surface.transmittance});
+    if (reflectance > 0) append_ray(found, ProbedRay{hit->point + margin, mirror, kWeight * reflectance});
+    if (through) append_ray(found, ProbedRay{hit->point - margin, *through, kWeight * surface.transmittance});
     return found;
 }
 
@@ -114,7 +115,7 @@ Found probed_step(const ProbedSteps& steps, std::size_t ray, int object) {
         found.push_back(steps.events(ray, static_cast<std::size_t>(kind)));
     append(found, steps.sum(ray));
     if (reflected) append_ray(found, steps.followed(ray));
-    if (refracted) append_ray(found, reflected ? steps.waiting(ray) : steps.followed(ray));
+    if (refracted) append_ray(found, reflected ? steps.pending(ray) : steps.followed(ray));
     return found;
 }
 
@@ -170,12 +171,12 @@ TEST_CASE("a step of a ray tree agrees with the reference's formulas", "[kernels
         through += steps.events(i, at(RAYA_REFRACTED)) && !steps.events(i, at(RAYA_REFLECTED));
         total += hit && steps.events(i, at(RAYA_REFLECTED)) && steps.followed(i).weight > 0.9 * kWeight;
     }
-    fmt::print("Of {} shaded rays differ by more than the limits, at edges and tips: {}.\n", kShadeRays,
+    fmt::print("Number of {} shaded rays that differ by more than the limits, at edges and tips: {}.\n", kShadeRays,
                agreement.grazing);
     CHECK(static_cast<double>(agreement.grazing) <= kMaxShadesGrazing * kShadeRays);
-    CHECK(both > kShadeRays / 50);     // reflected and refracted
-    CHECK(through > kShadeRays / 50);  // refracted only
-    CHECK(total > kShadeRays / 50);    // totally reflected: a weight of Ks + T, 0.92 or 0.95
+    CHECK(both > kShadeRays / 50);     // number of hits that reflect and refract
+    CHECK(through > kShadeRays / 50);  // number of hits that only refract
+    CHECK(total > kShadeRays / 50);    // number of total reflections: weight factor Ks + T, 0.92 or 0.95
 }
 
 TEST_CASE("a step at a deeper level differs only in its level, and the last level makes no rays", "[kernels]") {

@@ -13,29 +13,29 @@ namespace {
 /// Returns a polygon mesh of a sphere of radius 1 around (0.3, -0.2, 0.1): planar quadrangles between circles of
 /// latitude, and triangles at the poles.
 Scene ball() {
-    constexpr int kAround = 24, kDown = 12;
+    constexpr int kMeridians = 24, kLatitudes = 12;
     const auto corner = [](int i, int j) {
-        const double latitude = std::numbers::pi * j / kDown,
-                     longitude = 2 * std::numbers::pi * (i % kAround) / kAround;
+        const double latitude = std::numbers::pi * j / kLatitudes,
+                     longitude = 2 * std::numbers::pi * (i % kMeridians) / kMeridians;
         return Vec3(0.3, -0.2, 0.1) + Vec3(std::sin(latitude) * std::cos(longitude),
                                            std::sin(latitude) * std::sin(longitude), std::cos(latitude));
     };
     Scene scene;
     scene.name = "ball";
     scene.surfaces = {{}};
-    for (int j = 0; j < kDown; ++j)
-        for (int i = 0; i < kAround; ++i) {
+    for (int j = 0; j < kLatitudes; ++j)
+        for (int i = 0; i < kMeridians; ++i) {
             Polygon face{{corner(i, j), corner(i, j + 1), corner(i + 1, j + 1), corner(i + 1, j)}, {}, 0};
             if (j == 0) face.vertices.pop_back();
-            if (j == kDown - 1) face.vertices.erase(face.vertices.begin() + 1);
+            if (j == kLatitudes - 1) face.vertices.erase(face.vertices.begin() + 1);
             if ((i + 2 * j) % 3 == 0) std::reverse(face.vertices.begin(), face.vertices.end());
             scene.polygons.push_back(face);
         }
     return scene;
 }
 
-/// Returns rays from outside the mesh to points on its edges, some of them corners, that are not near its silhouette.
-/// They are rounded to the format.
+/// Returns rays from outside the mesh to points on its edges that are not near the silhouette. Some of the points are
+/// corners. The rays are rounded to the format.
 Rays rays_at_edges(const Scene& scene, const NumberFormat& format, unsigned count) {
     SplitMix random(2013);
     const auto rounded = [&](double x) {
@@ -45,22 +45,23 @@ Rays rays_at_edges(const Scene& scene, const NumberFormat& format, unsigned coun
     for (unsigned made = 0; made < count;) {
         const Polygon& face = scene.polygons[random_below(random, scene.polygons.size())];
         const std::size_t i = random_below(random, face.vertices.size());
-        const double share = random_below(random, 4) == 0 ? 0 : random.uniform(0, 1);
-        const Vec3 goal = face.vertices[i] + share * (face.vertices[(i + 1) % face.vertices.size()] - face.vertices[i]);
+        const double fraction = random_below(random, 4) == 0 ? 0 : random.uniform(0, 1);
+        const Vec3 target =
+            face.vertices[i] + fraction * (face.vertices[(i + 1) % face.vertices.size()] - face.vertices[i]);
         std::array<float, 3> origin{}, direction{};
-        Vec3 from, along;
+        Vec3 exact_origin, exact_direction;
         for (int axis = 0; axis < 3; ++axis) {
             origin[std::size_t(axis)] = rounded(random.uniform(-4, 4));
-            from[axis] = origin[std::size_t(axis)];
+            exact_origin[axis] = origin[std::size_t(axis)];
         }
         const Vec3 middle(0.3, -0.2, 0.1);
-        if ((from - middle).length() < 1.5) continue;
+        if ((exact_origin - middle).length() < 1.5) continue;
         for (int axis = 0; axis < 3; ++axis) {
-            direction[std::size_t(axis)] = rounded((goal - from).normalized()[axis]);
-            along[axis] = direction[std::size_t(axis)];
+            direction[std::size_t(axis)] = rounded((target - exact_origin).normalized()[axis]);
+            exact_direction[axis] = direction[std::size_t(axis)];
         }
-        const Vec3 arm = middle - from;
-        if ((arm - arm.dot(along) * along).length() > 0.8) continue;
+        const Vec3 arm = middle - exact_origin;
+        if ((arm - arm.dot(exact_direction) * exact_direction).length() > 0.8) continue;
         rays.add(origin, direction, kDefaultRayLimit);
         ++made;
     }
@@ -74,7 +75,7 @@ std::size_t misses(const Variant& variant, unsigned count) {
     settings.format = variant.format;
     const PackedJob job = pack_job(scene, settings);
     KernelRunner runner("kernels/checks/hits.cl", variant);
-    const Hits hits = find_hits(runner, "hits_of_all", job.words(), rays_at_edges(scene, variant.format, count));
+    const Hits hits = find_hits(runner, "hits_without_accel", job.words(), rays_at_edges(scene, variant.format, count));
     return static_cast<std::size_t>(std::count(hits.objects.begin(), hits.objects.end(), kNoObject));
 }
 

@@ -20,34 +20,35 @@ std::uint64_t cycles_of(const Operations& sum) {
            kBranchCycles * sum.branches;
 }
 
-/// log2 of the largest relative error of f over [1, 4), the two binades that the root's table covers.
-template <class Relative>
-double error_bits(Relative&& relative) {
-    double worst = 0;
-    for (int i = 0; i < 3 << 16; ++i) worst = std::max(worst, std::abs(relative(1 + std::ldexp(i, -16))));
-    return std::log2(worst);
+/// Returns log2 of the maximum of |relative_error(x)| for x in [1, 4), the two binades that the root's table covers.
+template <class RelativeError>
+double error_bits(RelativeError&& relative_error) {
+    double max_error = 0;
+    for (int i = 0; i < 3 << 16; ++i) max_error = std::max(max_error, std::abs(relative_error(1 + std::ldexp(i, -16))));
+    return std::log2(max_error);
 }
 
-/// `value` rounded to 8 fraction bits after its leading bit, as in a table's word.
-double word(double value) {
+/// Returns `value` rounded as a word of the table of seeds: to 8 fraction bits after its leading bit.
+double table_word(double value) {
     const int exponent = std::ilogb(value);
     return std::ldexp(std::nearbyint(std::ldexp(value, 9 - exponent)), exponent - 9);
 }
 
 }  // namespace
 
-TEST_CASE("budgets are in the order of the events, and only primary hits, a count for reports, are free", "[machine]") {
+TEST_CASE("budgets are in the order of the events, and only primary hits, which reports count, take no cycles",
+          "[machine]") {
     for (int event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
         CHECK(budget_of(event).event == event);
         CHECK(has_numbers(budget_of(event)) == (event != RAYA_PRIMARY_HITS));
-        CHECK_FALSE(std::string(budget_of(event).why).empty());
+        CHECK_FALSE(std::string(budget_of(event).work).empty());
         CHECK(cycles_of_events()[static_cast<std::size_t>(event)] == cycles_of(budget_of(event)));
     }
 }
 
-// Cycles of a division: seed 3, then one each for e = 1 - b y, y + e y and a y. Of a root: seed 3, then one each for
-// x/2, y y, 3/2 - (x/2)(y y), y times that, and x y. Of a branch: 3.
+// Cycles of a division: 3 for the seed y, and one each for e = 1 - b y, y + e y and a y. Cycles of a root: 3 for the
+// seed y, and one each for x/2, y y, d = 3/2 - (x/2)(y y), y d, and x y. Cycles of a branch: 3.
 TEST_CASE("cycles of each event agree with those counted by hand", "[machine]") {
     CHECK(kDivisionCycles == 6);
     CHECK(kRootCycles == 8);
@@ -67,7 +68,7 @@ TEST_CASE("cycles of each event agree with those counted by hand", "[machine]") 
     CHECK(cycles[RAYA_HIGHLIGHTS] == 22 + 6 + 5 + 3);
 }
 
-TEST_CASE("the operations of many events amount to their cycles", "[machine]") {
+TEST_CASE("the cycles of the operations of many events equal the cycles of the events", "[machine]") {
     constexpr std::uint64_t kSeed = 5;
     SplitMix random(kSeed);
     for (int i = 0; i < 500; ++i) {
@@ -99,7 +100,7 @@ TEST_CASE("the operations of an event are those of its budget", "[machine]") {
 
 // Cycles per pixel. Filter: 3 x (4 additions, 1 multiplication), as many moves, 4 branches of 3 cycles: 42. Contrast: 4
 // sides x 3 colours x 6, one move, 16 branches: 121.
-TEST_CASE("smoothing takes the same number of cycles for each pixel of a share", "[machine]") {
+TEST_CASE("smoothing takes the same number of cycles for each pixel of a PE", "[machine]") {
     for (const std::uint64_t pixels : {0ull, 1ull, 256ull, 1ull << 40}) {
         CAPTURE(pixels);
         CHECK(filter_cycles(pixels) == 42 * pixels);
@@ -112,7 +113,7 @@ TEST_CASE("a seed of 256 words and one Newton step have the accuracy that the bu
     const auto reciprocal_seed = [](double b) {
         const int exponent = std::ilogb(b);
         const double significand = std::ldexp(b, -exponent);
-        return std::ldexp(word(1 / ((std::floor(significand * 256) + 0.5) / 256)), -exponent);
+        return std::ldexp(table_word(1 / ((std::floor(significand * 256) + 0.5) / 256)), -exponent);
     };
     const auto reciprocal = [&](double b) {
         const double y = reciprocal_seed(b);
@@ -121,7 +122,7 @@ TEST_CASE("a seed of 256 words and one Newton step have the accuracy that the bu
     // The exponent's lowest bit and 7 bits of the significand select the word: 128 words each for [1, 2) and [2, 4).
     const auto root_seed = [](double x) {
         const double step = x < 2 ? 128 : 64;
-        return word(1 / std::sqrt((std::floor(x * step) + 0.5) / step));
+        return table_word(1 / std::sqrt((std::floor(x * step) + 0.5) / step));
     };
     const auto root = [&](double x) {
         const double y = root_seed(x);
@@ -131,7 +132,8 @@ TEST_CASE("a seed of 256 words and one Newton step have the accuracy that the bu
     CHECK(error_bits([&](double b) { return b * reciprocal(b) - 1; }) < -16);
     CHECK(error_bits([&](double x) { return std::sqrt(x) * root_seed(x) - 1; }) < -8);
     CHECK(error_bits([&](double x) { return root(x) / std::sqrt(x) - 1; }) < std::log2(1.5) - 16);
-    CHECK(error_bits([&](double x) { return root(x) / std::sqrt(x) - 1; }) > -23);  // the accuracy is limited
+    // One Newton step does not reach the 23 fraction bits of fp32.
+    CHECK(error_bits([&](double x) { return root(x) / std::sqrt(x) - 1; }) > -23);
 }
 
 }  // namespace raya

@@ -34,13 +34,13 @@ TEST_CASE("the SPA's rates are those of the paper's tables", "[machine]") {
     CHECK(spa.link_words_per_s == 6e6);
     CHECK(spa.rotation_sync_ms.value() == 0.1845);  // 10 ms / 32 - 768 / 6e6 s
     CHECK(spa.host_words_per_s.value() == Approx(1.40e6).epsilon(0.005));
-    for (const char* same : {"spa1", "grande"}) {
-        CAPTURE(same);
-        CHECK(machine_named(same).cycle_ns == spa.cycle_ns);
-        CHECK(machine_named(same).link_words_per_s == spa.link_words_per_s);
-        CHECK(machine_named(same).rotation_sync_ms == spa.rotation_sync_ms);
-        CHECK(machine_named(same).host_words_per_s == spa.host_words_per_s);
-        CHECK(machine_named(same).mapping.has_slots());
+    for (const char* name : {"spa1", "grande"}) {
+        CAPTURE(name);
+        CHECK(machine_named(name).cycle_ns == spa.cycle_ns);
+        CHECK(machine_named(name).link_words_per_s == spa.link_words_per_s);
+        CHECK(machine_named(name).rotation_sync_ms == spa.rotation_sync_ms);
+        CHECK(machine_named(name).host_words_per_s == spa.host_words_per_s);
+        CHECK(machine_named(name).mapping.has_slots());
     }
     CHECK(machine_named("spa1").pes == 1u);
     CHECK(machine_named("spa1").pe_memory_bytes == spa.pe_memory_bytes);
@@ -68,7 +68,7 @@ TEST_CASE("other papers' arrays have their mapping, the SPA's number format and 
     }
 }
 
-TEST_CASE("the torus is the paper's 64 transputers, and the only torus", "[machine]") {
+TEST_CASE("the machine torus is the paper's 64 transputers, and no other machine is a torus", "[machine]") {
     const Machine& torus = machine_named("torus");  // Yoshitani & Yamazaki
     CHECK(torus.pes == 64u);
     CHECK(torus.pe_memory_bytes == 4u << 20);
@@ -91,10 +91,10 @@ TEST_CASE("every machine is found by its exact name only", "[machine]") {
         names.insert(machine.name);
     }
     CHECK(names.size() == machines().size());
-    for (const std::string wrong : {"", "SPA", "spa ", "cray"}) {
-        CAPTURE(wrong);
-        CHECK_THROWS_AS(machine_named(wrong), UserError);
-        CHECK_THROWS_WITH(machine_named(wrong),
-                          Contains("--machine " + wrong + ": no such machine") && Contains("spa, grande"));
+    for (const std::string name : {"", "SPA", "spa ", "cray"}) {
+        CAPTURE(name);
+        CHECK_THROWS_AS(machine_named(name), UserError);
+        CHECK_THROWS_WITH(machine_named(name),
+                          Contains("--machine " + name + ": no such machine") && Contains("spa, grande"));
     }
 }

@@ -17,17 +17,17 @@ namespace {
 
 constexpr std::uint64_t kSeed = 22;
 
-/// A random number of either sign. Its exponent may lie slightly outside the format's range, and its fraction is often
-/// on or next to a tie between two numbers of the format.
+/// Returns a random number of either sign. Its exponent may lie slightly outside the format's range. Often the number
+/// lies on or next to a number of the format or a tie between two such numbers.
 double random_double(SplitMix& random, const NumberFormat& format) {
     const Range range = range_of(format);
     const double units = std::floor(random.uniform(0, std::ldexp(1, format.fraction_bits)));
-    double part = random.uniform(0, 1);
-    if (random.next() % 2 == 0) part = 0.5 * static_cast<double>(random.next() % 3);       // on a number or a tie
-    if (random.next() % 4 == 0) part += std::ldexp(random.next() % 2 == 0 ? 1 : -1, -30);  // next to one
+    double remainder = random.uniform(0, 1);
+    if (random.next() % 2 == 0) remainder = 0.5 * static_cast<double>(random.next() % 3);       // on a number or a tie
+    if (random.next() % 4 == 0) remainder += std::ldexp(random.next() % 2 == 0 ? 1 : -1, -30);  // next to it
     const int exponent = static_cast<int>(std::floor(random.uniform(range.lowest - 3, range.highest + 3)));
-    const double size = std::ldexp(1 + std::ldexp(units + part, -format.fraction_bits), exponent);
-    return random.next() % 2 == 0 ? size : -size;
+    const double magnitude = std::ldexp(1 + std::ldexp(units + remainder, -format.fraction_bits), exponent);
+    return random.next() % 2 == 0 ? magnitude : -magnitude;
 }
 
 void check_rounding(const NumberFormat& format) {
@@ -68,7 +68,7 @@ TEST_CASE("numbers beyond a format's range saturate or are flushed, with their s
     CHECK_THROWS_AS(round_to_format(std::nan(""), spa), std::invalid_argument);
 }
 
-TEST_CASE("every valid format has a name that is parsed back", "[machine][number]") {
+TEST_CASE("format_name() of every valid format is parsed back to the format", "[machine][number]") {
     CHECK(parse_format("fp32") == NumberFormat{});
     CHECK(parse_format("fp32").is_fp32());
     CHECK(format_name(parse_format("fp32")) == "fp32");
@@ -85,7 +85,7 @@ TEST_CASE("every valid format has a name that is parsed back", "[machine][number
             }
 }
 
-TEST_CASE("invalid formats are refused with the valid ranges", "[machine][number]") {
+TEST_CASE("invalid formats are refused, and the message states the valid ranges", "[machine][number]") {
     for (const std::string text :
          {"",       "fp",      "fp16",   "FP32",    "fp32t",           "spa22t", "spa",   "e6",   "e6m",   "em15",
           "m15",    "e6m15tt", "e6m15x", "e6m15 ",  " e6m15",          "e4m15",  "e9m15", "e6m3", "e6m22", "e8m23",

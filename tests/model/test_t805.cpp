@@ -27,7 +27,7 @@ std::uint32_t control(std::uint32_t moves, std::uint32_t branches, std::uint32_t
 
 // The budgets count a sum of n products as n multiply-accumulates. The T805 needs n multiplications and n - 1
 // additions, or n additions if another term is added.
-TEST_CASE("the T805's operations are the budgets', split into additions and multiplications", "[machine]") {
+TEST_CASE("the T805's additions and multiplications are the multiply-accumulates of the budgets", "[machine]") {
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
         const Budget& budget = budgets()[event];
@@ -58,16 +58,16 @@ TEST_CASE("cycles of each event on a T805 agree with those counted by hand", "[m
     CHECK(cycles[RAYA_DISCARDED] == arithmetic(8 + 25, 12 + 18, 1 + 3, 1) + control(2 + 6 + 6, 1 + 4 + 1));
 }
 
-// A packet charged with 30 words takes 14 more stores. If a ray has one return of 6 words, the return takes two stores
-// less, and lights need no return.
-TEST_CASE("events that make packets take the stores of the charged words", "[machine]") {
-    const auto moved = t805_cycles(), charged = t805_cycles({30, true});
+// A packet charged with 30 words takes 14 more stores. If each ray has one return of 6 words, a return takes two stores
+// less, and the light sources need no returns.
+TEST_CASE("an event that creates a packet includes the stores of the packet's charged words", "[machine]") {
+    const auto default_cycles = t805_cycles(), charged_cycles = t805_cycles({30, true});
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
-        const bool ray =
+        const bool makes_ray =
             event == RAYA_PRIMARY || event == RAYA_REFLECTED || event == RAYA_REFRACTED || event == RAYA_SHADOW;
-        const int more = ray ? 14 * 4 : event == RAYA_SHADED ? -2 * 4 : event == RAYA_LIT ? -8 * 4 : 0;
-        CHECK(static_cast<int>(charged[event]) - static_cast<int>(moved[event]) == more);
+        const int extra_cycles = makes_ray ? 14 * 4 : event == RAYA_SHADED ? -2 * 4 : event == RAYA_LIT ? -8 * 4 : 0;
+        CHECK(static_cast<int>(charged_cycles[event]) - static_cast<int>(default_cycles[event]) == extra_cycles);
     }
     CHECK(PacketCharge{}.return_words() == RAYA_RETURN_WORDS);
 }
@@ -90,12 +90,13 @@ TEST_CASE("a link carries both directions at once until one of them ends", "[mac
     SplitMix random(kSeed);
     for (int i = 0; i < 500; ++i) {
         CAPTURE(kSeed, i);
-        const std::uint64_t there = random.next() >> (24 + random.next() % 40), back = random.next() >> (24 + i % 40);
-        const double time = t805_link_ms(there, back), more = static_cast<double>(std::max(there, back));
-        CHECK(time == t805_link_ms(back, there));
-        // The time lies between that of the larger amount at the full rate and at the shared rate.
-        CHECK(time >= more / 425 * (1 - 1e-12));
-        CHECK(time <= more / 300 * (1 + 1e-12));
+        const std::uint64_t forward = random.next() >> (24 + random.next() % 40),
+                            backward = random.next() >> (24 + i % 40);
+        const double time = t805_link_ms(forward, backward), larger = static_cast<double>(std::max(forward, backward));
+        CHECK(time == t805_link_ms(backward, forward));
+        // The time lies between the times that the larger amount takes at the full rate and at the shared rate.
+        CHECK(time >= larger / 425 * (1 - 1e-12));
+        CHECK(time <= larger / 300 * (1 + 1e-12));
     }
 }
 

@@ -1,4 +1,4 @@
-// Modelled times, compared with times computed by hand and with the paper's.
+// Modelled times, compared with times computed by hand and with times in the paper.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-/// A load of `max` cycles on one PE and 0 on the others.
+/// Returns a load of `max` cycles on one PE and 0 on the others.
 Load load_with(std::uint64_t max, std::size_t pes = 256) {
     std::vector<std::uint64_t> per_pe(pes);
     per_pe[pes / 2] = max;
@@ -24,13 +24,13 @@ ModelledTime time_of(const std::vector<Load>& phases, const Communication& commu
     return *time;
 }
 
-Communication rotations(std::uint64_t count, std::uint64_t words_of_a_pe, std::uint64_t pes = 256) {
-    return {.rotations = count, .rotation_words = count * words_of_a_pe * pes};
+Communication rotations(std::uint64_t count, std::uint64_t words_per_pe, std::uint64_t pes = 256) {
+    return {.rotations = count, .rotation_words = count * words_per_pe * pes};
 }
 
 }  // namespace
 
-// 768 words at 6 Mword/s take 0.128 ms, the synchronisation 0.1845 ms; the sum is 0.3125 ms = 10 ms / 32.
+// 768 words at 6 Mword/s take 0.128 ms, and the synchronisation takes 0.1845 ms. The sum is 0.3125 ms = 10 ms / 32.
 TEST_CASE("rotations of a column of 256 pixels take the paper's time", "[machine]") {
     CHECK(time_of({load_with(0)}, rotations(1, 768)).communication_ms == Approx(0.3125).epsilon(1e-12));
     CHECK(time_of({load_with(0)}, rotations(34, 768)).communication_ms == Approx(10.625).epsilon(1e-12));
@@ -87,10 +87,11 @@ TEST_CASE("the parts add up to the total, and the factor scales only computing",
         const std::vector<Load> phases(1 + below(3), load_with(below(100'000'000)));
         const SmoothingCycles smoothing = {below(100'000), below(100'000)};
         const double factor = random.uniform(0.5, 3);
-        const ModelledTime plain = time_of(phases, c, 1, smoothing), time = time_of(phases, c, factor, smoothing);
+        const ModelledTime unscaled = time_of(phases, c, 1, smoothing), time = time_of(phases, c, factor, smoothing);
         CHECK(time.total_ms == time.objects_ms + time.compute_ms + time.communication_ms + time.image_ms);
-        CHECK(time.compute_ms == Approx(factor * plain.compute_ms).epsilon(1e-12));
-        CHECK(time.total_ms - time.compute_ms == Approx(plain.total_ms - plain.compute_ms).epsilon(1e-9).margin(1e-9));
+        CHECK(time.compute_ms == Approx(factor * unscaled.compute_ms).epsilon(1e-12));
+        CHECK(time.total_ms - time.compute_ms ==
+              Approx(unscaled.total_ms - unscaled.compute_ms).epsilon(1e-9).margin(1e-9));
     }
 }
 

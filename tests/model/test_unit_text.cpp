@@ -7,7 +7,8 @@
 namespace raya {
 namespace {
 
-TEST_CASE("sizes are in bytes below 1 KB, else in KB: required ones rounded up, available ones down", "[unit_text]") {
+TEST_CASE("sizes are in bytes below 1 KB, else in KB; required sizes are rounded up, available sizes down",
+          "[unit_text]") {
     CHECK(required_size_text(100) == "100 bytes");
     CHECK(available_size_text(1023) == "1023 bytes");
     CHECK(required_size_text(1024) == "1.0 KB");

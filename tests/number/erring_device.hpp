@@ -1,5 +1,5 @@
-// Patches the number layer to simulate a device whose division has errors of up to 2 units in the last place and whose
-// square root of up to 3.
+// Patches the number layer to simulate a device whose division has errors of up to 2 units in the last place, and whose
+// square root has errors of up to 3 units.
 #pragma once
 #include "tests/number/number_runs.hpp"
 
@@ -10,9 +10,9 @@ namespace raya {
 inline std::vector<SourcePatch> erring_device() {
     const std::string file = "number/divide.clh", before = "// The neighbour of z whose bits are";
     const std::string functions = R"(
-static inline real with_error(real z, mask bits, int reach) {
+static inline real with_error(real z, mask bits, int max_error) {
     const count mixed = as_lanes_uint(bits) * 2654435761u;
-    const mask step = as_lanes_int((mixed >> 16) % (count)(2 * reach + 1)) - reach;
+    const mask step = as_lanes_int((mixed >> 16) % (count)(2 * max_error + 1)) - max_error;
     const mask normal = (fabs(z) > 0x1p-126f) & (fabs(z) < INFINITY);
     return choose(normal, as_lanes_real(as_lanes_int(z) + step), z);
 }

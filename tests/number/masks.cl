@@ -4,7 +4,7 @@
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void masks(__global const float* restrict operands,  // [row][2]: a, b
-           __global uint* restrict results)          // [row][9]: results for the mask a < b, in the order of the stores
+           __global uint* restrict results)          // [row][9]: results for the mask a < b, as stored below
 {
     const uint first = get_group_id(0) * RAYA_LANES;
     const real a = load_lanes(operands + first * 2, 2), b = load_lanes(operands + first * 2 + 1, 2);

@@ -9,9 +9,9 @@
 
 namespace raya {
 
-/// The range of a format's (unbiased) exponents: that of IEEE 754, without infinities, NaNs or denormals.
+/// The range of a format's (unbiased) exponents: that of normal numbers in IEEE 754.
 struct Range {
-    int lowest, highest;  // the smallest number is 2^lowest, the largest below 2^(highest + 1)
+    int lowest, highest;  // the smallest number is 2^lowest; the largest is below 2^(highest + 1)
 };
 
 inline Range range_of(const NumberFormat& format) {
@@ -82,7 +82,8 @@ class MpfrOracle {
 
     float largest(bool negative) const { return static_cast<float>(negative ? -largest_ : largest_); }
 
-    // Returns z_, which is rounded but has an unlimited exponent, saturated or flushed to the format's range.
+    // Returns z_ saturated or flushed to the format's range. z_ is rounded, but its exponent is not limited to the
+    // range.
     float fit() const {
         const bool negative = mpfr_signbit(z_) != 0;
         if (mpfr_inf_p(z_)) return largest(negative);

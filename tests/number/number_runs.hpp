@@ -9,15 +9,15 @@
 
 namespace raya {
 
-/// Returns the largest number of lanes to test: 16, or the environment variable RAYA_NUMBER_LANES, because some
-/// compilers take very long for many lanes.
+/// Returns the largest number of lanes to test: the environment variable RAYA_NUMBER_LANES, 16 by default. The variable
+/// exists because some compilers take very long for many lanes.
 inline std::uint32_t widest_lanes() {
     const char* text = std::getenv("RAYA_NUMBER_LANES");
     return text == nullptr ? 16 : static_cast<std::uint32_t>(std::stoul(text));
 }
 
-/// Returns the number of rows of random tests: the environment variable RAYA_NUMBER_CASES or else `default_cases`,
-/// rounded up to a multiple of kMaxLanes.
+/// Returns the number of rows of random operands: the environment variable RAYA_NUMBER_CASES, by default
+/// `default_cases`, rounded up to a multiple of kMaxLanes.
 inline std::size_t number_cases(std::size_t default_cases) {
     const char* text = std::getenv("RAYA_NUMBER_CASES");
     const std::size_t wanted = text == nullptr ? default_cases : std::stoul(text);
@@ -38,7 +38,8 @@ inline NumberResults run_numbers(const NumberBuild& build, const NumberRows& row
     return NumberRunner(session, build).run(rows, all);
 }
 
-/// Returns a description of the wrong results, with details of the first; empty if all results are as expected.
+/// Returns a description of the wrong results, with details of the first wrong result; an empty text if all results are
+/// as expected.
 inline std::string wrong_numbers(const NumberBuild& build, const NumberRows& rows,
                                  const std::vector<ExpectedNumbers>& expected) {
     Session session(choose_device(""));

@@ -22,7 +22,7 @@ struct HostOracle {
     float round(double value) const { return static_cast<float>(value); }
 };
 
-/// Returns the expected result of an operation. Throws std::invalid_argument for powers.
+/// Returns the expected result of an operation on a, b and c. Throws std::invalid_argument for powers.
 template <class Oracle>
 float oracle_result(Oracle& oracle, std::size_t operation, float a, float b, float c) {
     switch (operation) {
@@ -53,14 +53,14 @@ float oracle_result(Oracle& oracle, std::size_t operation, float a, float b, flo
         case kAbs:
             return std::abs(a);
         default:
-            throw std::invalid_argument("no oracle of powers");
+            throw std::invalid_argument("the oracles do not compute powers");
     }
 }
 
-/// The operations that round.
+/// The operations whose results are rounded.
 inline const std::vector<std::size_t> kRoundingOperations = {kAdd, kSub, kMul, kDiv, kSqrt, kMad, kMulAdd};
 
-/// Returns the expected results of `operations` for all rows.
+/// Returns the expected results of `operations`, computed by the oracle for all rows.
 template <class Oracle>
 std::vector<ExpectedNumbers> expected_by(Oracle& oracle, const NumberRows& rows,
                                          const std::vector<std::size_t>& operations = kRoundingOperations) {
@@ -74,7 +74,7 @@ std::vector<ExpectedNumbers> expected_by(Oracle& oracle, const NumberRows& rows,
     return expected;
 }
 
-/// As above, with MPFR, for a reduced format.
+/// Returns the expected results of `operations` in a reduced format, computed by MPFR for all rows.
 inline std::vector<ExpectedNumbers> expected_by_mpfr(const NumberFormat& format, const NumberRows& rows,
                                                      const std::vector<std::size_t>& operations = kRoundingOperations) {
     MpfrOracle oracle(format);

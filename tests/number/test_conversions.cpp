@@ -17,9 +17,9 @@ constexpr std::size_t kRows = 20'000;
 /// Appends `rows` to `all`, and the expected results of `operations` for these rows to `expected`.
 void append(NumberRows& all, std::vector<ExpectedNumbers>& expected, const NumberFormat& format, const NumberRows& rows,
             const std::vector<std::size_t>& operations) {
-    for (ExpectedNumbers& of : expected_by_mpfr(format, rows, operations)) {
-        of.first_row = all.count();
-        expected.push_back(std::move(of));
+    for (ExpectedNumbers& results : expected_by_mpfr(format, rows, operations)) {
+        results.first_row = all.count();
+        expected.push_back(std::move(results));
     }
     for (std::size_t i = 0; i < rows.count(); ++i) all.add(rows.a[i], rows.b[i], rows.c[i]);
 }
@@ -27,18 +27,18 @@ void append(NumberRows& all, std::vector<ExpectedNumbers>& expected, const Numbe
 }  // namespace
 
 TEST_CASE("exact operations are exact, conversions round once", "[number][conversions]") {
-    // `wide`: normal fp32 numbers and infinity. `whole`: integers.
-    NumberRows wide = RandomOperands({8, 23, false}, kSeed).rows(kRows), whole;
-    wide.a[0] = INFINITY;
-    wide.a[1] = -INFINITY;
-    for (std::uint32_t i = 0; i < kRows; ++i) whole.add(std::bit_cast<float>(i), 1, 1);
+    // `fp32_rows` has normal fp32 numbers and infinities, `integer_rows` integers.
+    NumberRows fp32_rows = RandomOperands({8, 23, false}, kSeed).rows(kRows), integer_rows;
+    fp32_rows.a[0] = INFINITY;
+    fp32_rows.a[1] = -INFINITY;
+    for (std::uint32_t i = 0; i < kRows; ++i) integer_rows.add(std::bit_cast<float>(i), 1, 1);
     for (const NumberFormat& format :
          {NumberFormat{5, 4, true}, NumberFormat{6, 15, false}, NumberFormat{8, 21, false}}) {
         NumberRows rows;
         std::vector<ExpectedNumbers> expected;
         append(rows, expected, format, RandomOperands(format, kSeed).rows(kRows), {kNeg, kAbs, kMax, kFloor});
-        append(rows, expected, format, wide, {kRound});
-        append(rows, expected, format, whole, {kFromIndex});
+        append(rows, expected, format, fp32_rows, {kRound});
+        append(rows, expected, format, integer_rows, {kFromIndex});
         CAPTURE(format_name(format), kSeed);
         CHECK(wrong_numbers(number_build(format), rows, expected) == "");
     }

@@ -1,4 +1,5 @@
-// Hand-written cases with known results, without an oracle: ties, carries, cancellation, the ends of the range, zeros.
+// Hand-written cases with known results, which need no oracle: ties, carries, cancellation, the ends of the range,
+// zeros.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,13 +16,13 @@ namespace {
 struct Case {
     const char* what;
     std::size_t operation;
-    double a, b, c;
-    double nearest, truncated;
+    double a, b, c;             // operands
+    double nearest, truncated;  // expected results, rounded to nearest and toward zero
 };
 
 double two_to(int exponent) { return std::ldexp(1, exponent); }
 
-/// The numbers of a format from which its cases are made.
+/// Numbers of a format from which the format's cases are made.
 struct SpecialNumbers {
     explicit SpecialNumbers(const NumberFormat& format)
         : unit(two_to(-format.fraction_bits)),
@@ -31,8 +32,8 @@ struct SpecialNumbers {
           largest(two_to(range_of(format).highest) * (2 - unit)) {}
 
     double unit;      // 2^-Y: the distance from 1 to the next number
-    double base;      // a power of two so large that fractions of `step` are in the format too
-    double step;      // the distance from base to the next number
+    double base;      // a power of two so large that fractions of `step` are in the format
+    double step;      // the distance from `base` to the next number
     double smallest;  // the smallest number above 0
     double largest;   // the largest number
 };
@@ -77,7 +78,7 @@ std::vector<Case> sums(const SpecialNumbers& f) {
 std::vector<Case> products(const SpecialNumbers& f) {
     const double above = 1 + f.unit, below = 1 - f.unit / 2, low = f.smallest, high = f.largest;
     return {
-        {"(1 + u)^2, a last bit far away", kMul, above, above, 0, 1 + 2 * f.unit, 1 + 2 * f.unit},
+        {"(1 + u)^2, whose last bit is far below the rounding", kMul, above, above, 0, 1 + 2 * f.unit, 1 + 2 * f.unit},
         {"(1 - u/2)^2", kMul, below, below, 0, 1 - f.unit, 1 - f.unit},
         {"(1 + u)(1 - u/2): just below a tie between 1 and 1 + u", kMul, above, below, 0, 1, 1},
         {"1.5 (1 + u): a tie, upwards to even", kMul, 1.5, above, 0, 1.5 + 2 * f.unit, 1.5 + f.unit},
@@ -90,9 +91,9 @@ std::vector<Case> products(const SpecialNumbers& f) {
         {"underflow is flushed with its sign", kMul, -low, low, 0, -0.0, -0.0},
         {"half of the smallest is flushed", kMul, low, 0.5, 0, 0.0, 0.0},
         {"less than half a step above the smallest", kMul, low * above, below, 0, low, low},
-        {"just below the smallest: flushed, not rounded to it", kMul, low, below, 0, 0.0, 0.0},
-        {"a far-away bit below the smallest: rounds to it, or is flushed", kMul, -low * above, 1 - f.unit, 0, -low,
-         -0.0},
+        {"just below the smallest: flushed, not rounded to the smallest", kMul, low, below, 0, 0.0, 0.0},
+        {"far less than a unit below the smallest: rounded to the smallest, or flushed", kMul, -low * above, 1 - f.unit,
+         0, -low, -0.0},
     };
 }
 
@@ -101,7 +102,7 @@ std::vector<Case> quotients(const SpecialNumbers& f) {
     const double above = 1 + f.unit, below = 1 - f.unit / 2, low = f.smallest, high = f.largest;
     return {
         {"x / 0 saturates", kDiv, 1, 0.0, 0, high, high},
-        {"x / -0 saturates with the sign of both", kDiv, 1, -0.0, 0, -high, -high},
+        {"x / -0 saturates with the product of both signs", kDiv, 1, -0.0, 0, -high, -high},
         {"-x / 0", kDiv, -low, 0.0, 0, -high, -high},
         {"0 / 0", kDiv, 0.0, 0.0, 0, high, high},
         {"-0 / 0", kDiv, -0.0, 0.0, 0, -high, -high},
@@ -153,21 +154,22 @@ std::vector<Case> accumulations(const SpecialNumbers& f) {
 
 void check_cases(const NumberFormat& format, const std::vector<Case>& cases) {
     NumberRows rows;
-    for (const Case& one : cases) {
-        for (const double value : {one.a, one.b, one.c, format.truncates ? one.truncated : one.nearest}) {
-            INFO(format_name(format) << ": " << one.what << " uses " << value);
+    for (const Case& test_case : cases) {
+        for (const double value :
+             {test_case.a, test_case.b, test_case.c, format.truncates ? test_case.truncated : test_case.nearest}) {
+            INFO(format_name(format) << ": " << test_case.what << " uses " << value);
             REQUIRE(static_cast<double>(round_to_format(value, format)) == value);
         }
-        rows.add(static_cast<float>(one.a), static_cast<float>(one.b), static_cast<float>(one.c));
+        rows.add(static_cast<float>(test_case.a), static_cast<float>(test_case.b), static_cast<float>(test_case.c));
     }
     rows.pad();
     const NumberResults results = run_numbers(number_build(format), rows, false);
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        const Case& one = cases[i];
-        const auto expected = static_cast<float>(format.truncates ? one.truncated : one.nearest);
-        const auto found = std::bit_cast<float>(results[one.operation][i]);
-        CAPTURE(format_name(format), one.what, kNumberOperations[one.operation].name, one.a, one.b, one.c, found,
-                expected);
+        const Case& test_case = cases[i];
+        const auto expected = static_cast<float>(format.truncates ? test_case.truncated : test_case.nearest);
+        const auto found = std::bit_cast<float>(results[test_case.operation][i]);
+        CAPTURE(format_name(format), test_case.what, kNumberOperations[test_case.operation].name, test_case.a,
+                test_case.b, test_case.c, found, expected);
         CHECK(std::bit_cast<std::uint32_t>(found) == std::bit_cast<std::uint32_t>(expected));
     }
 }
@@ -178,13 +180,13 @@ TEST_CASE("ties, carries, cancellation, ends of the range and zeros", "[number][
     for (const NumberFormat& format :
          {NumberFormat{5, 4}, NumberFormat{6, 15}, NumberFormat{7, 12}, NumberFormat{8, 21}})
         for (const bool truncates : {false, true}) {
-            NumberFormat both = format;
-            both.truncates = truncates;
-            const SpecialNumbers landmarks(both);
-            std::vector<Case> cases = sums(landmarks);
-            for (const auto& more : {products(landmarks), quotients(landmarks), accumulations(landmarks)})
+            NumberFormat tested_format = format;
+            tested_format.truncates = truncates;
+            const SpecialNumbers special(tested_format);
+            std::vector<Case> cases = sums(special);
+            for (const auto& more : {products(special), quotients(special), accumulations(special)})
                 cases.insert(cases.end(), more.begin(), more.end());
-            check_cases(both, cases);
+            check_cases(tested_format, cases);
         }
 }
 

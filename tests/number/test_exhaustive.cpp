@@ -1,4 +1,4 @@
-// Tests all operations on every pair of numbers of the smallest formats, e5m4 and e5m4t.
+// Tests all rounding operations on every pair of numbers of the smallest formats, e5m4 and e5m4t.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -27,7 +27,7 @@ std::vector<float> all_numbers(const NumberFormat& format) {
 
 }  // namespace
 
-TEST_CASE("operations are exact on every pair of numbers of e5m4", "[number][exhaustive]") {
+TEST_CASE("operations round correctly on every pair of numbers of e5m4", "[number][exhaustive]") {
     constexpr std::uint64_t kSeed = 54;
     for (const bool truncates : {false, true}) {
         const NumberFormat format = {5, 4, truncates};

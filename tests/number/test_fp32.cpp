@@ -1,4 +1,4 @@
-// In fp32 the number layer is binary32 of IEEE 754. The oracle is the host's arithmetic.
+// In fp32 the number layer gives the results of IEEE 754 binary32. The oracle is the host's arithmetic.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -33,7 +33,8 @@ TEST_CASE("fp32 gives the bits of IEEE 754 over its whole range, in all variants
         }
 }
 
-TEST_CASE("refined fp32 gives the same bits on a device that errs", "[number][fp32][refined]") {
+TEST_CASE("refined fp32 gives the bits of IEEE 754 on a device with inexact division and square root",
+          "[number][fp32][refined]") {
     check_fp32(refined_build(kFp32, 1));
     check_fp32(refined_build(kFp32));
 }

@@ -26,8 +26,8 @@ float random_float(SplitMix& random) {
 TEST_CASE("masks choose, count and reduce correctly for every combination of lanes", "[number]") {
     constexpr std::uint64_t kSeed = 62;
     constexpr std::size_t kColumns = 9;
-    // Groups of 16 rows with the masks: no lane true, all true, exactly one true, exactly one false, and random ones. A
-    // lane is true if a < b.
+    // Groups of 16 rows with these masks: no lane true, all lanes true, exactly one lane true, exactly one lane false,
+    // and random masks. A lane is true if a < b.
     SplitMix random(kSeed);
     std::vector<bool> truth(16, false);
     truth.insert(truth.end(), 16, true);
@@ -42,10 +42,11 @@ TEST_CASE("masks choose, count and reduce correctly for every combination of lan
     }
     for (const Variant& variant : variants()) {
         KernelRunner runner("tests/number/masks.cl", variant);
-        const auto from = runner.filled("operands", operands);
-        auto to = runner.poisoned("results", truth.size() * kColumns);
-        runner.run_rows<const Buffer<float>&, Buffer<std::uint32_t>&>("masks", truth.size(), from, to);
-        const Words results = runner.read(to);
+        const auto operand_buffer = runner.filled("operands", operands);
+        auto result_buffer = runner.poisoned("results", truth.size() * kColumns);
+        runner.run_rows<const Buffer<float>&, Buffer<std::uint32_t>&>("masks", truth.size(), operand_buffer,
+                                                                      result_buffer);
+        const Words results = runner.read(result_buffer);
         for (std::uint32_t i = 0; i < truth.size(); ++i) {
             const auto group = truth.begin() + i / variant.lanes * variant.lanes;
             const auto any = [&](bool value) {

@@ -1,5 +1,5 @@
 // Mutation tests of the number layer: each fault that is injected into a copy of the layer makes the comparison with
-// the oracle fail for the faulty operation.
+// the oracle fail for the operation that has the fault.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -16,11 +16,11 @@ constexpr std::uint64_t kMutationSeed = 1993;
 constexpr std::size_t kMutationRows = 20'000;
 
 struct Mutation {
-    const char* what;
+    const char* fault;
     SourcePatch patch;
     NumberFormat format;
-    std::size_t operation;  // the operation that must fail
-    bool refines = false;
+    std::size_t operation;  // the operation whose results must be wrong
+    bool refines = false;   // true: the build refines the results of a device with inexact division
 };
 
 const std::vector<Mutation>& mutations() {
@@ -49,7 +49,10 @@ const std::vector<Mutation>& mutations() {
          {"number/reduced.clh", "num_fit(z, fma(-z, z, x))", "num_fit(z, num_all(0.0f))"},
          spa,
          kSqrt},
-        {"tiny product ignored", {"number/scaled.clh", "choose(hint, sign * 0x1p-50f, scaled)", "scaled"}, wide, kMad},
+        {"tiny product ignored",
+         {"number/scaled.clh", "choose(only_sign, sign * 0x1p-50f, scaled)", "scaled"},
+         wide,
+         kMad},
         {"a product above the range not scaled",
          {"number/scaled.clh", "fabs(a * b) > 0x1p120f", "fabs(a * b) > INFINITY"},
          wide,
@@ -72,7 +75,7 @@ NumberBuild build_of(const Mutation& mutation) {
 
 TEST_CASE("faults injected into the number layer are detected", "[number][mutations]") {
     for (const Mutation& mutation : mutations()) {
-        CAPTURE(mutation.what, mutation.patch.file, kMutationSeed);
+        CAPTURE(mutation.fault, mutation.patch.file, kMutationSeed);
         const NumberRows rows = RandomOperands(mutation.format, kMutationSeed).rows(kMutationRows);
         NumberBuild build = build_of(mutation);
         build.sources.patches.push_back(mutation.patch);

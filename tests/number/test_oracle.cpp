@@ -1,5 +1,5 @@
-// Compares the operations of reduced formats with MPFR on random operands, bit for bit. With RAYA_NUMBER_CASES=1000000
-// the test uses that many rows per format, more formats and all numbers of lanes.
+// Compares the results of operations in reduced formats with those of MPFR, bit for bit, on random operands. With
+// RAYA_NUMBER_CASES=1000000 the test uses that many rows per format, more formats and all numbers of lanes.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -19,7 +19,7 @@ struct Size {
 };
 
 /// Returns formats with Y = 4 .. 21 and every X, in both roundings. They include the smallest and the largest format,
-/// the SPA's format, and formats with X = 8, with Y > 15 and with both, for which the layer has different code.
+/// the SPA's format, and formats with X = 8, with Y > 15 and with both, because the layer's code for these differs.
 std::vector<NumberFormat> tested_formats() {
     std::vector<Size> sizes = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
     if (is_long_run(kDefaultRows)) sizes.insert(sizes.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
@@ -30,8 +30,8 @@ std::vector<NumberFormat> tested_formats() {
     return formats;
 }
 
-/// Returns all numbers of lanes in a long run; else the largest number and, for the most important formats, also one
-/// lane.
+/// Returns the numbers of lanes to test: in a long run all, else the largest number and, for the most important
+/// formats, also one lane.
 std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
     if (is_long_run(kDefaultRows)) return {1, 4, 8, 16};
     if (format == NumberFormat{6, 15, false} || format == NumberFormat{8, 21, false}) return {1, widest_lanes()};
@@ -52,7 +52,8 @@ TEST_CASE("every operation rounds the exact value once, as MPFR does", "[number]
     }
 }
 
-TEST_CASE("refined division and square root give the same bits on a device that errs", "[number][refined]") {
+TEST_CASE("refined division and square root are correctly rounded on a device that computes them inexactly",
+          "[number][refined]") {
     for (const NumberFormat& format :
          {NumberFormat{6, 15, false}, NumberFormat{8, 21, false}, NumberFormat{5, 12, true}})
         for (const std::uint32_t lanes : {1u, widest_lanes()}) {

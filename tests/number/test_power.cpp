@@ -33,8 +33,8 @@ NumberRows power_rows(const NumberFormat& format) {
     for (const float n : {0.0F, 1.0F, 8.0F}) rows.add(1, n, -n);
     for (const float x : {0.5F, 2.0F, in_format(smallest)}) rows.add(x, 0, -0.5F);
     while (rows.count() < kPowerRows) {
-        const double crowded = 1 - std::exp2(random.uniform(-format.fraction_bits - 1, 0));
-        const double x = rows.count() % 3 == 0 ? crowded : std::exp2(random.uniform(range_of(format).lowest, 2));
+        const double below_one = 1 - std::exp2(random.uniform(-format.fraction_bits - 1, 0));
+        const double x = rows.count() % 3 == 0 ? below_one : std::exp2(random.uniform(range_of(format).lowest, 2));
         const double n = std::exp2(random.uniform(-3, 10));
         const double y = random.uniform(rows.count() % 2 == 0 ? -30 : -126, 0);
         rows.add(in_format(std::max(x, smallest)), in_format(n), in_format(y));
@@ -49,13 +49,13 @@ NumberRows fp32_rows() {
     for (int i = 1; i <= 500; ++i) xs.push_back(static_cast<float>(i) / 500);
     for (int i = 0; i <= 400; ++i) xs.push_back(static_cast<float>(1 - std::exp2(-24 + 0.06 * i)));  // many near 1
     for (int i = 0; i <= 400; ++i) xs.push_back(static_cast<float>(std::exp2(-0.3 * i)));
-    const std::vector<float> ns = {0, 0.5F, 1, 3.08F, 11, 101.148F, 1000, 100'000};
+    const std::vector<float> exponents = {0, 0.5F, 1, 3.08F, 11, 101.148F, 1000, 100'000};
     NumberRows rows;
     for (const float x : xs)
-        for (const float n : ns)
+        for (const float n : exponents)
             rows.add(x, n,
                      static_cast<float>(-126.0 * static_cast<double>(rows.count()) /
-                                        static_cast<double>(xs.size() * ns.size())));
+                                        static_cast<double>(xs.size() * exponents.size())));
     rows.pad();
     return rows;
 }
@@ -69,7 +69,7 @@ class PowerBounds {
 
     double log(double value) const { return (gamma(7) + kLogSeries) * std::abs(value) + 6 * flush_; }
     double exp(double y) const { return (gamma(5) + kExpSeries) * std::exp2(y) + 2 * flush_; }
-    /// Returns the error bound of n log2(x): that of log2(x), as above, and that of the rounded product.
+    /// Returns the error bound of n log2(x), which includes the errors of log2(x) and of the rounded product.
     double exponent(double n, double log_x) const {
         return (gamma(8) + kLogSeries) * std::abs(n * log_x) + (7 * n + 1) * flush_;
     }
@@ -95,11 +95,11 @@ void check_row(const PowerBounds& bounds, double x, double n, double y, const Nu
     CAPTURE(x, n, y, value(0), value(1), value(2));
     CHECK(std::abs(value(1) - log_x) <= bounds.log(log_x));
     CHECK(std::abs(value(2) - std::exp2(y)) <= bounds.exp(y));
-    const double off = bounds.exponent(n, std::min(log_x, 0.0));
-    const double min_value = std::exp2(exponent - off), max_value = std::exp2(exponent + off);
-    CHECK(value(0) <= max_value + bounds.exp(exponent + off));
-    if (exponent - off > -30) CHECK(value(0) >= min_value - bounds.exp(exponent - off));
-    if (exponent + off < -30) CHECK(value(0) == 0);  // below 2^-30 a power is 0
+    const double y_error = bounds.exponent(n, std::min(log_x, 0.0));
+    const double min_value = std::exp2(exponent - y_error), max_value = std::exp2(exponent + y_error);
+    CHECK(value(0) <= max_value + bounds.exp(exponent + y_error));
+    if (exponent - y_error > -30) CHECK(value(0) >= min_value - bounds.exp(exponent - y_error));
+    if (exponent + y_error < -30) CHECK(value(0) == 0);  // below 2^-30 a power is 0
     if (x >= 1 || n == 0) CHECK(value(0) == 1);
     if (x == 1) CHECK(value(1) == 0);
     if (y == 0) CHECK(value(2) == 1);

@@ -1,8 +1,8 @@
-// Tests a device for known defects of OpenCL implementations. Runs a minimal kernel for each defect and compares the
-// results with the right ones and with the known wrong ones.
+// Tests a device for known defects of OpenCL implementations. Runs a minimal kernel for each defect, and compares the
+// result with the correct result and with known wrong results.
 // Usage: defects [DEVICE]
-//   Prints a line per kernel of tests/portability: right, an expected failure with its reason, or WRONG. An expected
-//   failure that no longer occurs is also reported.
+//   Prints a line for each run of a kernel of tests/portability: right, an expected failure with its reason, or WRONG.
+//   The line also states if an expected failure no longer occurs.
 // Each kernel runs in its own process, because some kernels crash the compiler.
 // Exit code: 0 if all results are right or expected, 1 if one is WRONG.
 #include <fmt/core.h>
@@ -24,23 +24,23 @@ namespace {
 using namespace raya;
 
 struct KnownFailure {
-    std::string platform, device;  // substrings of their names; empty: any
-    cl_uint wrong = 0;             // the result of each work-item on this device
-    bool crashes = false;          // a signal ends the process, without a result
+    std::string platform, device;  // substrings of the names of platform and device; empty: any
+    cl_uint wrong = 0;             // the wrong result of each work-item
+    bool crashes = false;          // true: a signal ends the process, without a result
     std::string reason;
 };
 
-// The argument of struct_argument.cl.
+// The structure argument of struct_argument.cl.
 struct Sides {
     std::array<cl_uint, 3> side;
 };
 
 struct Defect {
-    std::string name;  // of the .cl file, without ".cl"
-    cl_uint n = 0;
+    std::string name;  // name of the .cl file, without ".cl"
+    cl_uint n = 0;     // argument of the kernel
     std::size_t groups = 1, group_size = 1;
     cl_uint right = 0;  // the correct result of each work-item
-    std::vector<KnownFailure> known;
+    std::vector<KnownFailure> known_failures;
 };
 
 const std::vector<Defect> kDefects = {
@@ -68,13 +68,14 @@ const std::vector<Defect> kDefects = {
        "Mesa's llvmpipe crashes on an array inside a structure that is a kernel's argument"}}},
 };
 
-cl_uint answer(const Defect& defect, Session& session, std::vector<cl_uint>& all) {
+// Runs the kernel. Returns the first wrong result, or the correct one.
+cl_uint run_kernel(const Defect& defect, Session& session) {
     std::ifstream file(RAYA_SOURCE_DIR "/tests/portability/" + defect.name + ".cl");
     const std::string source{std::istreambuf_iterator<char>(file), {}};
     Program program = session.build(defect.name + ".cl", source, {"-cl-std=CL1.2"});
-    all.assign(defect.groups * defect.group_size, 0);
-    Buffer<cl_uint> out = session.buffer<cl_uint>("out", all.size());
-    session.write("clear", out, all);
+    std::vector<cl_uint> results(defect.groups * defect.group_size, 0);
+    Buffer<cl_uint> out = session.buffer<cl_uint>("out", results.size());
+    session.write("clear", out, results);
     if (defect.name == "struct_argument") {
         auto kernel = program.kernel<Buffer<cl_uint>&, Sides>("defect");
         session.launch("defect", kernel, defect.groups, defect.group_size, out, Sides{{10, 20, 30}});
@@ -82,8 +83,8 @@ cl_uint answer(const Defect& defect, Session& session, std::vector<cl_uint>& all
         auto kernel = program.kernel<Buffer<cl_uint>&, cl_uint>("defect");
         session.launch("defect", kernel, defect.groups, defect.group_size, out, defect.n);
     }
-    session.read("read", out, all);
-    for (const cl_uint value : all)
+    session.read("read", out, results);
+    for (const cl_uint value : results)
         if (value != defect.right) return value;
     return defect.right;
 }
@@ -92,36 +93,36 @@ std::string text_of(const Defect& defect) {
     return fmt::format("{}, n = {}, {} x {} work-items", defect.name, defect.n, defect.groups, defect.group_size);
 }
 
-bool is_of(const KnownFailure& known, const DeviceInfo& device) {
+// Returns true if the failure is known for this device.
+bool occurs_on(const KnownFailure& known, const DeviceInfo& device) {
     return device.platform.find(known.platform) != std::string::npos &&
            device.name.find(known.device) != std::string::npos;
 }
 
 /// Prints the output line for a defect; returns true if the result is right or an expected failure.
 bool report(const Defect& defect, Session& session) {
-    std::vector<cl_uint> all;
-    const cl_uint got = answer(defect, session, all);
-    const std::string what = text_of(defect);
-    for (const KnownFailure& known : defect.known) {
-        if (!is_of(known, session.device())) continue;
+    const cl_uint got = run_kernel(defect, session);
+    const std::string description = text_of(defect);
+    for (const KnownFailure& known : defect.known_failures) {
+        if (!occurs_on(known, session.device())) continue;
         if (got == defect.right) {
-            fmt::print("{}: right, {} was expected: {}\n", what,
+            fmt::print("{}: right, {} was expected: {}\n", description,
                        known.crashes ? "a crash" : std::to_string(known.wrong), known.reason);
             return true;
         }
         if (known.crashes || got != known.wrong) break;
-        fmt::print("{}: expected failure, {} instead of {}: {}\n", what, got, defect.right, known.reason);
+        fmt::print("{}: expected failure, {} instead of {}: {}\n", description, got, defect.right, known.reason);
         return true;
     }
-    fmt::print("{}: {}\n", what,
+    fmt::print("{}: {}\n", description,
                got == defect.right ? "right" : fmt::format("WRONG: {} instead of {}", got, defect.right));
     return got == defect.right;
 }
 
-/// Prints the output line for a defect whose process was ended by a signal.
+/// Prints the output line for a defect whose process a signal has ended; returns true if the crash is expected.
 bool report_crash(const Defect& defect, int signal, const DeviceInfo& device) {
-    for (const KnownFailure& known : defect.known) {
-        if (!known.crashes || !is_of(known, device)) continue;
+    for (const KnownFailure& known : defect.known_failures) {
+        if (!known.crashes || !occurs_on(known, device)) continue;
         fmt::print("{}: expected failure, signal {} instead of {}: {}\n", text_of(defect), signal, defect.right,
                    known.reason);
         return true;
@@ -150,18 +151,18 @@ int run_in_child(const std::function<int()>& body) {
     return status;
 }
 
-bool is_good(int status) { return WIFEXITED(status) && WEXITSTATUS(status) == 0; }
+bool succeeded(int status) { return WIFEXITED(status) && WEXITSTATUS(status) == 0; }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     const std::string device = argc > 1 ? argv[1] : "";
-    bool good = is_good(run_in_child([&] {
+    bool all_right = succeeded(run_in_child([&] {
         const DeviceInfo info = device_info(choose_device(device));
         fmt::print("{}, {}, driver {}\n", info.platform, info.name, info.driver);
         return 0;
     }));
-    if (!good) return 1;
+    if (!all_right) return 1;
     for (const Defect& defect : kDefects) {
         int status = run_in_child([&] {
             Session session(choose_device(device));
@@ -171,7 +172,7 @@ int main(int argc, char** argv) {
             status = run_in_child([&, signal = WTERMSIG(status)] {
                 return report_crash(defect, signal, device_info(choose_device(device))) ? 0 : 1;
             });
-        good = is_good(status) && good;
+        all_right = succeeded(status) && all_right;
     }
-    return good ? 0 : 1;
+    return all_right ? 0 : 1;
 }

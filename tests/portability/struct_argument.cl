@@ -1,6 +1,6 @@
-// Reads an array inside a structure argument at an index that the compiler does not know.
+// Reads an element of an array inside a structure argument. The compiler does not know the element's index.
 //   out    one number per work-item: 10, 20 or 30; expected: 20 for work-item 0
-// raya's kernels read structures from buffers instead of arguments, because a structure argument crashes a compiler.
+// raya's kernels read structures from buffers, because a compiler with this defect crashes on structure arguments.
 typedef struct {
     uint side[3];
 } sides;

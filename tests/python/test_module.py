@@ -30,7 +30,7 @@ def small(centre):
     return raya.render(centre, cost=True, **SMALL)
 
 
-def test_image_of_the_readme(centre):
+def test_image_has_the_hash_in_the_readme(centre):
     result = raya.render(centre)
     assert result.hash.startswith("474a3843")
     assert result.image.shape == (256, 256, 3) and result.image.dtype == np.float32
@@ -47,11 +47,11 @@ def test_render_agrees_with_the_program(centre, tmp_path):
     report = tmp_path / "r.json"
     arguments = ["--size", "32", "--pes", "32", "--offset", "4", "--report", str(report), "-o", str(tmp_path / "i.png")]
     subprocess.run([raya.program(), "render", str(SCENES / "centre.nff"), "-q", *arguments], check=True)
-    theirs, ours = json.loads(report.read_text()), raya.render(centre, **SMALL).report
-    assert ours.keys() == theirs.keys()
-    for member in ours.keys() - {"scene", "image", "device", "measured"}:
-        assert ours[member] == theirs[member], member
-    assert ours["image"]["hash"] == theirs["image"]["hash"]
+    program_report, module_report = json.loads(report.read_text()), raya.render(centre, **SMALL).report
+    assert module_report.keys() == program_report.keys()
+    for member in module_report.keys() - {"scene", "image", "device", "measured"}:
+        assert module_report[member] == program_report[member], member
+    assert module_report["image"]["hash"] == program_report["image"]["hash"]
 
 
 def test_loads_are_sums_of_costs(small):
@@ -64,7 +64,8 @@ def test_loads_are_sums_of_costs(small):
 
 
 def test_owners_of_the_cyclic_mapping():
-    """Kohata & Ito: the slot of a pixel is (column + p row) mod width; the cyclic fold assigns slots to PEs in turn."""
+    """Kohata & Ito: the slot of a pixel is (column + p row) mod width; the cyclic fold assigns slots to PEs in turn. The test
+    accepts either sign of p."""
     random = np.random.default_rng(SEED)
     for _ in range(50):
         width, height = random.integers(2, 60, 2)
@@ -89,9 +90,9 @@ def test_imbalances_agree_with_loads():
 
 
 def test_dynamic_schedule_assigns_every_pixel_once(small):
-    run = raya.schedule(small.cost, "dynamic:16", pes=8)
-    assert run["loads"].sum() == small.cost.sum() and len(run["loads"]) == 8
-    assert run["makespan"] >= run["loads"].max() and run["requests"] >= 32 * 32 // 16
+    schedule = raya.schedule(small.cost, "dynamic:16", pes=8)
+    assert schedule["loads"].sum() == small.cost.sum() and len(schedule["loads"]) == 8
+    assert schedule["makespan"] >= schedule["loads"].max() and schedule["requests"] >= 32 * 32 // 16
 
 
 def test_torus_packets_loads_and_supersteps_agree(centre):
@@ -106,7 +107,7 @@ def test_torus_packets_loads_and_supersteps_agree(centre):
     assert raya.render(centre, size=16, machine="grande", format=result.report["machine"]["format"]).hash == result.hash
 
 
-def test_pixels_do_not_depend_on_machine_format_alone(centre):
+def test_pixels_do_not_depend_on_the_accelerator_but_on_the_format(centre):
     hashes = {raya.render(centre, machine="grande", accel=accel, format="fp32", size=24).hash
               for accel in ("none", "grid", "bvh")}
     assert len(hashes) == 1
@@ -145,9 +146,9 @@ def test_bad_scene_names_file_and_line(tmp_path):
 
 def test_scene_survives_text_file_and_pickle(centre, tmp_path):
     centre.save(tmp_path / "copy.nff")
-    again = raya.load(tmp_path / "copy.nff")
-    assert again.nff == centre.nff == pickle.loads(pickle.dumps(centre)).nff == raya.parse(centre.nff).nff
-    assert raya.render(again, **SMALL).hash == raya.render(centre, **SMALL).hash
+    reloaded = raya.load(tmp_path / "copy.nff")
+    assert reloaded.nff == centre.nff == pickle.loads(pickle.dumps(centre)).nff == raya.parse(centre.nff).nff
+    assert raya.render(reloaded, **SMALL).hash == raya.render(centre, **SMALL).hash
 
 
 def test_arrays_outlive_their_result(centre):
@@ -167,7 +168,7 @@ def test_session_can_be_reused(centre):
 
 def test_progress_is_reported_and_the_gil_is_released(centre):
     """Another Python thread can run while the engine renders."""
-    shares, counted, done = [], [0], threading.Event()
+    fractions, counted, done = [], [0], threading.Event()
 
     def count():
         while not done.is_set():
@@ -176,20 +177,20 @@ def test_progress_is_reported_and_the_gil_is_released(centre):
 
     thread = threading.Thread(target=count)
     thread.start()
-    raya.render(centre, size=256, progress=shares.append)
+    raya.render(centre, size=256, progress=fractions.append)
     done.set()
     thread.join()
-    assert shares == sorted(shares) and shares and 0 <= shares[0] and shares[-1] <= 1
+    assert fractions == sorted(fractions) and fractions and 0 <= fractions[0] and fractions[-1] <= 1
     assert counted[0] > 3
 
 
-def test_import_changes_neither_signals_nor_environment_and_render_no_signals():
+def test_import_preserves_signals_and_environment_and_render_preserves_signals():
     script = """
 import ctypes, signal
 signal.signal(signal.SIGUSR1, lambda *_: None)
 def state():
     lines = [line.split() for line in open('/proc/self/status') if line[:3] == 'Sig' and line[3] != 'Q']
-    signals = {name: int(bits, 16) & (2**31 - 1) for name, bits in lines}  # higher ones belong to the C library
+    signals = {name: int(bits, 16) & (2**31 - 1) for name, bits in lines}  # the C library uses the higher signals
     variables, environ = [], ctypes.POINTER(ctypes.c_char_p).in_dll(ctypes.CDLL(None), 'environ')
     while environ[len(variables)]:
         variables.append(environ[len(variables)])
@@ -205,7 +206,7 @@ assert state()[0] == before[0], ('render', before, state())
 
 
 def test_ctrl_c_interrupts(centre):
-    def interrupt(share):
+    def interrupt(fraction):
         os.kill(os.getpid(), signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt):
@@ -218,7 +219,7 @@ def test_skipped_parts_of_a_scene_give_warnings(tmp_path):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         raya.load(tmp_path / "odd.nff")
-    assert [str(one.message).split(":", 1)[1] for one in caught] == ["57: entity 'tex' of another dialect, skipped"]
+    assert [str(warning.message).split(":", 1)[1] for warning in caught] == ["57: entity 'tex' of another dialect, skipped"]
     with pytest.raises(ValueError, match="unknown entity 'tex'"):
         raya.load(tmp_path / "odd.nff", strict=True)
 

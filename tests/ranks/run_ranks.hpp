@@ -1,5 +1,5 @@
-// Runs raya under mpirun with one process per rank, and collects the output, the exit code and the processes that did
-// not end.
+// Runs raya under mpirun with one process per rank. Collects the output, the exit code and the number of processes that
+// do not end.
 #pragma once
 #include <catch2/catch.hpp>
 #include <functional>
@@ -11,19 +11,20 @@
 
 namespace raya {
 
-/// An MPI library: its launcher, and a raya program with a module for it.
+/// An installed MPI library.
 struct Mpi {
-    std::string launcher, program;
+    std::string launcher;  // path of its mpirun; empty: not installed
+    std::string program;   // path of a raya program whose raya_mpi.so is built with this library
 };
 
-/// Returns the MPI library that raya was built with and the other one, if installed. If none is installed, prints a
-/// warning and returns an empty list, so that the test passes.
+/// Returns those of Open MPI and MPICH that are installed, first the library with which RAYA_PROGRAM was built. If
+/// neither is installed, prints a warning and returns an empty list, so that the test passes.
 inline std::vector<Mpi> installed_mpis() {
-    std::vector<Mpi> all;
+    std::vector<Mpi> installed;
     for (const Mpi& mpi : {Mpi{RAYA_MPIRUN_OWN, RAYA_PROGRAM}, Mpi{RAYA_MPIRUN_OTHER, RAYA_OTHER_MPI "/raya"}})
-        if (!mpi.launcher.empty()) all.push_back(mpi);
-    if (all.empty()) WARN("no MPI found: tests of ranks as processes are skipped");
-    return all;
+        if (!mpi.launcher.empty()) installed.push_back(mpi);
+    if (installed.empty()) WARN("no MPI library is installed: the tests that run raya under mpirun are skipped");
+    return installed;
 }
 
 /// Fault injection: one process receives a signal `after_ms` ms after all ranks have started.
@@ -33,34 +34,35 @@ struct RanksFault {
     int after_ms = 700;
 };
 
+/// Result of a run under mpirun.
 struct RanksOutcome : RunOutcome {
-    double seconds = 0;        // from the signal (or the start) to the end of the last process
-    std::size_t left = 0;      // processes that did not end
-    std::size_t messages = 0;  // lines on stderr that start with "raya:"
+    double seconds = 0;         // from the signal, or without a signal from the start, to the end of the last process
+    std::size_t remaining = 0;  // number of processes that did not end by themselves
+    std::size_t messages = 0;   // number of lines on stderr that start with "raya:"
 };
 
 namespace run_ranks_detail {
 
 using Clock = std::chrono::steady_clock;
-inline constexpr const char* kMark = "RAYA_TEST_RUN=";
+inline constexpr const char* kRunMark = "RAYA_TEST_RUN=";
 
 struct RankProcess {
     pid_t process = 0;
     std::uint32_t rank = 0;
 };
 
-/// The value of a variable in the text of /proc/PID/environ; empty if the variable is not set.
+/// Returns the value of a variable in `environment`, the text of /proc/PID/environ; empty if the variable is not set.
 inline std::string variable_of(const std::string& environment, const std::string& name) {
-    const std::size_t at = ('\0' + environment).find('\0' + name + "=");
-    return at == environment.npos ? "" : std::string(environment.c_str() + at + name.size() + 1);
+    const std::size_t position = ('\0' + environment).find('\0' + name + "=");
+    return position == environment.npos ? "" : std::string(environment.c_str() + position + name.size() + 1);
 }
 
-/// Live processes whose environment contains `mark`, with their environments. Zombies are omitted, because their
-/// environment is empty.
+/// Returns the live processes whose environment contains `mark`, with their environments. Zombies are omitted, because
+/// their environment is empty.
 inline std::vector<std::pair<pid_t, std::string>> marked_processes(const std::string& mark) {
     std::vector<std::pair<pid_t, std::string>> found;
-    std::error_code gone;
-    for (const auto& entry : std::filesystem::directory_iterator("/proc", gone)) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
         const std::string name = entry.path().filename();
         if (name.find_first_not_of("0123456789") != name.npos) continue;
         std::ifstream file(entry.path() / "environ", std::ios::binary);
@@ -73,9 +75,9 @@ inline std::vector<std::pair<pid_t, std::string>> marked_processes(const std::st
 inline std::vector<RankProcess> rank_processes(const std::string& mark, const std::string& program) {
     std::vector<RankProcess> ranks;
     for (const auto& [process, environment] : marked_processes(mark)) {
-        std::error_code gone;
-        const auto exe = std::filesystem::read_symlink("/proc/" + std::to_string(process) + "/exe", gone);
-        if (gone || exe != std::filesystem::canonical(program)) continue;
+        std::error_code error;
+        const auto exe = std::filesystem::read_symlink("/proc/" + std::to_string(process) + "/exe", error);
+        if (error || exe != std::filesystem::canonical(program)) continue;
         std::string rank = variable_of(environment, "OMPI_COMM_WORLD_RANK");
         if (rank.empty()) rank = variable_of(environment, "PMI_RANK");
         if (!rank.empty()) ranks.push_back({process, static_cast<std::uint32_t>(std::stoul(rank))});
@@ -91,72 +93,74 @@ inline pid_t start(const Mpi& mpi, std::vector<std::string> arguments, std::vect
     const pid_t child = ::fork();
     if (child != 0) return child;
     ::setsid();
-    const int nothing = ::open("/dev/null", O_RDONLY);
-    ::dup2(nothing, STDIN_FILENO);
+    const int null_device = ::open("/dev/null", O_RDONLY);
+    ::dup2(null_device, STDIN_FILENO);
     ::dup2(::fileno(out), STDOUT_FILENO);
     ::dup2(::fileno(err), STDERR_FILENO);
     ::execve(argv[0], argv.data(), envp.data());
     ::_exit(127);
 }
 
-/// Waits until `ranks` ranks run, then `f.after_ms` ms, and sends the signal. Returns false if the ranks do not start
-/// within 30 s or the signal cannot be sent.
+/// Waits until `ranks` ranks run, then for fault.after_ms ms, and sends fault.signal. Returns false if the ranks do not
+/// start within 30 s or the signal cannot be sent.
 inline bool send_signal(const Mpi& mpi, const std::string& mark, pid_t launcher, std::size_t ranks,
-                        const RanksFault& f) {
+                        const RanksFault& fault) {
     const Clock::time_point deadline = Clock::now() + std::chrono::seconds(30);
     std::vector<RankProcess> started;
     while ((started = rank_processes(mark, mpi.program)).size() < ranks) {
         if (Clock::now() > deadline || run_program_detail::has_ended(launcher)) return false;
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(f.after_ms));
+    std::this_thread::sleep_for(std::chrono::milliseconds(fault.after_ms));
     pid_t target = launcher;
     for (const RankProcess& p : started)
-        if (f.rank == p.rank) target = p.process;
-    return ::kill(target, f.signal) == 0;
+        if (fault.rank == p.rank) target = p.process;
+    return ::kill(target, fault.signal) == 0;
 }
 
 inline std::size_t count_raya_lines(const std::string& text) {
     std::size_t lines = 0;
-    for (std::size_t at = 0; (at = ("\n" + text).find("\nraya:", at)) != text.npos; ++at) ++lines;
+    for (std::size_t begin = 0; (begin = ("\n" + text).find("\nraya:", begin)) != text.npos; ++begin) ++lines;
     return lines;
 }
 
 }  // namespace run_ranks_detail
 
-/// Runs the launcher with `arguments`, which include the program. A run that does not end within 60 s is killed and has
-/// exit code 124. Throws std::runtime_error if the signal could not be sent.
+/// Runs the launcher with `arguments`, which must include the path of the program. A run that does not end within 60 s
+/// is killed and has exit code 124. Throws std::runtime_error if the signal could not be sent.
 inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& arguments, std::size_t ranks = 0,
-                              const RanksFault& fault = {}, RunOptions around = {}) {
+                              const RanksFault& fault = {}, RunOptions run_options = {}) {
     namespace detail = run_ranks_detail;
     using detail::Clock;
     constexpr int kLimit_s = 60;
     static int runs = 0;
-    const std::string value = std::to_string(::getpid()) + "." + std::to_string(++runs), mark = detail::kMark + value;
-    around.variables.insert(around.variables.end(), {{"OMPI_ALLOW_RUN_AS_ROOT", "1"},
-                                                     {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
-                                                     {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
-                                                     {"RAYA_TEST_RUN", value}});
+    const std::string run_id = std::to_string(::getpid()) + "." + std::to_string(++runs),
+                      mark = detail::kRunMark + run_id;
+    run_options.variables.insert(run_options.variables.end(), {{"OMPI_ALLOW_RUN_AS_ROOT", "1"},
+                                                               {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
+                                                               {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
+                                                               {"RAYA_TEST_RUN", run_id}});
     RanksOutcome outcome;
     outcome.command = mpi.launcher;
     for (const std::string& argument : arguments) outcome.command += " " + argument;
     const run_program_detail::File out = run_program_detail::temporary_file(),
                                    err = run_program_detail::temporary_file();
-    const pid_t child = detail::start(mpi, arguments, run_program_detail::environment(around), out.get(), err.get());
+    const pid_t child =
+        detail::start(mpi, arguments, run_program_detail::environment(run_options), out.get(), err.get());
     const bool sent = fault.signal == 0 || detail::send_signal(mpi, mark, child, ranks, fault);
     const Clock::time_point start = Clock::now();
     const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(10)); };
     int status = 0;
-    const auto late = [&] { return Clock::now() - start > std::chrono::seconds(kLimit_s); };
-    while (::waitpid(child, &status, WNOHANG) == 0 && !late()) pause();
-    outcome.code = late() ? 124 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    const auto timed_out = [&] { return Clock::now() - start > std::chrono::seconds(kLimit_s); };
+    while (::waitpid(child, &status, WNOHANG) == 0 && !timed_out()) pause();
+    outcome.code = timed_out() ? 124 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     const Clock::time_point deadline = Clock::now() + std::chrono::seconds(8);
-    while (!detail::marked_processes(mark).empty() && Clock::now() < deadline && !late()) pause();
+    while (!detail::marked_processes(mark).empty() && Clock::now() < deadline && !timed_out()) pause();
     for (const auto& [process, environment] : detail::marked_processes(mark)) {
-        ++outcome.left;
+        ++outcome.remaining;
         ::kill(process, SIGKILL);
     }
-    if (late()) ::waitpid(child, &status, 0);
+    if (timed_out()) ::waitpid(child, &status, 0);
     outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     outcome.out = run_program_detail::contents(out.get());
     outcome.err = run_program_detail::contents(err.get());

@@ -1,4 +1,4 @@
-// Detection of an MPI launcher, and a rank's share of its host's threads.
+// Detection of an MPI launcher, number of threads of a rank, and check that all ranks have the same arguments.
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -20,7 +20,7 @@ std::optional<Launch> launch_in(const std::map<std::string, std::string>& enviro
 
 TEST_CASE("launchers are detected by their environment variables", "[ranks]") {
     CHECK(!launch_in({}));
-    CHECK(!launch_in({{"OMPI_COMM_WORLD_SIZE", "4"}, {"SLURM_NTASKS", "4"}}));  // a shell in a Slurm allocation
+    CHECK(!launch_in({{"OMPI_COMM_WORLD_SIZE", "4"}, {"SLURM_NTASKS", "4"}}));  // of a shell in a Slurm allocation
     CHECK(!launch_in({{"PMI_RANK", ""}}));
     CHECK(!launch_in({{"PMI_RANK", "two"}}));
     const auto open_mpi = launch_in({{"OMPI_COMM_WORLD_RANK", "2"}, {"OMPI_COMM_WORLD_SIZE", "4"}, {"PMIX_RANK", "9"}});
@@ -36,7 +36,7 @@ TEST_CASE("launchers are detected by their environment variables", "[ranks]") {
     CHECK(!pmix->count);
 }
 
-TEST_CASE("a rank has as many threads as bound cores, or its share of the host's cores", "[ranks]") {
+TEST_CASE("a rank has as many threads as bound cores, or an equal part of the host's cores", "[ranks]") {
     CHECK(threads_of_rank(1, 8, 2) == 1);
     CHECK(threads_of_rank(3, 8, 2) == 3);
     CHECK(threads_of_rank(8, 8, 1) == 8);
@@ -45,9 +45,9 @@ TEST_CASE("a rank has as many threads as bound cores, or its share of the host's
 }
 
 TEST_CASE("only a rank with other arguments than rank 0 refuses to run", "[ranks]") {
-    for (const std::uint32_t other : {1u, 3u}) {
+    for (const std::uint32_t different_rank : {1u, 3u}) {
         const auto arguments = [&](std::uint32_t rank) {
-            return std::vector<std::string>{"render", rank == other ? "b.nff" : "a.nff"};
+            return std::vector<std::string>{"render", rank == different_rank ? "b.nff" : "a.nff"};
         };
         std::mutex mutex;
         std::vector<std::uint32_t> refused;
@@ -60,7 +60,7 @@ TEST_CASE("only a rank with other arguments than rank 0 refuses to run", "[ranks
                 if (std::string(error.what()).find("other arguments than rank 0") == std::string::npos) throw;
             }
         });
-        CHECK(refused == std::vector<std::uint32_t>{other});
+        CHECK(refused == std::vector<std::uint32_t>{different_rank});
     }
 }
 

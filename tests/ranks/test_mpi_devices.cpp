@@ -1,4 +1,4 @@
-// Ranks with one device each: devices of different types, a scene too large for one device's memory, traces and
+// Ranks with one device each: devices of different types, a scene too large for the memory of one device, traces and
 // reports.
 #include <catch2/catch.hpp>
 #include <set>
@@ -17,25 +17,27 @@ std::string hash_of(const std::filesystem::path& report) {
 
 }  // namespace
 
-TEST_CASE("ranks with devices of different kinds give the image of one process", "[ranks][.mpirun]") {
+TEST_CASE("ranks with devices of different types give the image of one process", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
-    const std::filesystem::path one = folder.path() / "one.json", many = folder.path() / "many.json";
+    const std::filesystem::path single_report = folder.path() / "single.json",
+                                ranks_report = folder.path() / "ranks.json";
     const std::string image = folder.path() / "i.pfm";
     const std::vector<std::string> render = {"render", scene_file("glass"), "--size", "48", "--antialias",
                                              "filter", "--quiet",           "-o",     image};
-    std::vector<std::string> alone = render;
-    alone.insert(alone.end(), {"--report", one});
-    REQUIRE(run_raya(alone).code == 0);
+    std::vector<std::string> single_run = render;
+    single_run.insert(single_run.end(), {"--report", single_report});
+    REQUIRE(run_raya(single_run).code == 0);
     for (const Mpi& mpi : installed_mpis()) {
-        std::vector<std::string> words = {"-n", "3", mpi.program};
-        words.insert(words.end(), render.begin(), render.end());
-        words.insert(words.end(), {"--report", many, "--device", "pthread,basic"});
-        const RanksOutcome outcome = run_ranks(mpi, words, 0, {}, {.variables = {{"POCL_DEVICES", "pthread basic"}}});
+        std::vector<std::string> arguments = {"-n", "3", mpi.program};
+        arguments.insert(arguments.end(), render.begin(), render.end());
+        arguments.insert(arguments.end(), {"--report", ranks_report, "--device", "pthread,basic"});
+        const RanksOutcome outcome =
+            run_ranks(mpi, arguments, 0, {}, {.variables = {{"POCL_DEVICES", "pthread basic"}}});
         INFO(outcome.describe());
         REQUIRE(outcome.code == 0);
-        CHECK(hash_of(many) == hash_of(one));
+        CHECK(hash_of(ranks_report) == hash_of(single_report));
         std::vector<std::string> devices;
-        const Document report = Document::parse(file_contents(many));
+        const Document report = Document::parse(file_contents(ranks_report));
         for (const Document& rank : report["measured"]["ranks"])
             devices.push_back(rank["device"]["name"].get<std::string>().substr(0, 5));
         CHECK(devices == std::vector<std::string>{"pthre", "basic", "pthre"});
@@ -45,37 +47,38 @@ TEST_CASE("ranks with devices of different kinds give the image of one process",
 TEST_CASE("a torus scene too large for one device is rendered on several ranks", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
     const std::string scene = folder.path() / "u.nff", image = folder.path() / "i.pfm";
-    const std::filesystem::path one = folder.path() / "one.json", many = folder.path() / "many.json";
+    const std::filesystem::path single_report = folder.path() / "single.json",
+                                ranks_report = folder.path() / "ranks.json";
     REQUIRE(run_raya({"generate", "uniform", "60000", "--voxels", "4x4x4", "-o", scene}).code == 0);
     REQUIRE(run_raya({"render", scene, "--machine", "grande", "--accel", "bvh", "--size", "32", "--quiet", "-o", image,
-                      "--report", one})
+                      "--report", single_report})
                 .code == 0);
     const std::vector<std::string> torus = {"render",  scene,     "--machine", "torus",       "--size",
                                             "32",      "--queue", "64",        "--pe-memory", "100000000",
-                                            "--quiet", "-o",      image,       "--report",    many};
-    // 4112 is CL_DEVICE_MAX_MEM_ALLOC_SIZE. The limit of 1 MB is less than the words of all nodes, 1.4 MB.
-    const RunOptions small{
+                                            "--quiet", "-o",      image,       "--report",    ranks_report};
+    // 4112 is CL_DEVICE_MAX_MEM_ALLOC_SIZE. The limit of 1 MB is less than the size of the words of all nodes, 1.4 MB.
+    const RunOptions small_device{
         .variables = {{"LD_PRELOAD", RAYA_CL_FAULTS}, {"RAYA_FAULT", "clGetDeviceInfo 4112 1000000"}}};
-    const RunOutcome refused = run_raya(torus, small);
+    const RunOutcome refused = run_raya(torus, small_device);
     INFO(refused.describe());
     CHECK(refused.code == 3);
     CHECK(contains(refused.err, "node memories"));
     for (const Mpi& mpi : installed_mpis()) {
-        std::vector<std::string> words = {"-n",
-                                          "4",
-                                          "env",
-                                          small.variables[0].first + "=" + small.variables[0].second,
-                                          small.variables[1].first + "=" + small.variables[1].second,
-                                          mpi.program};
-        words.insert(words.end(), torus.begin(), torus.end());
-        const RanksOutcome outcome = run_ranks(mpi, words);
+        std::vector<std::string> arguments = {"-n",
+                                              "4",
+                                              "env",
+                                              small_device.variables[0].first + "=" + small_device.variables[0].second,
+                                              small_device.variables[1].first + "=" + small_device.variables[1].second,
+                                              mpi.program};
+        arguments.insert(arguments.end(), torus.begin(), torus.end());
+        const RanksOutcome outcome = run_ranks(mpi, arguments);
         INFO(outcome.describe());
         REQUIRE(outcome.code == 0);
-        CHECK(hash_of(many) == hash_of(one));
+        CHECK(hash_of(ranks_report) == hash_of(single_report));
     }
 }
 
-TEST_CASE("a trace has host and device of every rank, on one clock", "[ranks][.mpirun]") {
+TEST_CASE("a trace contains the host and the device of every rank, on one clock", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
     const std::filesystem::path trace = folder.path() / "t.json", report = folder.path() / "r.json";
     for (const Mpi& mpi : installed_mpis())
@@ -97,8 +100,8 @@ TEST_CASE("a trace has host and device of every rank, on one clock", "[ranks][.m
                  {"rank 0 host ", "rank 1 host ", "rank 2 host ", "rank 0 devic", "rank 1 devic", "rank 2 devic"})
                 CHECK(names.count(name) == 1);
             std::uint64_t messages = 0;
-            const Document all = Document::parse(file_contents(report));
-            for (const Document& rank : all["measured"]["ranks"]) {
+            const Document contents = Document::parse(file_contents(report));
+            for (const Document& rank : contents["measured"]["ranks"]) {
                 messages += rank["messages_sent"].get<std::uint64_t>();
                 CHECK(rank["waiting_s"].get<double>() <= rank["render_s"].get<double>());
                 CHECK(!rank["commands"].empty());

@@ -1,4 +1,4 @@
-// Ranks as processes: a run under mpirun writes the same files as a single process.
+// Runs of raya under mpirun write the same files as a single process.
 #include <map>
 
 #include "tests/cli/refusals.hpp"
@@ -8,9 +8,9 @@
 namespace raya {
 namespace {
 
-constexpr std::uint32_t kCounts[] = {1, 2, 3, 4, 7, 8};
+constexpr std::uint32_t kRankCounts[] = {1, 2, 3, 4, 7, 8};
 
-/// The contents of a render's files, by name; reports without the measured values.
+/// Contents of a render's files, by file name; reports without their measured values.
 using Files = std::map<std::string, std::string>;
 
 Files files_in(const ScratchFolder& folder) {
@@ -28,25 +28,25 @@ Files files_in(const ScratchFolder& folder) {
     return files;
 }
 
-void check_all_counts(const ScratchFolder& folder, const Arguments& render) {
-    const RunOutcome alone = run_raya(render);
-    INFO(alone.describe());
-    REQUIRE(alone.code == 0);
-    const Files one = files_in(folder);
+void check_all_rank_counts(const ScratchFolder& folder, const Arguments& render) {
+    const RunOutcome single_run = run_raya(render);
+    INFO(single_run.describe());
+    REQUIRE(single_run.code == 0);
+    const Files single_files = files_in(folder);
     for (const Mpi& mpi : installed_mpis())
-        for (const std::uint32_t count : kCounts) {
-            Arguments words = {"-n", std::to_string(count), mpi.program};
-            words.insert(words.end(), render.begin(), render.end());
-            const RanksOutcome run = run_ranks(mpi, words);
+        for (const std::uint32_t count : kRankCounts) {
+            Arguments arguments = {"-n", std::to_string(count), mpi.program};
+            arguments.insert(arguments.end(), render.begin(), render.end());
+            const RanksOutcome run = run_ranks(mpi, arguments);
             INFO(run.describe());
             REQUIRE(run.code == 0);
             CHECK(run.messages == 0);
-            CHECK(run.left == 0);
-            const Files many = files_in(folder);
-            REQUIRE(many.size() == one.size());
-            for (const auto& [name, bytes] : one) {
+            CHECK(run.remaining == 0);
+            const Files rank_files = files_in(folder);
+            REQUIRE(rank_files.size() == single_files.size());
+            for (const auto& [name, bytes] : single_files) {
                 CAPTURE(name);
-                CHECK((many.at(name) == bytes));
+                CHECK((rank_files.at(name) == bytes));
             }
         }
 }
@@ -61,15 +61,15 @@ TEST_CASE("mpirun: images, counts and loads of the ring are those of one process
           Arguments{"--pes", "13", "--antialias", "supersample", "--mask", folder / "m.pfm"}}) {
         Arguments render = common;
         render.insert(render.end(), options.begin(), options.end());
-        check_all_counts(folder, render);
+        check_all_rank_counts(folder, render);
     }
 }
 
 TEST_CASE("mpirun: image, counts, loads and packets of the torus are those of one process", "[ranks][.mpirun]") {
     const ScratchFolder folder;
-    check_all_counts(folder, {"render", scene_file("spheres"), "-o", folder / "x.pfm", "--report", folder / "x.json",
-                              "--packets", folder / "p.csv.gz", "--machine", "torus", "--nodes", "3x2x2", "--size",
-                              "16", "--group", "1", "--quiet"});
+    check_all_rank_counts(folder, {"render", scene_file("spheres"), "-o", folder / "x.pfm", "--report",
+                                   folder / "x.json", "--packets", folder / "p.csv.gz", "--machine", "torus", "--nodes",
+                                   "3x2x2", "--size", "16", "--group", "1", "--quiet"});
 }
 
 TEST_CASE("mpirun: frames are those of one process, and existing frames are not rendered again", "[ranks][.mpirun]") {
@@ -82,35 +82,35 @@ TEST_CASE("mpirun: frames are those of one process, and existing frames are not 
                               "--size",   "24x16",
                               "--pes",    "8"};
     REQUIRE(run_raya(render).code == 0);
-    const Files one = files_in(folder);
-    REQUIRE(one.size() == 4);
+    const Files single_files = files_in(folder);
+    REQUIRE(single_files.size() == 4);
     for (const Mpi& mpi : installed_mpis()) {
-        Arguments words = {"-n", "3", mpi.program};
-        words.insert(words.end(), render.begin(), render.end());
+        Arguments arguments = {"-n", "3", mpi.program};
+        arguments.insert(arguments.end(), render.begin(), render.end());
         for (const char* summary : {"3 frames, 3 rendered", "3 frames, 0 rendered"}) {
-            const RanksOutcome run = run_ranks(mpi, words);
+            const RanksOutcome run = run_ranks(mpi, arguments);
             INFO(run.describe());
             CHECK(run.code == 0);
             CHECK_THAT(run.out, Catch::Contains(summary));
         }
-        CHECK((files_in(folder) == one));
+        CHECK((files_in(folder) == single_files));
     }
 }
 
 TEST_CASE("mpirun: only rank 0 reads stdin and writes stdout", "[ranks][.mpirun]") {
     const ScratchFolder folder;
-    const std::string small = " --quiet --lanes 4 --pes 8 --size 16 --background 1,0.5,0 ";
+    const std::string options = " --quiet --lanes 4 --pes 8 --size 16 --background 1,0.5,0 ";
     const auto shell = [&](const std::string& line) {
         return std::system(("cd '" + folder.path().string() + "' && " + line).c_str());
     };
-    REQUIRE(shell(RAYA_PROGRAM " render " + scene_file("planes") + " -o one.ppm" + small) == 0);
+    REQUIRE(shell(RAYA_PROGRAM " render " + scene_file("planes") + " -o single.ppm" + options) == 0);
     for (const Mpi& mpi : installed_mpis()) {
         const std::string launch =
             "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 " +
             mpi.launcher + " --bind-to none -n 3 " + mpi.program;
         CAPTURE(launch);
-        CHECK(shell(launch + " render - -o -" + small + "< " + scene_file("planes") + " > many.ppm") == 0);
-        CHECK((file_contents(folder / "many.ppm") == file_contents(folder / "one.ppm")));
+        CHECK(shell(launch + " render - -o -" + options + "< " + scene_file("planes") + " > ranks.ppm") == 0);
+        CHECK((file_contents(folder / "ranks.ppm") == file_contents(folder / "single.ppm")));
     }
 }
 
@@ -131,7 +131,7 @@ TEST_CASE("mpirun: only rank 0 prints verbose messages", "[ranks][.mpirun][verbo
     }
 }
 
-TEST_CASE("mpirun: messages of any size arrive, point to point and collective", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: point-to-point and collective messages of any size arrive unchanged", "[ranks][.mpirun]") {
     for (const Mpi& mpi : installed_mpis())
         for (const std::uint32_t count : {2u, 3u, 7u}) {
             const RanksOutcome run = run_ranks(mpi, {"-n", std::to_string(count), RAYA_TRANSPORT_CHECK, mpi.program});
@@ -139,7 +139,7 @@ TEST_CASE("mpirun: messages of any size arrive, point to point and collective", 
             CHECK(run.code == 0);
             CHECK_THAT(run.out,
                        Catch::Contains(" on " + std::to_string(count) + " ranks") && Catch::Contains(", 0 wrong\n"));
-            CHECK(run.left == 0);
+            CHECK(run.remaining == 0);
         }
 }
 

@@ -1,4 +1,4 @@
-// The network model, time = alpha + beta * length, fitted to a ping-pong, and the report of a ping-pong.
+// The report of a ping-pong, and the network model that is fitted to it: time = alpha + beta * length.
 #include <catch2/catch.hpp>
 #include <mutex>
 
@@ -14,13 +14,13 @@ TEST_CASE("the network fit recovers exact alpha and beta, and keeps both at 0 or
     CHECK(network.alpha_s == Approx(2e-6));
     CHECK(network.beta_s == Approx(1e-9));
     CHECK(network.seconds(500) == Approx(2.5e-6));
-    // The fit to two lengths is exact unless a parameter would be negative. If times fall with the length, beta = 0,
-    // and alpha is the mean of 2 and 1 with the weights 1/4 and 1, (1/2 + 1) / (1/4 + 1).
+    // The fit to two lengths is exact unless alpha or beta would be negative. If times decrease with the length, beta =
+    // 0, and alpha is the mean of the times 2 and 1 with the weights 1/4 and 1: (1/2 + 1) / (1/4 + 1).
     const MessageTime falling[] = {{0, 2}, {10, 1}};
     CHECK(fitted_network(falling).alpha_s == Approx(1.2));
     CHECK(fitted_network(falling).beta_s == 0);
-    // If times grow faster than the length, alpha = 0, and beta is the weighted fit to 1 and 3 per byte, (1 + 2/6) / (1
-    // + 1/9).
+    // If times increase faster than the length, alpha = 0, and beta is the weighted fit to 1 s and 3 s per byte:
+    // (1 + 2/6) / (1 + 1/9).
     const MessageTime steep[] = {{1, 1}, {2, 6}};
     CHECK(fitted_network(steep).alpha_s == 0);
     CHECK(fitted_network(steep).beta_s == Approx(1.2));
@@ -31,8 +31,8 @@ TEST_CASE("a ping-pong report contains every rank", "[ranks]") {
     on_ranks(
         3,
         [&](Ranks& ranks) {
-            PingReport own = ping(ranks);
-            if (ranks.first()) report = std::move(own);
+            PingReport own_report = ping(ranks);
+            if (ranks.is_first()) report = std::move(own_report);
         },
         2);
     CHECK(report.library == "threads");

@@ -1,8 +1,8 @@
-// Failures on one rank, or on all ranks at the start. raya prints one message; the exit code is that of a single
-// process if mpirun forwards it, and never 0; no output file and no process remains.
+// Failures on one rank, or on all ranks at the start. raya prints one message, and no output file and no process
+// remains. The exit code is not 0, and it is that of a single process if mpirun forwards it.
 #include <sys/stat.h>
 
-#include "tests/cli/failing_device.hpp"
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/ranks/run_ranks.hpp"
 #include "tests/thorough.hpp"
@@ -10,54 +10,54 @@
 namespace raya {
 namespace {
 
-constexpr double kMaxEnd_s = 10;  // all processes must end within this time after the fault
+constexpr double kMaxEnd_s = 10;  // maximum time from the fault to the end of all processes
 
-Arguments on(const Mpi& mpi, std::uint32_t ranks, const Arguments& arguments) {
-    Arguments words = {"-n", std::to_string(ranks), mpi.program};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    return words;
+Arguments launch_arguments(const Mpi& mpi, std::uint32_t ranks, const Arguments& program_arguments) {
+    Arguments arguments = {"-n", std::to_string(ranks), mpi.program};
+    arguments.insert(arguments.end(), program_arguments.begin(), program_arguments.end());
+    return arguments;
 }
 
-Arguments render(const ScratchFolder& outputs, const Arguments& options = {}) {
-    Arguments words = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--quiet", "--lanes", "4"};
-    words.insert(words.end(), options.begin(), options.end());
-    return words;
+Arguments render_arguments(const ScratchFolder& outputs, const Arguments& options = {}) {
+    Arguments arguments = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--quiet", "--lanes", "4"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return arguments;
 }
 
-void check_ended(const ScratchFolder& outputs, const RanksOutcome& run, std::size_t most_messages,
+void check_ended(const ScratchFolder& outputs, const RanksOutcome& run, std::size_t max_messages,
                  double limit_s = kMaxEnd_s) {
     INFO(run.describe());
     CHECK(run.code != 0);
-    CHECK(run.messages <= most_messages);
-    CHECK(run.left == 0);
+    CHECK(run.messages <= max_messages);
+    CHECK(run.remaining == 0);
     CHECK(run.seconds < limit_s);
     CHECK(outputs.entries() == 0);
 }
 
-/// Checks the exit code, and that the run prints exactly one message, which contains the given parts.
-void check_message(const ScratchFolder& outputs, const RanksOutcome& run, int code, const Arguments& message) {
+/// Checks the exit code, and that the run prints exactly one message, which contains all of `message_parts`.
+void check_message(const ScratchFolder& outputs, const RanksOutcome& run, int code, const Arguments& message_parts) {
     INFO(run.describe());
     CHECK(run.code == code);
     CHECK(run.messages == 1);
-    for (const std::string& part : message) CHECK_THAT(run.err, Catch::Contains(part));
+    for (const std::string& part : message_parts) CHECK_THAT(run.err, Catch::Contains(part));
     check_ended(outputs, run, 1);
 }
 
-/// A script that runs a program and, on one rank, a shell command before it.
+/// A shell script that runs a program. On one rank it evaluates a shell command before it runs the program.
 class RankScript {
   public:
     RankScript() {
-        std::ofstream(script_) << "#!/bin/sh\nonly=$1; what=$2; shift 2\n"
-                                  "[ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = \"$only\" ] && eval \"$what\"\n"
+        std::ofstream(script_) << "#!/bin/sh\nonly_rank=$1; command=$2; shift 2\n"
+                                  "[ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = \"$only_rank\" ] && eval \"$command\"\n"
                                   "exec \"$@\"\n";
         ::chmod(script_.c_str(), 0755);
     }
 
-    Arguments words(const Mpi& mpi, std::uint32_t ranks, std::uint32_t rank, const std::string& command,
-                    const Arguments& arguments) const {
-        Arguments all = {"-n", std::to_string(ranks), script_, std::to_string(rank), command, mpi.program};
-        all.insert(all.end(), arguments.begin(), arguments.end());
-        return all;
+    Arguments arguments(const Mpi& mpi, std::uint32_t ranks, std::uint32_t rank, const std::string& command,
+                        const Arguments& program_arguments) const {
+        Arguments launched = {"-n", std::to_string(ranks), script_, std::to_string(rank), command, mpi.program};
+        launched.insert(launched.end(), program_arguments.begin(), program_arguments.end());
+        return launched;
     }
 
   private:
@@ -65,11 +65,11 @@ class RankScript {
     std::string script_ = folder_ / "one_rank.sh";
 };
 
-std::string preload(const std::string& library, const std::string& variable, const std::string& value) {
+std::string preload_command(const std::string& library, const std::string& variable, const std::string& value) {
     return "export LD_PRELOAD=" + library + " " + variable + "='" + value + "'";
 }
 
-// Arguments of a render that takes longer than starting the ranks and signalling one of them.
+// Returns arguments of a render that takes longer than the start of the ranks and the signal to one of them.
 Arguments long_render(const ScratchFolder& outputs, const std::string& machine) {
     return {"render",
             scene_file("centre"),
@@ -94,18 +94,18 @@ TEST_CASE("mpirun: an error of all ranks is reported once, with rank and host", 
     const ScratchFolder outputs;
     const Case cases[] = {
         {3, {"render", "none.nff", "-o", outputs / "x.pfm"}, 2, {"none.nff", "No such file"}},
-        {3, render(outputs, {"--pess", "8"}), 2, {"did you mean --pes?"}},
-        {3, render(outputs, {"--pes", "0"}), 2, {"--pes 0"}},
-        {3, render(outputs, {"--size", "16", "--pes", "2"}), 2, {"3 ranks for 2 PEs"}},
-        {3, render(outputs, {"--machine", "torus", "--nodes", "2x1x1"}), 2, {"3 ranks for 2 nodes"}},
-        {2, render(outputs, {"--device", "nosuch"}), 3, {"no OpenCL device matches"}},
+        {3, render_arguments(outputs, {"--pess", "8"}), 2, {"did you mean --pes?"}},
+        {3, render_arguments(outputs, {"--pes", "0"}), 2, {"--pes 0"}},
+        {3, render_arguments(outputs, {"--size", "16", "--pes", "2"}), 2, {"3 ranks for 2 PEs"}},
+        {3, render_arguments(outputs, {"--machine", "torus", "--nodes", "2x1x1"}), 2, {"3 ranks for 2 nodes"}},
+        {2, render_arguments(outputs, {"--device", "nosuch"}), 3, {"no OpenCL device matches"}},
         {2, {"devices"}, 2, {"devices runs in one process"}},
         {2, {"bench"}, 2, {"bench runs in one process"}},
         {2, {"verify", "--quick"}, 2, {"verify runs in one process"}},
         {2, {"generate", "uniform", "9", "-o", outputs / "u.nff"}, 2, {"generate runs in one process"}}};
     for (const Mpi& mpi : installed_mpis())
         for (const Case& c : cases) {
-            const RanksOutcome run = run_ranks(mpi, on(mpi, c.ranks, c.arguments));
+            const RanksOutcome run = run_ranks(mpi, launch_arguments(mpi, c.ranks, c.arguments));
             Arguments message = c.message;
             message.push_back("raya: rank ");
             check_message(outputs, run, c.code, message);
@@ -115,10 +115,11 @@ TEST_CASE("mpirun: an error of all ranks is reported once, with rank and host", 
 TEST_CASE("mpirun: ranks with different arguments refuse to run", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     for (const Mpi& mpi : installed_mpis()) {
-        Arguments words = on(mpi, 1, render(outputs)), others = on(mpi, 2, render(outputs, {"--pes", "8"}));
-        words.push_back(":");
-        words.insert(words.end(), others.begin(), others.end());
-        check_message(outputs, run_ranks(mpi, words), 2, {"raya: rank ", "other arguments than rank 0"});
+        Arguments arguments = launch_arguments(mpi, 1, render_arguments(outputs));
+        const Arguments of_other_ranks = launch_arguments(mpi, 2, render_arguments(outputs, {"--pes", "8"}));
+        arguments.push_back(":");
+        arguments.insert(arguments.end(), of_other_ranks.begin(), of_other_ranks.end());
+        check_message(outputs, run_ranks(mpi, arguments), 2, {"raya: rank ", "other arguments than rank 0"});
     }
 }
 
@@ -128,30 +129,32 @@ TEST_CASE("mpirun of another MPI is refused with one message", "[ranks][.mpirun]
     for (const Mpi& mpi : mpis)
         for (const Mpi& other : mpis)
             if (mpi.launcher != other.launcher)
-                check_message(outputs, run_ranks(mpi, on(other, 2, render(outputs))), 2,
+                check_message(outputs, run_ranks(mpi, launch_arguments(other, 2, render_arguments(outputs))), 2,
                               {"raya: started as one of 2 processes, but ", "remedy: use the mpirun of that MPI"});
 }
 
 TEST_CASE("mpirun: a failing device or driver on one rank ends all ranks", "[ranks][.mpirun]") {
     if (kSanitized) return;
     const ScratchFolder outputs;
-    const RankScript one;
+    const RankScript rank_script;
     for (const Mpi& mpi : installed_mpis())
         for (const std::uint32_t rank : quick(1, {2u, 0u})) {
-            const std::string name = "raya: rank " + std::to_string(rank) + " on ";
+            const std::string prefix = "raya: rank " + std::to_string(rank) + " on ";
             const auto run = [&](const std::string& fault, const Arguments& options) {
-                return run_ranks(mpi, one.words(mpi, 3, rank, preload(RAYA_CL_FAULTS, "RAYA_FAULT", fault),
-                                                render(outputs, options)));
+                return run_ranks(
+                    mpi, rank_script.arguments(mpi, 3, rank, preload_command(RAYA_CL_FAULTS, "RAYA_FAULT", fault),
+                                               render_arguments(outputs, options)));
             };
             const Arguments ring = {"--size", "64", "--pes", "8"}, torus = {"--size", "32", "--machine", "torus"};
-            const Arguments failed = {name, "clEnqueueNDRangeKernel failed"};
-            check_message(outputs, run("clEnqueueNDRangeKernel 1 -4", ring), 3, failed);
-            check_message(outputs, run("clEnqueueNDRangeKernel 20 -4", torus), 3, failed);
-            check_message(outputs, run("clCreateContext 1 -6", ring), 3, {name});
+            const Arguments launch_failed = {prefix, "clEnqueueNDRangeKernel failed"};
+            check_message(outputs, run("clEnqueueNDRangeKernel 1 -4", ring), 3, launch_failed);
+            check_message(outputs, run("clEnqueueNDRangeKernel 20 -4", torus), 3, launch_failed);
+            check_message(outputs, run("clCreateContext 1 -6", ring), 3, {prefix});
             const RanksOutcome crash = run("clEnqueueNDRangeKernel 1 crash", ring);
-            CHECK_THAT(crash.err, Catch::Contains(name));
+            CHECK_THAT(crash.err, Catch::Contains(prefix));
             CHECK_THAT(crash.err, Catch::Contains("the OpenCL driver crashed (SIGSEGV)"));
-            check_ended(outputs, crash, 2);  // MPICH's mpirun returns its own code and interrupts rank 0
+            check_ended(outputs, crash,
+                        2);  // MPICH's mpirun returns another exit code and interrupts rank 0, which prints a message
             check_ended(outputs, run("clEnqueueNDRangeKernel 1 exit", ring), 1);
         }
 }
@@ -159,47 +162,52 @@ TEST_CASE("mpirun: a failing device or driver on one rank ends all ranks", "[ran
 TEST_CASE("mpirun: a rank out of memory ends all ranks", "[ranks][.mpirun]") {
     if (kSanitized) return;
     const ScratchFolder outputs;
-    const RankScript one;
-    const Arguments large = render(outputs, {"--machine", "grande", "--size", "600"});
+    const RankScript rank_script;
+    const Arguments large_render = render_arguments(outputs, {"--machine", "grande", "--size", "600"});
     for (const Mpi& mpi : installed_mpis()) {
-        run_ranks(mpi, on(mpi, 2, large));  // builds the kernels
+        run_ranks(mpi, launch_arguments(mpi, 2, large_render));  // fills the cache of kernels
         std::filesystem::remove(outputs / "x.pfm");
         for (const std::uint32_t rank : quick(1, {2u, 0u}))
             check_message(
                 outputs,
-                run_ranks(mpi, one.words(mpi, 3, rank, preload(RAYA_CL_FAULTS, "RAYA_FAULT", "new 1000000 0"), large)),
+                run_ranks(mpi, rank_script.arguments(mpi, 3, rank,
+                                                     preload_command(RAYA_CL_FAULTS, "RAYA_FAULT", "new 1000000 0"),
+                                                     large_render)),
                 2, {"raya: rank " + std::to_string(rank) + " on ", "out of memory on the host"});
         // The memory limit may cause an error in raya, the driver or MPI.
-        check_ended(outputs, run_ranks(mpi, one.words(mpi, 3, 0, "ulimit -v 400000", large)), 2);
+        check_ended(outputs, run_ranks(mpi, rank_script.arguments(mpi, 3, 0, "ulimit -v 400000", large_render)), 2);
     }
 }
 
 TEST_CASE("mpirun: a full disk on rank 0 ends all ranks", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     const std::string folder = std::filesystem::canonical(outputs.path()).string();
-    const RunOptions full{.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
-                                        {"RAYA_FULL_DISK", "100000 " + folder},
-                                        {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
+    const RunOptions full_disk{.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
+                                             {"RAYA_FULL_DISK", "100000 " + folder},
+                                             {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
     for (const Mpi& mpi : installed_mpis())
-        check_message(outputs, run_ranks(mpi, on(mpi, 3, render(outputs, {"--size", "512"})), 0, {}, full), 2,
-                      {"raya: rank 0 on ", "x.pfm", "No space left on device"});
+        check_message(
+            outputs,
+            run_ranks(mpi, launch_arguments(mpi, 3, render_arguments(outputs, {"--size", "512"})), 0, {}, full_disk), 2,
+            {"raya: rank 0 on ", "x.pfm", "No space left on device"});
 }
 
-// mpirun may drop the output of an interrupted rank, so rank 0 writes its messages to a file here. Open MPI kills a
-// rank one second after a signal, which is too early on a busy machine.
+// mpirun may drop the output of an interrupted rank, so rank 0 writes its messages to a file here. By default Open MPI
+// kills a rank one second after a signal, which is too early on a busy machine; here it waits 4 s.
 TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.mpirun]") {
     const ScratchFolder outputs, messages;
-    const RankScript one;
+    const RankScript rank_script;
     const std::string file = messages / "rank_0.txt";
-    const RunOptions patient{.variables = {{"OMPI_MCA_odls_base_sigkill_timeout", "4"}}};
+    const RunOptions late_kill{.variables = {{"OMPI_MCA_odls_base_sigkill_timeout", "4"}}};
     for (const Mpi& mpi : installed_mpis())
         for (const char* machine : quick(1, {"grande", "torus"})) {
-            const Arguments words = on(mpi, 3, long_render(outputs, machine));
+            const Arguments arguments = launch_arguments(mpi, 3, long_render(outputs, machine));
             for (const std::uint32_t rank : quick(1, {2u, 0u}))
-                check_ended(outputs, run_ranks(mpi, words, 3, {.signal = SIGKILL, .rank = rank}), 1);
+                check_ended(outputs, run_ranks(mpi, arguments, 3, {.signal = SIGKILL, .rank = rank}), 1);
             for (const int signal : quick(1, {SIGINT, SIGTERM})) {
-                const Arguments redirected = one.words(mpi, 3, 0, "exec 2>" + file, long_render(outputs, machine));
-                check_ended(outputs, run_ranks(mpi, redirected, 3, {.signal = signal}, patient), 0);
+                const Arguments redirected =
+                    rank_script.arguments(mpi, 3, 0, "exec 2>" + file, long_render(outputs, machine));
+                check_ended(outputs, run_ranks(mpi, redirected, 3, {.signal = signal}, late_kill), 0);
                 CHECK(file_contents(file) == "raya: interrupted\n");
             }
         }
@@ -208,7 +216,7 @@ TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.m
 TEST_CASE("mpirun: a rank that hangs ends the run after RAYA_RANK_TIMEOUT", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     for (const Mpi& mpi : installed_mpis()) {
-        const RanksOutcome run = run_ranks(mpi, on(mpi, 3, long_render(outputs, "torus")), 3,
+        const RanksOutcome run = run_ranks(mpi, launch_arguments(mpi, 3, long_render(outputs, "torus")), 3,
                                            {.signal = SIGSTOP, .rank = 2}, {.variables = {{"RAYA_RANK_TIMEOUT", "2"}}});
         check_message(outputs, run, 3, {"has waited for the other ranks for 2 s", "RAYA_RANK_TIMEOUT"});
     }
@@ -216,11 +224,14 @@ TEST_CASE("mpirun: a rank that hangs ends the run after RAYA_RANK_TIMEOUT", "[ra
 
 TEST_CASE("mpirun: a process that ends before MPI_Init ends the others", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
-    const RankScript one;
-    const RunOptions hasty{.variables = {{"RAYA_RANK_TIMEOUT", "2"}}};
+    const RankScript rank_script;
+    const RunOptions short_timeout{.variables = {{"RAYA_RANK_TIMEOUT", "2"}}};
     for (const Mpi& mpi : installed_mpis())
         for (const char* end : {"exit 1", "kill -KILL $$"})
-            check_ended(outputs, run_ranks(mpi, one.words(mpi, 3, 2, end, render(outputs)), 0, {}, hasty), 1);
+            check_ended(
+                outputs,
+                run_ranks(mpi, rank_script.arguments(mpi, 3, 2, end, render_arguments(outputs)), 0, {}, short_timeout),
+                1);
 }
 
 }  // namespace raya

@@ -17,37 +17,37 @@ RingResult render_on(std::uint32_t count, const Scene& scene, const RingSettings
     RingResult result;
     on_ranks(count, [&](Ranks& ranks) {
         Session session(choose_device(""));
-        const Scene nothing;
-        RingRenderer renderer(session, ranks.first() ? scene : nothing, settings, ranks);
-        RingResult own = renderer.render();
-        if (ranks.first())
-            result = std::move(own);
-        else if (!own.image.rgb.empty() || !own.mask.rgb.empty())
+        const Scene empty_scene;
+        RingRenderer renderer(session, ranks.is_first() ? scene : empty_scene, settings, ranks);
+        RingResult own_result = renderer.render();
+        if (ranks.is_first())
+            result = std::move(own_result);
+        else if (!own_result.image.rgb.empty() || !own_result.mask.rgb.empty())
             throw std::logic_error("a rank other than 0 holds an image");
     });
     return result;
 }
 
-void check_same(const RingResult& one, const RingResult& many) {
-    CHECK(one.image.rgb == many.image.rgb);
-    CHECK(one.mask.rgb == many.mask.rgb);
-    CHECK(one.recomputed == many.recomputed);
-    CHECK(one.all.events == many.all.events);
-    CHECK(one.all.load.per_pe == many.all.load.per_pe);
-    CHECK(one.requests == many.requests);
-    REQUIRE(one.phases.size() == many.phases.size());
-    for (std::size_t i = 0; i < one.phases.size(); ++i) {
-        CHECK(one.phases[i].events == many.phases[i].events);
-        CHECK(one.phases[i].load.per_pe == many.phases[i].load.per_pe);
-        CHECK(one.phases[i].cost().cycles == many.phases[i].cost().cycles);
+void check_same(const RingResult& single, const RingResult& distributed) {
+    CHECK(single.image.rgb == distributed.image.rgb);
+    CHECK(single.mask.rgb == distributed.mask.rgb);
+    CHECK(single.recomputed == distributed.recomputed);
+    CHECK(single.all.events == distributed.all.events);
+    CHECK(single.all.load.per_pe == distributed.all.load.per_pe);
+    CHECK(single.requests == distributed.requests);
+    REQUIRE(single.phases.size() == distributed.phases.size());
+    for (std::size_t i = 0; i < single.phases.size(); ++i) {
+        CHECK(single.phases[i].events == distributed.phases[i].events);
+        CHECK(single.phases[i].load.per_pe == distributed.phases[i].load.per_pe);
+        CHECK(single.phases[i].cost().cycles == distributed.phases[i].cost().cycles);
     }
-    const Communication &a = one.communication, &b = many.communication;
+    const Communication &a = single.communication, &b = distributed.communication;
     CHECK(std::tie(a.broadcasts, a.broadcast_words, a.rotations, a.rotation_words, a.gathers, a.gather_words,
                    a.transfers, a.transfer_words, a.pe_broadcasts, a.pe_broadcast_words) ==
           std::tie(b.broadcasts, b.broadcast_words, b.rotations, b.rotation_words, b.gathers, b.gather_words,
                    b.transfers, b.transfer_words, b.pe_broadcasts, b.pe_broadcast_words));
-    CHECK(one.scale.exponent == many.scale.exponent);
-    CHECK(one.pe_memory.bytes() == many.pe_memory.bytes());
+    CHECK(single.scale.exponent == distributed.scale.exponent);
+    CHECK(single.pe_memory.bytes() == distributed.pe_memory.bytes());
 }
 
 raya_mapping random_mapping(SplitMix& random) {
@@ -78,19 +78,20 @@ TEST_CASE("random rings: image, loads and counts are the same on 1 to 8 ranks", 
         RingSettings settings = settings_of(RingCase{.format = i % 3 ? "fp32" : "spa22"});
         settings.mapping = random_mapping(random);
         settings.antialias = random_antialias(random);
-        if (settings.mapping.kind == RAYA_RANDOM) settings.antialias = {};  // refused: it has no neighbours nearby
+        if (settings.mapping.kind == RAYA_RANDOM)
+            settings.antialias = {};  // anti-aliasing is refused, because neighbouring pixels are in different PEs
         settings.record_costs = true;
         const AccelKind kinds[] = {AccelKind::kNone, AccelKind::kGrid, AccelKind::kBvh};
         settings.accel.kind = kinds[random_below(random, 3)];
         settings.device_pixels = random.next() % 3 ? 1 << 22 : 1 + random_below(random, 60);
         if (random.next() % 4 == 0) settings.machine.pe_memory_bytes = std::uint64_t{1} << 20;
         Session session(choose_device(""));
-        const RingResult one = RingRenderer(session, scene, settings).render();
+        const RingResult single = RingRenderer(session, scene, settings).render();
         for (const std::uint32_t count : {1u, 2u, 3u, 4u, 7u, 8u}) {
             if (count > settings.mapping.pes) continue;
             CAPTURE(kSeed, i, scene.name, count, settings.mapping.pes, settings.mapping.width, settings.mapping.height,
                     settings.mapping.kind);
-            check_same(one, render_on(count, scene, settings));
+            check_same(single, render_on(count, scene, settings));
             uneven += settings.mapping.pes % count != 0;
             ++cases;
         }

@@ -1,7 +1,7 @@
 // The torus distributed over ranks: image, counts, loads, supersteps and traffic equal those of one rank.
 #include <catch2/catch.hpp>
 
-#include "host/torus/node_share.hpp"
+#include "host/torus/node_distribution.hpp"
 #include "host/torus/torus_result.hpp"
 #include "tests/ranks/thread_ranks.hpp"
 #include "tests/thorough.hpp"
@@ -24,14 +24,14 @@ std::string text_of(const PacketRecord& r) {
 RenderOutput render_on(Ranks& ranks, const Scene& scene, const TorusSettings& settings) {
     Session session(choose_device(""));
     RenderOutput output;
-    const Scene nothing;
-    TorusRenderer renderer(session, ranks.first() ? scene : nothing, settings, ranks);
+    const Scene empty_scene;
+    TorusRenderer renderer(session, ranks.is_first() ? scene : empty_scene, settings, ranks);
     output.result = renderer.render({}, {.packets = [&](const PacketRecord& r) { output.packets += text_of(r); }});
     return output;
 }
 
-void check_same(const RenderOutput& one, const RenderOutput& many) {
-    const TorusResult &a = one.result, &b = many.result;
+void check_same(const RenderOutput& single, const RenderOutput& distributed) {
+    const TorusResult &a = single.result, &b = distributed.result;
     CHECK(a.image.rgb == b.image.rgb);
     CHECK(a.events == b.events);
     CHECK(a.load.per_pe == b.load.per_pe);
@@ -49,7 +49,7 @@ void check_same(const RenderOutput& one, const RenderOutput& many) {
         CHECK(a.supersteps[i].max_link_words == b.supersteps[i].max_link_words);
         CHECK(a.supersteps[i].live == b.supersteps[i].live);
     }
-    CHECK(one.packets == many.packets);
+    CHECK(single.packets == distributed.packets);
 }
 
 TorusCase random_case(SplitMix& random, const Scene& scene) {
@@ -61,14 +61,14 @@ TorusCase random_case(SplitMix& random, const Scene& scene) {
     c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
     c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
     c.packets = random_charge(random);
-    const std::uint32_t shortest = raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), c.bounces);
-    c.queue = random.next() % 2 ? 0 : shortest * (1 + random_below(random, 20));
+    const std::uint32_t min_queue = raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), c.bounces);
+    c.queue = random.next() % 2 ? 0 : min_queue * (1 + random_below(random, 20));
     return c;
 }
 
 }  // namespace
 
-TEST_CASE("nodes are distributed in even, contiguous bricks, and the root is on rank 0", "[ranks]") {
+TEST_CASE("each rank has a cuboid of nodes, of nearly equal size, and rank 0 has the root", "[ranks]") {
     constexpr std::uint64_t kSeed = 99;
     SplitMix random(kSeed);
     for (int i = 0; i < 300; ++i) {
@@ -97,9 +97,9 @@ TEST_CASE("nodes are distributed in even, contiguous bricks, and the root is on 
     }
     const raya_torus even = make_torus({4, 4, 4}, Links::kTorus3d);
     for (const std::uint32_t ranks : {1u, 2u, 4u, 8u, 16u, 32u, 64u})
-        CHECK(NodeShare(even, ranks, 0).max_nodes_of_rank() == 64 / ranks);
-    CHECK(NodeShare(even, 3, 0).max_nodes_of_rank() <= 32);
-    CHECK(NodeShare(even, 7, 0).max_nodes_of_rank() <= 16);
+        CHECK(NodeDistribution(even, ranks, 0).max_nodes_of_rank() == 64 / ranks);
+    CHECK(NodeDistribution(even, 3, 0).max_nodes_of_rank() <= 32);
+    CHECK(NodeDistribution(even, 7, 0).max_nodes_of_rank() <= 16);
 }
 
 TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its nodes", "[ranks]") {
@@ -110,23 +110,24 @@ TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its 
         const std::uint32_t ranks = 1 + random_below(random, std::min(raya_nodes(torus), 9u));
         CAPTURE(kSeed, i, torus_text(torus), ranks);
         for (std::uint32_t rank = 0; rank < ranks; ++rank) {
-            const NodeShare share(torus, ranks, rank);
-            for (std::uint32_t slot = 0; slot < share.nodes(); ++slot) {
-                const std::uint32_t node = share.own_nodes()[slot];
-                CHECK(share.slot_of(node) == slot);
+            const NodeDistribution distribution(torus, ranks, rank);
+            for (std::uint32_t slot = 0; slot < distribution.nodes(); ++slot) {
+                const std::uint32_t node = distribution.own_nodes()[slot];
+                CHECK(distribution.slot_of(node) == slot);
                 bool inner = true;
                 for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-                    inner &= share.has(raya_link_end(torus, node, link));
-                CHECK(inner == (slot < share.inner()));
+                    inner &= distribution.has(raya_link_end(torus, node, link));
+                CHECK(inner == (slot < distribution.inner()));
             }
             for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
-                std::vector<int> used(share.inboxes());
-                for (const std::uint32_t node : share.own_nodes()) {
-                    const std::uint32_t from = raya_link_end(torus, node, link ^ 1u), inbox = share.inbox(link, from);
-                    REQUIRE(inbox < share.inboxes());
-                    ++used[inbox];
+                std::vector<int> uses(distribution.inboxes());  // [inbox]: number of links that use it
+                for (const std::uint32_t node : distribution.own_nodes()) {
+                    const std::uint32_t sender = raya_link_end(torus, node, link ^ 1u),
+                                        inbox = distribution.inbox_from(sender, link);
+                    REQUIRE(inbox < distribution.inboxes());
+                    ++uses[inbox];
                 }
-                CHECK(std::count_if(used.begin(), used.end(), [](int n) { return n > 1; }) == 0);
+                CHECK(std::count_if(uses.begin(), uses.end(), [](int n) { return n > 1; }) == 0);
             }
         }
     }
@@ -146,10 +147,10 @@ TEST_CASE("random toruses: image, traffic or deadlock is the same on 1 to 8 rank
         const std::uint32_t counts[] = {2, 3, 4, 7, 8};
         const std::uint32_t count = counts[i % 5];
         if (count > raya_nodes(settings.torus)) continue;
-        RenderOutput one;
+        RenderOutput single;
         std::string deadlock;
         try {
-            one = render_on(Ranks::alone(), scene, settings);
+            single = render_on(Ranks::single(), scene, settings);
         } catch (const TorusDeadlock& error) {
             deadlock = error.what();
         }
@@ -161,24 +162,24 @@ TEST_CASE("random toruses: image, traffic or deadlock is the same on 1 to 8 rank
                 } catch (const TorusDeadlock& error) {
                     message = error.what();
                 }
-                if (ranks.first() && message != deadlock) throw std::logic_error(message + " is not " + deadlock);
+                if (ranks.is_first() && message != deadlock) throw std::logic_error(message + " is not " + deadlock);
                 if (message.empty()) throw std::logic_error("a rank does not detect the deadlock");
             });
             ++deadlocks;
             continue;
         }
-        RenderOutput many;
+        RenderOutput distributed;
         on_ranks(count, [&](Ranks& ranks) {
-            RenderOutput own = render_on(ranks, scene, settings);
-            if (ranks.first())
-                many = std::move(own);
-            else if (!own.packets.empty() || !own.result.image.rgb.empty())
+            RenderOutput own_output = render_on(ranks, scene, settings);
+            if (ranks.is_first())
+                distributed = std::move(own_output);
+            else if (!own_output.packets.empty() || !own_output.result.image.rgb.empty())
                 throw std::logic_error("a rank other than 0 has packets or an image");
         });
-        check_same(one, many);
+        check_same(single, distributed);
         ++cases;
     }
-    WARN(cases << " machines rendered, " << deadlocks << " deadlocked");
+    WARN(cases << " machines completed their renders, " << deadlocks << " deadlocked");
     CHECK(cases > 8);
 }
 

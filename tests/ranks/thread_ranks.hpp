@@ -1,5 +1,4 @@
-// Ranks as threads of one process. Messages are copied, and a rank that waits for a message gets a RankFailure when
-// another rank fails.
+// Ranks as threads of one process. If a rank fails, ranks that wait for a message throw RankFailure.
 #pragma once
 #include <condition_variable>
 #include <cstring>
@@ -19,9 +18,9 @@
 
 namespace raya {
 
-/// The messages that the ranks of a test have sent and not yet received.
+/// Messages that ranks have sent and other ranks have not received yet.
 struct MessageStore {
-    using Key = std::tuple<std::uint32_t, std::uint32_t, int>;  // from, to, tag
+    using Key = std::tuple<std::uint32_t, std::uint32_t, int>;  // sender, receiver, tag
     std::mutex mutex{};
     std::condition_variable changed{};
     std::map<Key, std::deque<std::vector<std::byte>>> messages{};
@@ -40,7 +39,8 @@ struct MessageStore {
         const std::vector<std::byte> message = std::move(messages[key].front());
         messages[key].pop_front();
         if (message.size() != bytes.size())
-            throw std::logic_error("a rank expects another number of bytes than were sent");
+            throw std::logic_error(
+                "the receiver of a message expects another number of bytes than the sender has sent");
         std::copy(message.begin(), message.end(), bytes.begin());
     }
 
@@ -63,48 +63,50 @@ class ThreadTransport final : public Transport {
 
     void broadcast(std::span<std::byte> bytes) override {
         if (rank_ > 0) return store_.take({0, rank_, kBroadcast}, bytes);
-        for (std::uint32_t to = 1; to < count_; ++to) store_.put({0, to, kBroadcast}, bytes);
+        for (std::uint32_t receiver = 1; receiver < count_; ++receiver) store_.put({0, receiver, kBroadcast}, bytes);
     }
 
-    void all_gather(std::span<const std::byte> own, std::span<std::byte> all,
+    void all_gather(std::span<const std::byte> own_bytes, std::span<std::byte> all_bytes,
                     std::span<const std::size_t> sizes) override {
-        for (std::uint32_t to = 0; to < count_; ++to) store_.put({rank_, to, kGather}, own);
-        for (std::uint32_t from = 0; from < count_; ++from) {
-            store_.take({from, rank_, kGather}, all.first(sizes[from]));
-            all = all.subspan(sizes[from]);
+        for (std::uint32_t receiver = 0; receiver < count_; ++receiver)
+            store_.put({rank_, receiver, kGather}, own_bytes);
+        for (std::uint32_t sender = 0; sender < count_; ++sender) {
+            store_.take({sender, rank_, kGather}, all_bytes.first(sizes[sender]));
+            all_bytes = all_bytes.subspan(sizes[sender]);
         }
     }
 
-    void start(std::span<const Outgoing> out, std::span<const Incoming> in) override {
-        if (!pending_.empty()) throw std::logic_error("start: the last one has not been waited for");
-        for (const Outgoing& m : out) store_.put({rank_, m.to, m.tag}, m.bytes);
+    void start(std::span<const OutgoingMessage> out, std::span<const IncomingMessage> in) override {
+        if (!pending_.empty()) throw std::logic_error("start: wait() was not called after the previous start()");
+        for (const OutgoingMessage& m : out) store_.put({rank_, m.receiver, m.tag}, m.bytes);
         pending_.assign(in.begin(), in.end());
     }
     void wait() override {
-        for (const Incoming& m : pending_) store_.take({m.from, rank_, m.tag}, m.bytes);
+        for (const IncomingMessage& m : pending_) store_.take({m.sender, rank_, m.tag}, m.bytes);
         pending_.clear();
     }
 
     void poll_failures() override {}
     void report_failure(const std::string&, int) override {}
-    [[noreturn]] void abort(int) override { throw std::logic_error("a rank of threads does not abort"); }
+    [[noreturn]] void abort(int) override { throw std::logic_error("ThreadTransport does not support abort()"); }
     void close() override {}
 
   private:
-    static constexpr int kBroadcast = -1, kGather = -2;
+    static constexpr int kBroadcast = -1, kGather = -2;  // tags
 
     MessageStore& store_;
     std::uint32_t rank_, count_, ranks_per_host_;
-    std::vector<Incoming> pending_;
+    std::vector<IncomingMessage> pending_;
 };
 
 /// Runs `work` on `count` concurrent ranks, `ranks_per_host` per host. If ranks throw, rethrows the first exception.
 /// Throws std::logic_error if a sent message was not received.
 inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& work, std::uint32_t ranks_per_host = 8) {
-    all_devices();  // concurrent first queries fail: PoCL 3.1 then returns no device to some threads
+    all_devices();  // before the threads start, because PoCL 3.1 returns no device to some of several threads that
+                    // query first
     MessageStore store;
-    std::exception_ptr thrown;
-    std::mutex thrown_mutex;
+    std::exception_ptr first_exception;
+    std::mutex exception_mutex;
     std::vector<std::thread> threads;
     for (std::uint32_t rank = 0; rank < count; ++rank)
         threads.emplace_back([&, rank] {
@@ -114,13 +116,13 @@ inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& wor
             } catch (const RankFailure&) {  // another rank throws the exception that caused it
                 store.fail();
             } catch (...) {
-                const std::lock_guard lock(thrown_mutex);
-                if (!thrown) thrown = std::current_exception();
+                const std::lock_guard lock(exception_mutex);
+                if (!first_exception) first_exception = std::current_exception();
                 store.fail();
             }
         });
     for (std::thread& thread : threads) thread.join();
-    if (thrown) std::rethrow_exception(thrown);
+    if (first_exception) std::rethrow_exception(first_exception);
     for (const auto& [key, messages] : store.messages)
         if (!messages.empty()) throw std::logic_error("a message was sent that no rank received");
 }

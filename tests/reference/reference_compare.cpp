@@ -1,4 +1,4 @@
-// Compares an image with the reference and finds the pixels that rounding may legitimately change.
+// Compares an image with the reference, and finds the pixels that rounding may change without an error.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -8,15 +8,15 @@
 namespace raya::reference {
 namespace {
 
-/// Returns the largest difference of any channel, after clamping to 0..1; infinite if a value is not finite. Adds the
+/// Returns the maximum difference of a channel, after clamping to 0..1; infinite if a value is not finite. Adds the
 /// squares of the channels' differences to `squares`.
 double channel_difference(const Colour& a, const Colour& b, double& squares) {
     double largest = 0;
     for (int i = 0; i < 3; ++i) {
         const bool finite = std::isfinite(a[i]) && std::isfinite(b[i]);
-        const double off = finite ? std::abs(std::clamp(a[i], 0.0, 1.0) - std::clamp(b[i], 0.0, 1.0)) : kFar;
-        largest = std::max(largest, off);
-        squares += off * off;
+        const double difference = finite ? std::abs(std::clamp(a[i], 0.0, 1.0) - std::clamp(b[i], 0.0, 1.0)) : kFar;
+        largest = std::max(largest, difference);
+        squares += difference * difference;
     }
     return largest;
 }
@@ -25,15 +25,15 @@ double channel_difference(const Colour& a, const Colour& b, double& squares) {
 
 bool grazes_edge(const Scene& scene, const Options& options, int x, int y, double reach_pixels) {
     Counts ignored;
-    History own_history;
-    const Colour own = trace_pixel(scene, options, x, y, ignored, &own_history);
+    History sample_history;
+    const Colour sample = trace_pixel(scene, options, x, y, ignored, &sample_history);
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
             History history;
             const Colour colour =
                 trace_pixel(scene, options, x + dx * reach_pixels, y + dy * reach_pixels, ignored, &history);
             double squares = 0;
-            if (history != own_history || channel_difference(colour, own, squares) > 1.0 / 255) return true;
+            if (history != sample_history || channel_difference(colour, sample, squares) > 1.0 / 255) return true;
         }
     return false;
 }
@@ -47,9 +47,9 @@ Difference compare(const Image& reference, const std::vector<float>& rgb, const 
     double squares = 0;
     for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
         const Colour colour(rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]);
-        const double off = channel_difference(reference.pixels[i], colour, squares);
-        difference.largest = std::max(difference.largest, off);
-        if (off <= limit) continue;
+        const double largest = channel_difference(reference.pixels[i], colour, squares);
+        difference.largest = std::max(difference.largest, largest);
+        if (largest <= limit) continue;
         ++difference.above_limit;
         const int pixel = static_cast<int>(i);
         if (grazes_edge(scene, options, pixel % options.width, pixel / options.width, reach_pixels))

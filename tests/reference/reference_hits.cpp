@@ -9,7 +9,7 @@
 namespace raya::reference {
 namespace {
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
+std::size_t as_index(int i) { return static_cast<std::size_t>(i); }
 
 /// Projects the point to two coordinates by dropping the axis of the normal's largest component.
 Imath::V2d flattened(const Vec3& point, const Vec3& normal) {
@@ -18,7 +18,7 @@ Imath::V2d flattened(const Vec3& point, const Vec3& normal) {
 }
 
 /// Returns true if the half line from the point towards larger u crosses an odd number of edges. An edge includes its
-/// end of lower v but not the other one, so that a vertex is counted once.
+/// end with the smaller v, but not its end with the larger v, so that a vertex between two edges is counted once.
 bool inside_outline(const std::vector<Vec3>& vertices, const Vec3& normal, const Vec3& point) {
     const Imath::V2d p = flattened(point, normal);
     bool inside = false;
@@ -48,7 +48,7 @@ struct ConeFrame {
     }
 };
 
-/// Returns the real roots of a t^2 + 2 b t + c in ascending order, computed without cancellation.
+/// Returns the real roots of a t^2 + 2 b t + c in ascending order. The computation avoids cancellation.
 std::vector<double> quadratic_roots(double a, double b, double c) {
     if (a == 0) return b == 0 ? std::vector<double>{} : std::vector<double>{-c / (2 * b)};
     const double discriminant = b * b - a * c;
@@ -58,33 +58,34 @@ std::vector<double> quadratic_roots(double a, double b, double c) {
     return {std::min(q / a, c / q), std::max(q / a, c / q)};
 }
 
-/// Returns the normal of a patch at a point, interpolated linearly over the triangle that contains the point. This
-/// function chooses the triangle in which the smallest barycentric coordinate of the point is largest. So a point on an
-/// edge gets a triangle even if rounding puts it outside of both.
+/// Returns the normal of a patch at a point, interpolated linearly over the triangle that contains the point. The
+/// function chooses the triangle for which the point's smallest barycentric coordinate is largest. So a point on an
+/// edge has a triangle even if rounding moves the point out of both triangles of the edge.
 Vec3 interpolated_normal(const Polygon& patch, const Vec3& normal, const Vec3& point) {
-    double best_inside = -kFar;
-    Vec3 best(0, 0, 0);
+    double best_coordinate = -kFar;
+    Vec3 best_normal(0, 0, 0);
     for (const std::array<int, 3>& triangle : triangulate(patch.vertices, normal)) {
-        std::array<double, 3> share{};
+        std::array<double, 3> weights{};  // barycentric coordinates times `sum`
         for (int i = 0; i < 3; ++i) {
-            const Vec3& next = patch.vertices[index(triangle[index((i + 1) % 3)])];
-            const Vec3& after = patch.vertices[index(triangle[index((i + 2) % 3)])];
-            share[index(i)] = (next - point).cross(after - point).dot(normal);
+            const Vec3& next = patch.vertices[as_index(triangle[as_index((i + 1) % 3)])];
+            const Vec3& after_next = patch.vertices[as_index(triangle[as_index((i + 2) % 3)])];
+            weights[as_index(i)] = (next - point).cross(after_next - point).dot(normal);
         }
-        const double sum = share[0] + share[1] + share[2];
+        const double sum = weights[0] + weights[1] + weights[2];
         if (sum <= 0) continue;  // a degenerate triangle contains no point
-        const double inside = *std::min_element(share.begin(), share.end()) / sum;
-        if (inside <= best_inside) continue;
-        best_inside = inside;
-        best = Vec3(0, 0, 0);
-        for (int i = 0; i < 3; ++i) best += share[index(i)] / sum * patch.normals[index(triangle[index(i)])];
+        const double coordinate = *std::min_element(weights.begin(), weights.end()) / sum;
+        if (coordinate <= best_coordinate) continue;
+        best_coordinate = coordinate;
+        best_normal = Vec3(0, 0, 0);
+        for (int i = 0; i < 3; ++i)
+            best_normal += weights[as_index(i)] / sum * patch.normals[as_index(triangle[as_index(i)])];
     }
-    return best.normalized();
+    return best_normal.normalized();
 }
 
 /// Returns the hit of object `number` at distance t. Turns the outward normals `geometric` and `shading` against the
-/// ray and computes the colour.
-Hit finished(const Scene& scene, const Ray& ray, double t, int number, int surface, const Vec3& geometric,
+/// ray, and computes the colour.
+Hit make_hit(const Scene& scene, const Ray& ray, double t, int number, int surface, const Vec3& geometric,
              const Vec3& shading) {
     Hit hit;
     hit.t = t;
@@ -95,41 +96,41 @@ Hit finished(const Scene& scene, const Ray& ray, double t, int number, int surfa
     hit.shading = hit.leaving ? -shading : shading;
     if (hit.shading.dot(hit.geometric) < 0) hit.shading = -hit.shading;
     hit.surface = surface;
-    const Surface& look = scene.surfaces[index(surface)];
-    hit.colour = look.colour;
-    if (look.checker) {
+    const Surface& material = scene.surfaces[as_index(surface)];
+    hit.colour = material.colour;
+    if (material.checker) {
         const Imath::V2d uv = flattened(hit.point, hit.geometric);
-        const double squares = std::floor(uv.x / look.checker->size) + std::floor(uv.y / look.checker->size);
+        const double squares = std::floor(uv.x / material.checker->size) + std::floor(uv.y / material.checker->size);
         hit.odd_square = std::fmod(squares, 2) != 0;
-        hit.colour = hit.odd_square ? look.checker->odd : look.checker->even;
+        hit.colour = hit.odd_square ? material.checker->odd : material.checker->even;
     }
     return hit;
 }
 
-/// Returns the hit of object `number` at distance t, with its normals and surface.
-Hit described(const Scene& scene, const Ray& ray, double t, int number) {
+/// Returns the hit of object `number` at distance t, with the object's normals and surface.
+Hit hit_of_object(const Scene& scene, const Ray& ray, double t, int number) {
     const Vec3 point = ray.origin + t * ray.direction;
-    std::size_t i = index(number);
+    std::size_t i = as_index(number);
     if (i < scene.spheres.size()) {
         const Sphere& sphere = scene.spheres[i];
         const Vec3 normal = (point - sphere.centre) / std::abs(sphere.radius);
-        return finished(scene, ray, t, number, sphere.surface, normal, normal);
+        return make_hit(scene, ray, t, number, sphere.surface, normal, normal);
     }
     i -= scene.spheres.size();
     if (i < scene.planes.size()) {
         const Plane& plane = scene.planes[i];
-        return finished(scene, ray, t, number, plane.surface, plane.normal, plane.normal);
+        return make_hit(scene, ray, t, number, plane.surface, plane.normal, plane.normal);
     }
     i -= scene.planes.size();
     if (i < scene.polygons.size()) {
         const Polygon& polygon = scene.polygons[i];
         const Vec3 normal = newell_normal(polygon.vertices).normalized();
         const Vec3 shading = polygon.normals.empty() ? normal : interpolated_normal(polygon, normal, point);
-        return finished(scene, ray, t, number, polygon.surface, normal, shading);
+        return make_hit(scene, ray, t, number, polygon.surface, normal, shading);
     }
     const Cone& cone = scene.cones[i - scene.polygons.size()];
     const Vec3 normal = ConeFrame(cone).outward_normal(cone, point);
-    return finished(scene, ray, t, number, cone.surface, normal, normal);
+    return make_hit(scene, ray, t, number, cone.surface, normal, normal);
 }
 
 }  // namespace
@@ -147,9 +148,9 @@ std::optional<double> hit_sphere(const Sphere& sphere, const Ray& ray) {
 }
 
 std::optional<double> hit_plane(const Plane& plane, const Ray& ray) {
-    const double towards = plane.normal.dot(ray.direction);
-    if (towards == 0) return {};
-    const double t = (plane.distance - plane.normal.dot(ray.origin)) / towards;
+    const double cosine = plane.normal.dot(ray.direction);
+    if (cosine == 0) return {};
+    const double t = (plane.distance - plane.normal.dot(ray.origin)) / cosine;
     if (t > 0) return t;
     return {};
 }
@@ -164,7 +165,8 @@ std::optional<double> hit_polygon(const Polygon& polygon, const Ray& ray) {
 std::optional<double> hit_cone(const Cone& cone, const Ray& ray) {
     const ConeFrame frame(cone);
     const bool inside_only = cone.base_radius < 0 || cone.apex_radius < 0;
-    // Squares the equation |p + t q| = r + slope * dz * t, where p and q are perpendicular to the axis.
+    // a t^2 + 2 b t + c = 0 is the square of the equation |p + t q| = r + slope * dz * t. Vectors p and q are
+    // perpendicular to the axis.
     const Vec3 from_base = ray.origin - cone.base;
     const double z0 = from_base.dot(frame.axis);
     const double dz = ray.direction.dot(frame.axis);
@@ -199,7 +201,7 @@ std::optional<Hit> closest_hit(const Scene& scene, const Ray& ray, double far) {
     for (const Polygon& polygon : scene.polygons) consider(hit_polygon(polygon, ray));
     for (const Cone& cone : scene.cones) consider(hit_cone(cone, ray));
     if (nearest_number < 0) return {};
-    return described(scene, ray, nearest, nearest_number);
+    return hit_of_object(scene, ray, nearest, nearest_number);
 }
 
 }  // namespace raya::reference

@@ -16,22 +16,23 @@ Surface matt(const Colour& colour) { return {.colour = colour, .diffuse = 1, .ch
 Surface mirror(double ks) { return {.diffuse = 0, .specular = ks, .checker = {}}; }
 Surface glass(double t, double ior) { return {.diffuse = 0, .transmittance = t, .refraction = ior, .checker = {}}; }
 
-/// Returns a scene viewed from (0, 0, eye) towards the origin with an angle of 30 degrees; y is up.
-Scene scene_from(double eye) {
+/// Returns an empty scene, viewed from (0, 0, eye_z) towards the origin with an angle of 30 degrees; y is up.
+Scene scene_from(double eye_z) {
     Scene scene;
-    scene.view = {.from = {0, 0, eye}, .at = {0, 0, 0}, .up = {0, 1, 0}, .angle_degrees = 30};
+    scene.view = {.from = {0, 0, eye_z}, .at = {0, 0, 0}, .up = {0, 1, 0}, .angle_degrees = 30};
     return scene;
 }
 
-Colour seen(const Scene& scene, const Options& options, double x, double y) {
+/// Returns the radiance of trace_pixel().
+Colour radiance(const Scene& scene, const Options& options, double x, double y) {
     Counts counts;
     return trace_pixel(scene, options, x, y, counts);
 }
 
 /// Returns the angle between a primary ray and the viewing direction, in radians.
 double angle_off_axis(const Scene& scene, const Options& options, double x, double y) {
-    const Vec3 gaze = (scene.view.at - scene.view.from).normalized();
-    return std::acos(std::min(1.0, gaze.dot(primary_ray(scene, options, x, y).direction)));
+    const Vec3 view_direction = (scene.view.at - scene.view.from).normalized();
+    return std::acos(std::min(1.0, view_direction.dot(primary_ray(scene, options, x, y).direction)));
 }
 
 void check_colour(const Colour& colour, const Colour& expected, double tolerance) {
@@ -39,7 +40,7 @@ void check_colour(const Colour& colour, const Colour& expected, double tolerance
     CHECK((colour - expected).length() <= tolerance);
 }
 
-TEST_CASE("primary rays span the view angle from top to bottom, with centres and with corners") {
+TEST_CASE("primary rays span the view angle from top to bottom, through pixel centres and through corners") {
     const Scene scene = scene_from(5);
     const double h = std::tan(15 * kDegree);
     const Options corners{.width = 9, .height = 5, .corners = true};
@@ -50,14 +51,14 @@ TEST_CASE("primary rays span the view angle from top to bottom, with centres and
     CHECK((primary_ray(scene, centres, 0, 0).direction - Vec3(-1.5 * h, h / 2, -1).normalized()).length() < 1e-15);
     CHECK((primary_ray(scene, centres, -0.5, -0.5).direction - Vec3(-2 * h, h, -1).normalized()).length() < 1e-15);
     for (const bool by_corners : {false, true}) {
-        const Options one{.width = 1, .height = 1, .corners = by_corners};
-        CHECK((primary_ray(scene, one, 0, 0).direction - Vec3(0, 0, -1)).length() < 1e-15);
+        const Options one_pixel{.width = 1, .height = 1, .corners = by_corners};
+        CHECK((primary_ray(scene, one_pixel, 0, 0).direction - Vec3(0, 0, -1)).length() < 1e-15);
     }
     const Options column{.width = 1, .height = 3, .corners = true};
     CHECK((primary_ray(scene, column, 0, 0).direction - Vec3(0, h, -1).normalized()).length() < 1e-15);
 }
 
-TEST_CASE("a sphere lit from the eye follows the closed formula") {
+TEST_CASE("the radiance of a sphere lit from the eye follows the closed formula") {
     constexpr double kEye = 5;
     Scene scene = scene_from(kEye);
     const Colour colour(0.9, 0.5, 0.2);
@@ -71,12 +72,12 @@ TEST_CASE("a sphere lit from the eye follows the closed formula") {
         const double incidence = std::asin(kEye * std::sin(angle_off_axis(scene, options, x, y)));
         const double gloss = std::pow(std::max(0.0, std::cos(2 * incidence)), 7);
         const Colour expected = 0.5 * 0.6 * colour + 0.5 * (0.6 * std::cos(incidence) * colour + Colour(0.3 * gloss));
-        check_colour(seen(scene, options, x, y), expected, 1e-8);
+        check_colour(radiance(scene, options, x, y), expected, 1e-8);
     }
-    check_colour(seen(scene, options, 0, 0), scene.background, 0);
+    check_colour(radiance(scene, options, 0, 0), scene.background, 0);
 }
 
-TEST_CASE("the colours of lights add up; shadowed and averted faces get none") {
+TEST_CASE("the colours of lights add up; shadowed and averted faces get no light") {
     Scene scene = scene_from(5);
     scene.surfaces = {matt({1, 1, 1})};
     scene.planes = {{{0, 0, 1}, 0, 0}};
@@ -84,7 +85,7 @@ TEST_CASE("the colours of lights add up; shadowed and averted faces get none") {
     scene.spheres = {{{5, 0, 5}, 0.5, 0}};  // behind the second light
     const double ambient = std::sqrt(2) / 4;
     const Options options{.width = 1, .height = 1};
-    check_colour(seen(scene, options, 0, 0), Colour(ambient) + Colour(0.5, 0.5 * std::sqrt(0.5), 0), 1e-8);
+    check_colour(radiance(scene, options, 0, 0), Colour(ambient) + Colour(0.5, 0.5 * std::sqrt(0.5), 0), 1e-8);
 
     scene.spheres = {{{2, 0, 2}, 0.5, 0}};  // between the plane and the second light
     Counts counts;
@@ -121,7 +122,7 @@ TEST_CASE("furnace test: objects in uniform light are invisible") {
     CHECK(image.counts.shadow == 0);
 }
 
-TEST_CASE("between two mirrors the light is a geometric series") {
+TEST_CASE("the radiance between two mirrors is a geometric series") {
     constexpr double kKd = 0.25, kKs = 0.5;
     Scene scene;
     scene.view = {.from = {0, 0, 0.5}, .at = {1, 0, 0.5}, .up = {0, 0, 1}, .angle_degrees = 60};
@@ -165,39 +166,40 @@ TEST_CASE("a glass sphere shows the checkered plane behind it as the closed form
         const double theta = angle_off_axis(scene, options, x, 100);
         const double incidence = std::asin(kEye * std::sin(theta));
         const double inner = std::asin(std::sin(incidence) / kIor);
-        const double out_at = incidence - theta + std::numbers::pi - 2 * inner;  // polar angle of the exit
-        const double out_direction = theta - 2 * (incidence - inner);
-        const double lands = std::sin(out_at) + (std::cos(out_at) + kBehind) * std::tan(out_direction);
-        const double square = lands / kSize;
-        if (std::abs(square - std::round(square)) < 1e-4) continue;  // too near an edge, which the ray offset shifts
-        CAPTURE(x, lands);
+        const double exit_angle = incidence - theta + std::numbers::pi - 2 * inner;  // polar angle of the exit point
+        const double ray_angle = theta - 2 * (incidence - inner);
+        const double plane_x = std::sin(exit_angle) + (std::cos(exit_angle) + kBehind) * std::tan(ray_angle);
+        const double square = plane_x / kSize;
+        if (std::abs(square - std::round(square)) < 1e-4)
+            continue;  // skips pixels near an edge, which the ray offset shifts
+        CAPTURE(x, plane_x);
         const bool even = std::fmod(std::floor(square), 2) == 0;
         odd += !even;
-        check_colour(seen(scene, options, x, 100), even ? Colour(1, 0, 0) : Colour(0, 1, 0), 0);
+        check_colour(radiance(scene, options, x, 100), even ? Colour(1, 0, 0) : Colour(0, 1, 0), 0);
     }
     CHECK(odd > 15);
 }
 
-TEST_CASE("under total reflection the refracted share is reflected too, as one ray") {
+TEST_CASE("under total reflection, one reflected ray carries the reflected and the transmitted fraction") {
     constexpr double kKs = 0.25, kT = 0.5, kIor = 1.5;
     Scene scene;
     scene.surfaces = {{.diffuse = 0, .specular = kKs, .transmittance = kT, .refraction = kIor, .checker = {}},
                       matt({1, 1, 1})};
-    scene.planes = {{{0, 0, 1}, 0, 0}, {{0, 0, 1}, -2, 1}};  // water seen from below, above a bright ground
+    scene.planes = {{{0, 0, 1}, 0, 0}, {{0, 0, 1}, -2, 1}};  // water seen from below; a bright ground
     const double critical = std::asin(1 / kIor);
-    const auto looking_up = [&](double incidence, Counts& counts) {
+    const auto radiance_upwards = [&](double incidence, Counts& counts) {
         scene.view.from = {0, 0, -1};
         scene.view.at = scene.view.from + Vec3(std::sin(incidence), 0, std::cos(incidence));
         return trace_pixel(scene, {.width = 1, .height = 1}, 0, 0, counts);
     };
-    Counts through, total;
-    check_colour(looking_up(critical - 0.001, through), Colour(kKs), 1e-15);
-    CHECK(through == Counts{.primary = 1, .primary_hits = 1, .reflected = 1, .refracted = 1});
-    check_colour(looking_up(critical + 0.001, total), Colour(kKs + kT), 1e-15);
-    CHECK(total == Counts{.primary = 1, .primary_hits = 1, .reflected = 1});
+    Counts below_critical, above_critical;
+    check_colour(radiance_upwards(critical - 0.001, below_critical), Colour(kKs), 1e-15);
+    CHECK(below_critical == Counts{.primary = 1, .primary_hits = 1, .reflected = 1, .refracted = 1});
+    check_colour(radiance_upwards(critical + 0.001, above_critical), Colour(kKs + kT), 1e-15);
+    CHECK(above_critical == Counts{.primary = 1, .primary_hits = 1, .reflected = 1});
 }
 
-TEST_CASE("checker squares alternate across zero") {
+TEST_CASE("checker squares alternate, also across coordinate 0") {
     Scene scene = scene_from(10);
     scene.surfaces = {matt({0, 0, 1})};
     scene.surfaces[0].checker = Checker{{1, 0, 0}, {0, 1, 0}, 0.5};

@@ -1,4 +1,4 @@
-// Tests that compare() detects wrong pixels and that the number of threads does not change the reference.
+// Tests that compare() detects wrong pixels and excuses only edges, and that render() agrees with trace_pixel().
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -14,7 +14,8 @@
 namespace raya::reference {
 namespace {
 
-/// Returns a scene with flat regions and edges: a sphere, half in the shadow of another one, in front of a background.
+/// Returns a scene with flat regions and edges: a sphere, half in the shadow of another sphere, in front of a
+/// background.
 Scene two_spheres() {
     Scene scene;
     scene.view = {.from = {0, 0, 5}, .at = {0, 0, 0}, .up = {0, 1, 0}, .angle_degrees = 40};
@@ -35,37 +36,37 @@ std::vector<float> floats(const Image& image) {
 
 constexpr Options kOptions{.width = 33, .height = 33};
 
-/// Returns the index in `rgb` of the first of the three values of pixel (x, y).
-std::size_t value_of(int x, int y) { return static_cast<std::size_t>(3 * (y * kOptions.width + x)); }
+/// Returns the index of pixel (x, y)'s first value in the result of floats().
+std::size_t value_index(int x, int y) { return static_cast<std::size_t>(3 * (y * kOptions.width + x)); }
 
-TEST_CASE("an image agrees with itself, and render() with trace_pixel()") {
+TEST_CASE("an image agrees with itself; render() agrees with trace_pixel()") {
     const Scene scene = two_spheres();
     const Image image = render(scene, kOptions);
-    const Difference same = compare(image, floats(image), scene, kOptions);
-    CHECK(same.psnr_db > 140);
-    CHECK(same.largest < 1e-7);
-    CHECK((same.above_limit == 0 && same.excused == 0));
+    const Difference difference = compare(image, floats(image), scene, kOptions);
+    CHECK(difference.psnr_db > 140);
+    CHECK(difference.largest < 1e-7);
+    CHECK((difference.above_limit == 0 && difference.excused == 0));
     Counts counts;
     for (int y = 0; y < 33; ++y)
         for (int x = 0; x < 33; ++x)
-            REQUIRE(trace_pixel(scene, kOptions, x, y, counts) == image.pixels[value_of(x, y) / 3]);
+            REQUIRE(trace_pixel(scene, kOptions, x, y, counts) == image.pixels[value_index(x, y) / 3]);
     CHECK(counts == image.counts);
     CHECK(counts.primary == 33 * 33);
     CHECK((counts.primary_hits > 200 && counts.refracted > 20 && counts.shadow_hits > 20));
 }
 
-TEST_CASE("pixels on an edge are excused, others are not") {
+TEST_CASE("pixels on an edge are excused, other pixels are not") {
     const Scene scene = two_spheres();
     const Image image = render(scene, kOptions);
     const auto with_error_at = [&](int x, int y, float error) {
         std::vector<float> rgb = floats(image);
-        rgb[value_of(x, y) + 1] += error;
+        rgb[value_index(x, y) + 1] += error;
         return compare(image, rgb, scene, kOptions);
     };
-    const Difference inside = with_error_at(12, 20, 0.1F);
-    CHECK((inside.above_limit == 1 && inside.excused == 0));
-    CHECK(inside.largest == Approx(0.1).epsilon(1e-5));
-    CHECK(inside.psnr_db == Approx(10 * std::log10(33 * 33 * 3 / 0.01)).epsilon(1e-5));
+    const Difference flat_region = with_error_at(12, 20, 0.1F);
+    CHECK((flat_region.above_limit == 1 && flat_region.excused == 0));
+    CHECK(flat_region.largest == Approx(0.1).epsilon(1e-5));
+    CHECK(flat_region.psnr_db == Approx(10 * std::log10(33 * 33 * 3 / 0.01)).epsilon(1e-5));
     CHECK(with_error_at(0, 0, 0.1F).excused == 0);
     CHECK(with_error_at(12, 20, 0.007F).above_limit == 0);
     CHECK(with_error_at(12, 20, std::nanf("")).above_limit == 1);
@@ -86,18 +87,18 @@ TEST_CASE("an edge between objects of the same colour counts as an edge") {
     scene.lights.clear();
     scene.polygons = {{{{-9, -9, 0}, {0, -9, 0}, {0, 9, 0}, {-9, 9, 0}}, {}, 0},
                       {{{0, -9, 0}, {9, -9, 0}, {9, 9, 0}, {0, 9, 0}}, {}, 0}};
-    const Options options{.width = 4, .height = 4};  // the edge lies half a pixel right of the second column
+    const Options options{.width = 4, .height = 4};  // the edge lies half a pixel to the right of the second column
     CHECK(grazes_edge(scene, options, 1, 1, 0.51));
     CHECK_FALSE(grazes_edge(scene, options, 1, 1, 0.49));
 }
 
-TEST_CASE("differences above 1 and below 0 do not count, and wrong sizes throw") {
+TEST_CASE("values are clamped to 0..1 before they are compared; wrong sizes throw") {
     Scene scene = two_spheres();
     scene.background = {2, 0, 0};
     const Image image = render(scene, kOptions);
     std::vector<float> rgb = floats(image);
-    rgb[value_of(0, 0)] = 3;
-    rgb[value_of(0, 0) + 1] = -1;
+    rgb[value_index(0, 0)] = 3;
+    rgb[value_index(0, 0) + 1] = -1;
     CHECK(compare(image, rgb, scene, kOptions).above_limit == 0);
     rgb.pop_back();
     CHECK_THROWS_AS(compare(image, rgb, scene, kOptions), std::invalid_argument);

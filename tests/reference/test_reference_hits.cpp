@@ -34,16 +34,16 @@ class Random {
 
 Vec3 at(const Ray& ray, double t) { return ray.origin + t * ray.direction; }
 
-/// Returns the smallest sampled t < end at which `outside` changes its sign; empty if there is none. `outside` is a
-/// signed distance, NaN beyond the ends of the surface. If `outward_only` is true, only changes from negative to
-/// positive count.
-template <class Outside>
-std::optional<double> first_crossing(const Outside& outside, double end, bool outward_only) {
+/// Samples signed_distance(t), the distance of a ray from a surface, positive outside, NaN beyond the ends of the
+/// surface. Returns the smallest sampled t <= end at which the sign changes; empty if there is none. If `outward_only`
+/// is true, only changes from negative to positive count.
+template <class SignedDistance>
+std::optional<double> first_crossing(const SignedDistance& signed_distance, double end, bool outward_only) {
     constexpr int kSteps = 500;
-    double before = outside(0.0);
+    double before = signed_distance(0.0);
     for (int i = 1; i <= kSteps; ++i) {
         const double t = end * i / kSteps;
-        const double now = outside(t);
+        const double now = signed_distance(t);
         if ((before < 0 && now > 0) || (!outward_only && before > 0 && now < 0)) return t;
         before = now;
     }
@@ -59,14 +59,16 @@ TEST_CASE("spheres: the hit is the first zero of the implicit equation") {
         const double sign = i % 3 == 0 ? -1 : 1;
         const Sphere sphere{random.point(1), sign * random.uniform(0.1, 1), 0};
         const Ray ray = random.ray(3);
-        const auto outside = [&](double t) { return (at(ray, t) - sphere.centre).length() - std::abs(sphere.radius); };
+        const auto signed_distance = [&](double t) {
+            return (at(ray, t) - sphere.centre).length() - std::abs(sphere.radius);
+        };
         const std::optional<double> t = hit_sphere(sphere, ray);
-        const std::optional<double> sampled = first_crossing(outside, 12, sign < 0);
+        const std::optional<double> sampled = first_crossing(signed_distance, 12, sign < 0);
         if (sampled) REQUIRE(t);
         if (!t) continue;
         ++hits;
         REQUIRE(*t > 0);
-        REQUIRE(std::abs(outside(*t)) < 1e-12);
+        REQUIRE(std::abs(signed_distance(*t)) < 1e-12);
         if (sign < 0) REQUIRE((at(ray, *t) - sphere.centre).dot(ray.direction) > 0);
         if (sampled) REQUIRE(*t <= *sampled);
     }
@@ -81,9 +83,9 @@ TEST_CASE("planes: the hit is where n.x = d") {
         CAPTURE(kSeed, i);
         const Plane plane{random.point(1).normalized(), random.uniform(-2, 2), 0};
         const Ray ray = random.ray(3);
-        const double ahead = plane.distance - plane.normal.dot(ray.origin);
+        const double plane_offset = plane.distance - plane.normal.dot(ray.origin);
         const std::optional<double> t = hit_plane(plane, ray);
-        REQUIRE(t.has_value() == (ahead * plane.normal.dot(ray.direction) > 0));
+        REQUIRE(t.has_value() == (plane_offset * plane.normal.dot(ray.direction) > 0));
         if (!t) continue;
         ++hits;
         REQUIRE(std::abs(plane.normal.dot(at(ray, *t)) - plane.distance) < 1e-13 * (1 + *t));
@@ -106,21 +108,21 @@ TEST_CASE("cones: the hit is the first zero of the implicit equation") {
         const Ray ray = random.ray(3);
         const double height = (cone.apex - cone.base).length();
         const Vec3 axis = (cone.apex - cone.base) / height;
-        const auto outside = [&](double t) {
+        const auto signed_distance = [&](double t) {
             const Vec3 x = at(ray, t) - cone.base;
             const double z = x.dot(axis);
             if (z < 0 || z > height) return std::nan("");
             return (x - z * axis).length() - (bottom + (top - bottom) * z / height);
         };
         const std::optional<double> t = hit_cone(cone, ray);
-        const std::optional<double> sampled = first_crossing(outside, 12, inside_only);
+        const std::optional<double> sampled = first_crossing(signed_distance, 12, inside_only);
         if (sampled) REQUIRE(t);
         if (!t) continue;
         ++hits;
         REQUIRE(*t > 0);
-        // Only rounding moves the hit point off the surface. On flat cones the slope magnifies the error.
+        // Rounding moves the hit point off the surface. On flat cones the slope magnifies this error.
         const double slope = std::abs(top - bottom) / height;
-        REQUIRE(std::abs(outside(*t)) < 1e-11 * (1 + slope));
+        REQUIRE(std::abs(signed_distance(*t)) < 1e-11 * (1 + slope));
         if (sampled) REQUIRE(*t <= *sampled);
     }
     CHECK(hits > kRays / 5);
@@ -144,8 +146,8 @@ TEST_CASE("a cylinder has no caps, and its normal is radial") {
     CHECK((inside->geometric - Vec3(1, 0, 0)).length() < 1e-15);
 }
 
-/// Returns true if the outline winds around the point, by the sum of its angles: +-2 pi inside, 0 outside. All points
-/// have z = 0.
+/// Returns true if the outline winds around the point: the angles at which the point sees the edges add up to +-2 pi;
+/// they add up to 0 if it does not. All points have z = 0.
 bool winds_around(const std::vector<Vec3>& outline, const Vec3& p) {
     double sum = 0;
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -193,7 +195,8 @@ TEST_CASE("a triangle's normals are interpolated linearly and normalised") {
         CHECK((below->shading + expected.normalized()).length() < 1e-8);
         CHECK((below->leaving && !above->leaving));
     };
-    constexpr double kInward = 1e-9;  // moves points off the border, which belongs to one side only
+    constexpr double kInward =
+        1e-9;  // moves points inwards, because not every point of the border is inside the triangle
     const Vec3 middle(2.0 / 3, 2.0 / 3, 0);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t next = (i + 1) % 3;
@@ -204,8 +207,9 @@ TEST_CASE("a triangle's normals are interpolated linearly and normalised") {
     check_normal(middle, normals[0] + normals[1] + normals[2]);
 }
 
-TEST_CASE("a patch of more vertices reproduces a linear field, and turns a normal that faces away") {
-    // The normals have different lengths. Their interpolation is linear only before it is normalised.
+TEST_CASE("a patch with five vertices reproduces a linear field, and turns normals against the ray") {
+    // The normals have different lengths. The interpolated normal is a linear function of the point only before it is
+    // normalised.
     constexpr std::uint64_t kSeed = 6;
     Random random(kSeed);
     Scene scene;
@@ -225,8 +229,8 @@ TEST_CASE("a patch of more vertices reproduces a linear field, and turns a norma
     }
     CHECK(hits > 500);
 
-    // Changes one normal, so that no linear field fits all vertices. Near a vertex its own normal must count, not an
-    // extrapolation from another triangle.
+    // Changes two normals, so that no linear field fits all vertices. Near a vertex the result must be the vertex's
+    // normal, not an extrapolation from another triangle.
     scene.polygons[0].normals[0] = Vec3(1, 0, 1).normalized();
     scene.polygons[0].normals[3] = Vec3(0, 1, 1).normalized();
     for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
@@ -243,7 +247,7 @@ TEST_CASE("a patch of more vertices reproduces a linear field, and turns a norma
     CHECK((hit->shading - field({1, 0.5, 0}).normalized()).length() < 1e-14);
 }
 
-TEST_CASE("on a tie the lowest number wins, and hits beyond far do not count") {
+TEST_CASE("of objects with equal t the one with the lowest number is hit; hits with t >= far do not count") {
     Scene scene;
     scene.surfaces.resize(4);
     scene.spheres.push_back({{0, 0, 0}, 1, 0});

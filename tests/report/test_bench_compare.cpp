@@ -1,4 +1,4 @@
-// Reports of raya bench: reading a report, refused files, and comparison with a baseline.
+// Tests of the reports of raya bench: reading, refused files, and comparison with a baseline.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <random>
@@ -63,15 +63,16 @@ TEST_CASE("read_bench_report: inverts to_json", "[bench]") {
         const BenchReport read = read_bench_report(folder / "b.json");
         CHECK(read.driver == written.driver);
         REQUIRE(read.rows.size() == written.rows.size());
-        // The file contains milliseconds. The conversion from seconds and back may change the last bit.
+        // The file contains milliseconds. The conversion from seconds to milliseconds and back may change a time's last
+        // bit, so the comparison has a tolerance.
         CHECK(rows_in_common(read, written) == static_cast<int>(written.rows.size()));
-        const BenchComparison same = compare_bench(read, written, 1e-9);
-        CHECK(same.compared == static_cast<int>(written.rows.size()));
-        CHECK_FALSE(same.failed());
+        const BenchComparison comparison = compare_bench(read, written, 1e-9);
+        CHECK(comparison.compared == static_cast<int>(written.rows.size()));
+        CHECK_FALSE(comparison.failed());
     }
 }
 
-TEST_CASE("read_bench_report: refuses other files with a remedy", "[bench]") {
+TEST_CASE("read_bench_report: refuses files that are not valid reports, with a remedy", "[bench]") {
     const ScratchFolder folder;
     const std::string good = to_json(report({row(1, 2, 3)})).dump();
     const auto changed = [&](const auto& change) {
@@ -90,7 +91,8 @@ TEST_CASE("read_bench_report: refuses other files with a remedy", "[bench]") {
     CHECK_THAT(refusal(folder, good.substr(0, good.size() / 2)), Contains("not valid JSON"));
     CHECK_THAT(refusal(folder, "[]"), Contains("b.json: valid JSON, but not a report of raya bench"));
     CHECK_THAT(refusal(folder, R"({"scene": "centre.nff"})"), Contains("not a report of raya bench"));
-    CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"].clear(); })), Contains("the report has no measurements"));
+    CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"].clear(); })),
+               Contains("the report has no measurements"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j.erase("device"); })), Contains("b.json:1: 'device' is missing"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0].erase("hash"); })), Contains("hash"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0]["lanes"] = "many"; })),
@@ -103,9 +105,9 @@ TEST_CASE("read_bench_report: refuses other files with a remedy", "[bench]") {
 }
 
 TEST_CASE("compare_bench: a row is slower if best and median both exceed the tolerance", "[bench]") {
-    // best, median: rates relative to the baseline, whose times are 10 and 12 ms. tolerance: percent.
     struct Case {
-        double best, median, tolerance;
+        double best, median;  // rates divided by those of the baseline, whose times are 10 and 12 ms
+        double tolerance;     // percent
         bool slower;
     };
     const std::vector<Case> cases = {{1, 1, 10, false},       {0.89, 0.89, 10, true}, {0.91, 0.91, 10, false},
@@ -124,7 +126,7 @@ TEST_CASE("compare_bench: a row is slower if best and median both exceed the tol
     }
 }
 
-TEST_CASE("compare_bench: another image fails, however fast", "[bench]") {
+TEST_CASE("compare_bench: a different image fails, however fast the kernel is", "[bench]") {
     BenchMeasurement other = row(4, 1, 1);
     other.hash = "fedcba9876543210";
     const BenchComparison result = compare_bench(report({row(4, 10, 10)}), report({other}), 100);
@@ -134,7 +136,7 @@ TEST_CASE("compare_bench: another image fails, however fast", "[bench]") {
     CHECK_THAT(result.text, Contains("OTHER IMAGE: fedcba98, was 01234567"));
 }
 
-TEST_CASE("compare_bench: another device is a warning, unmatched rows are listed", "[bench]") {
+TEST_CASE("compare_bench: a different device causes a warning, and rows of only one run are listed", "[bench]") {
     BenchReport now = report({row(4, 10, 10), row(8, 10, 10)});
     now.device = "gpu";
     const BenchComparison result = compare_bench(report({row(1, 10, 10), row(4, 10, 10)}), now, 10);
@@ -148,7 +150,8 @@ TEST_CASE("compare_bench: another device is a warning, unmatched rows are listed
                Contains("warning: another driver: OpenCL 3.0, 4.0, the baseline's is OpenCL 3.0, 3.1"));
 }
 
-TEST_CASE("rows_in_common: rows match if all but times, image, samples and build options are equal", "[bench]") {
+TEST_CASE("rows_in_common: rows match if all members except times, rays, image, samples and build options are equal",
+          "[bench]") {
     const BenchReport baseline = report({row(4, 10, 10)});
     const auto in_common = [&](const auto& change) {
         BenchMeasurement other = row(4, 20, 30);

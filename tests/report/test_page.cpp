@@ -1,4 +1,5 @@
-// The page of a report: the embedded report is unchanged, and the browser does not interpret its text.
+// Tests of the page of a report: the embedded report is unchanged, and the browser does not interpret text of the
+// report as HTML.
 #include <catch2/catch.hpp>
 
 #include "host/report/page/page.hpp"
@@ -11,7 +12,7 @@ namespace {
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
-// Returns the content of <pre id="report">. Assumes that it contains no HTML entities.
+// Returns the content of <pre id="report">, which must contain no HTML entities.
 std::string report_in(const std::string& page) {
     const std::string begin = "<pre id=\"report\" tabindex=\"0\">";
     const std::size_t from = page.find(begin) + begin.size();
@@ -29,7 +30,7 @@ TEST_CASE("report_page: embeds the report unchanged, whatever its texts contain"
     CHECK(page == report_page(report));
 }
 
-TEST_CASE("report_page: one file, which may not load resources", "[page]") {
+TEST_CASE("report_page: one file that loads no resources", "[page]") {
     const std::string page = report_page({{"kind", "raya render"}});
     CHECK_THAT(page, StartsWith("<!doctype html>"));
     CHECK_THAT(page, Contains("default-src 'none'") && Contains("<noscript>"));
@@ -37,6 +38,7 @@ TEST_CASE("report_page: one file, which may not load resources", "[page]") {
     CHECK(page.size() < 150'000);
 }
 
+// Decodes base64.
 std::string decoded(const std::string& base64) {
     const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string bytes;

@@ -1,4 +1,4 @@
-// The roofline model, with figures that can be checked by hand.
+// Tests of the roofline model, with figures that can be calculated by hand.
 #include <catch2/catch.hpp>
 
 #include "host/model/budget.hpp"
@@ -37,16 +37,16 @@ TEST_CASE("roofline: a kernel with many operations is compute bound", "[report]"
     const RooflineRow row = row_of(work, 100);
     CHECK(row.bound == Bound::kCompute);
     CHECK(row.intensity == Approx(10));
-    CHECK(row.share == Approx(0.1));  // 1000 operations in 100 ns: 10 Gop/s, the peak is 100
-    REQUIRE(row.of_format);
-    CHECK(*row.of_format == Approx((97 + 20 + 5) / 100.0));
+    CHECK(row.roof_fraction == Approx(0.1));  // 1000 operations in 100 ns: 10 Gop/s, the peak is 100
+    REQUIRE(row.format_fraction);
+    CHECK(*row.format_fraction == Approx((97 + 20 + 5) / 100.0));
 }
 
 TEST_CASE("roofline: a kernel with many bytes is bandwidth bound", "[report]") {
     const RooflineRow row = row_of({.label = "move", .operations = 0, .bytes = 1000}, 100);
     CHECK(row.bound == Bound::kBandwidth);
-    CHECK(row.share == Approx(0.5));  // 10 GB/s, the peak is 20
-    CHECK_FALSE(row.of_format);
+    CHECK(row.roof_fraction == Approx(0.5));  // 10 GB/s, the peak is 20
+    CHECK_FALSE(row.format_fraction);
     // The ridge point is 100 Gop/s / 20 GB/s = 5 operations per byte.
     CHECK(row_of({.label = "a", .operations = 501, .bytes = 100}, 1).bound == Bound::kCompute);
     CHECK(row_of({.label = "a", .operations = 499, .bytes = 100}, 1).bound == Bound::kBandwidth);
@@ -78,7 +78,7 @@ TEST_CASE("work_of: sums the budgets of the events", "[report]") {
     CHECK(work.all_operations() == 177 + 6 + 3);
 }
 
-TEST_CASE("roofline_table: names the bound of each kernel and its share", "[report]") {
+TEST_CASE("roofline_table: contains the bound of each kernel and its percentage of the roof", "[report]") {
     const Roofline all = roofline(
         kPeak, {{.label = "trace", .rays = 5, .operations = 1000, .bytes = 100}, {.label = "route", .bytes = 1000}},
         {kernel("trace", 100), kernel("route", 100)});

@@ -1,4 +1,4 @@
-// Host spans and device commands in a trace, with times of different clocks.
+// Tests of host spans and device commands in a trace, with times of different clocks.
 #include <catch2/catch.hpp>
 
 #include "host/report/session_trace.hpp"
@@ -17,7 +17,7 @@ CommandRecord command(const std::string& label, std::uint64_t start, std::uint64
             .started = start,
             .ended = end,
             .bytes = 8,
-            .object = "a -> b"};
+            .target_name = "a -> b"};
 }
 
 Document slice_named(const Document& trace, const std::string& name) {
@@ -31,13 +31,13 @@ Document slice_named(const Document& trace, const std::string& name) {
 TEST_CASE("add_host_spans: slices nest like the scopes of the spans", "[report]") {
     const std::uint64_t begin = host_clock_ns();
     SpanLog log;
-    const int answer = log.during("outer", [&] {
+    const int result = log.during("outer", [&] {
         const SpanLog::Span first(&log, "first");
         return log.during("inner", [] { return 42; });
     });
-    CHECK(answer == 42);
+    CHECK(result == 42);
     const SpanLog::Span open(&log, "open");
-    const SpanLog::Span nobody(nullptr, "nobody");
+    const SpanLog::Span unlogged(nullptr, "unlogged");
     const std::vector<HostSpan> spans = log.spans();
     REQUIRE(spans.size() == 4);
     CHECK(spans[3].ended >= spans[3].started);
@@ -59,7 +59,7 @@ TEST_CASE("add_device_commands: a slice has times, bytes and launch parameters",
                  .submitted = 1100,
                  .started = 1250,
                  .ended = 2251,
-                 .object = "trace_kernel",
+                 .target_name = "trace_kernel",
                  .groups = 7,
                  .group_size = 3,
                  .arguments = {{"band", "12"}}});
@@ -77,7 +77,8 @@ TEST_CASE("add_device_commands: a slice has times, bytes and launch parameters",
     CHECK(json["otherData"]["device_clock"]["same_as_host"] == true);
 }
 
-TEST_CASE("add_device_commands: times of another clock are converted, and early ones clamped to 0", "[report]") {
+TEST_CASE("add_device_commands: times of another clock are converted, and times before the trace are moved to 0",
+          "[report]") {
     Profile profile(true);
     profile.add(command("early", 90, 95));
     profile.add(command("later", 200, 260));

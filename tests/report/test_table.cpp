@@ -12,21 +12,21 @@ TEST_CASE("text_table: aligns text to the left and numbers to the right", "[repo
           "bus.gather         1      90\n");
 }
 
-TEST_CASE("text_table: one cell that is not a number makes a text column", "[report]") {
+TEST_CASE("text_table: aligns a column to the left if one cell is not a number", "[report]") {
     CHECK(text_table({{"name", "time"}, {"a", "1.5 ms"}, {"b", "none"}}) ==
           "name  time\n"
           "a     1.5 ms\n"
           "b     none\n");
 }
 
-TEST_CASE("text_table: a dash is a missing number", "[report]") {
+TEST_CASE("text_table: a dash counts as a number", "[report]") {
     CHECK(text_table({{"name", "time"}, {"a", "1.5"}, {"b", "-"}}) ==
           "name  time\n"
           "a      1.5\n"
           "b        -\n");
 }
 
-TEST_CASE("text_table: short rows, wide headers, and a header without rows", "[report]") {
+TEST_CASE("text_table: accepts short rows, wide headers, and a header without rows", "[report]") {
     CHECK(text_table({{"a", "b"}, {"long word"}, {"x", "7"}}) ==
           "a          b\n"
           "long word\n"

@@ -1,4 +1,4 @@
-// The report and the summary of a render on the torus.
+// Tests of the report and the summary of a render on the torus.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -44,7 +44,7 @@ RenderReport report_with_figures() {
     return report;
 }
 
-TEST_CASE("to_json: a torus has its own members and none of a ring", "[report]") {
+TEST_CASE("to_json: the report of a torus has the members of a torus and none of a ring", "[report]") {
     const Document json = read_back(to_json(report_with_figures()));
     const Document& torus = json["torus"];
     CHECK(torus["nodes"] == Document({4, 4, 4}));
@@ -80,7 +80,7 @@ TEST_CASE("to_json: a torus has its own members and none of a ring", "[report]")
                Catch::Contains("async   5.5 ms without supersteps (busiest processor 3.5 ms, link "
                                "4.5 ms; longest wait of a main task for links 0.5 ms; 77 messages)"));
     CHECK(json["load"]["per_pe"].size() == 64);
-    for (const char* ring : {"antialias", "communication"}) CHECK_FALSE(json.contains(ring));
+    for (const char* key : {"antialias", "communication"}) CHECK_FALSE(json.contains(key));
     RenderReport ring = report_with_figures();
     ring.torus.reset();
     CHECK(to_json(ring).find("torus") == nullptr);
@@ -88,7 +88,7 @@ TEST_CASE("to_json: a torus has its own members and none of a ring", "[report]")
 }
 
 // A reflected ray costs one multiplication, ten moves and two branches, and creates a packet of 16 words.
-TEST_CASE("t805_budget_json: has the operations of a T805", "[report]") {
+TEST_CASE("t805_budget_json: contains the operations of a T805", "[report]") {
     EventCounts events{};
     events[RAYA_REFLECTED] = 3;
     events[RAYA_SPHERE_TESTS] = 2;
@@ -97,7 +97,8 @@ TEST_CASE("t805_budget_json: has the operations of a T805", "[report]") {
               "packet_words": 48, "branches": 8})"));
 }
 
-TEST_CASE("summary_text: a torus has nodes, packets, links, memory and both bounds of its time", "[report]") {
+TEST_CASE("summary_text: the summary of a torus has nodes, packets, links, memory and both bounds of the modelled time",
+          "[report]") {
     const std::string text = summary_text(report_with_figures());
     INFO(text);
     for (const char* part :
@@ -109,9 +110,9 @@ TEST_CASE("summary_text: a torus has nodes, packets, links, memory and both boun
           "5.0 ms if nothing waits", "6.0 ms step by step"})
         CHECK_THAT(text, Catch::Contains(part));
     CHECK_THAT(text, !Catch::Contains("mapping"));
-    RenderReport one = report_with_figures();
-    one.torus->link = {};
-    CHECK_THAT(summary_text(one), Catch::Contains("over 0 links, 0 bytes in all"));
+    RenderReport without_links = report_with_figures();
+    without_links.torus->link = {};
+    CHECK_THAT(summary_text(without_links), Catch::Contains("over 0 links, 0 bytes in all"));
 }
 
 }  // namespace

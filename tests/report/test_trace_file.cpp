@@ -1,4 +1,5 @@
-// TraceFile, whose traces TraceSchema checks, and TraceSchema, which must find the errors of invalid traces.
+// Tests of TraceFile, whose traces TraceSchema checks, and of TraceSchema, which must find the errors of invalid
+// traces.
 #include <catch2/catch.hpp>
 #include <functional>
 
@@ -11,15 +12,16 @@
 namespace raya {
 namespace {
 
-// Adds random slices between `start` and `end`, nested up to `depth` more levels.
+// Adds random slices between `start` and `end`, nested in up to `depth` + 1 levels.
 void add_slices(TraceFile& trace, TraceTrack track, SplitMix& random, std::uint64_t start, std::uint64_t end,
                 int depth) {
     std::uint64_t at = start;
     while (at < end) {
-        const std::uint64_t from = at + random.next() % (end - at + 1), to = from + random.next() % (end - from + 1);
-        trace.slice(track, "s" + std::to_string(depth), from, to);
-        if (depth > 0) add_slices(trace, track, random, from, to, depth - 1);
-        at = to + 1 + (end - start) / 4;
+        const std::uint64_t slice_start = at + random.next() % (end - at + 1);
+        const std::uint64_t slice_end = slice_start + random.next() % (end - slice_start + 1);
+        trace.slice(track, "s" + std::to_string(depth), slice_start, slice_end);
+        if (depth > 0) add_slices(trace, track, random, slice_start, slice_end, depth - 1);
+        at = slice_end + 1 + (end - start) / 4;
     }
 }
 
@@ -37,8 +39,8 @@ TraceFile random_trace(std::uint64_t seed, std::size_t limit) {
         for (int i = 0; i < 5; ++i)
             trace.counter(p, "c", random.next() % 1000, {{"a", random.uniform(-1, 1)}, {"b", 1e300}});
         for (int i = 0; i < 5; ++i) {
-            const std::uint64_t from = random.next() % 1'000'000'000;
-            trace.flow("f", {p, 1}, from, {1, 2}, from + random.next() % 1000);
+            const std::uint64_t from_ns = random.next() % 1'000'000'000;
+            trace.flow("f", {p, 1}, from_ns, {1, 2}, from_ns + random.next() % 1000);
         }
     }
     trace.metadata()["seed"] = seed;
@@ -61,7 +63,7 @@ TEST_CASE("TraceFile: random traces are valid", "[report]") {
     }
 }
 
-TEST_CASE("TraceFile: leaves out and counts events beyond the limit, flows as a whole", "[report]") {
+TEST_CASE("TraceFile: leaves out and counts events beyond the limit, both ends of a flow together", "[report]") {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         const std::size_t all = random_trace(seed, 1'000'000).events(), limit = seed % (all + 2);
         CAPTURE(seed, all, limit);
@@ -75,7 +77,7 @@ TEST_CASE("TraceFile: leaves out and counts events beyond the limit, flows as a 
     }
 }
 
-TEST_CASE("TraceFile: the text of a small trace", "[report]") {
+TEST_CASE("TraceFile: writes the expected text of a small trace", "[report]") {
     TraceFile trace(10);
     trace.name_process(1, "host");
     trace.name_track({1, 7}, "steps");
@@ -112,14 +114,14 @@ TEST_CASE("TraceFile: refuses events that readers would misinterpret", "[report]
 
 TEST_CASE("TraceSchema: finds each broken rule", "[report]") {
     struct Defect {
-        std::string fault;
-        std::function<void(Document&)> apply;  // to the trace's list of events
+        std::string fault;                     // text of the expected fault
+        std::function<void(Document&)> apply;  // changes the trace's list of events
     };
     const auto first = [](Document& events, const char* phase) -> Document& {
         return *std::find_if(events.begin(), events.end(), [&](const Document& e) { return e["ph"] == phase; });
     };
     const Document slice = {{"ph", "X"}, {"name", "x"}, {"pid", 1}, {"tid", 1}, {"ts", 999'999'999.5}, {"dur", 2.0}};
-    const std::vector<Defect> breaks = {
+    const std::vector<Defect> defects = {
         {"unknown phase", [&](Document& e) { first(e, "X")["ph"] = "Z"; }},
         {"no name", [&](Document& e) { first(e, "X").erase("name"); }},
         {"pid is no integer", [&](Document& e) { first(e, "X")["pid"] = "1"; }},
@@ -149,15 +151,15 @@ TEST_CASE("TraceSchema: finds each broken rule", "[report]") {
         {"outside all slices", [&](Document& e) { first(e, "f")["ts"] = 1e12; }},
         {"does not count the events", [&](Document& e) { e.erase(e.size() - 1); }},
     };
-    for (const Defect& b : breaks) {
-        CAPTURE(b.fault);
+    for (const Defect& defect : defects) {
+        CAPTURE(defect.fault);
         Document json = json_of(random_trace(3, 1'000'000));
         REQUIRE(TraceSchema(json).faults().empty());
-        b.apply(json["traceEvents"]);
+        defect.apply(json["traceEvents"]);
         std::string all;
         const TraceSchema schema(json);
         for (const std::string& fault : schema.faults()) all += fault + "\n";
-        CHECK_THAT(all, Catch::Contains(b.fault));
+        CHECK_THAT(all, Catch::Contains(defect.fault));
     }
     CHECK(TraceSchema(Document::array()).faults() == std::vector<std::string>{"no traceEvents"});
 }

@@ -1,4 +1,4 @@
-// The selection of the PEs that a trace contains.
+// Tests of the selection of the PEs that a trace contains.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -7,7 +7,7 @@
 
 namespace raya {
 
-TEST_CASE("traced_pes: returns the given number of PEs, with the busiest and the idlest", "[report]") {
+TEST_CASE("traced_pes: returns the given number of PEs, including the busiest and the idlest", "[report]") {
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
         SplitMix random(seed);
         std::vector<std::uint64_t> loads(1 + random.next() % 70);
@@ -21,11 +21,11 @@ TEST_CASE("traced_pes: returns the given number of PEs, with the busiest and the
         CHECK(std::is_sorted(numbers.begin(), numbers.end()));
         CHECK(std::adjacent_find(numbers.begin(), numbers.end()) == numbers.end());
         for (const std::uint32_t pe : numbers) CHECK(pe < loads.size());
-        const auto shows = [&](auto place) {
-            return std::count(numbers.begin(), numbers.end(), static_cast<std::uint32_t>(place - loads.begin())) == 1;
+        const auto contains = [&](auto load) {
+            return std::count(numbers.begin(), numbers.end(), static_cast<std::uint32_t>(load - loads.begin())) == 1;
         };
-        if (limit > 0) CHECK(shows(std::max_element(loads.begin(), loads.end())));
-        if (limit > 3) CHECK(shows(std::min_element(loads.begin(), loads.end())));
+        if (limit > 0) CHECK(contains(std::max_element(loads.begin(), loads.end())));
+        if (limit > 3) CHECK(contains(std::min_element(loads.begin(), loads.end())));
     }
 }
 

@@ -1,4 +1,4 @@
-// The rules of Chrome's JSON trace format, as Perfetto reads it, and raya's additional rules.
+// Checks the rules of Chrome's JSON trace format, as Perfetto reads the format, and raya's additional rules.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace raya {
 /// Checks a whole trace and lists the violated rules.
 class TraceSchema {
   public:
-    using Track = std::pair<std::int64_t, std::int64_t>;  // [process ID, thread ID]
+    using Track = std::pair<std::int64_t, std::int64_t>;  // process ID, thread ID
 
     struct Slice {
         std::int64_t start, end;  // nanoseconds
@@ -52,9 +52,10 @@ class TraceSchema {
     }
 
   private:
-    struct End {
+    // One end of a flow.
+    struct FlowEnd {
         Track track;
-        std::int64_t at;
+        std::int64_t at_ns;
         std::string name;
     };
 
@@ -121,7 +122,7 @@ class TraceSchema {
         if (!event.contains("id") || !event["id"].is_number_integer()) return fault("a flow without id", event);
         if (phase == "f" && event.value("bp", "") != "e") fault("a flow's end that binds to the next slice", event);
         auto& ends = phase == "s" ? begins_ : ends_;
-        const bool is_new = ends.try_emplace(event["id"], End{track, ns(event["ts"]), event["name"]}).second;
+        const bool is_new = ends.try_emplace(event["id"], FlowEnd{track, ns(event["ts"]), event["name"]}).second;
         if (!is_new) fault("a flow with two of one end", event);
     }
 
@@ -151,10 +152,10 @@ class TraceSchema {
         }
     }
 
-    bool in_slice(const End& end) const {
+    bool in_slice(const FlowEnd& end) const {
         const auto found = slices_.find(end.track);
         return found != slices_.end() && std::any_of(found->second.begin(), found->second.end(), [&](const Slice& s) {
-                   return s.start <= end.at && end.at <= s.end;
+                   return s.start <= end.at_ns && end.at_ns <= s.end;
                });
     }
 
@@ -164,7 +165,7 @@ class TraceSchema {
             const std::string flow = "flow " + std::to_string(id);
             if (end == ends_.end())
                 faults_.push_back(flow + " has no end");
-            else if (end->second.name != begin.name || end->second.at < begin.at)
+            else if (end->second.name != begin.name || end->second.at_ns < begin.at_ns)
                 faults_.push_back(flow + ": its ends do not agree");
             if (!in_slice(begin) || (end != ends_.end() && !in_slice(end->second)))
                 faults_.push_back(flow + " has an end outside all slices");
@@ -180,15 +181,15 @@ class TraceSchema {
     }
 
     std::vector<std::string> faults_;
-    bool begun_ = false;  // an event that is not a name was read
+    bool begun_ = false;  // true after the first event that is not a name
     std::uint64_t events_ = 0;
     std::size_t counters_ = 0;
-    std::set<std::tuple<std::string, std::int64_t, std::int64_t>> named_;
+    std::set<std::tuple<std::string, std::int64_t, std::int64_t>> named_;  // kind of name, process ID, thread ID
     std::set<std::int64_t> used_processes_;
     std::set<Track> used_tracks_;
     std::map<Track, std::string> tracks_;
     std::map<Track, std::vector<Slice>> slices_;
-    std::map<std::int64_t, End> begins_, ends_;
+    std::map<std::int64_t, FlowEnd> begins_, ends_;  // [flow ID]
 };
 
 inline Document json_of(const TraceFile& trace) { return Document::parse(trace.finish(false)); }

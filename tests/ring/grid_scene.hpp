@@ -10,7 +10,8 @@
 
 namespace raya {
 
-/// Two shiny spheres above a checkered floor. Edges cross the middle of the image, and some colour values exceed 1.
+/// Returns two shiny spheres above a checkered floor. Edges cross the middle of the image, and some colour values
+/// exceed 1.
 inline Scene grid_objects() {
     Scene scene;
     scene.name = "grid";
@@ -24,13 +25,14 @@ inline Scene grid_objects() {
     return scene;
 }
 
-/// grid_objects() seen along an axis, in an image of `rows` rows. The pixel spacing is 1 / `pixels_of_unit` at distance
-/// 1. If the spacing is a power of two, the image's corner and the steps between pixels have few significant bits, so
-/// the primary rays are exact. Images with different spacings then send the same ray through the same point.
-inline Scene grid_scene(std::uint32_t rows, Sampling sampling, double pixels_of_unit) {
+/// Returns grid_objects(), seen along an axis, for an image of `rows` rows. The distance between pixels is 1 /
+/// `pixels_per_unit` at distance 1 from the eye. If this spacing is a power of two, the image's corner and the steps
+/// between pixels have few significant bits, so the primary rays are exact. Images with different spacings then send
+/// the same ray through the same point.
+inline Scene grid_scene(std::uint32_t rows, Sampling sampling, double pixels_per_unit) {
     Scene scene = grid_objects();
     const double steps = sampling == Sampling::kCorners ? std::max(1.0, rows - 1.0) : rows;
-    scene.view.angle_degrees = 2 * std::atan(steps / 2 / pixels_of_unit) * 180 / std::numbers::pi;
+    scene.view.angle_degrees = 2 * std::atan(steps / 2 / pixels_per_unit) * 180 / std::numbers::pi;
     return scene;
 }
 

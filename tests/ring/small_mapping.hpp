@@ -9,18 +9,18 @@
 
 namespace raya {
 
-/// A random slot mapping of an image with sides of 1..`largest_side` pixels and 1 to width * height PEs.
+/// Returns a random slot mapping of an image with sides of 1..`largest_side` pixels and 1 to width * height PEs.
 inline raya_mapping small_mapping(SplitMix& random, std::uint32_t largest_side) {
     const auto side = [&] { return random.next() % 8 == 0 ? 1 : 1 + random_below(random, largest_side); };
     const std::uint32_t width = side(), height = side(), pixels = width * height;
-    const std::uint32_t choices[] = {1 + random_below(random, width),  width,
-                                     1 + random_below(random, pixels), pixels,
-                                     std::max(1u, pixels - 1),         std::min(pixels, width + 1)};
+    const std::uint32_t pe_counts[] = {1 + random_below(random, width),  width,
+                                       1 + random_below(random, pixels), pixels,
+                                       std::max(1u, pixels - 1),         std::min(pixels, width + 1)};
     const std::uint32_t fold = random.next() % 2 ? RAYA_FOLD_BLOCK : RAYA_FOLD_CYCLIC;
-    return {width, height, choices[random_below(random, 6)], random_below(random, width), fold};
+    return {width, height, pe_counts[random_below(random, 6)], random_below(random, width), fold};
 }
 
-/// A random divisor of `side`; all divisors are equally likely.
+/// Returns a random divisor of `side`; all divisors are equally likely.
 inline std::uint32_t random_divisor(SplitMix& random, std::uint32_t side) {
     std::uint32_t divisor = 1 + random_below(random, side);
     while (side % divisor) divisor = 1 + random_below(random, side);
@@ -44,7 +44,7 @@ inline raya_mapping mapping_of_kind(SplitMix& random, raya_mapping m, std::uint3
     return m;
 }
 
-/// A random mapping of a random kind.
+/// Returns a random mapping of a random kind.
 inline raya_mapping any_mapping(SplitMix& random, std::uint32_t largest_side) {
     const raya_mapping m = small_mapping(random, largest_side);
     return mapping_of_kind(random, m, random_below(random, RAYA_RANDOM + 1));

@@ -24,7 +24,7 @@ RingResult render_with(Session& session, const Scene& scene, const RingCase& c, 
 
 const Accel automatic_grid{.kind = AccelKind::kGrid, .divisions = {}}, bvh{.kind = AccelKind::kBvh, .divisions = {}};
 
-Accel cut(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+Accel grid_of(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     return {.kind = AccelKind::kGrid, .divisions = Divisions{a, b, c}};
 }
 
@@ -38,12 +38,13 @@ TEST_CASE("a grid or BVH changes no bit of the image, for any voxels and format"
     Session session(choose_device(""));
     const std::string name = GENERATE("centre", "glass", "polygons", "cones", "planes");
     const std::string format = GENERATE("fp32", "spa22");
-    // The fast tests render one scene per format; other tests cover the other kinds of objects.
+    // The fast tests render one scene per format. Other tests cover the kinds of objects that these scenes do not have.
     if (!thorough() && name != (format == "fp32" ? "polygons" : "cones")) return;
     const Scene scene = project_scene(name);
     const RingCase c{.width = 32, .height = 24, .pes = 8, .format = format};
     const std::string expected = image_and_events(render_with(session, scene, c, {}));
-    for (const Accel& accel : {bvh, automatic_grid, cut(1, 1, 1), cut(7, 3, 5), cut(1, 40, 2), cut(24, 24, 24)}) {
+    for (const Accel& accel :
+         {bvh, automatic_grid, grid_of(1, 1, 1), grid_of(7, 3, 5), grid_of(1, 40, 2), grid_of(24, 24, 24)}) {
         CAPTURE(name, format, accel_text(accel));
         const RingResult result = render_with(session, scene, c, accel);
         CHECK(image_and_events(result) == expected);
@@ -64,24 +65,26 @@ TEST_CASE("scenes of all kinds of objects have the same image with a grid or BVH
         const std::uint32_t a = side(), b = side(), d = side();
         CAPTURE(seed, format, a, b, d);
         const std::string expected = image_and_events(render_with(session, scene, c, {}));
-        CHECK(image_and_events(render_with(session, scene, c, cut(a, b, d))) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, grid_of(a, b, d))) == expected);
         CHECK(image_and_events(render_with(session, scene, c, automatic_grid)) == expected);
         CHECK(image_and_events(render_with(session, scene, c, bvh)) == expected);
     }
 }
 
-// A star-shaped polygon around `at` with 3 to 42 corners; it is concave from six corners on.
-Polygon star(SplitMix& random, const Vec3& at, const Vec3& u, const Vec3& v, int surface) {
+// Returns a star-shaped polygon around `centre` with 3 to 42 corners. With six or more corners it is concave.
+Polygon star(SplitMix& random, const Vec3& centre, const Vec3& u, const Vec3& v, int surface) {
     Polygon polygon{{}, {}, surface};
     const auto corners = 3 + random_below(random, 40);
     for (std::uint64_t i = 0; i < corners; ++i) {
-        const double turn = 2 * std::numbers::pi * double(i) / double(corners), reach = corners > 5 && i % 2 ? 0.5 : 1;
-        polygon.vertices.push_back(at + reach * (std::cos(turn) * u + std::sin(turn) * v));
+        const double angle = 2 * std::numbers::pi * double(i) / double(corners),
+                     radius = corners > 5 && i % 2 ? 0.5 : 1;
+        polygon.vertices.push_back(centre + radius * (std::cos(angle) * u + std::sin(angle) * v));
     }
     return polygon;
 }
 
-// Spheres, polygons and cones of very different sizes that touch, nest and coincide; many polygons are axis-aligned.
+// Returns a scene of spheres, polygons and cones of very different sizes that touch, nest and coincide. Many of the
+// polygons are axis-aligned.
 Scene crowded_scene(std::uint64_t seed) {
     Scene scene = random_view_scene(kSceneSeeds[0]);
     SplitMix random(seed);
@@ -102,11 +105,11 @@ Scene crowded_scene(std::uint64_t seed) {
     for (int i = 0; i < 40; ++i) {
         const Vec3 at = place();
         Vec3 u(size(), 0, 0), v(0, size(), 0);
-        if (i % 2) std::swap(v.y, v.z);  // all are axis-aligned
+        if (i % 2) std::swap(v.y, v.z);  // u and v stay parallel to axes
         scene.polygons.push_back({{at, at + u, at + u + v, at + v}, {}, surface()});
         scene.polygons.push_back(star(random, place(), u, v, surface()));
-        const Vec3 to = at + 0.3 * place();
-        scene.cones.push_back({at, size(), to, size(), surface()});
+        const Vec3 apex = at + 0.3 * place();
+        scene.cones.push_back({at, size(), apex, size(), surface()});
     }
     return scene;
 }
@@ -128,7 +131,7 @@ TEST_CASE("counts of tests and steps do not depend on lanes, groups and PEs", "[
     Session session(choose_device(""));
     const Scene scene = project_scene("polygons");
     const std::string format = GENERATE("fp32", "spa22");
-    const Accel accel = GENERATE_COPY(cut(5, 4, 6), bvh);
+    const Accel accel = GENERATE_COPY(grid_of(5, 4, 6), bvh);
     if (!thorough() && (format == "fp32") != (accel.kind == AccelKind::kBvh)) return;
     const RingCase c{.width = 32, .height = 24, .pes = 8, .lanes = 1, .group = 1, .format = format};
     const EventCounts expected = render_with(session, scene, c, accel).all.events;
@@ -142,13 +145,13 @@ TEST_CASE("counts of tests and steps do not depend on lanes, groups and PEs", "[
         other.pes = pes;
         CHECK(render_with(session, scene, other, accel).all.events == expected);
     }
-    RingSettings global = raya::settings_of(c);
-    global.accel = accel;
-    global.kernels.local_words = false;
-    CHECK(RingRenderer(session, scene, global).render().all.events == expected);
+    RingSettings in_global_memory = raya::settings_of(c);
+    in_global_memory.accel = accel;
+    in_global_memory.kernels.local_words = false;
+    CHECK(RingRenderer(session, scene, in_global_memory).render().all.events == expected);
 }
 
-TEST_CASE("the number of ray trees and lights whose rays are batched changes no bit and no count", "[ring][accel]") {
+TEST_CASE("the numbers of ray trees and beams per lane change no bit and no count", "[ring][accel]") {
     Session session(choose_device(""));
     Scene scene = project_scene("polygons");
     for (int i = 0; i < 5; ++i) scene.lights.push_back({{3.0 * i - 6, 5.0 - i, 4}, Colour{0.2, 0.1 * i, 0.3}});
@@ -156,14 +159,14 @@ TEST_CASE("the number of ray trees and lights whose rays are batched changes no 
     RingCase c{.width = 32, .height = 24, .pes = 3, .lanes = 4, .format = format};
     const RingResult plain = render_with(session, scene, c, {});
     c.more_options = {"-DRAYA_TREES=1", "-DRAYA_BEAMS=1"};
-    const RingResult one = render_with(session, scene, c, cut(6, 5, 4));
-    CHECK(image_and_events(one) == image_and_events(plain));
+    const RingResult unbatched = render_with(session, scene, c, grid_of(6, 5, 4));
+    CHECK(image_and_events(unbatched) == image_and_events(plain));
     for (const auto& [trees, beams] : quick(1, {std::pair{"3", "2"}, {"2", "8"}, {"8", "7"}})) {
         c.more_options = {std::string("-DRAYA_TREES=") + trees, std::string("-DRAYA_BEAMS=") + beams};
         CAPTURE(format, c.more_options);
-        const RingResult many = render_with(session, scene, c, cut(6, 5, 4));
-        CHECK(image_and_events(many) == image_and_events(plain));
-        CHECK(many.all.events == one.all.events);
+        const RingResult batched = render_with(session, scene, c, grid_of(6, 5, 4));
+        CHECK(image_and_events(batched) == image_and_events(plain));
+        CHECK(batched.all.events == unbatched.all.events);
     }
 }
 
@@ -188,7 +191,7 @@ Scene doubled_scene(std::uint64_t seed) {
     return scene;
 }
 
-TEST_CASE("of objects at equal distances the lowest number is hit, in any voxels", "[ring][accel]") {
+TEST_CASE("of objects at equal distances the one with the lowest number is hit, for any voxels", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(2, {"fp32", "spa22", "e5m6"})));
     for (const std::uint64_t seed : quick_of(1, kSceneSeeds)) {
@@ -196,8 +199,8 @@ TEST_CASE("of objects at equal distances the lowest number is hit, in any voxels
         const RingCase c{.width = 24, .height = 20, .pes = 6, .format = format};
         const std::string expected = image_and_events(render_with(session, scene, c, {}));
         CAPTURE(seed, format);
-        CHECK(image_and_events(render_with(session, scene, c, cut(1, 1, 1))) == expected);
-        CHECK(image_and_events(render_with(session, scene, c, cut(8, 5, 7))) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, grid_of(1, 1, 1))) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, grid_of(8, 5, 7))) == expected);
         CHECK(image_and_events(render_with(session, scene, c, automatic_grid)) == expected);
         CHECK(image_and_events(render_with(session, scene, c, bvh)) == expected);
     }
@@ -205,12 +208,13 @@ TEST_CASE("of objects at equal distances the lowest number is hit, in any voxels
 
 // A floor of many squares, a square larger than all of them, and an infinite plane lie in the same plane: a ray hits
 // them at equal distances.
-TEST_CASE("of a plane, a separately listed polygon and others at equal distances the lowest number is hit",
+TEST_CASE("of a plane, a separate polygon and listed polygons at equal distances the lowest number is hit",
           "[ring][accel]") {
     Session session(choose_device(""));
     Scene scene = project_scene("planes");
     scene.planes = {{{0, 0, 1}, 0, 0}};
-    // The sphere makes the box high, so that rays find the large square in voxels before the one where they hit it.
+    // The sphere makes the box high, so that rays find the large square in voxels before the voxel in which they hit
+    // it.
     scene.spheres = {{{-4, -4, 4}, 0.1, 0}};
     scene.cones.clear();
     scene.polygons = {};
@@ -234,13 +238,13 @@ TEST_CASE("of a plane, a separately listed polygon and others at equal distances
         CAPTURE(plane);
         CHECK(image_and_events(grid) == expected);
         CHECK(grid.accel->separate == 1);
-        CHECK(image_and_events(render_with(session, scene, c, cut(9, 9, 3))) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, grid_of(9, 9, 3))) == expected);
         CHECK(image_and_events(render_with(session, scene, c, bvh)) == expected);
     }
 }
 
-// Lights in a ceiling of squares: a shadow ray meets the square around its light at its end, or just before or after
-// its end.
+// The lights lie in a ceiling of squares: a shadow ray meets the square around its light at the ray's end, or just
+// before or after the end.
 TEST_CASE("a hit at the end of a shadow ray does not count, in any voxel", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(1, {"spa22", "fp32", "e5m10"})));
@@ -261,7 +265,7 @@ TEST_CASE("a hit at the end of a shadow ray does not count, in any voxel", "[rin
     const RingResult plain = render_with(session, scene, c, {});
     CHECK(plain.all.events[RAYA_SHADOW_HITS] > 0);
     CHECK(plain.all.events[RAYA_LIT] > 0);
-    for (const Accel& accel : {bvh, automatic_grid, cut(5, 6, 7), cut(3, 2, 16)}) {
+    for (const Accel& accel : {bvh, automatic_grid, grid_of(5, 6, 7), grid_of(3, 2, 16)}) {
         CAPTURE(format, accel_text(accel));
         CHECK(image_and_events(render_with(session, scene, c, accel)) == image_and_events(plain));
     }
@@ -285,7 +289,7 @@ TEST_CASE("a grid or BVH saves 95 % of the tests of many small spheres", "[ring]
     const RingResult plain = render_with(session, scene, c, {}), grid = render_with(session, scene, c, automatic_grid);
     CHECK(image_and_events(grid) == image_and_events(plain));
     REQUIRE(grid.accel);
-    CHECK(grid.accel->separate == 1);  // the ground
+    CHECK(grid.accel->separate == 1);  // the ground polygon
     CHECK(tests_of(plain.all.events) > 20 * tests_of(grid.all.events));
     CHECK(grid.pe_memory.job_words == plain.pe_memory.job_words + grid.accel->words);
     const RingResult tree = render_with(session, scene, c, bvh);
@@ -295,7 +299,7 @@ TEST_CASE("a grid or BVH saves 95 % of the tests of many small spheres", "[ring]
 }
 
 // Each fault injected into the BVH's kernels must change an image or a count. One scene has objects of every kind, most
-// of them several nodes deep; in the other scene, rays hit many objects at equal distances.
+// of which lie several nodes deep. In the other scene, rays hit many objects at equal distances.
 TEST_CASE("every injected fault in the BVH traversal is detected", "[ring][accel][faults]") {
     Session session(choose_device(""));
     Scene copies = crowded_scene(3);  // gets 20 copies of each sphere, more than a leaf holds
@@ -305,16 +309,16 @@ TEST_CASE("every injected fault in the BVH traversal is detected", "[ring][accel
     const std::vector<Scene> scenes = {crowded_scene(2), copies};
     RingSettings settings = raya::settings_of({.width = 24, .height = 20, .pes = 6, .bounces = 3});
     settings.accel = bvh;
-    const auto answers = [&](const char* format) {
+    const auto results = [&](const char* format) {
         settings.format = parse_format(format);
-        std::string all;
+        std::string text;
         for (const Scene& scene : scenes) {
             const RingResult result = RingRenderer(session, scene, settings).render();
-            all += image_and_events(result) + std::to_string(tests_of(result.all.events)) + " ";
+            text += image_and_events(result) + std::to_string(tests_of(result.all.events)) + " ";
         }
-        return all;
+        return text;
     };
-    const std::map<std::string, std::string> right = {{"fp32", answers("fp32")}, {"spa22", answers("spa22")}};
+    const std::map<std::string, std::string> expected = {{"fp32", results("fp32")}, {"spa22", results("spa22")}};
     struct Fault {
         SourcePatch patch;
         const char* format = "fp32";
@@ -339,17 +343,17 @@ TEST_CASE("every injected fault in the BVH traversal is detected", "[ring][accel
         settings.kernels.sources.patches = {fault.patch};
         check_patches(settings.kernels.sources);
         CAPTURE(fault.patch.file, fault.patch.replace);
-        CHECK(answers(fault.format) != right.at(fault.format));
+        CHECK(results(fault.format) != expected.at(fault.format));
     }
 }
 
-TEST_CASE("a grid that does not fit a PE is refused with the memory and the remedy", "[ring][accel]") {
+TEST_CASE("a grid that does not fit a PE is refused; the message gives the PE's memory and a remedy", "[ring][accel]") {
     Session session(choose_device(""));
     const Scene scene = project_scene("centre");
     RingCase c{.machine = "spa"};
-    CHECK_THROWS_WITH(render_with(session, scene, c, cut(32, 32, 32)),
+    CHECK_THROWS_WITH(render_with(session, scene, c, grid_of(32, 32, 32)),
                       Catch::Contains("32 KB") && Catch::Contains("--machine grande"));
-    CHECK_NOTHROW(render_with(session, scene, c, cut(8, 8, 8)));
+    CHECK_NOTHROW(render_with(session, scene, c, grid_of(8, 8, 8)));
 }
 
 }  // namespace raya

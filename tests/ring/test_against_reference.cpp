@@ -11,7 +11,7 @@ namespace raya {
 
 TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
     constexpr std::uint32_t kSide = 160;
-    constexpr double kExcusedShare = 0.02;  // fraction of pixels whose ray may graze an edge
+    constexpr double kMaxExcused = 0.02;  // fraction of pixels whose rays may graze an edge
     for (const std::string& name : project_scenes()) {
         CAPTURE(name);
         const Scene scene = project_scene(name);
@@ -20,12 +20,13 @@ TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
         const reference::Image expected = reference::render(scene, options);
         const reference::Difference d = reference::compare(expected, result.image.rgb, scene, options);
         fmt::print(
-            "{:8} PSNR {:5.1f} dB, largest {:.4f}, {} pixels off by more than 2/255, of which {} graze an edge ({:.2f} "
+            "{:8} PSNR {:5.1f} dB, largest difference {:.4f}, {} pixels off by more than 2/255, of which {} graze an "
+            "edge ({:.2f} "
             "%)\n",
             name, d.psnr_db, d.largest, d.above_limit, d.excused, 100.0 * d.excused / (kSide * kSide));
         CHECK(d.psnr_db >= 50);
         CHECK(d.above_limit == d.excused);
-        CHECK(d.excused <= kExcusedShare * kSide * kSide);
+        CHECK(d.excused <= kMaxExcused * kSide * kSide);
         // Counts may differ only where a ray grazes an edge.
         const auto near = [](std::uint64_t got, std::uint64_t wanted) {
             return std::abs(double(got) - double(wanted)) <= 0.002 * double(wanted) + 2;
@@ -59,12 +60,12 @@ TEST_CASE("a scene larger than local memory is read from global memory, with the
     Scene scene = project_scene("planes");
     scene.surfaces.push_back({.colour = {0.5, 0.5, 0.5}, .diffuse = 1});
     const int opaque = static_cast<int>(scene.surfaces.size()) - 1;
-    const Sphere shell{{-2.4, 2.4, 3.4}, 0.4, opaque};  // in a corner, where it touches nothing
+    const Sphere shell{{-2.4, 2.4, 3.4}, 0.4, opaque};  // in a corner, where the sphere touches nothing
     scene.spheres.push_back(shell);
     const RingCase c{.width = 20, .height = 20, .pes = 20};
     const RingResult small = render_scene(scene, c);
     CHECK(small.build_options.find("-DRAYA_WORDS_LOCAL=1") != std::string::npos);
-    // Spheres hidden inside the opaque one, too many for any device's local memory.
+    // Spheres hidden inside the opaque sphere, too many for the device's local memory.
     const std::size_t local_bytes = device_info(choose_device("")).local_memory_bytes;
     scene.spheres.insert(scene.spheres.end(), local_bytes / kSphereBytes + 1, {shell.centre, 0.01, opaque});
     const RingResult large = render_scene(scene, c);

@@ -17,18 +17,19 @@ namespace {
 using whole_image::count_differences;
 using whole_image::value_at;
 
-constexpr double kPixelsOfUnit = 32;
+constexpr double kPixelsPerUnit = 32;
 
-/// Few sizes, so that few reference images are rendered. On sides of one and two pixels, pixels have few neighbours.
+/// Image sizes: only a few, so that few reference images are rendered. In images with sides of one or two pixels,
+/// pixels have few neighbours.
 constexpr std::array<std::array<std::uint32_t, 2>, 10> kSizes = {
     {{1, 1}, {1, 9}, {8, 1}, {2, 2}, {3, 2}, {7, 5}, {17, 13}, {32, 20}, {8, 40}, {39, 40}}};
 
-int cases() {
+int case_count() {
     const char* given = std::getenv("RAYA_ANTIALIAS_CASES");
     return given ? std::atoi(given) : 30;
 }
 
-/// A random case; the number of PEs is 1 to width * height and often divides the width.
+/// Returns a random case. The number of PEs is 1 to width * height and often divides the width.
 RingCase random_case(SplitMix& random, const std::string& format) {
     const auto& size = kSizes[random_below(random, kSizes.size())];
     RingCase c{.width = size[0], .height = size[1], .format = format};
@@ -49,25 +50,25 @@ Antialias random_supersampling(SplitMix& random) {
             .points = random.next() % 2 ? RAYA_POINTS_AXES : RAYA_POINTS_DIAGONALS};
 }
 
-/// Reference images of the scene without antialiasing, rendered by one PE, each only once.
+/// Reference images of the scene without antialiasing. One PE renders each of them, only once.
 class PlainImages {
   public:
     explicit PlainImages(Session& session) : session_(session) {}
 
-    /// The image at the case's size.
-    const RingResult& of(const RingCase& c) { return render(c, c.width, c.height, kPixelsOfUnit); }
+    /// Returns the image at the case's size.
+    const RingResult& image_of(const RingCase& c) { return render(c, c.width, c.height, kPixelsPerUnit); }
 
-    /// The image sampled every half pixel, with a margin of half a pixel: its point (2 j + 1, 2 x + 1) is the sample
-    /// point of pixel (j, x).
-    const RingResult& fine(const RingCase& c) {
+    /// Returns the image sampled every half pixel, with a margin of half a pixel: point (2 j + 1, 2 x + 1) is the
+    /// sample point of the case's pixel (j, x).
+    const RingResult& fine_image_of(const RingCase& c) {
         RingCase centres = c;
         centres.sampling = Sampling::kCentres;
-        return render(centres, 2 * c.width + 1, 2 * c.height + 1, 2 * kPixelsOfUnit);
+        return render(centres, 2 * c.width + 1, 2 * c.height + 1, 2 * kPixelsPerUnit);
     }
 
   private:
-    const RingResult& render(const RingCase& c, std::uint32_t width, std::uint32_t height, double pixels_of_unit) {
-        const auto key = std::tuple(c.format, c.sampling, width, height, pixels_of_unit);
+    const RingResult& render(const RingCase& c, std::uint32_t width, std::uint32_t height, double pixels_per_unit) {
+        const auto key = std::tuple(c.format, c.sampling, width, height, pixels_per_unit);
         const auto found = images_.find(key);
         if (found != images_.end()) return found->second;
         const RingSettings settings = settings_of({.width = width,
@@ -77,7 +78,7 @@ class PlainImages {
                                                    .sampling = c.sampling,
                                                    .format = c.format,
                                                    .record_costs = true});
-        RingRenderer renderer(session_, grid_scene(height, c.sampling, pixels_of_unit), settings);
+        RingRenderer renderer(session_, grid_scene(height, c.sampling, pixels_per_unit), settings);
         return images_.emplace(key, renderer.render()).first->second;
     }
 
@@ -87,7 +88,7 @@ class PlainImages {
 
 RingResult render_grid(Session& session, RingCase c) {
     c.record_costs = true;
-    return RingRenderer(session, grid_scene(c.height, c.sampling, kPixelsOfUnit), settings_of(c)).render();
+    return RingRenderer(session, grid_scene(c.height, c.sampling, kPixelsPerUnit), settings_of(c)).render();
 }
 
 // Offsets of a pixel's additional sample points, {down, right} in half pixels, in the order of summation.
@@ -99,7 +100,7 @@ const Offsets& offsets_of(const Antialias& antialias) {
     return antialias.points == RAYA_POINTS_AXES ? kAxes : kDiagonals;
 }
 
-/// The mean of the point (row, column) of the finer image and of the four additional points around it.
+/// Returns the mean of the point (row, column) of the finer image and of the four additional points around this point.
 float mean_of_points(const Image& fine, int row, int column, int colour, const RingCase& c) {
     std::array<float, 5> values = {value_at(fine, row, column, colour)};
     for (std::size_t n = 0; n < 4; ++n) {
@@ -109,7 +110,7 @@ float mean_of_points(const Image& fine, int row, int column, int colour, const R
     return whole_image::mean_of_five(values, settings_of(c).format);
 }
 
-/// The plain image, in which the pixels of the mask are replaced by the mean of five points.
+/// Returns the plain image, in which each pixel of the mask is replaced by the mean of its five points.
 Image supersampled(const Image& plain, const Image& fine, const Image& mask, const RingCase& c) {
     return whole_image::make_image(plain.width, plain.height, [&](int row, int column, int colour) {
         if (value_at(mask, row, column, 0) == 0) return value_at(plain, row, column, colour);
@@ -117,7 +118,7 @@ Image supersampled(const Image& plain, const Image& fine, const Image& mask, con
     });
 }
 
-/// The cost of the four additional points of each pixel in the mask; 0 for the other pixels.
+/// Returns the cost of the four additional points of each pixel in the mask, in cycles; 0 for the other pixels.
 std::vector<std::uint64_t> supersampling_cost(const CostImage& fine, const Image& mask, const RingCase& c) {
     std::vector<std::uint64_t> cost;
     for (int row = 0; row < mask.height; ++row)
@@ -130,11 +131,11 @@ std::vector<std::uint64_t> supersampling_cost(const CostImage& fine, const Image
     return cost;
 }
 
-std::size_t pixels_of(const Image& mask) {
+std::size_t marked_pixels(const Image& mask) {
     return static_cast<std::size_t>(std::count(mask.rgb.begin(), mask.rgb.end(), 1.0f)) / 3;
 }
 
-/// The finer image's values at the pixels' own sample points.
+/// Returns the finer image's values at the pixels' own sample points.
 Image own_points(const Image& fine) {
     return whole_image::make_image(fine.width / 2, fine.height / 2, [&](int row, int column, int colour) {
         return value_at(fine, 2 * row + 1, 2 * column + 1, colour);
@@ -143,7 +144,7 @@ Image own_points(const Image& fine) {
 
 void check_supersampled(const RingResult& result, const RingResult& plain, const RingResult& fine, const RingCase& c) {
     const Image mask = whole_image::contrast_mask(plain.image, c.antialias.threshold, settings_of(c).format);
-    const std::size_t marked = pixels_of(mask);
+    const std::size_t marked = marked_pixels(mask);
     REQUIRE(count_differences(own_points(fine.image), plain.image) == 0);
     CHECK(count_differences(result.mask, mask) == 0);
     CHECK(result.recomputed == marked);
@@ -157,18 +158,18 @@ void check_supersampled(const RingResult& result, const RingResult& plain, const
 
 }  // namespace
 
-TEST_CASE("the ring's filter gives the filtered whole image", "[ring][antialias]") {
+TEST_CASE("the ring's filter gives the same pixels as the filter of the whole image", "[ring][antialias]") {
     constexpr std::uint64_t kSeed = 31;
     SplitMix random(kSeed);
     Session session(choose_device(""));
     PlainImages plain(session);
     std::uint64_t rotations = 0;
     for (const char* format : {"fp32", "spa22"})
-        for (int i = 0; i < cases(); ++i) {
+        for (int i = 0; i < case_count(); ++i) {
             RingCase c = random_case(random, format);
             c.antialias.method = AntialiasMethod::kFilter;
             CAPTURE(kSeed, format, i, c.width, c.height, c.pes, c.offset, c.fold);
-            const RingResult result = render_grid(session, c), &expected = plain.of(c);
+            const RingResult result = render_grid(session, c), &expected = plain.image_of(c);
             CHECK(count_differences(result.image, whole_image::filtered(expected.image, settings_of(c).format)) == 0);
             CHECK(result.all.events == expected.all.events);
             CHECK(result.cost().cycles == expected.cost().cycles);
@@ -186,13 +187,13 @@ TEST_CASE("supersampling takes the mean of five points where a neighbour differs
     PlainImages plain(session);
     std::size_t recomputed = 0, pixels = 0, mixed = 0;
     for (const char* format : {"fp32", "spa22"})
-        for (int i = 0; i < cases(); ++i) {
+        for (int i = 0; i < case_count(); ++i) {
             RingCase c = random_case(random, format);
             c.antialias = random_supersampling(random);
             CAPTURE(kSeed, format, i, c.width, c.height, c.pes, c.offset, c.fold, c.sampling == Sampling::kCorners);
             CAPTURE(c.antialias.threshold, c.antialias.points);
             const RingResult result = render_grid(session, c);
-            check_supersampled(result, plain.of(c), plain.fine(c), c);
+            check_supersampled(result, plain.image_of(c), plain.fine_image_of(c), c);
             const std::size_t size = std::size_t{c.width} * c.height;
             if (c.antialias.threshold == 0 && size > 1) CHECK(result.recomputed == size);
             mixed += result.recomputed > 0 && result.recomputed < size;
@@ -201,7 +202,7 @@ TEST_CASE("supersampling takes the mean of five points where a neighbour differs
         }
     CHECK(recomputed > pixels / 10);  // the cases have both marked and unmarked pixels
     CHECK(recomputed < pixels * 9 / 10);
-    CHECK(mixed > std::size_t(cases()) / 2);
+    CHECK(mixed > std::size_t(case_count()) / 2);
 }
 
 TEST_CASE("the additional points lie half a pixel away, for any camera", "[ring][antialias]") {
@@ -233,16 +234,17 @@ TEST_CASE("the additional points lie half a pixel away, for any camera", "[ring]
     }
 }
 
-TEST_CASE("a difference equal to the threshold counts, a difference outside 0..1 does not", "[ring][antialias]") {
+TEST_CASE("pixels whose difference equals the threshold are marked; differences outside 0..1 do not count",
+          "[ring][antialias]") {
     Session session(choose_device(""));
     const std::string format = GENERATE("fp32", "spa22");
     const double last_place = format == "fp32" ? 0x1p-23 : 0x1p-15;
     // Without lights, a surface of Kd = 1 shows its own colour, so the image has two colours, which differ in one
     // component.
-    const auto recomputed = [&](double surrounding, double object, double threshold, int component) {
-        Scene scene = grid_scene(24, Sampling::kCentres, kPixelsOfUnit);
+    const auto recomputed_pixels = [&](double background, double object, double threshold, int component) {
+        Scene scene = grid_scene(24, Sampling::kCentres, kPixelsPerUnit);
         scene.background = scene.surfaces[1].colour = {0.5, 0.5, 0.5};
-        scene.background[component] = surrounding;
+        scene.background[component] = background;
         scene.surfaces[1] = {.colour = scene.surfaces[1].colour, .diffuse = 1};
         scene.surfaces[1].colour[component] = object;
         scene.lights.clear();
@@ -255,19 +257,20 @@ TEST_CASE("a difference equal to the threshold counts, a difference outside 0..1
                          .antialias = {.method = AntialiasMethod::kSupersample, .threshold = threshold}};
         return RingRenderer(session, scene, settings_of(c)).render().recomputed;
     };
-    const std::uint64_t outline = recomputed(0, 1, 0.5, 0);
+    const std::uint64_t outline = recomputed_pixels(0, 1, 0.5, 0);
     CAPTURE(format);
     CHECK(outline > 10);
     CHECK(outline < 100);
-    CHECK(recomputed(0.25, 0.375, 0.125, 0) == outline);
-    CHECK(recomputed(0.25, 0.375, 0.125, 1) == outline);
-    CHECK(recomputed(0.375, 0.25, 0.125, 2) == outline);
-    CHECK(recomputed(0.25, 0.375, 0.125 * (1 + last_place), 0) == 0);
-    CHECK(recomputed(0.25, 0.375, 0.125 * (1 + last_place / 4), 0) == outline);  // a threshold is rounded to the format
-    CHECK(recomputed(0.25, 0.375 - 0.25 * last_place, 0.125, 2) == 0);
-    CHECK(recomputed(-7, 0, 0.125, 1) == 0);
-    CHECK(recomputed(1, 9, 0.125, 0) == 0);
-    CHECK(recomputed(-7, 9, 1, 1) == outline);
+    CHECK(recomputed_pixels(0.25, 0.375, 0.125, 0) == outline);
+    CHECK(recomputed_pixels(0.25, 0.375, 0.125, 1) == outline);
+    CHECK(recomputed_pixels(0.375, 0.25, 0.125, 2) == outline);
+    CHECK(recomputed_pixels(0.25, 0.375, 0.125 * (1 + last_place), 0) == 0);
+    CHECK(recomputed_pixels(0.25, 0.375, 0.125 * (1 + last_place / 4), 0) ==
+          outline);  // a threshold is rounded to the format
+    CHECK(recomputed_pixels(0.25, 0.375 - 0.25 * last_place, 0.125, 2) == 0);
+    CHECK(recomputed_pixels(-7, 0, 0.125, 1) == 0);
+    CHECK(recomputed_pixels(1, 9, 0.125, 0) == 0);
+    CHECK(recomputed_pixels(-7, 9, 1, 1) == outline);
 }
 
 }  // namespace raya

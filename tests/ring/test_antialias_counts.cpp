@@ -1,5 +1,5 @@
-// Counts of antialiasing: phases, loads, rotations and their words. Neither the counts nor the pixels depend on the
-// distribution of the work.
+// Counts of antialiasing: phases, loads, rotations and the words that rotations send. Neither the counts nor the pixels
+// depend on the distribution of the work.
 #include <catch2/catch.hpp>
 #include <numeric>
 
@@ -20,24 +20,24 @@ RingResult render_case(Session& session, RingCase c) {
 }
 
 /// The results that do not depend on PEs, mapping, lanes or group size.
-struct AntialiasAnswer {
+struct AntialiasResults {
     std::string image, mask;
-    std::vector<EventCounts> events;  // of each phase
-    std::vector<std::vector<std::uint64_t>> cost;
+    std::vector<EventCounts> events;               // [phase]
+    std::vector<std::vector<std::uint64_t>> cost;  // [phase][pixel]
     std::uint64_t recomputed;
-    bool operator==(const AntialiasAnswer&) const = default;
+    bool operator==(const AntialiasResults&) const = default;
 };
 
-AntialiasAnswer antialias_answer(const RingResult& result) {
-    AntialiasAnswer answer{pixel_hash(result.image), pixel_hash(result.mask), {}, {}, result.recomputed};
+AntialiasResults antialias_results(const RingResult& result) {
+    AntialiasResults results{pixel_hash(result.image), pixel_hash(result.mask), {}, {}, result.recomputed};
     for (const Phase& phase : result.phases) {
-        answer.events.push_back(phase.events);
-        answer.cost.push_back(phase.cost().cycles);
+        results.events.push_back(phase.events);
+        results.cost.push_back(phase.cost().cycles);
     }
-    return answer;
+    return results;
 }
 
-/// By PE: the sum of the cost image over the PE's pixels.
+/// Returns, for each PE, the sum of the costs of the PE's pixels.
 std::vector<std::uint64_t> loads_from_costs(const CostImage& cost, const raya_mapping& m) {
     std::vector<std::uint64_t> loads(m.pes);
     for (std::uint32_t row = 0; row < m.height; ++row)
@@ -49,22 +49,22 @@ std::vector<std::uint64_t> loads_from_costs(const CostImage& cost, const raya_ma
 void check_phase(const Phase& phase, const raya_mapping& m) {
     CAPTURE(phase.name);
     const auto cycles = cycles_of_events();
-    std::uint64_t all = 0;
-    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) all += cycles[event] * phase.events[event];
+    std::uint64_t total = 0;
+    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) total += cycles[event] * phase.events[event];
     CHECK(phase.load.per_pe == loads_from_costs(phase.cost(), m));
-    CHECK(std::accumulate(phase.load.per_pe.begin(), phase.load.per_pe.end(), std::uint64_t{0}) == all);
+    CHECK(std::accumulate(phase.load.per_pe.begin(), phase.load.per_pe.end(), std::uint64_t{0}) == total);
     CHECK(phase.load.max == *std::max_element(phase.load.per_pe.begin(), phase.load.per_pe.end()));
 }
 
-/// Checks that the total `all` is the sum of the phases.
+/// Checks that the totals in `result.all` are the sums over the phases.
 void check_sums(const RingResult& result) {
     EventCounts events{};
     std::vector<std::uint64_t> loads(result.all.load.per_pe.size());
     std::vector<std::uint64_t> cost(result.cost().cycles.size());
     for (const Phase& phase : result.phases) {
-        const auto add = [](auto& to, const auto& from) {
-            REQUIRE(to.size() == from.size());
-            std::transform(to.begin(), to.end(), from.begin(), to.begin(), std::plus<>());
+        const auto add = [](auto& sums, const auto& values) {
+            REQUIRE(sums.size() == values.size());
+            std::transform(sums.begin(), sums.end(), values.begin(), sums.begin(), std::plus<>());
         };
         add(events, phase.events);
         add(loads, phase.load.per_pe);
@@ -87,20 +87,20 @@ void check_words(const RingResult& result, const RingCase& c) {
 }  // namespace
 
 TEST_CASE("lanes and group size change no bit, mark or count of anti-aliasing", "[ring][antialias]") {
-    // Pairs of lanes and group size; few, because each pair needs its own kernels.
-    using Choices = std::vector<std::array<std::uint32_t, 2>>;
-    const std::pair<std::string, Choices> formats[] = {{"fp32", {{1, 1}, {4, 8}, {16, 8}}},
-                                                       {"spa22", {{1, 8}, {16, 1}}}};
+    // Pairs of lanes and group size. There are few, because each pair needs its own kernels.
+    using LanesAndGroups = std::vector<std::array<std::uint32_t, 2>>;
+    const std::pair<std::string, LanesAndGroups> formats[] = {{"fp32", {{1, 1}, {4, 8}, {16, 8}}},
+                                                              {"spa22", {{1, 8}, {16, 1}}}};
     Session session(choose_device(""));
-    for (const auto& [format, choices] : formats)
+    for (const auto& [format, pairs] : formats)
         for (const Antialias& antialias : {kFilter, kSupersample}) {
-            std::vector<AntialiasAnswer> answers;
-            for (const auto& [lanes, group] : choices) {
+            std::vector<AntialiasResults> results;
+            for (const auto& [lanes, group] : pairs) {
                 const RingCase c{.lanes = lanes, .group = group, .format = format, .antialias = antialias};
                 const RingResult result = render_case(session, c);
-                answers.push_back(antialias_answer(result));
+                results.push_back(antialias_results(result));
                 CAPTURE(format, antialias_name(antialias.method), lanes, group);
-                CHECK(answers.back() == answers.front());
+                CHECK(results.back() == results.front());
                 for (const Phase& phase : result.phases) check_phase(phase, settings_of(c).mapping);
             }
         }
@@ -112,16 +112,16 @@ TEST_CASE("PEs, offset and fold change no bit, mark or count of anti-aliasing", 
     Session session(choose_device(""));
     const Antialias antialias = GENERATE(kFilter, kSupersample);
     RingCase c{.width = 30, .height = 22, .pes = 1, .offset = 0, .format = "spa22", .antialias = antialias};
-    const RingResult one = render_case(session, c);
-    const AntialiasAnswer expected = antialias_answer(one);
-    CHECK(one.communication.rotations == 0);
+    const RingResult on_one_pe = render_case(session, c);
+    const AntialiasResults expected = antialias_results(on_one_pe);
+    CHECK(on_one_pe.communication.rotations == 0);
     for (const std::uint32_t pes : {1u, 2u, 5u, 15u, 30u, 31u, 60u, 97u, 330u, 659u, 660u}) {
         c.pes = pes;
         c.offset = random_below(random, c.width);
         c.fold = random.next() % 2 ? Fold::kBlock : Fold::kCyclic;
         CAPTURE(kSeed, antialias_name(antialias.method), c.pes, c.offset, c.fold);
         const RingResult result = render_case(session, c);
-        CHECK(antialias_answer(result) == expected);
+        CHECK(antialias_results(result) == expected);
         for (const Phase& phase : result.phases) check_phase(phase, settings_of(c).mapping);
         check_sums(result);
         check_words(result, c);
@@ -148,7 +148,7 @@ TEST_CASE("a second anti-aliased render with the same renderer gives the same re
         RingRenderer renderer(session, grid_scene(c.height, c.sampling, 40), settings_of(c));
         const RingResult first = renderer.render(), second = renderer.render();
         CAPTURE(antialias_name(antialias.method));
-        CHECK(antialias_answer(first) == antialias_answer(second));
+        CHECK(antialias_results(first) == antialias_results(second));
         CHECK(first.all.load.per_pe == second.all.load.per_pe);
         CHECK(first.communication.rotations == second.communication.rotations);
         CHECK(first.communication.rotation_words == second.communication.rotation_words);
@@ -157,8 +157,8 @@ TEST_CASE("a second anti-aliased render with the same renderer gives the same re
 
 TEST_CASE("with one column of pixels per PE the vertical neighbours are p PEs away", "[ring][antialias]") {
     Session session(choose_device(""));
-    // The left and right neighbours take one rotation each, the upper and lower ones p each (none for p = 0, when they
-    // are in the PE's own block): 2 + 2 p rotations.
+    // The left and right neighbours take one rotation each, the upper and lower neighbours p rotations each: 2 + 2 p
+    // rotations. With p = 0 the upper and lower neighbours are in the PE's own block.
     for (const auto& [offset, rotations] : {std::pair{0u, 2u}, {8u, 18u}, {16u, 34u}, {240u, 34u}}) {
         const RingCase c{.width = 256, .height = 256, .pes = 256, .offset = offset, .antialias = kFilter};
         const RingResult result = render_case(session, c);
@@ -186,13 +186,13 @@ TEST_CASE("if a PE's memory is short, pixels rotate in bands, with the same imag
         const RingResult whole = render_case(session, c);
         c.machine = "spa";
         const RingResult banded = render_case(session, c);
-        const std::uint32_t share = whole.pe_memory.band_pixels, band = banded.pe_memory.band_pixels;
-        CAPTURE(c.width, c.height, c.pes, antialias_name(c.antialias.method), share, band);
-        CHECK(share == largest_share(settings_of(c).mapping));
-        CHECK(band < share);
+        const std::uint32_t share_size = whole.pe_memory.band_pixels, band = banded.pe_memory.band_pixels;
+        CAPTURE(c.width, c.height, c.pes, antialias_name(c.antialias.method), share_size, band);
+        CHECK(share_size == largest_share(settings_of(c).mapping));
+        CHECK(band < share_size);
         CHECK(banded.pe_memory.bytes() <= 32 * 1024);
-        CHECK(antialias_answer(banded) == antialias_answer(whole));
-        CHECK(banded.communication.rotations == whole.communication.rotations * ((share + band - 1) / band));
+        CHECK(antialias_results(banded) == antialias_results(whole));
+        CHECK(banded.communication.rotations == whole.communication.rotations * ((share_size + band - 1) / band));
         check_words(banded, c);
         check_words(whole, c);
     }

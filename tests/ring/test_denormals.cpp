@@ -1,6 +1,6 @@
 // Idle lanes compute with normal numbers, because a denormal operand costs some CPUs a hundred cycles. The kernels are
 // built without optimisation: an optimising compiler may compute speculatively with undefined values and discard the
-// results. The tests are hidden because they need PoCL's basic device; ctest runs them as ring.denormals.
+// results. The tests are hidden because they need PoCL's basic device; ctest runs them by the name ring.denormals.
 #include <catch2/catch.hpp>
 
 #include "tests/kernels/denormals.hpp"
@@ -38,7 +38,7 @@ bool render_meets_denormals(Session& session, const Scene& scene, const Denormal
     settings.kernels.sources.patches = patches;
     settings.kernels.sources.more_options = {"-cl-opt-disable"};
     RingRenderer renderer(session, scene, settings);
-    renderer.render();  // PoCL compiles here
+    renderer.render();  // PoCL compiles the kernels in the first render
     return uses_denormals([&] { renderer.render(); });
 }
 
@@ -53,12 +53,12 @@ TEST_CASE("no lane of the ring's kernels computes with denormals", "[.][denormal
         }
 }
 
-TEST_CASE("a kernel whose idle lanes read counts as floats is detected", "[.][denormals]") {
+TEST_CASE("a kernel whose idle lanes read integers as floats is detected", "[.][denormals]") {
     REQUIRE(can_detect_denormals());
     Session session(choose_device(""));
-    const SourcePatch word_0{"geometry/scene.clh", "(index)(first_object_at(all))", "(index)(0)"};
+    const SourcePatch reads_header{"geometry/scene.clh", "(index)(first_object_at(all))", "(index)(0)"};
     for (const DenormalCase& c : {denormal_cases()[0], denormal_cases()[4]})
-        CHECK(render_meets_denormals(session, project_scene("planes"), c, {word_0}));
+        CHECK(render_meets_denormals(session, project_scene("planes"), c, {reads_header}));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Plans of dynamic work distribution: their text, and invalid plans.
+// Plans of dynamic work distribution: the text of a plan, and the refusal of invalid plans.
 #include <catch2/catch.hpp>
 #include <limits>
 #include <stdexcept>
@@ -13,7 +13,7 @@ TEST_CASE("a plan's text omits default values at its end", "[schedule]") {
     CHECK(dynamic_text({4, 0, 0.5}) == "hybrid:4,0,0.5");
 }
 
-TEST_CASE("schedules reject cost images, mappings and plans that do not match", "[schedule]") {
+TEST_CASE("schedules reject invalid cost images, mappings and plans, and those that do not match", "[schedule]") {
     const CostImage image{2, 2, {1, 2, 3, 4}};
     const raya_mapping fits{2, 2, 2, 0, RAYA_FOLD_CYCLIC};
     const auto check_error = [](const CostImage& costs, const raya_mapping& m) {
@@ -26,8 +26,8 @@ TEST_CASE("schedules reject cost images, mappings and plans that do not match", 
     check_error(image, {2, 2, 5, 0, RAYA_FOLD_CYCLIC});
     check_error({2, 2, {1, 2, 3}}, fits);
     check_error({0, 0, {}}, {0, 0, 1, 0, RAYA_FOLD_CYCLIC});
-    for (const double share : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()})
-        CHECK_THROWS_AS(dynamic_schedule(image, fits, {1, 0, share}), std::invalid_argument);
+    for (const double static_fraction : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()})
+        CHECK_THROWS_AS(dynamic_schedule(image, fits, {1, 0, static_fraction}), std::invalid_argument);
     CHECK_THROWS_AS(dynamic_schedule(image, fits, {0, 0, 0}), std::invalid_argument);
     CHECK_THROWS_AS(dynamic_schedule(image, fits, {1, kMaxOverhead + 1, 0}), std::invalid_argument);
     CHECK_THROWS_AS(imbalance_of_offsets(image, 2, RAYA_FOLD_CYCLIC, {0, 2}), std::invalid_argument);

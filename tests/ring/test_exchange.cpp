@@ -1,5 +1,5 @@
-// Ring, bus and broadcasts by PEs deliver the same neighbouring pixels, so the results have the same bits. Each method
-// has its own formula for the number of moves.
+// Ring, bus and broadcasts by PEs deliver the same neighbouring pixels, so the results have the same bits. The number
+// of moves (rotations, transfers or broadcasts) has a formula for each method.
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -16,22 +16,22 @@ namespace {
 
 constexpr ExchangeMethod kExchanges[] = {ExchangeMethod::kRing, ExchangeMethod::kBus, ExchangeMethod::kBroadcast};
 
-/// The pixels of all PEs, [PE][3][capacity], and the size of the bands that are exchanged.
+/// The pixels of all PEs and the size of the bands that the PEs exchange.
 struct Shares {
     raya_mapping mapping{};
-    std::uint32_t capacity = 1, band = 1;
-    std::vector<float> pixels;
+    std::uint32_t capacity = 1, band = 1;  // maximum numbers of pixels in a PE and in a band
+    std::vector<float> pixels;             // [PE][3][capacity]
     float threshold = 0;
 };
 
-/// The results of filter and contrast kernels, and their communication.
+/// The results of the filter and contrast kernels, and the communication that each of them needs.
 struct Smoothed {
     std::vector<float> filtered;
     std::vector<std::uint8_t> marks;
-    Communication of_filter, of_contrast;
+    Communication filter_communication, contrast_communication;
 };
 
-Smoothed smoothed(Kernels& kernels, const Shares& s, ExchangeMethod method) {
+Smoothed smooth(Kernels& kernels, const Shares& s, ExchangeMethod method) {
     Session& session = kernels.session();
     raya_job job{};
     job.mapping = s.mapping;
@@ -45,15 +45,15 @@ Smoothed smoothed(Kernels& kernels, const Shares& s, ExchangeMethod method) {
     session.write("job", broadcast, words);
     Buffer<float> pixels = session.buffer<float>("pixels", s.pixels.size());
     session.write("pixels", pixels, s.pixels);
-    Smoothed answer{s.pixels, std::vector<std::uint8_t>(std::size_t{s.mapping.pes} * s.capacity), {}, {}};
-    NeighbourExchange for_contrast(session, answer.of_contrast, s.mapping, s.capacity, s.band, method);
+    Smoothed smoothed{s.pixels, std::vector<std::uint8_t>(std::size_t{s.mapping.pes} * s.capacity), {}, {}};
+    NeighbourExchange for_contrast(session, smoothed.contrast_communication, s.mapping, s.capacity, s.band, method);
     RingContrast contrast(kernels, setup, s.threshold);
     contrast.apply(pixels, for_contrast);
-    session.read("marks", contrast.marks(), answer.marks);
-    NeighbourExchange for_filter(session, answer.of_filter, s.mapping, s.capacity, s.band, method);
+    session.read("marks", contrast.marks(), smoothed.marks);
+    NeighbourExchange for_filter(session, smoothed.filter_communication, s.mapping, s.capacity, s.band, method);
     RingFilter(kernels, setup).apply(pixels, for_filter);
-    session.read("pixels", pixels, answer.filtered);
-    return answer;
+    session.read("pixels", pixels, smoothed.filtered);
+    return smoothed;
 }
 
 Shares random_shares(SplitMix& random, std::uint32_t largest_side) {
@@ -72,10 +72,10 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
     return std::memcmp(a.data(), b.data(), 4 * a.size()) == 0;
 }
 
-std::uint64_t moved(const Communication& c) { return c.rotations + c.transfers + c.pe_broadcasts; }
+std::uint64_t moves_of(const Communication& c) { return c.rotations + c.transfers + c.pe_broadcasts; }
 
-/// Returns the hashes of image and mask and the number of recomputed pixels; stores the communication in `counted`.
-std::string rendered(Session& session, RingCase c, ExchangeMethod method, Communication& counted) {
+/// Returns the hashes of image and mask and the number of recomputed pixels. Stores the communication in `counted`.
+std::string render_hashes(Session& session, RingCase c, ExchangeMethod method, Communication& counted) {
     c.antialias.exchange = method;
     const RingResult result = RingRenderer(session, grid_scene(c.height, c.sampling, 16), settings_of(c)).render();
     counted = result.communication;
@@ -89,26 +89,26 @@ TEST_CASE("ring, bus and broadcasts give the same bits, and as many moves as the
     SplitMix random(kSeed);
     Session session(choose_device(""));
     Kernels kernels(session, {.lanes = 1, .format = parse_format("e6m15")});
-    std::size_t single = 0, narrow = 0, moving = 0;
+    std::size_t one_pe = 0, narrow_images = 0, with_moves = 0;
     for (unsigned i = 0; i < quick_cases(300, 1500); ++i) {
         const Shares s = random_shares(random, i % 4 == 0 ? 2 : 12);
         const raya_mapping& m = s.mapping;
         CAPTURE(kSeed, i, m.width, m.height, m.pes, mapping_text(m), m.kind, s.capacity, s.band);
-        const Smoothed by_ring = smoothed(kernels, s, ExchangeMethod::kRing);
+        const Smoothed by_ring = smooth(kernels, s, ExchangeMethod::kRing);
         const std::uint64_t bands = (s.capacity + s.band - 1) / s.band;
         for (const ExchangeMethod method : kExchanges) {
             CAPTURE(exchange_name(method));
-            const Smoothed other = method == ExchangeMethod::kRing ? by_ring : smoothed(kernels, s, method);
-            CHECK(same_bits(other.filtered, by_ring.filtered));
-            CHECK(other.marks == by_ring.marks);
-            CHECK(moved(other.of_filter) == bands * sum_of(exchange_moves(m, method, false)));
-            CHECK(moved(other.of_contrast) == bands * sum_of(exchange_moves(m, method, true)));
+            const Smoothed by_method = method == ExchangeMethod::kRing ? by_ring : smooth(kernels, s, method);
+            CHECK(same_bits(by_method.filtered, by_ring.filtered));
+            CHECK(by_method.marks == by_ring.marks);
+            CHECK(moves_of(by_method.filter_communication) == bands * sum_of(exchange_moves(m, method, false)));
+            CHECK(moves_of(by_method.contrast_communication) == bands * sum_of(exchange_moves(m, method, true)));
         }
-        single += m.pes == 1;
-        narrow += std::min(m.width, m.height) <= 2;
-        moving += moved(by_ring.of_filter) > 0;
+        one_pe += m.pes == 1;
+        narrow_images += std::min(m.width, m.height) <= 2;
+        with_moves += moves_of(by_ring.filter_communication) > 0;
     }
-    CHECK((single > 20 && narrow > 50 && moving > 150));
+    CHECK((one_pe > 20 && narrow_images > 50 && with_moves > 150));
 }
 
 TEST_CASE("a render gives the same image with ring, bus and broadcasts", "[ring][bus]") {
@@ -128,9 +128,9 @@ TEST_CASE("a render gives the same image with ring, bus and broadcasts", "[ring]
                 c.antialias.method = method;
                 CAPTURE(kSeed, machine, antialias_name(method), i, c.width, c.height, c.pes, c.offset);
                 Communication by_ring, by_bus, by_broadcast;
-                const std::string image = rendered(session, c, ExchangeMethod::kRing, by_ring);
-                CHECK(rendered(session, c, ExchangeMethod::kBus, by_bus) == image);
-                CHECK(rendered(session, c, ExchangeMethod::kBroadcast, by_broadcast) == image);
+                const std::string image = render_hashes(session, c, ExchangeMethod::kRing, by_ring);
+                CHECK(render_hashes(session, c, ExchangeMethod::kBus, by_bus) == image);
+                CHECK(render_hashes(session, c, ExchangeMethod::kBroadcast, by_broadcast) == image);
                 CHECK((by_ring.transfers == 0 && by_bus.rotations == 0 && by_broadcast.rotations == 0));
                 CHECK((by_ring.rotations > 0) == (by_bus.transfers > 0));
                 CHECK((by_ring.rotations > 0) == (by_broadcast.pe_broadcasts > 0));

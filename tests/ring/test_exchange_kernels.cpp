@@ -1,5 +1,5 @@
-// Kernels of the neighbour exchange: a PE reads and writes only its own memory. Poison values in the memory of all
-// other PEs change no result, and injected kernel faults are detected.
+// Kernels of the neighbour exchange: a PE reads and writes only its own memory, so poison values in the memory of all
+// other PEs change no result. Injected kernel faults are detected.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -32,7 +32,7 @@ struct Launch {
     float threshold = 0;
 };
 
-/// The memory of all PEs, block after block, followed by a guard block that no PE may touch.
+/// The memory of all PEs, block after block, followed by a guard block that no PE may read or write.
 struct Memory {
     std::vector<float> arrived, pixels;  // [PE][3][band]; [PE][3][capacity], pixels or sums
     std::vector<std::uint8_t> marks;     // [PE][capacity]
@@ -43,7 +43,7 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b, std::size_t fro
     return from == to || std::memcmp(a.data() + from, b.data() + from, (to - from) * sizeof(T)) == 0;
 }
 
-/// Returns true if the two memories have the same bits in the blocks `first` to `end` - 1.
+/// Returns true if the memories a and b have the same bits in the blocks `first` to `end` - 1.
 bool same_blocks(const Launch& l, const Memory& a, const Memory& b, std::size_t first, std::size_t end) {
     const std::size_t band = 3 * l.band, block = 3 * l.capacity;
     return same_bits(a.arrived, b.arrived, first * band, end * band) &&
@@ -120,7 +120,7 @@ class Runner {
     Kernels kernels_;
 };
 
-/// A random launch as in an exchange; in most cases the arrived block contains neighbours.
+/// Returns a random launch as in an exchange. In most cases the arrived block contains neighbours.
 Launch random_launch(SplitMix& random) {
     Launch l{.m = small_mapping(random, 9), .side = random_below(random, RAYA_SIDES)};
     const std::vector<std::uint32_t> distances = neighbour_distances(l.m, l.side);
@@ -133,7 +133,7 @@ Launch random_launch(SplitMix& random) {
     return l;
 }
 
-/// Random colours from -0.25 to 1.25; each pixel is marked with probability 1/8.
+/// Returns memory with random colours from -0.25 to 1.25. Each pixel is marked with probability 1/8.
 Memory random_memory(SplitMix& random, const Launch& l) {
     const auto colours = [&](std::size_t count) {
         std::vector<float> words(count);
@@ -146,16 +146,16 @@ Memory random_memory(SplitMix& random, const Launch& l) {
     return memory;
 }
 
-/// Returns a copy in which all memory that the PE must not read contains poison. The PE may read its own memory except
-/// the stale pixels of the arrived block, which lie beyond the end of the sender's pixels.
+/// Returns a copy of `clean` in which all memory that the PE must not read contains poison. The PE may read its own
+/// memory except the stale pixels of the arrived block, which lie beyond the end of the sender's pixels.
 Memory poisoned(SplitMix& random, const Launch& l, const Memory& clean, std::size_t pe) {
     const float poison = random.next() % 2 ? std::numeric_limits<float>::quiet_NaN() : 1e30f;
     Memory memory = clean;
     const raya_u32 sent = raya_share_size(raya_share_of(l.m, static_cast<raya_u32>((pe + l.distance) % l.m.pes)));
-    const std::size_t live = std::min(l.band, sent - std::min(sent, l.begin));  // valid values per colour
+    const std::size_t valid = std::min(l.band, sent - std::min(sent, l.begin));  // number of valid values per colour
     const std::size_t band = 3 * l.band, block = 3 * l.capacity;
     for (std::size_t n = 0; n < memory.arrived.size(); ++n)
-        if (n / band != pe || n % l.band >= live) memory.arrived[n] = poison;
+        if (n / band != pe || n % l.band >= valid) memory.arrived[n] = poison;
     for (std::size_t n = 0; n < memory.pixels.size(); ++n)
         if (n / block != pe) memory.pixels[n] = poison;
     for (std::size_t n = 0; n < memory.marks.size(); ++n)
@@ -164,9 +164,9 @@ Memory poisoned(SplitMix& random, const Launch& l, const Memory& clean, std::siz
 }
 
 struct Findings {
-    int poison_read = 0;    // PEs whose result depends on another PE's memory or on stale words
-    int stray_writes = 0;   // PEs that wrote outside their own block
-    int blocks_worked = 0;  // PEs whose block a launch changed; if 0, the test is void
+    int poison_read = 0;     // PEs whose result depends on another PE's memory or on stale words
+    int stray_writes = 0;    // PEs that wrote outside their own block
+    int blocks_changed = 0;  // PEs whose block a launch changed; if 0, the test proves nothing
 };
 
 Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
@@ -182,9 +182,10 @@ Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
             const auto at = static_cast<std::ptrdiff_t>(3 * pe * l.band);
             std::copy_n(seen.arrived.begin() + at, 3 * l.band, expected.arrived.begin() + at);
             found.poison_read += !same_blocks(l, expected, seen, pe, pe + 1);
-            found.blocks_worked += !same_blocks(l, before, after, pe, pe + 1);
+            found.blocks_changed += !same_blocks(l, before, after, pe, pe + 1);
         }
-        // Compares runs of `groups` - 1 and of `groups` PEs: the difference is what the last PE wrote.
+        // Compares a run of `groups` - 1 PEs with one of `groups` PEs: they may differ only in the block of the last
+        // PE.
         const std::size_t groups = 1 + random_below(random, l.m.pes);
         const Memory without = runner.run(l, before, groups - 1), with = runner.run(l, before, groups);
         found.stray_writes += !same_blocks(l, without, with, 0, groups - 1) ||
@@ -194,24 +195,24 @@ Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
 }
 
 struct Fault {
-    const char* what;
+    const char* effect;  // memory that the faulty kernel uses by mistake
     Step step;
     SourcePatch patch;
     bool reads, writes;  // the kinds of findings that must detect the fault
 };
 
 const Fault kFaults[] = {
-    {"the block that arrived in the next PE",
+    {"the block that arrived at the next PE",
      Step::kAddNeighbours,
      {"ring/arrived.clh", "arrived + (size_t)group * band", "arrived + (size_t)((group + 1) % m.pes) * band"},
      true,
      false},
-    {"beyond the end of the band",
+    {"memory beyond the end of the band",
      Step::kAddNeighbours,
      {"ring/arrived.clh", " && n - a->begin < a->band", ""},
      true,
      false},
-    {"beyond the end of the sender's share",
+    {"memory beyond the end of the sender's share",
      Step::kAddNeighbours,
      {"ring/arrived.clh", "a.sender = raya_share_of(m, a.source)", "a.sender = a.share"},
      true,
@@ -231,7 +232,7 @@ const Fault kFaults[] = {
      true},
     {"the sums of the first PE",
      Step::kTakeMeans,
-     {"ring/filter.cl", "num_div(mine[i * capacity + k], pixels)", "num_div(sums[i * capacity + k], pixels)"},
+     {"ring/filter.cl", "num_div(own_sums[i * capacity + k], pixels)", "num_div(sums[i * capacity + k], pixels)"},
      true,
      false},
     {"one pixel too many",
@@ -259,13 +260,14 @@ TEST_CASE("no PE reads or writes another PE's memory", "[ring][exchange]") {
     Session session(choose_device(""));
     for (const Step step : kSteps)
         for (const std::uint32_t group : {1u, 3u}) {
-            const std::string format = group == 1 ? "fp32" : "e6m15";  // few builds, because they take most of the time
+            const std::string format =
+                group == 1 ? "fp32" : "e6m15";  // few builds, because builds take most of the time
             CAPTURE(kSeed, step_name(step), group, format);
             Runner runner(session, step, group, format);
             const Findings found = find_faults(runner, kSeed + group, 100);
             CHECK(found.poison_read == 0);
             CHECK(found.stray_writes == 0);
-            CHECK(found.blocks_worked > 50);
+            CHECK(found.blocks_changed > 50);
         }
 }
 
@@ -273,7 +275,7 @@ TEST_CASE("injected accesses to another PE's memory are detected", "[ring][excha
     constexpr std::uint64_t kSeed = 14;
     Session session(choose_device(""));
     for (const Fault& fault : kFaults) {
-        CAPTURE(kSeed, fault.what, step_name(fault.step));
+        CAPTURE(kSeed, fault.effect, step_name(fault.step));
         Runner runner(session, fault.step, 1, "fp32", {.patches = {fault.patch}});
         const Findings found = find_faults(runner, kSeed, 40);
         if (fault.reads) CHECK(found.poison_read > 0);

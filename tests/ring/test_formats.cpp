@@ -1,4 +1,4 @@
-// Renders in reduced formats: the sphere filter changes no bit of an image, and images agree with the reference.
+// Images in reduced formats: the sphere filter changes no bit of an image, and images agree with the reference.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -12,8 +12,8 @@
 namespace raya {
 namespace {
 
-// Spheres that are hard for the filter's bounds: touching, nested, tiny, distant and half buried ones; some are seen
-// from inside.
+// Returns spheres that are hard cases for the filter's bounds: spheres that touch or nest, tiny, distant and half
+// buried spheres, and spheres seen from inside.
 Scene hard_spheres(std::uint32_t seed) {
     std::mt19937 random(seed);
     const auto uniform = [&](double low, double high) {
@@ -33,7 +33,7 @@ Scene hard_spheres(std::uint32_t seed) {
         scene.spheres.push_back({centre, radius, i % 2});
         if (i % 3 == 0) scene.spheres.push_back({centre + Vec3(0, 0, radius * 1.5), radius / 2, 0});  // touching
         if (i % 4 == 0) scene.spheres.push_back({centre, radius * 0.9, 1});                           // nested
-        if (i % 5 == 0) scene.spheres.push_back({centre, -radius * 1.2, 0});                          // inside out
+        if (i % 5 == 0) scene.spheres.push_back({centre, -radius * 1.2, 0});  // seen from inside
     }
     scene.planes = {{{0, 0, 1}, -1, 0}};
     return scene;
@@ -79,9 +79,9 @@ TEST_CASE("the sphere filter is off if its error bounds do not hold", "[ring]") 
 
 TEST_CASE("spa22 images show neither shadow acne nor light leaks", "[ring]") {
     // Counts the pixels that differ by 0.1 or more, except those within an eighth of a pixel of an edge. The format's
-    // rounding moves edges by less than that; shadow acne and light leaks would affect whole areas.
+    // rounding moves edges by less than an eighth of a pixel; shadow acne and light leaks would affect whole areas.
     constexpr std::uint32_t kSide = 128;
-    constexpr double kAllowedShare = 0.002;
+    constexpr double kMaxWrongPixels = 0.002;  // fraction of all pixels
     for (const std::string& name : project_scenes()) {
         CAPTURE(name);
         const Scene scene = project_scene(name);
@@ -91,7 +91,7 @@ TEST_CASE("spa22 images show neither shadow acne nor light leaks", "[ring]") {
             reference::compare(reference::render(scene, options), result.image.rgb, scene, options, 0.1, 1.0 / 8);
         fmt::print("{:8} spa22: PSNR {:4.1f} dB, {} pixels off by more than 0.1, of which {} graze an edge\n", name,
                    d.psnr_db, d.above_limit, d.excused);
-        CHECK(d.above_limit - d.excused <= kAllowedShare * kSide * kSide);
+        CHECK(d.above_limit - d.excused <= kMaxWrongPixels * kSide * kSide);
     }
 }
 

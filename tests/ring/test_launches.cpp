@@ -40,7 +40,7 @@ RingSettings random_settings(SplitMix& random, const AccelKind accel) {
     c.offset = random_below(random, c.width);
     c.bounces = accel == AccelKind::kNone ? 5 : 8;
     c.record_costs = true;
-    c.lanes = random_below(random, 2) ? 4 : 16;  // few values, so that few kernels are built
+    c.lanes = random_below(random, 2) ? 4 : 16;  // few combinations, so that few kernels are built
     c.group = random_below(random, 2) ? 1 : 3;
     c.format = random_below(random, 2) ? "fp32" : "spa22";
     if (random_below(random, 2)) c.antialias.method = AntialiasMethod::kSupersample;
@@ -58,7 +58,7 @@ TEST_CASE("image, counts and costs do not depend on the work per launch", "[ring
     const std::uint64_t seed = 20261122;
     SplitMix random(seed);
     const unsigned cases = quick_cases(40, 200);
-    unsigned more = 0;  // cases that took several launches
+    unsigned cut_cases = 0;  // number of cases that took more launches with less work per launch
     for (unsigned i = 0; i < cases; ++i) {
         RingSettings settings = random_settings(random, accel);
         CAPTURE(accel, seed, i, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
@@ -67,10 +67,10 @@ TEST_CASE("image, counts and costs do not depend on the work per launch", "[ring
         settings.work_per_launch = 1 + random_below(random, i % 4 ? 2000 : 60);
         const RingResult cut = RingRenderer(session, scene, settings).render();
         CAPTURE(settings.work_per_launch);
-        more += launches_of(cut) > launches_of(whole);
+        cut_cases += launches_of(cut) > launches_of(whole);
         CHECK(launch_result_of(cut) == launch_result_of(whole));
     }
-    CHECK(2 * more > cases);
+    CHECK(2 * cut_cases > cases);
 }
 
 TEST_CASE("a render completes if each launch runs one iteration of its loop", "[ring]") {
@@ -85,7 +85,7 @@ TEST_CASE("a render completes if each launch runs one iteration of its loop", "[
     CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more than one launch per pixel of a lane
 }
 
-TEST_CASE("launches report monotonic progress, first when each lane has done a few pixels", "[ring]") {
+TEST_CASE("launches report increasing progress, for the first time when each lane has traced a few pixels", "[ring]") {
     const Scene scene = project_scene("centre");
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 96, .height = 96, .pes = 4});
@@ -98,11 +98,12 @@ TEST_CASE("launches report monotonic progress, first when each lane has done a f
     CHECK(reported.size() > 1);
     CHECK(reported.front() < 6 * first.lanes * first.group_size / (96 * 96 / 4.0));
     CHECK(reported.back() == 1);
-    CHECK(launches_of(renderer.render()) == 1);  // one launch: no progress callback, less than a second of work
+    CHECK(launches_of(renderer.render()) ==
+          1);  // one launch, because without a progress callback there is less than a second of work
     settings.work_per_launch = 5000;
-    RingRenderer sliced(session, scene, settings);
+    RingRenderer limited(session, scene, settings);
     reported.clear();
-    const RingResult second = sliced.render(report);
+    const RingResult second = limited.render(report);
     CHECK(std::is_sorted(reported.begin(), reported.end()));
     CHECK(reported.back() == 1);
     CHECK(launch_result_of(second) == launch_result_of(first));
@@ -110,10 +111,10 @@ TEST_CASE("launches report monotonic progress, first when each lane has done a f
     CHECK(reported.size() > 4);
 }
 
-bool is_detected(Session& session, const Scene& scene, const RingSettings& settings, const LaunchResult& right) {
+bool is_detected(Session& session, const Scene& scene, const RingSettings& settings, const LaunchResult& expected) {
     try {
-        return !(launch_result_of(RingRenderer(session, scene, settings).render()) == right);
-    } catch (const DeviceError&) {  // raya counts the finished pixels
+        return !(launch_result_of(RingRenderer(session, scene, settings).render()) == expected);
+    } catch (const DeviceError&) {  // raya checks the number of finished pixels
         return true;
     }
 }
@@ -135,16 +136,16 @@ TEST_CASE("every injected fault in the state saved between launches is detected"
     c.antialias.method = AntialiasMethod::kSupersample;
     RingSettings settings = settings_of(c);
     settings.work_per_launch = 300;
-    const LaunchResult right = launch_result_of(RingRenderer(session, scene, settings).render());
+    const LaunchResult expected = launch_result_of(RingRenderer(session, scene, settings).render());
     for (const SourcePatch& fault : faults) {
         CAPTURE(fault.file, fault.find);
         settings.kernels.sources.patches = {fault};
-        CHECK(is_detected(session, scene, settings, right));
+        CHECK(is_detected(session, scene, settings, expected));
     }
 }
 
-// truncating_patches() simulates a device that ends the loops of every launch with more work than this. Such a launch
-// sets the cut flag and corrupts counts, costs, pixels and saved ray trees.
+// Maximum work of a launch that completes on the device that truncating_patches() simulates. The device ends the loops
+// of launches with more work. Such a launch sets the cut flag and corrupts counts, costs, pixels and saved ray trees.
 constexpr std::uint32_t kMaxCompletedWork = 40;
 
 std::vector<SourcePatch> truncating_patches() {
@@ -188,7 +189,7 @@ TEST_CASE("a device that ends loops early is an error, not an image", "[ring]") 
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 20, .height = 15, .pes = 4});
     settings.kernels.sources.patches = {{"shared/loop_canary.clh", "i < two", "i < two - 1"}};
-    for (const std::uint32_t limit : {UINT32_MAX, 300u}) {  // no repetition; repetition down to the smallest launch
+    for (const std::uint32_t limit : {UINT32_MAX, 300u}) {  // fails at once; repeats launches down to the smallest
         session.launch_limit(kTracePass) = limit;
         CHECK_THROWS_WITH(RingRenderer(session, scene, settings).render(),
                           Catch::Contains("has ended loops early") && Catch::Contains("remedy"));

@@ -1,4 +1,4 @@
-// Mappings of an image onto PEs: their parameters, their text, and the error messages for invalid mappings.
+// Mappings of an image onto PEs: parameters and text of a mapping, and the error messages for invalid mappings.
 #include <catch2/catch.hpp>
 #include <cstdint>
 
@@ -17,18 +17,20 @@ bool same(const raya_mapping& a, const raya_mapping& b) {
 
 }  // namespace
 
-TEST_CASE("a mapping has the image's size, its PEs and its rule's parameter", "[mapping]") {
-    const auto on = [](const MappingRule& rule, std::uint32_t pes = 64) { return make_mapping(rule, {320, 200}, pes); };
-    CHECK(same(on(cyclic_mapping(16)), {320, 200, 64, 16, RAYA_FOLD_CYCLIC}));
-    CHECK(same(on(cyclic_mapping(319)), {320, 200, 64, 319, RAYA_FOLD_CYCLIC}));
-    CHECK(same(on(column_mapping()), {320, 200, 64, 0, RAYA_FOLD_CYCLIC}));
-    CHECK(same(on(cyclic_mapping(16, Fold::kBlock)), {320, 200, 64, 16, RAYA_FOLD_BLOCK}));
-    CHECK(same(on(column_mapping(Fold::kBlock)), {320, 200, 64, 0, RAYA_FOLD_BLOCK}));
-    CHECK(same(on(rows_mapping(), 64'000), {320, 200, 64'000, 0, RAYA_ROWS}));
-    CHECK(same(on(blocks_mapping()), {320, 200, 64, 0, RAYA_BLOCKS}));
-    CHECK(same(on(grid_mapping(4, 16)), {320, 200, 64, raya_pair(4, 16), RAYA_GRID}));
-    CHECK(same(on(tiles_mapping(16, 8)), {320, 200, 64, raya_pair(16, 8), RAYA_TILES}));
-    CHECK(same(on(random_mapping(0xffffffffu)), {320, 200, 64, 0xffffffffu, RAYA_RANDOM}));
+TEST_CASE("a mapping has the image's size, the number of PEs and the rule's parameter", "[mapping]") {
+    const auto mapping = [](const MappingRule& rule, std::uint32_t pes = 64) {
+        return make_mapping(rule, {320, 200}, pes);
+    };
+    CHECK(same(mapping(cyclic_mapping(16)), {320, 200, 64, 16, RAYA_FOLD_CYCLIC}));
+    CHECK(same(mapping(cyclic_mapping(319)), {320, 200, 64, 319, RAYA_FOLD_CYCLIC}));
+    CHECK(same(mapping(column_mapping()), {320, 200, 64, 0, RAYA_FOLD_CYCLIC}));
+    CHECK(same(mapping(cyclic_mapping(16, Fold::kBlock)), {320, 200, 64, 16, RAYA_FOLD_BLOCK}));
+    CHECK(same(mapping(column_mapping(Fold::kBlock)), {320, 200, 64, 0, RAYA_FOLD_BLOCK}));
+    CHECK(same(mapping(rows_mapping(), 64'000), {320, 200, 64'000, 0, RAYA_ROWS}));
+    CHECK(same(mapping(blocks_mapping()), {320, 200, 64, 0, RAYA_BLOCKS}));
+    CHECK(same(mapping(grid_mapping(4, 16)), {320, 200, 64, raya_pair(4, 16), RAYA_GRID}));
+    CHECK(same(mapping(tiles_mapping(16, 8)), {320, 200, 64, raya_pair(16, 8), RAYA_TILES}));
+    CHECK(same(mapping(random_mapping(0xffffffffu)), {320, 200, 64, 0xffffffffu, RAYA_RANDOM}));
     CHECK(make_mapping(column_mapping(), {16'384, 16'384}, 268'435'456).pes == 268'435'456);
     CHECK(make_mapping(grid_mapping(16'384, 16'384), {16'384, 16'384}, 268'435'456).pes == 268'435'456);
 }
@@ -74,5 +76,5 @@ TEST_CASE("an invalid mapping is refused with the valid range or a valid value",
     check_error(tiles_mapping(9, 25), {320, 200}, 8,
                 Contains("--mapping tiles:9x25") && Contains("320 x 200") && Contains("tiles:8x25"));
     check_error(tiles_mapping(320, 99), {320, 200}, 8, Contains("tiles:320x100"));
-    check_error(tiles_mapping(16'384, 3), {7, 200}, 8, Contains("tiles:7x2"));  // 2 and 4 are equally near
+    check_error(tiles_mapping(16'384, 3), {7, 200}, 8, Contains("tiles:7x2"));  // 2 and 4 are equally near to 3
 }

@@ -13,17 +13,17 @@ using namespace raya;
 
 namespace {
 
-/// The owner according to the definition in mapping.h, in signed numbers and without the shortcuts of the kernels'
-/// formulas.
+/// Returns the owner according to the definition in mapping.h, computed with signed numbers and without the shortcuts
+/// of the kernels' formulas.
 std::int64_t defined_owner(const raya_mapping& m, std::int64_t row, std::int64_t column) {
     const std::int64_t width = m.width, height = m.height, pes = m.pes;
     std::int64_t slot = (column - row * m.parameter) % width;
     if (slot < 0) slot += width;
     if (m.kind == RAYA_FOLD_CYCLIC) {
         if (pes <= width) return slot % pes;
-        std::int64_t sharers = 0;  // the PEs slot, slot + W, slot + 2 W, ...
-        while (slot + sharers * width < pes && sharers < height) ++sharers;
-        return slot + row % sharers * width;
+        std::int64_t slot_pes = 0;  // number of the PEs slot, slot + W, slot + 2 W, ...
+        while (slot + slot_pes * width < pes && slot_pes < height) ++slot_pes;
+        return slot + row % slot_pes * width;
     }
     const std::int64_t first = slot * pes / width, end = (slot + 1) * pes / width;
     return pes <= width ? first : first + row * (end - first) / height;
@@ -44,17 +44,17 @@ TEST_CASE("slot mappings: every pixel has one owner, and shares are as even as t
         CHECK(count_wrong_owners(m, defined, sizes) == 0);
         const auto [smallest, largest] = std::minmax_element(sizes.begin(), sizes.end());
         CHECK(largest_share(m) == *largest);
-        if (m.pes <= m.width) {  // a PE owns W / P whole slots, rounded down or up
+        if (m.pes <= m.width) {  // a PE owns W / P slots, rounded down or up
             CHECK(*smallest == m.width / m.pes * m.height);
             CHECK(*largest == ceil_ratio(m.width, m.pes) * m.height);
-        } else {  // P / W PEs, rounded down or up, share the H pixels of a slot
+        } else {  // P / W PEs, rounded down or up, divide the H pixels of a slot
             CHECK(*smallest >= m.height / ceil_ratio(m.pes, m.width));
             CHECK(*largest == ceil_ratio(m.height, m.pes / m.width));
         }
     }
 }
 
-TEST_CASE("cyclic mapping with one PE per column: owners and neighbours are the paper's", "[mapping]") {
+TEST_CASE("cyclic mapping with one PE per column: owners and neighbours are those in the paper", "[mapping]") {
     constexpr std::uint64_t kSeed = 2;
     SplitMix random(kSeed);
     for (int i = 0; i < 100; ++i) {
@@ -94,7 +94,7 @@ TEST_CASE("block fold: a PE owns a run of slots if P < W, a run of a slot's rows
     std::vector<std::uint32_t> owners;
     for (std::uint32_t x = 0; x < 10; ++x) owners.push_back(raya_owner(few, 2, x));
     CHECK(owners == std::vector<std::uint32_t>{0, 0, 0, 1, 1, 2, 2, 2, 3, 3});
-    const raya_mapping many{2, 5, 5, 0, RAYA_FOLD_BLOCK};  // PEs 0 and 1 share slot 0; 2, 3 and 4 share slot 1
+    const raya_mapping many{2, 5, 5, 0, RAYA_FOLD_BLOCK};  // PEs 0 and 1 own slot 0; PEs 2, 3 and 4 own slot 1
     owners.clear();
     for (std::uint32_t x = 0; x < 2; ++x)
         for (std::uint32_t j = 0; j < 5; ++j) owners.push_back(raya_owner(many, j, x));

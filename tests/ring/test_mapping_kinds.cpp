@@ -1,5 +1,5 @@
-// Mappings without slots: every pixel has one owner, which is that of the definition, and PEs' pixel counts are as even
-// as the kind guarantees. Also tests the permutation of the random mapping.
+// Mappings without slots: every pixel has one owner, as defined in mapping.h, and the PEs' pixel counts are as even as
+// the kind of mapping guarantees. Also tests the permutation of the random mapping.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -18,14 +18,14 @@ using Owners = std::vector<std::uint32_t>;  // [row][column]
 
 constexpr std::uint32_t kKinds[] = {RAYA_ROWS, RAYA_BLOCKS, RAYA_GRID, RAYA_TILES, RAYA_RANDOM};
 
-/// A set of pixels: every `step_across`-th pixel of every `step_down`-th row, from `top` and `left` to before `bottom`
-/// and `right`. set_owner() assigns them to `pe`.
+/// A set of pixels: every `step_across`-th pixel of every `step_down`-th row, from row `top` and column `left` up to,
+/// but without, `bottom` and `right`. set_owner() assigns these pixels to `pe`.
 struct PixelLattice {
     std::uint32_t top, step_down, bottom, left, step_across, right;
 };
-void set_owner(Owners& owners, const raya_mapping& m, const PixelLattice& b, std::uint32_t pe) {
-    for (std::uint32_t j = b.top; j < b.bottom; j += b.step_down)
-        for (std::uint32_t x = b.left; x < b.right; x += b.step_across) owners[j * m.width + x] = pe;
+void set_owner(Owners& owners, const raya_mapping& m, const PixelLattice& pixels, std::uint32_t pe) {
+    for (std::uint32_t j = pixels.top; j < pixels.bottom; j += pixels.step_down)
+        for (std::uint32_t x = pixels.left; x < pixels.right; x += pixels.step_across) owners[j * m.width + x] = pe;
 }
 
 Owners owners_of_blocks(const raya_mapping& m) {
@@ -49,7 +49,7 @@ Owners owners_of_tiles(const raya_mapping& m) {
     return owners;
 }
 
-/// Assigns the permuted pixels to the PEs in turn. The permutation itself has its own tests.
+/// Assigns the permuted pixels to the PEs in turn. The permutation has separate tests.
 Owners owners_of_random(const raya_mapping& m) {
     Owners owners(m.width * m.height);
     for (std::uint32_t n = 0; n < owners.size(); ++n)
@@ -57,7 +57,7 @@ Owners owners_of_random(const raya_mapping& m) {
     return owners;
 }
 
-/// The owners according to the definition in mapping.h, computed PE by PE without the formulas of mapping.h.
+/// Returns the owners according to the definition in mapping.h, computed PE by PE without the formulas of mapping.h.
 Owners defined_owners(const raya_mapping& m) {
     if (m.kind == RAYA_BLOCKS) return owners_of_blocks(m);
     if (m.kind == RAYA_TILES) return owners_of_tiles(m);
@@ -71,7 +71,7 @@ Owners defined_owners(const raya_mapping& m) {
     return owners;
 }
 
-/// The owner in 64-bit arithmetic, for images that are too large for defined_owners().
+/// Returns the owner, computed in 64-bit arithmetic, for images that are too large for defined_owners().
 std::uint64_t wide_owner(const raya_mapping& m, std::uint64_t row, std::uint64_t column) {
     const std::uint64_t first = raya_first_of(m.parameter), second = raya_second_of(m.parameter), width = m.width;
     if (m.kind == RAYA_ROWS) return row % m.pes;
@@ -81,7 +81,7 @@ std::uint64_t wide_owner(const raya_mapping& m, std::uint64_t row, std::uint64_t
     return raya_scramble(static_cast<std::uint32_t>(row * width + column), m.width * m.height, m.parameter) % m.pes;
 }
 
-/// The maximum difference between the pixel counts of two PEs: one row, tile or pixel.
+/// Returns the maximum difference between the pixel counts of two PEs, in pixels: one row, tile or pixel.
 std::uint32_t max_size_difference(const raya_mapping& m) {
     if (m.kind == RAYA_RANDOM) return 1;
     if (m.kind == RAYA_TILES) return raya_first_of(m.parameter) * raya_second_of(m.parameter);
@@ -93,7 +93,7 @@ std::uint32_t max_size_difference(const raya_mapping& m) {
 TEST_CASE("rows, blocks, grid, tiles, random: every pixel has one owner, and shares are even", "[mapping]") {
     constexpr std::uint64_t kSeed = 21;
     SplitMix random(kSeed);
-    std::uint32_t idle = 0;
+    std::uint32_t idle_cases = 0;
     for (int i = 0; i < 300; ++i)
         for (const std::uint32_t kind : kKinds) {
             const raya_mapping m = mapping_of_kind(random, small_mapping(random, 30), kind);
@@ -107,9 +107,9 @@ TEST_CASE("rows, blocks, grid, tiles, random: every pixel has one owner, and sha
             const auto [smallest, largest] = std::minmax_element(sizes.begin(), sizes.end());
             CHECK(largest_share(m) == *largest);
             if (kind != RAYA_GRID) CHECK(*largest - *smallest <= max_size_difference(m));
-            idle += *smallest == 0;
+            idle_cases += *smallest == 0;
         }
-    CHECK(idle > 100);  // some PEs had no pixels
+    CHECK(idle_cases > 100);  // number of mappings in which PEs have no pixels
 }
 
 TEST_CASE("a grid's PEs own one pixel of every A x B rectangle", "[mapping]") {
@@ -163,16 +163,17 @@ TEST_CASE("random mapping: the scramble is a bijection for every count, and unsc
             std::vector<bool> seen(count);
             std::uint32_t wrong = 0;
             for (std::uint32_t n = 0; n < count; ++n) {
-                const std::uint32_t to = raya_scramble(n, count, seed);
-                wrong += to >= count || seen[to] || raya_unscramble(to, count, seed) != n;
-                if (to < count) seen[to] = true;
+                const std::uint32_t scrambled = raya_scramble(n, count, seed);
+                wrong += scrambled >= count || seen[scrambled] || raya_unscramble(scrambled, count, seed) != n;
+                if (scrambled < count) seen[scrambled] = true;
             }
             CAPTURE(count, seed);
             CHECK(wrong == 0);
         }
 }
 
-TEST_CASE("random mapping: the seed determines the mapping, and different seeds give independent ones", "[mapping]") {
+TEST_CASE("random mapping: the seed determines the mapping, and different seeds give independent mappings",
+          "[mapping]") {
     const auto owners = [](std::uint32_t seed) { return defined_owners({64, 64, 16, seed, RAYA_RANDOM}); };
     constexpr std::uint32_t kSeeds = 50;
     std::vector<Owners> all;

@@ -1,4 +1,4 @@
-// The pixels do not depend on the distribution of the work, on lanes, group size or the optimiser.
+// An image does not depend on the distribution of the work, on lanes, group size or the optimiser.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -8,32 +8,32 @@
 namespace raya {
 namespace {
 
-// A scene with every kind of object and surface: the polygons scene plus the objects of three others.
+// Returns a scene with every kind of object and surface: the scene `polygons` with the objects of three other scenes.
 Scene mixed_scene() {
     Scene scene = project_scene("polygons");
     for (const char* name : {"cones", "glass", "mirrors"}) {
-        const Scene other = project_scene(name);
+        const Scene added = project_scene(name);
         const int shift = static_cast<int>(scene.surfaces.size());
-        scene.surfaces.insert(scene.surfaces.end(), other.surfaces.begin(), other.surfaces.end());
-        const auto take = [&](auto& to, auto from) {
-            for (auto& object : from) object.surface += shift;
-            to.insert(to.end(), from.begin(), from.end());
+        scene.surfaces.insert(scene.surfaces.end(), added.surfaces.begin(), added.surfaces.end());
+        const auto add_objects = [&](auto& objects, auto added_objects) {
+            for (auto& object : added_objects) object.surface += shift;
+            objects.insert(objects.end(), added_objects.begin(), added_objects.end());
         };
-        take(scene.spheres, other.spheres);
-        take(scene.planes, other.planes);
-        take(scene.cones, other.cones);
-        take(scene.polygons, other.polygons);
+        add_objects(scene.spheres, added.spheres);
+        add_objects(scene.planes, added.planes);
+        add_objects(scene.cones, added.cones);
+        add_objects(scene.polygons, added.polygons);
     }
     return scene;
 }
 
-struct Answer {
+struct ImageAndCounts {
     std::string hash;
     EventCounts events;
-    bool operator==(const Answer&) const = default;
+    bool operator==(const ImageAndCounts&) const = default;
 };
 
-Answer answer_of(const RingResult& result) { return {pixel_hash(result.image), result.all.events}; }
+ImageAndCounts image_and_counts_of(const RingResult& result) { return {pixel_hash(result.image), result.all.events}; }
 
 }  // namespace
 
@@ -41,7 +41,8 @@ TEST_CASE("lanes, group size and the optimiser change no bit of the image and no
     const Scene scene = mixed_scene();
     const std::string format = GENERATE("fp32", "spa22");
     CAPTURE(format);
-    const Answer expected = answer_of(render_scene(scene, {.lanes = 1, .group = 1, .format = format}));
+    const ImageAndCounts expected =
+        image_and_counts_of(render_scene(scene, {.lanes = 1, .group = 1, .format = format}));
     CHECK(expected.events[RAYA_PRIMARY] == 64 * 48);
     for (const auto kind : {RAYA_REFLECTED, RAYA_REFRACTED, RAYA_SHADOW_HITS, RAYA_HIGHLIGHTS, RAYA_SPHERE_TESTS,
                             RAYA_PLANE_TESTS, RAYA_POLYGON_TESTS, RAYA_CONE_TESTS})
@@ -57,7 +58,7 @@ TEST_CASE("lanes, group size and the optimiser change no bit of the image and no
     for (RingCase c : quick_of(3, cases)) {
         c.format = format;
         CAPTURE(c.lanes, c.group, c.more_options);
-        CHECK(answer_of(render_scene(scene, c)) == expected);
+        CHECK(image_and_counts_of(render_scene(scene, c)) == expected);
     }
 }
 
@@ -65,27 +66,27 @@ TEST_CASE("PEs, offset, fold and machine change no bit of the image and no count
     const Scene scene = mixed_scene();
     const std::string format = GENERATE("fp32", "spa22");
     CAPTURE(format);
-    const Answer expected = answer_of(render_scene(scene, {.pes = 1, .offset = 0, .format = format}));
+    const ImageAndCounts expected = image_and_counts_of(render_scene(scene, {.pes = 1, .offset = 0, .format = format}));
     for (const std::uint32_t pes : {1u, 7u, 64u, 256u, 1000u, 64u * 48u})
         for (const Fold fold : {Fold::kCyclic, Fold::kBlock})
             for (const std::uint32_t offset : {0u, 16u, 63u}) {
                 CAPTURE(pes, fold, offset);
-                CHECK(answer_of(render_scene(scene, {.pes = pes, .offset = offset, .fold = fold, .format = format})) ==
-                      expected);
+                CHECK(image_and_counts_of(render_scene(
+                          scene, {.pes = pes, .offset = offset, .fold = fold, .format = format})) == expected);
             }
 }
 
-TEST_CASE("the mapping's kind changes no bit of the image and no count, smoothed or not", "[ring]") {
+TEST_CASE("the mapping's kind changes no bit of the image and no count, with and without antialiasing", "[ring]") {
     const Scene scene = mixed_scene();
     const auto method = GENERATE(AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample);
     RingCase c{.width = 24, .height = 18, .pes = 1, .offset = 0};
     c.antialias.method = method;
     c.group = 1;
-    const Answer expected = answer_of(render_scene(scene, c));
+    const ImageAndCounts expected = image_and_counts_of(render_scene(scene, c));
     struct Row {
         MappingRule mapping;
         std::uint32_t pes,
-            supersampled_in;  // group size (1 or 4) with supersampling; the filter uses the other one
+            supersampling_group;  // group size with supersampling, 1 or 4; the filter uses 4 or 1
     };
     // If there are more PEs than rows or tiles, some PEs are idle.
     const Row rows[] = {{rows_mapping(), 5, 1},      {rows_mapping(), 40, 4},      {blocks_mapping(), 5, 4},
@@ -95,7 +96,7 @@ TEST_CASE("the mapping's kind changes no bit of the image and no count, smoothed
     for (const Row& row : rows)
         for (const std::uint32_t group : {1u, 4u}) {
             const bool smoothed = method != AntialiasMethod::kNone;
-            if (smoothed && (group == row.supersampled_in) == (method == AntialiasMethod::kFilter)) continue;
+            if (smoothed && (group == row.supersampling_group) == (method == AntialiasMethod::kFilter)) continue;
             c.mapping = row.mapping;
             c.pes = row.pes;
             c.group = group;
@@ -105,7 +106,7 @@ TEST_CASE("the mapping's kind changes no bit of the image and no count, smoothed
                                   Catch::Contains("--mapping random") &&
                                       Catch::Contains("the neighbours of a pixel are on random PEs"));
             else
-                CHECK(answer_of(render_scene(scene, c)) == expected);
+                CHECK(image_and_counts_of(render_scene(scene, c)) == expected);
         }
 }
 
@@ -124,10 +125,10 @@ TEST_CASE("images of any size are traced completely, even if pixels do not fill 
         c.offset = between(0, c.width - 1);
         c.fold = i % 2 ? Fold::kBlock : Fold::kCyclic;
         CAPTURE(seed, i, c.width, c.height, c.pes, c.offset, c.fold);
-        const Answer spread = answer_of(render_scene(scene, c));
+        const ImageAndCounts distributed = image_and_counts_of(render_scene(scene, c));
         c.pes = 1;
         c.lanes = 1;
-        CHECK(spread == answer_of(render_scene(scene, c)));
+        CHECK(distributed == image_and_counts_of(render_scene(scene, c)));
     }
 }
 
@@ -139,14 +140,14 @@ TEST_CASE("a share larger than a PE's memory is gathered block by block, with th
     CHECK(blocks.communication.gathers > 1);
     CHECK(blocks.communication.gather_words == 3 * 128 * 128);
     CHECK(blocks.pe_memory.bytes() <= 32 * 1024);
-    CHECK(answer_of(blocks) == answer_of(whole));
+    CHECK(image_and_counts_of(blocks) == image_and_counts_of(whole));
 }
 
 TEST_CASE("a second render with the same renderer gives the same result", "[ring]") {
     Session session(choose_device(""));
     RingRenderer renderer(session, project_scene("cones"), settings_of(RingCase{}));
     const RingResult first = renderer.render(), second = renderer.render();
-    CHECK(answer_of(first) == answer_of(second));
+    CHECK(image_and_counts_of(first) == image_and_counts_of(second));
     CHECK(second.communication.broadcasts == 1);
     CHECK(first.all.load.per_pe == second.all.load.per_pe);
 }

@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Bytes of the stack for the ray tree, without the job's words and pixels. The stack grows by one ray per bounce.
+/// Returns the number of bytes of the stack for the ray tree. The stack grows by one ray per bounce.
 std::uint64_t ray_tree_bytes(std::uint32_t bounces) {
     return plan_pe_memory(machine_named("grande"), {.scene = "s", .bounces = bounces}).bytes();
 }
@@ -24,18 +24,19 @@ Machine machine_of(std::uint64_t bytes) {
 }
 
 PeDemand demand(std::uint64_t job_words, std::uint32_t share, AntialiasMethod method = AntialiasMethod::kNone) {
-    return {.scene = "s", .job_words = job_words, .bounces = 8, .share = share, .antialias = method};
+    return {.scene = "s", .job_words = job_words, .bounces = 8, .share_pixels = share, .antialias = method};
 }
 
-/// Bytes of a PE that exchanges pixels, without the pixels in transit: per pixel three words of colour, and three words
-/// of sums (filter) or a mark of one byte (supersampling).
+/// Returns the number of bytes that a PE needs if it exchanges pixels, without the pixels in transit. Each pixel has
+/// three words of colour, and three words of sums (filter) or a mark of one byte (supersampling).
 std::uint64_t bytes_without_band(const PeDemand& d) {
-    const std::uint64_t a_pixel = d.antialias == AntialiasMethod::kFilter ? 24 : 13;
-    return 4 * d.job_words + ray_tree_bytes(d.bounces) + a_pixel * d.share;
+    const std::uint64_t pixel_bytes = d.antialias == AntialiasMethod::kFilter ? 24 : 13;
+    return 4 * d.job_words + ray_tree_bytes(d.bounces) + pixel_bytes * d.share_pixels;
 }
 
-/// The longest band if the PE's pixels are cut into the minimum number of equal parts that fit; 0 if none fits.
-std::uint32_t min_parts(std::uint32_t share, std::uint64_t free_bytes) {
+/// Returns the number of pixels in the longest band if the share is cut into the minimum number of equal bands that fit
+/// in the free bytes; 0 if no band fits.
+std::uint32_t longest_band(std::uint32_t share, std::uint64_t free_bytes) {
     for (std::uint32_t parts = 1; parts <= share; ++parts) {
         const std::uint32_t longest = share / parts + (share % parts != 0);
         if (12ull * longest <= free_bytes) return longest;
@@ -45,13 +46,14 @@ std::uint32_t min_parts(std::uint32_t share, std::uint64_t free_bytes) {
 
 }  // namespace
 
-TEST_CASE("a PE's memory is the job's words, the traversal stack and three words a pixel, 4 bytes each", "[ring]") {
+TEST_CASE("a PE's memory is the job's words, the traversal stack and three words per pixel, of 4 bytes each",
+          "[ring]") {
     const PeMemory memory = plan_pe_memory(machine_named("spa"), demand(1000, 256));
     CHECK(memory.job_words == 1000);
     CHECK(memory.block_pixels == 256);
     CHECK((memory.sum_pixels == 0 && memory.band_pixels == 0 && memory.marks == 0));
     CHECK(memory.bytes() == 4 * 1000 + ray_tree_bytes(8) + 12 * 256);
-    CHECK(ray_tree_bytes(8) - ray_tree_bytes(7) == 4 * 7);  // 7 words: origin, direction, weight
+    CHECK(ray_tree_bytes(8) - ray_tree_bytes(7) == 4 * 7);  // a ray has 7 words: origin, direction, weight
     CHECK(ray_tree_bytes(0) > 0);
 }
 
@@ -69,7 +71,7 @@ TEST_CASE("a machine without a limit holds everything", "[ring]") {
     const PeMemory memory = plan_pe_memory(machine_named("grande"), demand(100'000'000, 1'000'000));
     CHECK(memory.block_pixels == 1'000'000);
     CHECK(memory.bytes() > 400'000'000);
-    constexpr std::uint32_t kMaxPixels = 1u << 28;  // one PE for the largest image
+    constexpr std::uint32_t kMaxPixels = 1u << 28;  // number of pixels of the largest image, all on one PE
     const PeMemory filter = plan_pe_memory(machine_named("grande"), demand(0, kMaxPixels, AntialiasMethod::kFilter));
     CHECK(filter.band_pixels == kMaxPixels);
     CHECK(filter.bytes() == ray_tree_bytes(8) + (36ull << 28));
@@ -83,37 +85,38 @@ TEST_CASE("a share that does not fit is cut into the largest blocks that fit", "
             return plan_pe_memory(machine_of(bytes), demand(words, share)).block_pixels;
         };
         CAPTURE(pixels);
-        CHECK(block(exact, pixels) == pixels);  // to the last byte
+        CHECK(block(exact, pixels) == pixels);  // fits to the last byte
         CHECK(block(exact, pixels + 1) == pixels);
         CHECK(block(exact + 11, 1000) == pixels);
         CHECK(block(exact + 12, 1000) == pixels + 1);
     }
     // The paper's run on one PE: 256 x 256 pixels.
-    const PeMemory one = plan_pe_memory(machine_named("spa"), demand(300, 65'536));
-    CHECK(one.block_pixels > 1000);
-    CHECK(one.bytes() <= 32 * 1024);
-    CHECK(one.bytes() + 12 > 32 * 1024);
+    const PeMemory on_one_pe = plan_pe_memory(machine_named("spa"), demand(300, 65'536));
+    CHECK(on_one_pe.block_pixels > 1000);
+    CHECK(on_one_pe.bytes() <= 32 * 1024);
+    CHECK(on_one_pe.bytes() + 12 > 32 * 1024);
 }
 
 TEST_CASE("PEs exchange the whole share, or the minimum number of equal parts of it that fit", "[ring]") {
     constexpr std::uint64_t kSeed = 4;
     SplitMix random(kSeed);
-    int cut = 0;
+    int cut_shares = 0;
     for (int i = 0; i < 1000; ++i) {
         const auto method = random.next() % 2 ? AntialiasMethod::kFilter : AntialiasMethod::kSupersample;
         const PeDemand d = demand(random.next() % 300, 1 + static_cast<std::uint32_t>(random.next() % 300), method);
-        const std::uint64_t free_bytes = 12 + random.next() % (13 * d.share);
-        CAPTURE(kSeed, i, d.job_words, d.share, free_bytes, antialias_name(method));
+        const std::uint64_t free_bytes = 12 + random.next() % (13 * d.share_pixels);
+        CAPTURE(kSeed, i, d.job_words, d.share_pixels, free_bytes, antialias_name(method));
         const PeMemory memory = plan_pe_memory(machine_of(bytes_without_band(d) + free_bytes), d);
-        CHECK(memory.block_pixels == d.share);  // all pixels stay in the PE, as any may be a neighbour of another PE's
-        CHECK(memory.sum_pixels == (method == AntialiasMethod::kFilter ? d.share : 0));
-        CHECK(memory.marks == (method == AntialiasMethod::kSupersample ? d.share : 0));
-        CHECK(memory.band_pixels == min_parts(d.share, free_bytes));
+        CHECK(memory.block_pixels ==
+              d.share_pixels);  // all pixels stay in the PE: any may be a neighbour of another PE's
+        CHECK(memory.sum_pixels == (method == AntialiasMethod::kFilter ? d.share_pixels : 0));
+        CHECK(memory.marks == (method == AntialiasMethod::kSupersample ? d.share_pixels : 0));
+        CHECK(memory.band_pixels == longest_band(d.share_pixels, free_bytes));
         CHECK(memory.bytes() == bytes_without_band(d) + 12ull * memory.band_pixels);
         CHECK(memory.bytes() <= bytes_without_band(d) + free_bytes);
-        cut += memory.band_pixels < d.share;
+        cut_shares += memory.band_pixels < d.share_pixels;
     }
-    CHECK(cut > 500);
+    CHECK(cut_shares > 500);
     const auto band = [](std::uint64_t pixels) {
         const PeDemand d = demand(100, 100, AntialiasMethod::kFilter);
         return plan_pe_memory(machine_of(bytes_without_band(d) + 12 * pixels), d).band_pixels;
@@ -124,21 +127,22 @@ TEST_CASE("PEs exchange the whole share, or the minimum number of equal parts of
 TEST_CASE("a scene that leaves no memory for a pixel is refused with both figures and the remedy", "[ring]") {
     const auto plan = [](std::uint64_t words) {
         return plan_pe_memory(machine_named("spa"),
-                              {.scene = "big.nff", .job_words = words, .bounces = 8, .share = 256});
+                              {.scene = "big.nff", .job_words = words, .bounces = 8, .share_pixels = 256});
     };
-    const std::uint64_t words = (32 * 1024 - ray_tree_bytes(8) - 12) / 4;  // the maximum that fits
+    const std::uint64_t words = (32 * 1024 - ray_tree_bytes(8) - 12) / 4;  // the maximum number that fits
     CHECK(plan(words).block_pixels == 1);
     try {
         plan(words + 1);
-        FAIL("it fits");
+        FAIL("a scene of one word too many fits");
     } catch (const DoesNotFit& error) {
         CHECK(error.needed_bytes == 4 * (words + 1) + ray_tree_bytes(8) + 12);
         CHECK(error.memory_bytes == 32 * 1024);
     }
     const std::uint64_t hundred_kb = (100 * 1024 - ray_tree_bytes(8) - 12) / 4;
-    CHECK_THROWS_WITH(plan(hundred_kb), Contains("big.nff") && Contains("100.0 KB") && Contains("32 KB") &&
-                                            Contains("the SPA") && Contains("--machine grande") &&
-                                            !Contains("more PEs"));  // would not help: every PE holds the whole scene
+    CHECK_THROWS_WITH(plan(hundred_kb),
+                      Contains("big.nff") && Contains("100.0 KB") && Contains("32 KB") && Contains("the SPA") &&
+                          Contains("--machine grande") &&
+                          !Contains("more PEs"));  // more PEs would not help: every PE holds the whole scene
 }
 
 TEST_CASE("a share that leaves no memory for a pixel in transit is refused with both figures and the remedy",
@@ -152,7 +156,7 @@ TEST_CASE("a share that leaves no memory for a pixel in transit is refused with 
         CHECK_THROWS_AS(plan_pe_memory(machine_of(minimum - 1), d), DoesNotFit);
         CHECK_NOTHROW(plan_pe_memory(machine_of(minimum - 1), demand(700, 333)));
         d.scene = "wide.nff";
-        d.share = 1;
+        d.share_pixels = 1;
         d.job_words = (50 * 1024 - bytes_without_band(demand(0, 1, method)) - 12) / 4;  // 50 KB, less up to 3 bytes
         CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), d),
                           Contains("wide.nff with --antialias " + name) && Contains("50.0 KB") && Contains("32 KB") &&

@@ -1,4 +1,5 @@
-// Rotations move every PE's block to its neighbour without changing a bit, and the copied words are counted.
+// Rotations move the block of each PE to the PE's neighbour without changing a bit. The number of copied words is
+// counted.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -19,11 +20,13 @@ namespace {
 
 using Bits = std::vector<std::uint32_t>;  // floats as bits, so that NaNs compare equal
 
-/// Random words. Half of them are NaNs and other values that copying through floating-point arithmetic would change.
+/// Returns random words. Half of them are values that copying by floating-point arithmetic would change, such as NaNs.
 Bits random_words(SplitMix& random, std::size_t count) {
-    const std::uint32_t odd[] = {0x80000000u, 0x7fc12345u, 0x7f800001u, 0xff923456u, 0x00000001u, 0x7f800000u};
+    const std::uint32_t fragile_values[] = {0x80000000u, 0x7fc12345u, 0x7f800001u,
+                                            0xff923456u, 0x00000001u, 0x7f800000u};
     Bits words(count);
-    for (std::uint32_t& word : words) word = random.next() % 2 ? odd[random.next() % 6] : std::uint32_t(random.next());
+    for (std::uint32_t& word : words)
+        word = random.next() % 2 ? fragile_values[random.next() % 6] : std::uint32_t(random.next());
     return words;
 }
 
@@ -43,8 +46,8 @@ Buffer<float> filled(Session& session, const std::string& name, const Bits& bits
     return buffer;
 }
 
-/// The blocks after rotations by `distance`: block i is the former block (i + distance) mod P.
-Bits turned(const Bits& blocks, std::size_t pes, std::size_t distance) {
+/// Returns the blocks after rotations by `distance`: block i is the former block (i + distance) mod P.
+Bits rotated(const Bits& blocks, std::size_t pes, std::size_t distance) {
     Bits moved(blocks.size());
     const std::size_t size = blocks.size() / pes;
     for (std::size_t i = 0; i < pes; ++i)
@@ -52,7 +55,7 @@ Bits turned(const Bits& blocks, std::size_t pes, std::size_t distance) {
     return moved;
 }
 
-/// Bytes of all copies between buffers whose label starts with `label`.
+/// Returns the number of bytes of all copies between buffers whose label starts with `label`.
 std::uint64_t copied_bytes(Session& session, const std::string& label) {
     std::uint64_t bytes = 0;
     for (const CommandRecord& command : session.profile().commands())
@@ -60,20 +63,20 @@ std::uint64_t copied_bytes(Session& session, const std::string& label) {
     return bytes;
 }
 
-/// The number of commands that are not copies.
-std::size_t other_commands(Session& session) {
+/// Returns the number of commands that are not copies.
+std::size_t commands_without_copies(Session& session) {
     const auto& all = session.profile().commands();
     return static_cast<std::size_t>(
         std::count_if(all.begin(), all.end(), [](const CommandRecord& c) { return c.kind != "copy"; }));
 }
 
-constexpr std::size_t kRings[] = {1, 2, 3, 7, 64};
+constexpr std::size_t kRingSizes[] = {1, 2, 3, 7, 64};
 
 }  // namespace
 
 TEST_CASE("a rotation moves every block to the neighbour, in either direction", "[ring]") {
     Session session(choose_device(""));
-    for (const std::size_t pes : kRings)
+    for (const std::size_t pes : kRingSizes)
         for (const std::size_t block : {1, 3, 17, 768}) {
             CAPTURE(pes, block);
             CHECK(check_rotations(session, pes, block).outcome == Outcome::kPass);
@@ -84,7 +87,7 @@ TEST_CASE("P rotations in either direction bring every block back", "[ring]") {
     constexpr std::uint64_t kSeed = 9;
     SplitMix random(kSeed);
     Session session(choose_device(""));
-    for (const std::size_t pes : kRings)
+    for (const std::size_t pes : kRingSizes)
         for (const RingDirection direction : {RingDirection::kDown, RingDirection::kUp}) {
             CAPTURE(kSeed, pes, int(direction));
             Communication counted;
@@ -94,7 +97,8 @@ TEST_CASE("P rotations in either direction bring every block back", "[ring]") {
             for (std::size_t n = 1; n <= pes; ++n) {
                 ring.rotate(direction);
                 const std::size_t distance = direction == RingDirection::kDown ? n : pes - n;
-                if (contents(session, ring.blocks()) != turned(before, pes, distance)) FAIL_CHECK("after " << n);
+                if (contents(session, ring.blocks()) != rotated(before, pes, distance))
+                    FAIL_CHECK("wrong blocks after rotation " << n);
             }
             CHECK(contents(session, ring.blocks()) == before);
         }
@@ -105,14 +109,14 @@ TEST_CASE("rotations are counted by the words that were copied", "[ring]") {
     SplitMix random(kSeed);
     Session session(choose_device(""));
     for (int i = 0; i < 100; ++i) {
-        const std::size_t pes = kRings[i % 5], block = 1 + random_below(random, 40);
+        const std::size_t pes = kRingSizes[i % 5], block = 1 + random_below(random, 40);
         const std::uint32_t down = random_below(random, 5), up = random_below(random, 5);
         CAPTURE(kSeed, i, pes, block, down, up);
         Communication counted;
         Ring ring(session, counted, static_cast<std::uint32_t>(pes), 1, block);
-        const Buffer<float> own = filled(session, "own", random_words(random, pes * block));
+        const Buffer<float> own_buffer = filled(session, "own", random_words(random, pes * block));
         session.clear_profile();
-        ring.load(own, block, 0);
+        ring.load(own_buffer, block, 0);
         CHECK((counted.rotations == 0 && counted.rotation_words == 0));  // a PE's own words do not move
         for (std::uint32_t n = 0; n < down; ++n) ring.rotate(RingDirection::kDown);
         for (std::uint32_t n = 0; n < up; ++n) ring.rotate(RingDirection::kUp);
@@ -122,41 +126,43 @@ TEST_CASE("rotations are counted by the words that were copied", "[ring]") {
         CHECK(copied_bytes(session, "ring.rotate_down") == 4 * down * pes * block);
         CHECK(copied_bytes(session, "ring.load") == 4 * pes * block);
         CHECK(copied_bytes(session, "") == 4 * (down + up + 1) * pes * block);
-        CHECK(other_commands(session) == 0);
+        CHECK(commands_without_copies(session) == 0);
         CHECK((counted.broadcasts == 0 && counted.gathers == 0));
     }
 }
 
-TEST_CASE("a band beyond the end of the share loads the remaining words and leaves the rest as it was", "[ring]") {
+TEST_CASE("a band beyond the end of the share loads the remaining words and leaves the other words unchanged",
+          "[ring]") {
     constexpr std::uint64_t kSeed = 11;
     SplitMix random(kSeed);
     Session session(choose_device(""));
-    int shorter = 0;
+    int short_bands = 0;
     for (int i = 0; i < 200; ++i) {
-        const std::size_t pes = kRings[i % 5], rows = 1 + i % 3, share = 1 + random_below(random, 30);
+        const std::size_t pes = kRingSizes[i % 5], rows = 1 + i % 3, share = 1 + random_below(random, 30);
         const std::size_t band = 1 + random_below(random, share), begin = random_below(random, share);
         CAPTURE(kSeed, i, pes, rows, share, band, begin);
         Communication counted;
         Ring ring(session, counted, static_cast<std::uint32_t>(pes), rows, band);
-        const Bits mine = random_words(random, pes * rows * share), stale = random_words(random, pes * rows * band);
-        const Buffer<float> own = filled(session, "own", mine);
+        const Bits own_words = random_words(random, pes * rows * share),
+                   stale = random_words(random, pes * rows * band);
+        const Buffer<float> own_buffer = filled(session, "own", own_words);
         ring.load(filled(session, "stale", stale), band, 0);
-        ring.load(own, share, begin);
+        ring.load(own_buffer, share, begin);
         Bits expected = stale;
         const std::size_t count = std::min(band, share - begin);
         for (std::size_t row = 0; row < pes * rows; ++row)
-            for (std::size_t n = 0; n < count; ++n) expected[row * band + n] = mine[row * share + begin + n];
+            for (std::size_t n = 0; n < count; ++n) expected[row * band + n] = own_words[row * share + begin + n];
         CHECK(contents(session, ring.blocks()) == expected);
-        CHECK(contents(session, own) == mine);
+        CHECK(contents(session, own_buffer) == own_words);
         CHECK(counted.rotations == 0);
-        shorter += count < band;
+        short_bands += count < band;
     }
-    CHECK(shorter > 20);
+    CHECK(short_bands > 20);
 }
 
 TEST_CASE("bus transfers and broadcasts by PEs copy every block to its destination", "[ring][bus]") {
     Session session(choose_device(""));
-    for (const std::size_t pes : kRings)
+    for (const std::size_t pes : kRingSizes)
         for (const std::size_t block : {1, 3, 17, 768}) {
             CAPTURE(pes, block);
             CHECK(check_transfers(session, pes, block).outcome == Outcome::kPass);
@@ -168,27 +174,27 @@ TEST_CASE("bus transfers and broadcasts are counted by the words that were copie
     SplitMix random(kSeed);
     Session session(choose_device(""));
     for (int i = 0; i < 50; ++i) {
-        const std::size_t pes = kRings[i % 5], rows = 1 + i % 3, share = 1 + random_below(random, 40);
+        const std::size_t pes = kRingSizes[i % 5], rows = 1 + i % 3, share = 1 + random_below(random, 40);
         const std::size_t words = 1 + random_below(random, share);
         const std::uint32_t sent = random_below(random, 5), broadcasts = random_below(random, 5);
         CAPTURE(kSeed, i, pes, rows, share, words, sent, broadcasts);
         Communication counted;
         Bus bus(session, counted, static_cast<std::uint32_t>(pes));
-        const Bits mine = random_words(random, pes * rows * share);
-        const Buffer<float> own = filled(session, "own", mine);
+        const Bits own_words = random_words(random, pes * rows * share);
+        const Buffer<float> own_buffer = filled(session, "own", own_words);
         Buffer<float> blocks = filled(session, "blocks", random_words(random, pes * rows * words));
         session.clear_profile();
         for (std::uint32_t n = 0; n < sent; ++n)
-            bus.send(own, {n % pes, share, share - words, rows}, blocks, {(n + 1) % pes, words, 0, rows}, words);
+            bus.send(own_buffer, {n % pes, share, share - words, rows}, blocks, {(n + 1) % pes, words, 0, rows}, words);
         for (std::uint32_t n = 0; n < broadcasts; ++n)
-            bus.broadcast_from(own, {n % pes, share, 0, rows}, blocks, {n % pes, words, 0, rows}, words);
+            bus.broadcast_from(own_buffer, {n % pes, share, 0, rows}, blocks, {n % pes, words, 0, rows}, words);
         CHECK((counted.transfers == sent && counted.transfer_words == sent * rows * words));
         CHECK((counted.pe_broadcasts == broadcasts && counted.pe_broadcast_words == broadcasts * rows * words));
         CHECK(copied_bytes(session, "bus.send") == 4 * counted.transfer_words);
         CHECK(copied_bytes(session, "bus.broadcast_from") == 4 * counted.pe_broadcast_words);
-        CHECK(other_commands(session) == 0);
+        CHECK(commands_without_copies(session) == 0);
         CHECK((counted.rotations == 0 && counted.broadcasts == 0 && counted.gathers == 0));
-        CHECK(contents(session, own) == mine);
+        CHECK(contents(session, own_buffer) == own_words);
     }
 }
 
@@ -201,40 +207,41 @@ TEST_CASE("an exchange brings every band from every distance once, with the pred
         const raya_mapping m = any_mapping(random, 8);
         const std::uint32_t capacity = largest_share(m), band = 1 + random_below(random, capacity);
         CAPTURE(kSeed, i, exchange_name(method), m.width, m.height, m.pes, mapping_text(m), m.kind, capacity, band);
-        const Bits mine = random_words(random, std::size_t{m.pes} * capacity * 3);
-        const Buffer<float> own = filled(session, "own", mine);
+        const Bits own_words = random_words(random, std::size_t{m.pes} * capacity * 3);
+        const Buffer<float> own_buffer = filled(session, "own", own_words);
         Communication counted;
         NeighbourExchange exchange(session, counted, m, capacity, band, method);
         std::uint32_t wrong = 0;
         for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
             const std::vector<std::uint32_t> distances = neighbour_distances(m, side);
-            std::vector<std::uint64_t> awaited, came;
+            std::vector<std::uint64_t> expected_arrivals, arrivals;
             for (std::uint32_t begin = 0; begin < capacity; begin += band)
-                for (const std::uint32_t d : distances) awaited.push_back(std::uint64_t{begin} << 32 | d);
-            exchange.visit(own, {side}, [&](const Arrival& arrival) {
+                for (const std::uint32_t d : distances) expected_arrivals.push_back(std::uint64_t{begin} << 32 | d);
+            exchange.visit(own_buffer, {side}, [&](const Arrival& arrival) {
                 CHECK(arrival.side == side);
-                came.push_back(std::uint64_t{arrival.begin} << 32 | arrival.distance);
+                arrivals.push_back(std::uint64_t{arrival.begin} << 32 | arrival.distance);
                 const Bits blocks = contents(session, arrival.blocks);
                 for (std::size_t pe = 0; pe < m.pes; ++pe)
                     for (std::size_t n = 0; n < 3ull * band; ++n) {
-                        const std::size_t from = (pe + arrival.distance) % m.pes, pixel = arrival.begin + n % band;
+                        const std::size_t sender = (pe + arrival.distance) % m.pes, pixel = arrival.begin + n % band;
                         wrong += pixel < capacity &&
-                                 blocks[pe * band * 3 + n] != mine[(from * 3 + n / band) * capacity + pixel];
+                                 blocks[pe * band * 3 + n] != own_words[(sender * 3 + n / band) * capacity + pixel];
                     }
             });
-            std::sort(came.begin(), came.end());
-            CHECK(came == awaited);
+            std::sort(arrivals.begin(), arrivals.end());
+            CHECK(arrivals == expected_arrivals);
         }
         CHECK(wrong == 0);
         const std::uint64_t bands = (capacity + band - 1) / band, moves = sum_of(exchange_moves(m, method, false));
-        const std::uint64_t whole = 3ull * capacity * moves;  // total words; a short last band moves fewer
+        const std::uint64_t total_words =
+            3ull * capacity * moves;  // number of words of all moves; a shorter last band moves fewer words
         const bool ring = method == ExchangeMethod::kRing, bus = method == ExchangeMethod::kBus;
         CHECK(counted.rotations == (ring ? moves * bands : 0));
         CHECK(counted.rotation_words == counted.rotations * m.pes * band * 3);
         CHECK(counted.transfers == (bus ? moves * bands : 0));
-        CHECK(counted.transfer_words == (bus ? whole : 0));
+        CHECK(counted.transfer_words == (bus ? total_words : 0));
         CHECK(counted.pe_broadcasts == (ring || bus ? 0 : moves * bands));
-        CHECK(counted.pe_broadcast_words == (ring || bus ? 0 : whole));
-        CHECK(contents(session, own) == mine);
+        CHECK(counted.pe_broadcast_words == (ring || bus ? 0 : total_words));
+        CHECK(contents(session, own_buffer) == own_words);
     }
 }

@@ -1,4 +1,4 @@
-// Renders that stop between two bands and resume from a checkpoint have the same image and counts.
+// A render that stops between two bands and resumes from a checkpoint gives the same image and counts.
 #include <catch2/catch.hpp>
 #include <functional>
 #include <random>
@@ -13,17 +13,18 @@ namespace {
 
 struct Stopped {};
 
-/// Saves a checkpoint as bytes after every band, and stops the render after `bands` bands. Resumes from the checkpoint
-/// `from` unless it is empty.
+/// Saves a checkpoint as bytes after every band, and stops the render after `bands` bands. The render resumes from the
+/// checkpoint `resumed` unless it is empty.
 class TestCheckpoint {
   public:
-    explicit TestCheckpoint(int bands = 1 << 30, std::string from = "") : left_(bands), saved_(std::move(from)) {
-        checkpointing_.band_s = 0;  // makes bands as short as possible
+    explicit TestCheckpoint(int bands = 1 << 30, std::string resumed = "")
+        : bands_left_(bands), saved_(std::move(resumed)) {
+        checkpointing_.band_s = 0;  // so that bands are as short as possible
         checkpointing_.due = [] { return true; };
         checkpointing_.save = [this](const RingState& state, const StateSettings& settings) {
             saved_ = state_bytes(state, settings);
             ++count_;
-            if (--left_ == 0) throw Stopped();
+            if (--bands_left_ == 0) throw Stopped();
         };
         checkpointing_.resume = [this](const StateSettings& settings, const RingState& shape) {
             return saved_.empty() ? std::optional<RingState>() : read_state(saved_, settings, shape);
@@ -34,7 +35,7 @@ class TestCheckpoint {
     int count() const { return count_; }
 
   private:
-    int left_, count_ = 0;
+    int bands_left_, count_ = 0;
     std::string saved_;
     RingCheckpointing checkpointing_;
 };
@@ -92,7 +93,7 @@ TEST_CASE("a render that is stopped at any band and resumed gives the same image
             CAPTURE(stop, to_end.count());
             TestCheckpoint first(stop);
             CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.checkpointing()), Stopped);
-            TestCheckpoint second(1 + static_cast<int>(random() % 2), first.saved());  // may stop again
+            TestCheckpoint second(1 + static_cast<int>(random() % 2), first.saved());  // the render may stop again
             std::string state = first.saved();
             try {
                 RingRenderer(session, scene, settings).render({}, second.checkpointing());
@@ -124,13 +125,13 @@ TEST_CASE("one renderer renders with and without a checkpoint, in any order", "[
     CHECK(without.earlier_s == 0);
 }
 
-TEST_CASE("a checkpoint of another render is refused, naming the difference", "[ring][checkpoint]") {
+TEST_CASE("a checkpoint of another render is refused with a message that names the difference", "[ring][checkpoint]") {
     Session session(choose_device(""));
     const Scene scene = project_scene("planes");
     const RingSettings settings = settings_for(AntialiasMethod::kNone, 1 << 22);
     TestCheckpoint first(2);
     CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.checkpointing()), Stopped);
-    const auto refused = [&](const Scene& other, const RingSettings& changed, const char* why) {
+    const auto check_refused = [&](const Scene& other, const RingSettings& changed, const char* why) {
         CAPTURE(why);
         TestCheckpoint second(1 << 30, first.saved());
         RingRenderer renderer(session, other, changed);
@@ -138,25 +139,27 @@ TEST_CASE("a checkpoint of another render is refused, naming the difference", "[
     };
     Scene moved = scene;
     moved.view.from.x += 1e-3;
-    refused(moved, settings, "was rendered with another scene, camera or light");
-    const auto differs = [&](const char* why, const auto& change) {
+    check_refused(moved, settings, "was rendered with another scene, camera or light");
+    const auto check_setting = [&](const char* why, const auto& change) {
         RingSettings changed = settings;
         change(changed);
-        refused(scene, changed, why);
+        check_refused(scene, changed, why);
     };
-    differs("was rendered with --bounces 3, not 2", [](RingSettings& s) { s.bounces = 2; });
-    differs("was rendered with --cost or --mapping dynamic", [](RingSettings& s) { s.record_costs = false; });
-    differs("was rendered with --format fp32, not e8m21", [](RingSettings& s) { s.format = parse_format("e8m21"); });
-    differs("was rendered with --group 1, not 2", [](RingSettings& s) { s.kernels.group_size = 2; });
-    differs("was rendered with --accel none, not bvh", [](RingSettings& s) { s.accel.kind = AccelKind::kBvh; });
-    differs("was rendered with --sampling centres, not corners",
-            [](RingSettings& s) { s.sampling = Sampling::kCorners; });
-    differs("was rendered with --threshold ", [](RingSettings& s) { s.antialias.threshold *= 2; });
-    refused(scene, settings_for(AntialiasMethod::kFilter, 1 << 22), "was rendered with --antialias none, not filter");
-    refused(scene, settings_for(AntialiasMethod::kNone, 100), "was rendered with a device window of ");
+    check_setting("was rendered with --bounces 3, not 2", [](RingSettings& s) { s.bounces = 2; });
+    check_setting("was rendered with --cost or --mapping dynamic", [](RingSettings& s) { s.record_costs = false; });
+    check_setting("was rendered with --format fp32, not e8m21",
+                  [](RingSettings& s) { s.format = parse_format("e8m21"); });
+    check_setting("was rendered with --group 1, not 2", [](RingSettings& s) { s.kernels.group_size = 2; });
+    check_setting("was rendered with --accel none, not bvh", [](RingSettings& s) { s.accel.kind = AccelKind::kBvh; });
+    check_setting("was rendered with --sampling centres, not corners",
+                  [](RingSettings& s) { s.sampling = Sampling::kCorners; });
+    check_setting("was rendered with --threshold ", [](RingSettings& s) { s.antialias.threshold *= 2; });
+    check_refused(scene, settings_for(AntialiasMethod::kFilter, 1 << 22),
+                  "was rendered with --antialias none, not filter");
+    check_refused(scene, settings_for(AntialiasMethod::kNone, 100), "was rendered with a device window of ");
 }
 
-TEST_CASE("a checkpoint with the right hash but other vector sizes than the render's is refused",
+TEST_CASE("a checkpoint with a valid hash is refused if its vector sizes are not those of the render",
           "[ring][checkpoint]") {
     Session session(choose_device(""));
     const Scene scene = project_scene("planes");
@@ -164,13 +167,13 @@ TEST_CASE("a checkpoint with the right hash but other vector sizes than the rend
         CAPTURE(antialias_name(method));
         const RingSettings settings = settings_for(method, 1 << 22);
         RingState saved;
-        StateSettings of;
+        StateSettings saved_settings;
         RingCheckpointing checkpointing;
         checkpointing.band_s = 0;
         checkpointing.due = [] { return true; };
-        checkpointing.save = [&](const RingState& state, const StateSettings& its) {
+        checkpointing.save = [&](const RingState& state, const StateSettings& state_settings) {
             saved = state;
-            of = its;
+            saved_settings = state_settings;
             throw Stopped();
         };
         RingRenderer renderer(session, scene, settings);
@@ -187,24 +190,24 @@ TEST_CASE("a checkpoint with the right hash but other vector sizes than the rend
             {"more events", [](RingState& s) { s.passes[0].events.resize(2 * s.passes[0].events.size()); }},
             {"no costs", [](RingState& s) { s.passes[0].costs.clear(); }},
             {"other costs of all", [](RingState& s) { s.all_costs.resize(s.all_costs.size() + 1); }}};
-        for (const auto& [what, damage] : damages) {
-            CAPTURE(what);
+        for (const auto& [name, damage] : damages) {
+            CAPTURE(name);
             RingState damaged = saved;
             damage(damaged);
-            TestCheckpoint last(1 << 30, state_bytes(damaged, of));
+            TestCheckpoint last(1 << 30, state_bytes(damaged, saved_settings));
             CHECK_THROWS_WITH(renderer.render({}, last.checkpointing()), "damaged");
         }
     }
 }
 
-TEST_CASE("a checkpoint with damage anywhere is refused", "[ring][checkpoint]") {
+TEST_CASE("a checkpoint with a changed byte or a missing end is refused", "[ring][checkpoint]") {
     const std::uint32_t seed = 21;
     CAPTURE(seed);
     std::mt19937 random(seed);
     RingState state;
     state.window = 5;
     state.next = 7;
-    state.share = 0.25;
+    state.fraction = 0.25;
     state.image = {1, 2, 3};
     state.pixels = {4};
     state.passes.resize(1);

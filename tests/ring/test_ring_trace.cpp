@@ -1,4 +1,4 @@
-// Trace of the modelled ring machine: its times are those of the time model, and its work is the counted work.
+// Trace of the modelled ring machine: the times are those of the time model, and the work is the counted work.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -56,7 +56,7 @@ std::uint64_t rotations_of(const std::vector<TraceSchema::Slice>& slices) {
         std::count_if(slices.begin(), slices.end(), [](const auto& s) { return s.name == "rotation"; }));
 }
 
-// The number of exchange slices with a single rotation, for which the trace has no inner slices.
+// Returns the number of exchange slices with one rotation. For such a slice the trace has no inner slices.
 std::uint64_t single_rotations(const Document& trace) {
     std::uint64_t singles = 0;
     for (const Document& e : trace["traceEvents"])
@@ -66,7 +66,7 @@ std::uint64_t single_rotations(const Document& trace) {
 
 }  // namespace
 
-TEST_CASE("the traced machine ends at the modelled time, with the counted loads", "[ring]") {
+TEST_CASE("the trace of the machine ends at the modelled time and has the counted loads", "[ring]") {
     SplitMix random(1);
     const std::optional<MappingRule> mappings[] = {
         {}, column_mapping(), rows_mapping(), blocks_mapping(), grid_mapping(4, 6), tiles_mapping(4, 4)};
@@ -117,22 +117,22 @@ TEST_CASE("the trace has bus transfers instead of rotations, and ends at the mod
         }
 }
 
-TEST_CASE("the counter of live rays decreases from all PEs to none", "[ring]") {
+TEST_CASE("the counter of live rays decreases from the number of PEs to 0", "[ring]") {
     const Rendered r = render({.width = 40, .height = 8, .pes = 40, .offset = 0, .machine = "spa", .lanes = 4});
-    double last = 41;
+    double live_rays = 41;
     std::size_t points = 0;
     const Document json = trace_of(r, 4);
     for (const Document& e : json["traceEvents"]) {
         if (e["name"] != "live rays") continue;
-        CHECK(e["args"]["rays"] <= last);
-        last = e["args"]["rays"];
+        CHECK(e["args"]["rays"] <= live_rays);
+        live_rays = e["args"]["rays"];
         ++points;
     }
-    CHECK(last == 0);
+    CHECK(live_rays == 0);
     CHECK(points == 41);
 }
 
-TEST_CASE("the trace omits a machine without rates or tracks, and gives the reason", "[ring]") {
+TEST_CASE("the trace omits a machine without rates or tracks, and contains the reason", "[ring]") {
     Rendered r = render({.width = 8, .height = 4, .pes = 8, .offset = 2, .machine = "spa", .lanes = 4});
     CHECK(trace_of(r, 0)["otherData"]["machine"].get<std::string>().starts_with("left out"));
     CHECK(trace_of(r, 3)["otherData"]["machine"]["pes"] == 8);

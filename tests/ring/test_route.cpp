@@ -22,7 +22,7 @@ namespace {
 
 using Distances = std::vector<std::uint32_t>;
 
-/// The owner of each pixel, [row][column], from the PEs' lists of pixels.
+/// Returns the owner of each pixel, [row][column], from the PEs' lists of pixels.
 std::vector<std::uint32_t> listed_owners(const raya_mapping& m) {
     std::vector<std::uint32_t> owners(std::size_t{m.width} * m.height);
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> listed_owners(const raya_mapping& m) {
     return owners;
 }
 
-/// The distances according to the definition in route.hpp, in signed numbers.
+/// Returns the distances according to the definition in route.hpp, computed with signed numbers.
 Distances defined_distances(const raya_mapping& m, raya_u32 side) {
     const std::vector<std::uint32_t> owners = listed_owners(m);
     const std::int64_t right = side == RAYA_LEFT ? -1 : side == RAYA_RIGHT ? 1 : 0;
@@ -46,8 +46,8 @@ Distances defined_distances(const raya_mapping& m, raya_u32 side) {
         for (std::int64_t x = 0; x < width; ++x) {
             const std::int64_t row = j + down, column = x + right;
             if (row < 0 || row >= height || column < 0 || column >= width) continue;
-            const std::int64_t pe = owners[j * width + x], other = owners[row * width + column];
-            found.insert(static_cast<std::uint32_t>((other - pe + pes) % pes));
+            const std::int64_t pe = owners[j * width + x], neighbour_pe = owners[row * width + column];
+            found.insert(static_cast<std::uint32_t>((neighbour_pe - pe + pes) % pes));
         }
     return {found.begin(), found.end()};
 }
@@ -57,7 +57,7 @@ std::uint64_t route_rotations(const std::vector<Leg>& route) {
                            [](std::uint64_t sum, const Leg& leg) { return sum + leg.rotations(); });
 }
 
-/// The distances at which a route stops, in ascending order, with repetitions.
+/// Returns the distances at which a route stops, in ascending order, with repetitions.
 Distances stops_of(const std::vector<Leg>& route, std::uint32_t pes) {
     Distances stops;
     for (const Leg& leg : route)
@@ -67,8 +67,8 @@ Distances stops_of(const std::vector<Leg>& route, std::uint32_t pes) {
     return stops;
 }
 
-/// Returns true if a route has at most one leg down, followed by at most one leg up. Legs must not be empty; their
-/// stops must ascend and lie within one round of the ring.
+/// Returns true if a route has at most one leg down, followed by at most one leg up, and if no leg is empty and the
+/// stops of each leg ascend and lie within one round of the ring.
 bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
     if (route.size() > 2) return false;
     if (route.size() == 2 && (route[0].direction != RingDirection::kDown || route[1].direction != RingDirection::kUp))
@@ -79,9 +79,9 @@ bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
     });
 }
 
-/// The minimum number of rotations that visit all distances in `wanted` (bit d: distance d). A rotation in either
-/// direction costs 1; a restart from the PEs' own blocks costs 0. Breadth-first search over the states (distance,
-/// visited distances).
+/// Returns the minimum number of rotations that visit all distances in `wanted` (bit d: distance d). A rotation in
+/// either direction costs 1, a restart from the PEs' own blocks 0. The function searches the states (distance, visited
+/// distances) breadth first.
 int min_rotations(std::uint32_t pes, std::uint32_t wanted) {
     constexpr int kFar = std::numeric_limits<int>::max();
     const std::uint32_t all = 1u << pes;
@@ -105,7 +105,8 @@ int min_rotations(std::uint32_t pes, std::uint32_t wanted) {
     return kFar;
 }
 
-/// The number of rotations that go round the ring except across the widest gap between adjacent distances, 0 included.
+/// Returns the number of rotations that go round the ring except across the widest gap between adjacent distances,
+/// including 0.
 std::uint32_t rotations_round_widest_gap(std::uint32_t pes, Distances stops) {
     stops.push_back(0);
     std::sort(stops.begin(), stops.end());
@@ -134,7 +135,7 @@ TEST_CASE("neighbour distances agree with the owners of all neighbouring pixels"
     }
 }
 
-TEST_CASE("if a PE owns whole columns, each side has one distance, the paper's", "[ring][route]") {
+TEST_CASE("if a PE owns whole columns, each side has one distance, that in the paper", "[ring][route]") {
     constexpr std::uint64_t kSeed = 6;
     SplitMix random(kSeed);
     for (int i = 0; i < 300; ++i) {
@@ -163,7 +164,7 @@ TEST_CASE("routes have the minimum number of rotations: every set of distances o
             CAPTURE(pes, distances, route_rotations(route), min_rotations(pes, wanted), stops_of(route, pes));
             CHECK(good);
         }
-    CHECK(min_rotations(9, 0b000101001) == 5);  // checks the reference: 5 rotations down reach 3 and 5, 6 up
+    CHECK(min_rotations(9, 0b000101001) == 5);  // checks min_rotations(): 5 rotations down reach 3 and 5, but 6 up
     CHECK(min_rotations(9, 0b100000010) == 2);  // 1 and 8 are one rotation away, in opposite directions
 }
 
@@ -194,32 +195,32 @@ TEST_CASE("if a PE owns whole columns, four sides take 2 (min(p, P - p) + 1) rot
             const raya_mapping m{pes, 20, pes, p, RAYA_FOLD_CYCLIC};
             const std::uint64_t rotations = 2 * (std::min(p, pes - p) + 1);
             CHECK(exchange_rotations(m, 20, 20) == rotations);
-            CHECK(exchange_rotations(m, 20, 10) == 2 * rotations);  // once per band
-            CHECK(exchange_rotations(m, 20, 7) == 3 * rotations);   // the last band is shorter
+            CHECK(exchange_rotations(m, 20, 10) == 2 * rotations);  // the rotations are repeated for each of two bands
+            CHECK(exchange_rotations(m, 20, 7) == 3 * rotations);   // three bands, of which the last is shorter
         }
     CHECK(exchange_rotations({6, 4, 1, 3, RAYA_FOLD_BLOCK}, 24, 5) == 0);  // one PE owns all neighbours
 }
 
-TEST_CASE("on the bus each PE takes one transfer per distant offset, or one broadcast", "[ring][route]") {
+TEST_CASE("on the bus each PE needs one transfer per distance other than 0, or one broadcast", "[ring][route]") {
     constexpr std::uint64_t kSeed = 8;
     SplitMix random(kSeed);
     for (int i = 0; i < 300; ++i) {
         const raya_mapping m = any_mapping(random, 14);
         CAPTURE(kSeed, i, m.width, m.height, m.pes, mapping_text(m), m.kind);
-        std::uint64_t distant = 0, sides = 0;
+        std::uint64_t distances = 0, sides = 0;
         for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
             Distances d = defined_distances(m, side);
             std::erase(d, 0);
-            distant += d.size();
+            distances += d.size();
             sides += !d.empty();
         }
         for (const bool together : {false, true}) {
-            CHECK(sum_of(exchange_moves(m, ExchangeMethod::kBus, together)) == m.pes * distant);
+            CHECK(sum_of(exchange_moves(m, ExchangeMethod::kBus, together)) == m.pes * distances);
             const std::uint64_t rounds = together ? sides > 0 : sides;
             CHECK(sum_of(exchange_moves(m, ExchangeMethod::kBroadcast, together)) == m.pes * rounds);
         }
     }
-    // The paper's array: 4 offsets of 256 PEs.
+    // The paper's array: 256 PEs with 4 distances each.
     const raya_mapping paper{256, 256, 256, 16, RAYA_FOLD_CYCLIC};
     CHECK(exchange_moves(paper, ExchangeMethod::kRing, false) == MovesOfSides{1, 1, 16, 16});
     CHECK(exchange_moves(paper, ExchangeMethod::kBus, false) == MovesOfSides{256, 256, 256, 256});

@@ -1,5 +1,5 @@
-// Scenes scaled to other units: scaling by a power of two changes no bit of the image, scaling by a power of ten only
-// the rounding.
+// Scenes scaled to other units: scaling by a power of two changes no bit of the image; scaling by a power of ten
+// changes only the rounding.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -21,15 +21,15 @@ RingCase in_format(const std::string& format) {
     return c;
 }
 
-/// One of the project's scenes without its planes, because their horizon depends on the format's range and not on the
-/// scene.
+/// Returns one of the project's scenes without the scene's planes, because the horizon of planes depends on the
+/// format's range and not on the scene.
 Scene without_planes(const std::string& name) {
     Scene scene = project_scene(name);
     scene.planes.clear();
     return scene;
 }
 
-/// The mean absolute difference of all colour values, which are clamped to 0..1.
+/// Returns the mean absolute difference of all colour values, which are first clamped to 0..1.
 double mean_difference(const Image& a, const Image& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.rgb.size(); ++i)
@@ -40,18 +40,18 @@ double mean_difference(const Image& a, const Image& b) {
 }  // namespace
 
 // The images are equal if no number comes near the format's limits. In e5mY, whose smallest number is 2^-14, some
-// numbers always do.
+// numbers always come near a limit.
 TEST_CASE("a scene scaled by a power of two gives the same bits and counts", "[ring][scales]") {
     for (const char* format : quick(2, {"spa22", "fp32", "e8m7t", "e7m12", "e6m10"}))
         for (const char* name : quick(2, {"mirrors", "cones", "polygons", "centre", "glass", "spheres"})) {
             const Scene scene = without_planes(name);
-            const RingResult as_is = render_scene(scene, in_format(format));
-            CHECK(as_is.all.events[RAYA_PRIMARY_HITS] > 100);
+            const RingResult unscaled = render_scene(scene, in_format(format));
+            CHECK(unscaled.all.events[RAYA_PRIMARY_HITS] > 100);
             for (const int k : {14, -17, 40, -40, 80, -80}) {
                 CAPTURE(format, name, k);
                 const RingResult scaled = render_scene(scaled_scene(scene, std::ldexp(1, k)), in_format(format));
-                CHECK(pixel_hash(scaled.image) == pixel_hash(as_is.image));
-                CHECK(scaled.all.events == as_is.all.events);
+                CHECK(pixel_hash(scaled.image) == pixel_hash(unscaled.image));
+                CHECK(scaled.all.events == unscaled.all.events);
             }
         }
 }
@@ -62,31 +62,30 @@ TEST_CASE("a random scene scaled by a power of two gives the same bits, with and
         scene.planes.clear();
         const int k = (seed % 2 == 0 ? 1 : -1) * static_cast<int>(14 + seed % 10);
         CAPTURE(seed, k);
-        const RingResult as_is = render_scene(scene, in_format("spa22"));
+        const RingResult unscaled = render_scene(scene, in_format("spa22"));
         RingSettings settings = settings_of(in_format("spa22"));
         settings.accel.kind = AccelKind::kGrid;
         Session session(choose_device(""));
-        const Scene other = scaled_scene(scene, std::ldexp(1, k));
-        CHECK(pixel_hash(render_scene(other, in_format("spa22")).image) == pixel_hash(as_is.image));
-        CHECK(pixel_hash(RingRenderer(session, other, settings).render().image) == pixel_hash(as_is.image));
+        const Scene scaled = scaled_scene(scene, std::ldexp(1, k));
+        CHECK(pixel_hash(render_scene(scaled, in_format("spa22")).image) == pixel_hash(unscaled.image));
+        CHECK(pixel_hash(RingRenderer(session, scaled, settings).render().image) == pixel_hash(unscaled.image));
     }
 }
 
 // A plane ends at the maximum hit distance, which is 256 times the scene's largest length after scaling.
 TEST_CASE("scaling a scene into the format moves only the horizon of its planes", "[ring][scales]") {
     const Scene scene = project_scene("spheres");
-    const RingResult as_is = render_scene(scene, in_format("spa22"));
+    const RingResult unscaled = render_scene(scene, in_format("spa22"));
     const RingResult scaled = render_scene(scaled_scene(scene, 0x1p14), in_format("spa22"));
     CHECK(scaled.scale.exponent != 0);
-    const double difference = mean_difference(as_is.image, scaled.image);
+    const double difference = mean_difference(unscaled.image, scaled.image);
     INFO(difference);
     CHECK(difference < 0.01);
-    CHECK(scaled.all.events[RAYA_PRIMARY_HITS] > as_is.all.events[RAYA_PRIMARY_HITS] * 95 / 100);
+    CHECK(scaled.all.events[RAYA_PRIMARY_HITS] > unscaled.all.events[RAYA_PRIMARY_HITS] * 95 / 100);
 }
 
-TEST_CASE("a scene scaled by a power of ten gives the same image to rounding", "[ring][scales]") {
-    // The different rounding of lengths moves edges by a fraction of a pixel, and rays between mirrors by more than
-    // that.
+TEST_CASE("a scene scaled by a power of ten gives the same image except for rounding", "[ring][scales]") {
+    // The different rounding of lengths moves edges by a fraction of a pixel, and rays between mirrors by more.
     for (const auto& [format, max_difference] : {std::pair{"fp32", 2e-6}, {"spa22", 2e-4}, {"e5m10", 5e-3}})
         for (const char* name : quick(1, {"mirrors", "polygons", "cones", "centre"}))
             for (const int k : {-5, 4, -12, 12}) {

@@ -1,5 +1,5 @@
-// Loads computed from cost images, compared with plain sums, with an event-by-event simulation and with theoretical
-// bounds.
+// Loads computed from cost images, compared with sums over the pixels, with an event-by-event simulation and with
+// theoretical bounds.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace {
 
 using Cycles = std::vector<std::uint64_t>;
 
-/// A random cost image of one of four kinds: zero; few distinct values, so that many PEs become free at the same time;
-/// even; or a few pixels that cost far more than all others.
+/// Returns a random cost image of one of four kinds: all costs are zero; there are few distinct costs, so that many PEs
+/// become free at the same time; costs are nearly equal; or a few pixels cost far more than all others.
 CostImage random_image(SplitMix& random, std::uint32_t width, std::uint32_t height) {
     CostImage image{width, height, {}};
     const std::uint64_t kind = random.next() % 8;
@@ -35,18 +35,18 @@ DynamicPlan random_plan(SplitMix& random, std::uint32_t pixels) {
     DynamicPlan plan;
     plan.chunk = random.next() % 4 == 0 ? 1 : 1 + random_below(random, random.next() % 2 ? 8 : pixels + 2);
     plan.overhead = random.next() % 3 * random_below(random, 500);
-    const double shares[] = {0, 0, 0.25, 0.5, 0.9, 1, random.uniform(0, 1)};
-    plan.static_share = shares[random_below(random, 7)];
+    const double fractions[] = {0, 0, 0.25, 0.5, 0.9, 1, random.uniform(0, 1)};
+    plan.static_fraction = fractions[random_below(random, 7)];
     return plan;
 }
 
 struct Simulated {
-    Cycles finished;
-    std::uint64_t requests = 0;
+    Cycles finished;             // [PE]: when the PE finishes its last pixel
+    std::uint64_t requests = 0;  // number of chunks that PEs requested
 };
 
-/// Simulates a dynamic schedule event by event: finds each PE's pixels by the owners of all pixels, and the next free
-/// PE by a search over all PEs.
+/// Simulates a dynamic schedule event by event. The function finds each PE's pixels by the owners of all pixels, and
+/// the next free PE by a search over all PEs.
 Simulated simulated(const CostImage& image, const raya_mapping& m, const DynamicPlan& plan) {
     std::vector<std::vector<std::uint64_t>> shares(m.pes);  // [PE]: pixel numbers
     for (std::uint32_t j = 0; j < image.height; ++j)
@@ -55,18 +55,19 @@ Simulated simulated(const CostImage& image, const raya_mapping& m, const Dynamic
     std::deque<std::uint64_t> queue(image.cycles.size());
     std::iota(queue.begin(), queue.end(), 0);
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
-        const raya_share own = raya_share_of(m, pe);
+        const raya_share share = raya_share_of(m, pe);
         run.finished.push_back(0);
         for (const std::uint64_t at : shares[pe]) {
             const raya_pixel pixel{static_cast<std::uint32_t>(at) / m.width, static_cast<std::uint32_t>(at) % m.width};
-            const double end = plan.static_share * static_cast<double>(shares[pe].size());
-            if (raya_index_of(m, own, pixel) + 1 > end) continue;
+            const double end = plan.static_fraction * static_cast<double>(shares[pe].size());
+            if (raya_index_of(m, share, pixel) + 1 > end) continue;
             run.finished[pe] += image.cycles[at];
             queue.erase(std::find(queue.begin(), queue.end(), at));
         }
     }
     while (!queue.empty()) {
-        const auto first_free = std::min_element(run.finished.begin(), run.finished.end());  // the lowest of equal PEs
+        const auto first_free = std::min_element(
+            run.finished.begin(), run.finished.end());  // of PEs that become free at the same time, the lowest
         *first_free += plan.overhead;
         ++run.requests;
         for (std::uint32_t i = 0; i < plan.chunk && !queue.empty(); ++i, queue.pop_front())
@@ -79,7 +80,7 @@ std::uint64_t sum_of(const Cycles& cycles) { return std::accumulate(cycles.begin
 
 }  // namespace
 
-TEST_CASE("a static load is the sum of its pixels' costs", "[schedule]") {
+TEST_CASE("a static load is the sum of the costs of the PE's pixels", "[schedule]") {
     CHECK(static_load({3, 2, {1, 20, 300, 4'000, 50'000, 600'000}}, {3, 2, 3, 1, RAYA_FOLD_CYCLIC}).per_pe ==
           Cycles{1 + 50'000, 20 + 600'000, 300 + 4'000});  // PE i owns (0, i) and (1, i + 1)
     constexpr std::uint64_t kSeed = 1;
@@ -91,10 +92,10 @@ TEST_CASE("a static load is the sum of its pixels' costs", "[schedule]") {
         const CostImage image = random_image(random, width, height);
         Cycles sums;
         for (std::uint32_t pe = 0; pe < pes; ++pe) {  // from the PE's list of pixels instead of the owners
-            const raya_share own = raya_share_of(m, pe);
+            const raya_share share = raya_share_of(m, pe);
             sums.push_back(0);
-            for (std::uint32_t k = 0; k < raya_share_size(own); ++k) {
-                const raya_pixel pixel = raya_pixel_of(m, own, k);
+            for (std::uint32_t k = 0; k < raya_share_size(share); ++k) {
+                const raya_pixel pixel = raya_pixel_of(m, share, k);
                 sums.back() += image.cycles[pixel.row * width + pixel.column];
             }
         }
@@ -142,7 +143,7 @@ TEST_CASE("dynamic and hybrid schedules agree with the simulation", "[schedule]"
         const auto [width, height, pes, offset, fold] = m;
         const CostImage image = random_image(random, width, height);
         const DynamicPlan plan = random_plan(random, width * height);
-        CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_share);
+        CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_fraction);
         const Schedule schedule = dynamic_schedule(image, m, plan);
         const Simulated run = simulated(image, m, plan);
         CHECK(schedule.load.per_pe == run.finished);
@@ -160,23 +161,24 @@ TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]"
         const CostImage image = random_image(random, width, height);
         DynamicPlan plan = random_plan(random, width * height);
         const std::uint64_t total = total_cycles(image), bound = lower_bound(image, pes);
-        CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_share, total, bound);
+        CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_fraction, total,
+                bound);
         const Schedule any = dynamic_schedule(image, m, plan);
         CHECK(sum_of(any.load.per_pe) == total + any.requests * plan.overhead);
         CHECK(makespan(any) >= bound);
         CHECK(speedup(any, image) <= any.load.speedup);
 
         plan.overhead = 0;
-        plan.static_share = 0;
-        const Schedule list = dynamic_schedule(image, m, plan);
+        plan.static_fraction = 0;
+        const Schedule list_schedule = dynamic_schedule(image, m, plan);
         std::uint64_t largest_chunk = 0;
         for (std::size_t at = 0; at < image.cycles.size(); at += plan.chunk) {
             const auto end = std::min<std::size_t>(at + plan.chunk, image.cycles.size());
             largest_chunk = std::max(largest_chunk, sum_of({&image.cycles[at], image.cycles.data() + end}));
         }
-        CHECK(list.requests == (width * height + plan.chunk - 1) / plan.chunk);
-        CHECK(pes * makespan(list) <= total + (pes - 1) * largest_chunk);
-        CHECK(speedup(list, image) == list.load.speedup);  // equal without overhead
+        CHECK(list_schedule.requests == (width * height + plan.chunk - 1) / plan.chunk);
+        CHECK(pes * makespan(list_schedule) <= total + (pes - 1) * largest_chunk);
+        CHECK(speedup(list_schedule, image) == list_schedule.load.speedup);  // equal without overhead
         plan.chunk = 1;
         CHECK(pes * makespan(dynamic_schedule(image, m, plan)) <= (2 * pes - 1) * bound);  // 2 - 1/P times the optimum
     }
@@ -191,12 +193,12 @@ TEST_CASE("extreme plans: one chunk, all static, one PE, more PEs than chunks", 
         const CostImage image = random_image(random, m.width, m.height);
         const std::uint64_t total = total_cycles(image);
         const DynamicPlan plan = random_plan(random, pixels);
-        CAPTURE(kSeed, i, m.width, m.height, m.pes, plan.chunk, plan.overhead, plan.static_share);
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, plan.chunk, plan.overhead, plan.static_fraction);
 
         const Schedule at_once = dynamic_schedule(image, m, {pixels + random_below(random, 3), plan.overhead, 0});
-        Cycles first_only(m.pes);
-        first_only[0] = total + plan.overhead;
-        CHECK(at_once.load.per_pe == first_only);
+        Cycles on_first_pe(m.pes);
+        on_first_pe[0] = total + plan.overhead;
+        CHECK(at_once.load.per_pe == on_first_pe);
         CHECK(at_once.requests == 1);
 
         const Schedule all_static = dynamic_schedule(image, m, {plan.chunk, plan.overhead, 1});
@@ -211,26 +213,26 @@ TEST_CASE("extreme plans: one chunk, all static, one PE, more PEs than chunks", 
         CHECK(static_cast<std::uint64_t>(unused) == pixels - idle.requests);
 
         m.pes = 1;
-        const Schedule alone = dynamic_schedule(image, m, plan);
-        CHECK(makespan(alone) == total + alone.requests * plan.overhead);
+        const Schedule on_one_pe = dynamic_schedule(image, m, plan);
+        CHECK(makespan(on_one_pe) == total + on_one_pe.requests * plan.overhead);
     }
 }
 
 TEST_CASE("speed-up counts only the pixels' work, and is defined if all costs are 0", "[schedule]") {
     const CostImage even{4, 1, {30, 30, 30, 30}};
     const raya_mapping two{4, 1, 2, 0, RAYA_FOLD_CYCLIC};
-    const Schedule asked = dynamic_schedule(even, two, {1, 10, 0});
-    CHECK(makespan(asked) == 80);
-    CHECK(speedup(asked, even) == 1.5);  // 120 / 80
-    CHECK(asked.load.speedup == 2);      // 160 / 80: both are always busy
-    const CostImage nothing{4, 1, {0, 0, 0, 0}};
-    CHECK(speedup(dynamic_schedule(nothing, two, {1, 0, 0}), nothing) == 2);
-    CHECK(speedup(dynamic_schedule(nothing, two, {1, 10, 0}), nothing) == 0);
-    CHECK(imbalance_of_offsets(nothing, 2, RAYA_FOLD_CYCLIC, {0, 1}) == std::vector<double>{0, 0});
+    const Schedule with_overhead = dynamic_schedule(even, two, {1, 10, 0});
+    CHECK(makespan(with_overhead) == 80);
+    CHECK(speedup(with_overhead, even) == 1.5);  // 120 / 80
+    CHECK(with_overhead.load.speedup == 2);      // 160 / 80: both PEs are always busy
+    const CostImage zero_costs{4, 1, {0, 0, 0, 0}};
+    CHECK(speedup(dynamic_schedule(zero_costs, two, {1, 0, 0}), zero_costs) == 2);
+    CHECK(speedup(dynamic_schedule(zero_costs, two, {1, 10, 0}), zero_costs) == 0);
+    CHECK(imbalance_of_offsets(zero_costs, 2, RAYA_FOLD_CYCLIC, {0, 1}) == std::vector<double>{0, 0});
     CHECK(lower_bound(even, 4) == 30);
     CHECK(lower_bound({3, 1, {5, 5, 5}}, 2) == 8);
     CHECK(lower_bound({3, 1, {1, 9, 1}}, 2) == 9);
-    CHECK(lower_bound(nothing, 3) == 0);
+    CHECK(lower_bound(zero_costs, 3) == 0);
 }
 
 TEST_CASE("large images: schedules contain all work on few PEs, and on as many PEs as pixels", "[schedule]") {

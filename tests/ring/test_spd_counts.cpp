@@ -1,6 +1,7 @@
-// Ray counts by kind, compared with the counts that SPD publishes for its scenes: 513 x 513 rays through pixel corners,
-// tree depth 5, where the eye ray has depth 1. SPD says: "Implementations should agree within about 10 %". The bounds
-// here are tighter: the range of two published implementations, extended by 1 %.
+// Ray counts by kind, compared with the counts that SPD publishes for its scenes. The images have 513 x 513 rays
+// through pixel corners and trees of depth 5, where the eye ray has depth 1. SPD says: "Implementations should agree
+// within about 10 %". The bounds in these tests are tighter: the range of two published implementations, extended by 1
+// %.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -25,7 +26,7 @@ void check_between(std::uint64_t value, double low, double high) {
     CHECK(double(value) <= high);
 }
 
-// The path of an output file of the SPD programs. The file may be missing.
+// Returns the path of an output file of the SPD programs. The file may be missing.
 std::filesystem::path spd_file(const std::string& name) {
     const char* folder = std::getenv("RAYA_SPD_DIR");
     return std::filesystem::path(folder ? folder : RAYA_SOURCE_DIR "/../shared/spd") / name;
@@ -33,7 +34,7 @@ std::filesystem::path spd_file(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("balls gives SPD's ray counts", "[ring]") {
+TEST_CASE("the scene balls gives the ray counts that SPD publishes", "[ring]") {
     const EventCounts e = count_rays(generate_balls(4));
     CHECK(e[RAYA_PRIMARY] == 513 * 513);
     CHECK(e[RAYA_PRIMARY_HITS] == 263169);
@@ -45,9 +46,9 @@ TEST_CASE("balls gives SPD's ray counts", "[ring]") {
     CHECK(e[RAYA_POLYGON_TESTS] == rays);
 }
 
-TEST_CASE("SPD's own files, if present, give SPD's ray counts", "[.][long][ring]") {
+TEST_CASE("files written by the SPD programs, if present, give the ray counts that SPD publishes", "[.][long][ring]") {
     if (!std::filesystem::exists(spd_file("tetra.nff"))) {
-        WARN("no SPD files: set RAYA_SPD_DIR to a folder with tetra.nff and mount.nff");
+        WARN("the SPD files are missing: set RAYA_SPD_DIR to a folder with tetra.nff and mount.nff");
         return;
     }
     const EventCounts tetra = count_rays(read_nff(spd_file("tetra.nff")));

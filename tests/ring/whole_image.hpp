@@ -12,10 +12,10 @@
 
 namespace raya::whole_image {
 
-/// Arithmetic of a number format: each operation is computed in double and then rounded to the format. The double
-/// rounding does not change the result of an addition, subtraction or division of p-bit numbers if the wider format has
-/// at least 2 p + 2 bits (S. Figueroa, "When is double rounding innocuous?", 1995); here 53 >= 2 * 24 + 2. This does
-/// not hold for formats that truncate.
+/// Arithmetic of a number format: each operation is computed in double and then rounded to the format. Rounding twice
+/// does not change the result of an addition, subtraction or division of p-bit numbers if the wider format has at least
+/// 2 p + 2 bits (S. Figueroa, "When is double rounding innocuous?", 1995); here 53 >= 2 * 24 + 2. The theorem does not
+/// hold for formats that truncate, so tests must not use them.
 class Arithmetic {
   public:
     explicit Arithmetic(const NumberFormat& format) : format_(format) {}
@@ -39,7 +39,7 @@ inline bool inside(const Image& image, int row, int column) {
     return row >= 0 && row < image.height && column >= 0 && column < image.width;
 }
 
-/// An image whose values are `value(row, column, colour)`.
+/// Returns an image whose values are `value(row, column, colour)`.
 template <class Value>
 Image make_image(int width, int height, Value&& value) {
     Image image{width, height, {}};
@@ -49,76 +49,77 @@ Image make_image(int width, int height, Value&& value) {
     return image;
 }
 
-/// Adds to each pixel the pixel at offset (-down, -right), then the pixel at offset (down, right). Pixels outside the
-/// image are omitted.
-inline Image line_sums(const Image& image, int down, int right, const Arithmetic& in) {
+/// Returns the image in which the pixel at offset (-down, -right) and then the pixel at offset (down, right) are added
+/// to each pixel. Pixels outside the image are omitted.
+inline Image line_sums(const Image& image, int down, int right, const Arithmetic& arithmetic) {
     return make_image(image.width, image.height, [&](int row, int column, int colour) {
         float sum = value_at(image, row, column, colour);
         for (const int sign : {-1, 1})
             if (inside(image, row + sign * down, column + sign * right))
-                sum = in.add(sum, value_at(image, row + sign * down, column + sign * right, colour));
+                sum = arithmetic.add(sum, value_at(image, row + sign * down, column + sign * right, colour));
         return sum;
     });
 }
 
-/// The mean of each pixel's 3 x 3 neighbourhood within the image: sums along rows, then along columns.
+/// Returns the image of the means of each pixel's 3 x 3 neighbourhood within the image, summed along rows, then along
+/// columns.
 inline Image filtered(const Image& image, const NumberFormat& format) {
-    const Arithmetic in(format);
-    const Image sums = line_sums(line_sums(image, 0, 1, in), 1, 0, in);
+    const Arithmetic arithmetic(format);
+    const Image sums = line_sums(line_sums(image, 0, 1, arithmetic), 1, 0, arithmetic);
     return make_image(image.width, image.height, [&](int row, int column, int colour) {
         int pixels = 0;
         for (int down = -1; down <= 1; ++down)
             for (int right = -1; right <= 1; ++right) pixels += inside(image, row + down, column + right);
-        return in.divide(value_at(sums, row, column, colour), pixels);
+        return arithmetic.divide(value_at(sums, row, column, colour), pixels);
     });
 }
 
-/// Returns true if a colour component of the two pixels, clamped to 0..1, differs by at least `threshold`, which must
-/// be a number of the format.
+/// Returns true if a colour component, clamped to 0..1, differs between the two pixels by at least `threshold`, which
+/// must be a number of the format.
 inline bool differ(const Image& image, int row, int column, int other_row, int other_column, float threshold,
-                   const Arithmetic& in) {
+                   const Arithmetic& arithmetic) {
     const auto clamped = [&](int j, int x, int colour) {
         return std::clamp(value_at(image, j, x, colour), 0.0f, 1.0f);
     };
     bool found = false;
     for (int colour = 0; colour < 3; ++colour) {
-        const float own = clamped(row, column, colour), other = clamped(other_row, other_column, colour);
-        found = found || std::abs(in.subtract(own, other)) >= threshold;
+        const float value = clamped(row, column, colour), other_value = clamped(other_row, other_column, colour);
+        found = found || std::abs(arithmetic.subtract(value, other_value)) >= threshold;
     }
     return found;
 }
 
-/// A mask: 1 for pixels that differ() from the left, right, upper or lower neighbour, 0 for the others.
+/// Returns a mask: 1 for pixels that differ() from the left, right, upper or lower neighbour, 0 for the others.
 inline Image contrast_mask(const Image& image, double threshold, const NumberFormat& format) {
-    const Arithmetic in(format);
-    const float rounded = in.round(threshold);
+    const Arithmetic arithmetic(format);
+    const float rounded = arithmetic.round(threshold);
     return make_image(image.width, image.height, [&](int row, int column, int) {
         constexpr std::array<std::array<int, 2>, 4> kSides = {{{0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
         return float(std::any_of(kSides.begin(), kSides.end(), [&](const auto& side) {
             const int other_row = row + side[0], other_column = column + side[1];
             return inside(image, other_row, other_column) &&
-                   differ(image, row, column, other_row, other_column, rounded, in);
+                   differ(image, row, column, other_row, other_column, rounded, arithmetic);
         }));
     });
 }
 
-/// The mean of a pixel's own value and its four additional sample points.
+/// Returns the mean of the values of a pixel's own sample point and of its four additional points, added in this order.
 inline float mean_of_five(const std::array<float, 5>& values, const NumberFormat& format) {
-    const Arithmetic in(format);
+    const Arithmetic arithmetic(format);
     float sum = values[0];
-    for (std::size_t i = 1; i < values.size(); ++i) sum = in.add(sum, values[i]);
-    return in.divide(sum, 5);
+    for (std::size_t i = 1; i < values.size(); ++i) sum = arithmetic.add(sum, values[i]);
+    return arithmetic.divide(sum, 5);
 }
 
-/// The number of colour values whose bits differ. If the images' sizes differ, the number of values of the larger
-/// image.
+/// Returns the number of colour values whose bits differ. If the images' sizes differ, returns the number of values of
+/// the larger image.
 inline std::size_t count_differences(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height || a.rgb.size() != b.rgb.size())
         return std::max(a.rgb.size(), b.rgb.size());
-    std::size_t unlike = 0;
+    std::size_t differences = 0;
     for (std::size_t i = 0; i < a.rgb.size(); ++i)
-        unlike += std::bit_cast<std::uint32_t>(a.rgb[i]) != std::bit_cast<std::uint32_t>(b.rgb[i]);
-    return unlike;
+        differences += std::bit_cast<std::uint32_t>(a.rgb[i]) != std::bit_cast<std::uint32_t>(b.rgb[i]);
+    return differences;
 }
 
 }  // namespace raya::whole_image

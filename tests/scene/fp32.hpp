@@ -4,8 +4,8 @@
 
 namespace raya {
 
-/// Rounds to fp32. The variable is volatile because gcc 12.2 at -O2 drops the rounding of adjacent values: its
-/// vectoriser removes the conversion to float and back.
+/// Rounds to fp32. The variable is volatile because gcc 12.2 at -O2 vectorises adjacent calls and then removes
+/// the conversion to float and back.
 inline double fp32(double value) {
     const volatile float rounded = static_cast<float>(value);
     return rounded;

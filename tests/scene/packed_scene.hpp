@@ -11,6 +11,7 @@
 
 namespace raya {
 
+/// The words of a job, with a count of reads for each word. `at`: index of the first word to read.
 class PackedScene {
   public:
     explicit PackedScene(std::vector<std::uint32_t> words)
@@ -31,9 +32,10 @@ class PackedScene {
         return {x, y, real(at + 2)};
     }
 
-    /// unread(): the number of words that were never read; shared(): of words that were read more than once.
-    std::size_t unread() const { return static_cast<std::size_t>(std::count(reads_.begin(), reads_.end(), 0)); }
-    std::size_t shared() const {
+    /// Returns the number of words that were never read.
+    std::size_t unread_words() const { return static_cast<std::size_t>(std::count(reads_.begin(), reads_.end(), 0)); }
+    /// Returns the number of words that were read more than once.
+    std::size_t shared_words() const {
         return static_cast<std::size_t>(std::count_if(reads_.begin(), reads_.end(), [](int n) { return n > 1; }));
     }
 

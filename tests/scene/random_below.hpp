@@ -6,7 +6,7 @@
 
 namespace raya {
 
-/// A random integer in [0, end).
+/// Returns a random integer in [0, end).
 inline std::uint32_t random_below(SplitMix& random, std::uint64_t end) {
     return static_cast<std::uint32_t>(random.next() % end);
 }

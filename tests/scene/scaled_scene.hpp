@@ -4,7 +4,8 @@
 
 namespace raya {
 
-/// Multiplies all lengths (positions, radii, checker sizes) by `factor`; colours, directions and angles do not change.
+/// Returns the scene with all lengths (positions, radii, checker sizes) multiplied by `factor`; colours, directions and
+/// angles do not change.
 inline Scene scaled_scene(Scene scene, double factor) {
     scene.view.from *= factor;
     scene.view.at *= factor;

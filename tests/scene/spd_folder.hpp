@@ -7,10 +7,11 @@
 
 namespace raya {
 
-/// The folder named by RAYA_SPD_DIR; by default ../shared/spd, relative to the source folder. Tests skip missing files.
+/// Returns the folder of SPD's scenes: RAYA_SPD_DIR, or by default ../shared/spd relative to the source folder. Tests
+/// skip files that the folder does not contain.
 inline std::filesystem::path spd_folder() {
-    const char* given = std::getenv("RAYA_SPD_DIR");
-    return given ? given : RAYA_SOURCE_DIR "/../shared/spd";
+    const char* folder = std::getenv("RAYA_SPD_DIR");
+    return folder ? folder : RAYA_SOURCE_DIR "/../shared/spd";
 }
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// The main scene has the same imbalance as the paper's scene, and the figures in scenes/README.md are right.
+// The main scene (scenes/centre.nff) has the imbalance of the paper's scene, and scenes/README.md states it correctly.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>

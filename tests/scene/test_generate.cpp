@@ -41,14 +41,14 @@ double turn_of(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 /// Returns true if edges of the two outlines cross, seen from above.
-bool cross(const Polygon& one, const Polygon& other) {
+bool cross(const Polygon& first, const Polygon& second) {
     const auto ends = [](const Polygon& polygon, std::size_t i) {
         return std::pair{polygon.vertices[i], polygon.vertices[(i + 1) % polygon.vertices.size()]};
     };
-    for (std::size_t i = 0; i < one.vertices.size(); ++i)
-        for (std::size_t j = 0; j < other.vertices.size(); ++j) {
-            const auto [a, b] = ends(one, i);
-            const auto [c, d] = ends(other, j);
+    for (std::size_t i = 0; i < first.vertices.size(); ++i)
+        for (std::size_t j = 0; j < second.vertices.size(); ++j) {
+            const auto [a, b] = ends(first, i);
+            const auto [c, d] = ends(second, j);
             if (turn_of(a, b, c) * turn_of(a, b, d) <= 0 && turn_of(c, d, a) * turn_of(c, d, b) <= 0) return true;
         }
     return false;
@@ -60,15 +60,15 @@ Vec3 middle_of(const Polygon& polygon) {
     return sum / static_cast<double>(polygon.vertices.size());
 }
 
-/// The index of the voxel that contains the whole sphere, or -1 if none does.
+/// Returns the index of the voxel that contains the whole sphere, or -1 if no voxel does.
 int voxel_of(const Sphere& sphere, const std::array<int, 3>& voxels) {
     int index = 0;
     for (int axis = 2; axis >= 0; --axis) {
-        const int along = voxels[static_cast<std::size_t>(axis)];
-        const double low = (sphere.centre[axis] - sphere.radius + 1) / 2 * along;
-        const double high = (sphere.centre[axis] + sphere.radius + 1) / 2 * along;
-        if (std::floor(low) != std::floor(high) || low < 0 || high > along) return -1;
-        index = index * along + static_cast<int>(low);
+        const int axis_voxels = voxels[static_cast<std::size_t>(axis)];
+        const double low = (sphere.centre[axis] - sphere.radius + 1) / 2 * axis_voxels;
+        const double high = (sphere.centre[axis] + sphere.radius + 1) / 2 * axis_voxels;
+        if (std::floor(low) != std::floor(high) || low < 0 || high > axis_voxels) return -1;
+        index = index * axis_voxels + static_cast<int>(low);
     }
     return index;
 }
@@ -89,14 +89,14 @@ TEST_CASE("balls: counts and sizes, and every sphere touches its parent", "[gene
     }
     const Scene s = generate_balls(2);
     for (std::size_t child = 0; child < 9; ++child) {
-        const Sphere& carried = s.spheres[1 + 10 * child];
-        CHECK(std::abs(gap(s.spheres[0], carried)) < 1e-8);
-        CHECK(carried.radius == Approx(0.5 / 3));
-        for (std::size_t i = 1; i <= 9; ++i) CHECK(std::abs(gap(carried, s.spheres[1 + 10 * child + i])) < 1e-8);
+        const Sphere& child_sphere = s.spheres[1 + 10 * child];
+        CHECK(std::abs(gap(s.spheres[0], child_sphere)) < 1e-8);
+        CHECK(child_sphere.radius == Approx(0.5 / 3));
+        for (std::size_t i = 1; i <= 9; ++i) CHECK(std::abs(gap(child_sphere, s.spheres[1 + 10 * child + i])) < 1e-8);
     }
 }
 
-TEST_CASE("balls: the same scene in the same order as SPD's files", "[generate]") {
+TEST_CASE("balls: the scenes of SPD's files, with their spheres in the same order", "[generate]") {
     for (const int level : {2, 4}) {
         const auto path = spd_folder() / ("balls" + std::to_string(level) + ".nff");
         if (!std::filesystem::exists(path)) {
@@ -128,14 +128,14 @@ TEST_CASE("lattice: counts, and every cylinder joins two spheres", "[generate]")
         CHECK(s.cones.size() == 3 * n * (n + 1) * (n + 1));
         CHECK(s.surfaces.size() == 4);
         const double distance = 1.0 / size;
-        std::set<std::tuple<long, long, long>> middles;  // of the cylinders, in units of half the grid distance
+        std::set<std::tuple<long, long, long>> middles;  // middles of the cylinders, in half lattice distances
         for (const Cone& c : s.cones) {
-            const Vec3 middle = (c.base + c.apex) / 2, along = c.apex - c.base;
+            const Vec3 middle = (c.base + c.apex) / 2, axis_vector = c.apex - c.base;
             const Vec3 halves = middle * 2 / distance;
             middles.insert({std::lround(halves.x), std::lround(halves.y), std::lround(halves.z)});
             const int axis = c.surface - 1;  // one surface per axis
-            CHECK(along[axis] == Approx((1 - 0.99 / 4) * distance));
-            CHECK(along.length() == Approx(along[axis]));
+            CHECK(axis_vector[axis] == Approx((1 - 0.99 / 4) * distance));
+            CHECK(axis_vector.length() == Approx(axis_vector[axis]));
             CHECK(c.base_radius == c.apex_radius);
             CHECK(std::lround(halves[axis]) % 2 == 1);
         }
@@ -147,7 +147,7 @@ TEST_CASE("lattice: counts, and every cylinder joins two spheres", "[generate]")
     }
 }
 
-TEST_CASE("lattice: the same scene in the same order as SPD's file", "[generate]") {
+TEST_CASE("lattice: the scene of SPD's file, with its objects in the same order", "[generate]") {
     const auto path = spd_folder() / "lattice.nff";
     if (!std::filesystem::exists(path)) {
         WARN("file missing, skipped: " << path);
@@ -179,7 +179,7 @@ TEST_CASE("lattice: the same scene in the same order as SPD's file", "[generate]
     CHECK(ours.surfaces == theirs.surfaces);
 }
 
-TEST_CASE("gears: as many polygons as SPD's: valid outlines of 144 vertices and quadrilaterals", "[generate]") {
+TEST_CASE("gears: wheels consist of valid outlines, and size 4 has as many polygons as SPD's gears", "[generate]") {
     for (const int size : {1, 2, 4}) {
         CAPTURE(size);
         const Scene s = generate_gears(size);
@@ -190,9 +190,9 @@ TEST_CASE("gears: as many polygons as SPD's: valid outlines of 144 vertices and 
                             [](const Polygon& p) { return p.vertices.size() == 144; }) == 2 * size * size * size);
         CHECK(s.lights.size() == 5);
         for (Polygon polygon : s.polygons) {
-            const Polygon given = polygon;
+            const Polygon original = polygon;
             REQUIRE(clean_outline(polygon).reason.empty());
-            REQUIRE(polygon == given);
+            REQUIRE(polygon == original);
         }
     }
     CHECK(generate_gears(4).polygons.size() == 9345);
@@ -210,8 +210,8 @@ TEST_CASE("gears: wheels are closed surfaces whose fronts face outwards", "[gene
             REQUIRE(edges.insert({point(corners[at]), point(corners[(at + 1) % corners.size()])}).second);
         volume += corners[0].dot(newell_normal(corners)) / 6;
     }
-    for (const auto& [from, to] : edges) REQUIRE(edges.contains({to, from}));
-    const double disc = 3.14159265 * 0.5 * 0.5 * 0.4;  // a wheel without teeth: radius 0.5
+    for (const auto& [start, end] : edges) REQUIRE(edges.contains({end, start}));
+    const double disc = 3.14159265 * 0.5 * 0.5 * 0.4;  // volume of a wheel without teeth: radius 0.5, thickness 0.4
     CHECK(volume == Approx(8 * disc).epsilon(0.05));
 }
 
@@ -219,8 +219,8 @@ TEST_CASE("gears: teeth mesh with the neighbours' gaps without touching", "[gene
     const Scene s = generate_gears(2);
     std::vector<Polygon> layer;  // the upper faces of the lower wheels
     for (std::size_t wheel = 0; wheel < 8; wheel += 2) layer.push_back(s.polygons[1 + 146 * wheel]);
-    double reach = 0;  // radius of a wheel with teeth
-    for (const Vec3& v : layer[0].vertices) reach = std::max(reach, (v - middle_of(layer[0])).length());
+    double outer_radius = 0;  // radius of a wheel, including its teeth
+    for (const Vec3& v : layer[0].vertices) outer_radius = std::max(outer_radius, (v - middle_of(layer[0])).length());
     for (std::size_t i = 0; i < layer.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) {
             CAPTURE(i, j);
@@ -230,11 +230,12 @@ TEST_CASE("gears: teeth mesh with the neighbours' gaps without touching", "[gene
             if (i + j == 3) continue;  // diagonal neighbours
             double nearest = offset.length();
             for (const Vec3& v : layer[i].vertices) nearest = std::min(nearest, (v - middle_of(layer[j])).length());
-            CHECK(nearest < 0.97 * reach);
+            CHECK(nearest < 0.97 * outer_radius);
         }
 }
 
-TEST_CASE("uniform: voxels have equal shares of whole spheres, no two of which are equal or touch", "[generate]") {
+TEST_CASE("uniform: spheres lie inside voxels, whose numbers of spheres differ by at most one, and do not touch",
+          "[generate]") {
     struct Row {
         int count;
         std::array<int, 3> voxels;
@@ -245,16 +246,16 @@ TEST_CASE("uniform: voxels have equal shares of whole spheres, no two of which a
         const Scene s = generate_uniform(row.count, row.voxels);
         REQUIRE(s.spheres.size() == static_cast<std::size_t>(row.count));
         const int voxels = row.voxels[0] * row.voxels[1] * row.voxels[2];
-        std::vector<int> held(static_cast<std::size_t>(voxels));
-        std::set<std::tuple<double, double, double>> places;
+        std::vector<int> spheres_in_voxel(static_cast<std::size_t>(voxels));
+        std::set<std::tuple<double, double, double>> centres;
         for (const Sphere& sphere : s.spheres) {
             const int voxel = voxel_of(sphere, row.voxels);
             REQUIRE(voxel >= 0);
-            ++held[static_cast<std::size_t>(voxel)];
-            places.insert({sphere.centre.x, sphere.centre.y, sphere.centre.z});
+            ++spheres_in_voxel[static_cast<std::size_t>(voxel)];
+            centres.insert({sphere.centre.x, sphere.centre.y, sphere.centre.z});
         }
-        CHECK(places.size() == s.spheres.size());
-        for (const int n : held) CHECK((n == row.count / voxels || n == (row.count + voxels - 1) / voxels));
+        CHECK(centres.size() == s.spheres.size());
+        for (const int n : spheres_in_voxel) CHECK((n == row.count / voxels || n == (row.count + voxels - 1) / voxels));
         int touching = 0;
         for (std::size_t i = 0; i < s.spheres.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) touching += gap(s.spheres[i], s.spheres[j]) <= 0;
@@ -284,7 +285,7 @@ TEST_CASE("random: centres lie in the cube, the volume is moderate, and the seed
     CHECK(generate_random(1000, 7).surfaces.size() == 12);
 }
 
-TEST_CASE("cluster: seven spheres above the floor that do not touch", "[generate]") {
+TEST_CASE("cluster: seven spheres above the floor that nearly never touch", "[generate]") {
     const ClusterShape shape;
     int disjoint = 0;
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
@@ -314,9 +315,9 @@ TEST_CASE("cluster: seven spheres above the floor that do not touch", "[generate
         disjoint += !touching;
     }
     CHECK(disjoint >= 297);  // 200 attempts per sphere nearly always find a free position
-    ClusterShape none;
-    none.glass = none.mirrors = none.matt = 0;
-    CHECK(generate_cluster(1, none).spheres.empty());
+    ClusterShape no_spheres;
+    no_spheres.glass = no_spheres.mirrors = no_spheres.matt = 0;
+    CHECK(generate_cluster(1, no_spheres).spheres.empty());
 }
 
 TEST_CASE("centre: the committed file is the generator's output", "[generate]") {

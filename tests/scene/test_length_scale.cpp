@@ -1,5 +1,4 @@
-// The power of two that scales a scene into the middle of a format's range; no scaling (factor 1) if the scene lies
-// within the range.
+// length_scale() scales a scene into the middle of a format's range, and does not scale a scene within the range.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -17,7 +16,7 @@ using Catch::Matchers::Contains;
 
 const NumberFormat kFp32{}, kSpa22{6, 15, false}, kSmall{5, 10, false};
 
-/// A scene with a sphere of `radius`, seen from `distance`.
+/// Returns a scene with a sphere of `radius`, seen from `distance`.
 Scene sphere_seen_from(double radius, double distance) {
     Scene scene;
     scene.name = "one.nff";
@@ -51,7 +50,7 @@ TEST_CASE("the limits of formats are those of the kernels", "[length_scale]") {
 TEST_CASE("a scene within a format's range is not scaled; outside the range it is scaled to the middle",
           "[length_scale]") {
     // e6m15: the maximum hit distance is 2^15, so the maximum length is 2^13. The minimum radius is 2^-15, or 2^-13
-    // with a margin of two powers.
+    // with the margin of a factor of 4.
     CHECK(length_scale(sphere_seen_from(1, 8192), kSpa22).exponent == 0);
     CHECK(length_scale(sphere_seen_from(1, 8193), kSpa22).exponent == -8);
     CHECK(length_scale(sphere_seen_from(0x1p-13, 8), kSpa22).exponent == 0);
@@ -75,8 +74,8 @@ TEST_CASE("if a scene is scaled, a scene 2^k times as large has a scale 2^-k tim
         const Scene scene = sphere_seen_from(radius, distance);
         CAPTURE(i, radius, distance);
         for (const NumberFormat& format : {kSpa22, NumberFormat{8, 7, true}, kFp32}) {
-            const int beyond = format.exponent_bits == 8 ? 70 : 20;
-            for (const int k : {-beyond, beyond, beyond + 9}) {
+            const int out_of_range = format.exponent_bits == 8 ? 70 : 20;
+            for (const int k : {-out_of_range, out_of_range, out_of_range + 9}) {
                 const int exponent = length_scale(scaled_scene(scene, std::ldexp(1, k)), format).exponent;
                 CHECK(exponent == length_scale(scaled_scene(scene, std::ldexp(1, k + 1)), format).exponent + 1);
                 const double largest = std::ldexp(distance, k + exponent), smallest = std::ldexp(radius, k + exponent);

@@ -1,4 +1,4 @@
-// NFF dialects: the statements that the reader skips, its remarks, and the errors that it reports.
+// NFF dialects: the entities that the reader skips, its remarks, and the errors that it reports.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -24,9 +24,9 @@ struct Parsed {
 
 Parsed parse_lenient(const std::string& text) {
     Parsed parsed;
-    std::vector<NffRemark> all;
-    parsed.scene = parse_nff(text, "t.nff", &all);
-    for (const NffRemark& remark : all) parsed.remarks.push_back(remark_text("t.nff", remark));
+    std::vector<NffRemark> nff_remarks;
+    parsed.scene = parse_nff(text, "t.nff", &nff_remarks);
+    for (const NffRemark& remark : nff_remarks) parsed.remarks.push_back(remark_text("t.nff", remark));
     return parsed;
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("a checker before a skipped polygon is skipped, too", "[dialects]") {
     CHECK_FALSE(parsed.scene.surfaces[0].checker);
 }
 
-TEST_CASE("non-planar polygons are cut into triangles, patches with their normals", "[dialects]") {
+TEST_CASE("non-planar polygons and patches are cut into triangles, which keep the patches' normals", "[dialects]") {
     const std::string bent = "0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n";
     const Parsed flat = parse_lenient(kView + "p 4\n" + bent);
     CHECK(flat.remarks == Remarks{"t.nff:8: polygon that is not flat, cut into triangles"});
@@ -152,7 +152,7 @@ TEST_CASE("a mail header before the scene is skipped, and its lines count", "[di
     CHECK_THROWS_WITH(parse_nff(header + kView + kSphere, "t.nff"), Contains("t.nff:1: unknown entity 'From'"));
 }
 
-TEST_CASE("text that is not NFF, and files that leave no scene, are refused", "[dialects]") {
+TEST_CASE("text that is not NFF is refused, and so are files without view or objects", "[dialects]") {
     for (const std::string line :
          {"This is a story of a teapot.", "hello world", "solid teapot", "outer loop", "<html>", "{ 1 2 }",
           "verylongword 1 2 3", "a b c d 1", "int main() { return 0; }"}) {

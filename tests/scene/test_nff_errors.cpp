@@ -21,7 +21,7 @@ struct Row {
     const char* message;  // start of the expected message, "LINE: reason"
 };
 
-/// The error message of parse_nff() for a text; "accepted" if it throws no error.
+/// Returns the error message of parse_nff() for a text, or "accepted" if parse_nff() throws no error.
 std::string error_message_of(const std::string& text) {
     try {
         parse_nff(text, "folder/t.nff");
@@ -38,13 +38,13 @@ void check(const std::vector<Row>& rows) {
     }
 }
 
-/// Checks rows whose text is appended to a valid view and sphere, so that it starts on line 9.
+/// Appends each row's text to a valid view and sphere, so that the text starts on line 9, and checks the rows.
 void check_entities(std::vector<Row> rows) {
     for (Row& row : rows) row.text = kShortView + kOneSphere + row.text;
     check(rows);
 }
 
-/// The text of a view and a sphere with one line replaced. `old_line` must be a line of kShortView.
+/// Returns the text of a view and a sphere with one line replaced. `old_line` must be a line of kShortView.
 std::string view_with(const std::string& old_line, const std::string& new_line) {
     std::string text = kShortView + kOneSphere;
     return text.replace(text.find(old_line), old_line.size(), new_line);
@@ -105,7 +105,7 @@ TEST_CASE("refused: entities with too few or too many values", "[nff]") {
 }
 
 TEST_CASE("refused: invalid views", "[nff]") {
-    const char* side = "must be a whole number from 1 to 16384";
+    const char* range = "must be a whole number from 1 to 16384";
     check({{kShortView + kShortView + kOneSphere, "8: a second 'v'"},
            {view_with("angle 40\n", ""), "7: 'v' is incomplete: 's' follows, but still missing: angle"},
            {"v\nfrom 0 0 1\nat 0 0 0",
@@ -120,11 +120,11 @@ TEST_CASE("refused: invalid views", "[nff]") {
            {view_with("up 0 0 1", "up 0 0 0"), "1: 'up' is zero or parallel to the viewing direction"}});
     for (const char* size : {"0 200", "-1 200", "16385 200", "1.5 200"}) {
         const std::string message = error_message_of(view_with("320 200", size));
-        CHECK_THAT(message, Catch::StartsWith("folder/t.nff:7: the width of 'v' is ") && Catch::EndsWith(side));
+        CHECK_THAT(message, Catch::StartsWith("folder/t.nff:7: the width of 'v' is ") && Catch::EndsWith(range));
     }
     for (const char* size : {"320 0", "320 1e9", "320 0.5"}) {
         const std::string message = error_message_of(view_with("320 200", size));
-        CHECK_THAT(message, Catch::StartsWith("folder/t.nff:7: the height of 'v' is ") && Catch::EndsWith(side));
+        CHECK_THAT(message, Catch::StartsWith("folder/t.nff:7: the height of 'v' is ") && Catch::EndsWith(range));
     }
     CHECK(error_message_of(view_with("320 200", "16384 1")) == "accepted");
     CHECK(error_message_of(view_with("hither 0.5", "hither -1")) == "accepted");

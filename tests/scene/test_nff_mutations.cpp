@@ -40,14 +40,14 @@ class Mutator {
   private:
     std::size_t below(std::size_t limit) { return static_cast<std::size_t>(random_.next() % limit); }
 
-    /// A random piece of the text: start, which may be the text's end, and length.
+    /// Returns start and length of a random piece of the text. The start may be the end of the text.
     std::pair<std::size_t, std::size_t> piece(const std::string& text) {
         const std::size_t start = below(text.size() + 1);
         return {start, below(std::min<std::size_t>(40, text.size() - start) + 1)};
     }
 
     void mutate(std::string& text) {
-        static const std::array<std::string, 20> kWords{
+        static const std::array<std::string, 20> kTokens{
             "nan", "-inf", "1e999", "-1",       "0",  "1e-320", "1000000000", "#raya ", "\n",  " ",
             "p ",  "v\n",  "\ns ",  "checker ", "c ", "pp 3\n", "#",          "-",      "1e9", std::string(1, '\0')};
         const auto [start, length] = piece(text);
@@ -55,11 +55,11 @@ class Mutator {
             case 0:  // flip a bit
                 if (start < text.size()) text[start] = static_cast<char>(text[start] ^ (1 << below(8)));
                 break;
-            case 1:  // any byte
+            case 1:  // replace a byte
                 if (start < text.size()) text[start] = static_cast<char>(below(256));
                 break;
             case 2:
-            case 3: {  // another digit
+            case 3: {  // replace a digit
                 const std::size_t digit = text.find_first_of("0123456789", start);
                 if (digit != std::string::npos) text[digit] = static_cast<char>('0' + below(10));
                 break;
@@ -74,12 +74,12 @@ class Mutator {
                 text.resize(start);
                 break;
             case 7:
-                text.replace(start, below(2) * length, kWords[below(kWords.size())]);
+                text.replace(start, below(2) * length, kTokens[below(kTokens.size())]);
                 break;
             default: {  // insert a piece of another scene
                 const std::string& other = kTexts[below(kTexts.size())];
-                const auto [from, count] = piece(other);
-                text.replace(start, length, other, from, count);
+                const auto [other_start, other_length] = piece(other);
+                text.replace(start, length, other, other_start, other_length);
             }
         }
     }
@@ -88,7 +88,7 @@ class Mutator {
 };
 
 /// Returns true if a message starts with "m.nff:LINE: " and has more text after it.
-bool has_place(const std::string& message) {
+bool has_file_and_line(const std::string& message) {
     const std::string name = "m.nff:";
     if (!message.starts_with(name)) return false;
     const std::size_t end = message.find_first_not_of("0123456789", name.size());
@@ -96,15 +96,15 @@ bool has_place(const std::string& message) {
            message.substr(end, 2) == ": " && message.size() > end + 2;
 }
 
-/// Describes the error in the reader's handling of a text; empty if there is none. Counts the accepted texts in
-/// `accepted`.
+/// Returns a description of the reader's defect that a text reveals, or an empty string. Increments `accepted` if the
+/// reader accepts the text.
 std::string reader_defect(const std::string& text, int& accepted) {
     try {
         const Scene scene = parse_nff(text, "m.nff");
         ++accepted;
         return parse_nff(write_nff(scene), "m.nff") == scene ? "" : "changed by being written and read";
     } catch (const UserError& error) {
-        return has_place(error.what()) ? "" : std::string("message without place: ") + error.what();
+        return has_file_and_line(error.what()) ? "" : std::string("message without file and line: ") + error.what();
     } catch (const std::exception& error) {
         return std::string("not a UserError: ") + error.what();
     }
@@ -113,17 +113,17 @@ std::string reader_defect(const std::string& text, int& accepted) {
 }  // namespace
 
 TEST_CASE("mutated files are either read or refused", "[nff]") {
-    const char* given = std::getenv("RAYA_MUTATIONS");
-    const int count = given ? std::atoi(given) : 4000;
+    const char* variable = std::getenv("RAYA_MUTATIONS");
+    const int count = variable ? std::atoi(variable) : 4000;  // number of mutated files
     int accepted = 0;
     for (int seed = 0; seed < count; ++seed) {
         const std::string text = Mutator(static_cast<std::uint64_t>(seed)).mutated();
-        const std::string wrong = reader_defect(text, accepted);
-        if (wrong.empty()) continue;
+        const std::string defect = reader_defect(text, accepted);
+        if (defect.empty()) continue;
         CAPTURE(seed, text);
-        FAIL_CHECK(wrong);
+        FAIL_CHECK(defect);
     }
     INFO(accepted << " of " << count << " accepted");
     CHECK(accepted > count / 20);  // some mutated files stay valid
-    CHECK(accepted < count / 2);   // most become invalid
+    CHECK(accepted < count / 2);   // most mutated files are invalid
 }

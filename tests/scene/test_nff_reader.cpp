@@ -18,9 +18,9 @@ const std::string kPlainView = "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhi
 
 Scene scene_of(const std::string& entities) { return parse_nff(kPlainView + entities, "folder/t.nff"); }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-        text.replace(at, from.size(), to);
+std::string replaced(std::string text, const std::string& old_text, const std::string& new_text) {
+    for (std::size_t at = 0; (at = text.find(old_text, at)) != std::string::npos; at += new_text.size())
+        text.replace(at, old_text.size(), new_text);
     return text;
 }
 
@@ -63,7 +63,7 @@ TEST_CASE("the parts of v may have any order", "[nff]") {
     CHECK(s.view == scene_of("s 0 0 0 1\n").view);
 }
 
-TEST_CASE("defaults: black background, white matt surface, lights share their intensity", "[nff]") {
+TEST_CASE("defaults: black background, white matt surface, intensity sqrt(n) / (2 n) of n lights", "[nff]") {
     const Scene s = scene_of("l 1 2 3\nl 3 2 1\ns 0 0 0 1\n");
     CHECK(s.background == Colour(0, 0, 0));
     CHECK(s.surfaces == std::vector<Surface>{Surface{}});
@@ -131,7 +131,7 @@ TEST_CASE("a scene is equal after writing and reading", "[nff]") {
 }
 
 TEST_CASE("the project's scenes and SPD's files are equal after writing and reading", "[nff]") {
-    int read = 0;
+    int files = 0;
     for (const auto& folder : {std::filesystem::path(RAYA_SOURCE_DIR "/scenes"), spd_folder()}) {
         if (!std::filesystem::is_directory(folder)) continue;
         for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -140,10 +140,10 @@ TEST_CASE("the project's scenes and SPD's files are equal after writing and read
             const Scene s = read_nff(entry.path());
             CHECK(s.name == entry.path().filename());
             CHECK(parse_nff(write_nff(s), s.name) == s);
-            ++read;
+            ++files;
         }
     }
-    CHECK(read >= 7);
+    CHECK(files >= 7);
 }
 
 TEST_CASE("SPD's files have the documented numbers of objects", "[nff]") {

@@ -24,14 +24,14 @@ namespace {
 
 constexpr double kRounding = 0x1p-24;  // relative error of one rounding to fp32
 
-// Bound of the error of a shading normal at a corner: a few roundings of the origin, divided by the shortest side,
-// which here is 1/100 of the scene's extent.
+// Bound of the error of a shading normal at a corner: a few roundings of the patch's origin, divided by the patch's
+// shortest side. In the scenes of this file, this side is at least 1/100 of the scene's extent.
 constexpr double kNormalLimit = 8 * 100 * kRounding;
 
 Surface rounded(Surface s) {
     for (double* value : {&s.diffuse, &s.specular, &s.shine, &s.transmittance, &s.refraction}) *value = fp32(*value);
     if (s.checker) s.checker = Checker{fp32(s.checker->even), fp32(s.checker->odd), fp32(s.checker->size)};
-    s.colour = s.checker ? s.checker->even : fp32(s.colour);  // a checkered surface's colour: the even squares'
+    s.colour = s.checker ? s.checker->even : fp32(s.colour);  // a checkered surface has the colour of its even squares
     return s;
 }
 
@@ -40,7 +40,7 @@ struct Point2 {
 };
 Point2 flattened(const Vec3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-/// Compares a job with its scene, record by record.
+/// Compares the words of a job with the job's scene, record by record.
 class JobCheck {
   public:
     explicit JobCheck(const Scene& scene, const std::vector<std::uint32_t>& words)
@@ -70,8 +70,8 @@ class JobCheck {
         std::size_t face = 0;
         for (const Polygon& polygon : scene_.polygons) check_faces(polygon, face);
         CHECK(face == job.objects.polygons);
-        CHECK(packed_.unread() == 0);
-        CHECK(packed_.shared() == 0);
+        CHECK(packed_.unread_words() == 0);
+        CHECK(packed_.shared_words() == 0);
     }
 
   private:
@@ -108,7 +108,8 @@ class JobCheck {
         check_surface(cone.surface, at);
     }
 
-    /// Checks the job's faces of a polygon, from number `face` on: the polygon itself, or the triangles of a patch.
+    /// Checks the faces of a polygon in the job: the polygon itself, or the triangles of a patch. `face`: number of the
+    /// first of these faces; incremented for each.
     void check_faces(const Polygon& polygon, std::size_t& face) {
         const Vec3 normal = newell_normal(polygon.vertices);
         for (const std::vector<int>& corners : faces_of(polygon)) {
@@ -165,7 +166,7 @@ class JobCheck {
 
     const Scene& scene_;
     PackedScene packed_;
-    double limit_;  // a few roundings of the largest coordinate
+    double limit_;  // bound of the error of a position: a few roundings of the largest coordinate
     std::vector<std::uint32_t> surface_at_;
 };
 
@@ -237,7 +238,7 @@ TEST_CASE("a job's header contains settings, background, ambient light and exten
     CHECK(std::equal(settings.cycles.begin(), settings.cycles.end(), job.cycles));
     CHECK(Vec3(job.eye[0], job.eye[1], job.eye[2]) == Vec3(0, 0, -5));
     CHECK(Vec3(job.background[0], job.background[1], job.background[2]) == fp32(scene.background));
-    CHECK(job.ambient == 1);  // without lights
+    CHECK(job.ambient == 1);  // of a scene without lights
     CHECK(job.extent == 5);   // the eye's distance
     scene.lights = {{{1, 2, 3}, {}}, {{4, 5, 6}, Colour(0.1, 0.2, 0.3)}};
     scene.spheres = {{{-8, 0, 0}, -2, 0}};
@@ -284,7 +285,7 @@ TEST_CASE("a job's corner and steps give the reference's primary rays", "[packer
             options.width = static_cast<int>(width);
             options.height = static_cast<int>(height);
             options.corners = corners;
-            const auto vector = [](const float(&from)[3]) { return Vec3(from[0], from[1], from[2]); };
+            const auto vector = [](const float(&xyz)[3]) { return Vec3(xyz[0], xyz[1], xyz[2]); };
             for (std::uint32_t j = 0; j < height; ++j)
                 for (std::uint32_t x = 0; x < width; ++x) {
                     const Vec3 through =

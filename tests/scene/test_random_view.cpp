@@ -17,20 +17,20 @@ TEST_CASE("a random view changes only the camera's position, at the same distanc
     SplitMix random(3);
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
         Scene scene = generate_random(3, seed);
-        const auto any = [&] { return random.uniform(-5, 5); };
-        scene.view.from = {any(), any(), any()};
-        scene.view.at = {any(), any(), any()};
-        scene.view.up = {any(), any(), any()};
+        const auto coordinate = [&] { return random.uniform(-5, 5); };
+        scene.view.from = {coordinate(), coordinate(), coordinate()};
+        scene.view.at = {coordinate(), coordinate(), coordinate()};
+        scene.view.up = {coordinate(), coordinate(), coordinate()};
         CAPTURE(seed);
-        Scene seen = random_view(scene, seed);
-        const Vec3 arm = seen.view.from - seen.view.at;
+        Scene viewed = random_view(scene, seed);
+        const Vec3 arm = viewed.view.from - viewed.view.at;
         CHECK(arm.length() == Approx((scene.view.from - scene.view.at).length()).epsilon(1e-5));
         const double height = arm.normalized().dot(scene.view.up.normalized());
         CHECK(height > sine(kLowestView) - 1e-5);
         CHECK(height < sine(kHighestView) + 1e-5);
-        CHECK(random_view(scene, seed) == seen);
-        seen.view.from = scene.view.from;
-        CHECK(seen == scene);
+        CHECK(random_view(scene, seed) == viewed);
+        viewed.view.from = scene.view.from;
+        CHECK(viewed == scene);
     }
 }
 
@@ -38,18 +38,18 @@ TEST_CASE("random views are uniform over the zone of the sphere", "[view]") {
     const Scene scene = generate_centre();
     constexpr int kViews = 4000, kParts = 8;
     int heights[kParts] = {}, azimuths[kParts] = {};
-    std::set<double> all;
+    std::set<double> x_components;
     for (std::uint64_t seed = 1; seed <= kViews; ++seed) {
         const View view = random_view(scene, seed).view;
         const Vec3 d = (view.from - view.at).normalized();
-        all.insert(d.x);
-        const double part = (d.z - sine(kLowestView)) / (sine(kHighestView) - sine(kLowestView));
+        x_components.insert(d.x);
+        const double zone_fraction = (d.z - sine(kLowestView)) / (sine(kHighestView) - sine(kLowestView));
         const double turn = std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 0.5;
-        ++heights[std::min(kParts - 1, std::max(0, static_cast<int>(part * kParts)))];
+        ++heights[std::min(kParts - 1, std::max(0, static_cast<int>(zone_fraction * kParts)))];
         ++azimuths[std::min(kParts - 1, static_cast<int>(turn * kParts))];
     }
-    CHECK(static_cast<double>(all.size()) > kViews * 0.99);
-    for (int i = 0; i < kParts; ++i) {  // 500 expected, standard deviation 21
+    CHECK(static_cast<double>(x_components.size()) > kViews * 0.99);
+    for (int i = 0; i < kParts; ++i) {  // expected: 500 views per part, standard deviation 21
         CHECK(std::abs(heights[i] - kViews / kParts) < 100);
         CHECK(std::abs(azimuths[i] - kViews / kParts) < 100);
     }

@@ -1,4 +1,4 @@
-// The bounding box of the finite objects is the smallest one.
+// scene_box() returns the smallest box that contains all finite objects.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -14,7 +14,7 @@ Vec3 random_vector(SplitMix& random, double magnitude) {
             random.uniform(-magnitude, magnitude)};
 }
 
-Scene of_cone(const Cone& cone) {
+Scene cone_scene(const Cone& cone) {
     Scene scene;
     scene.cones.push_back(cone);
     return scene;
@@ -26,24 +26,24 @@ TEST_CASE("the bounding box of a cone touches its two circles", "[scene_box]") {
         const double sign = i % 2 == 0 ? 1 : -1;
         const Cone cone{random_vector(random, 5), sign * random.uniform(0, 2), random_vector(random, 5),
                         sign * random.uniform(0, 2), 0};
-        const Imath::Box3d box = scene_box(of_cone(cone));
+        const Imath::Box3d box = scene_box(cone_scene(cone));
         const Vec3 axis = (cone.apex - cone.base).normalized();
-        const Vec3 any = std::abs(axis.x) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-        const Vec3 u = axis.cross(any).normalized(), v = axis.cross(u);
-        Imath::Box3d touched;
+        const Vec3 not_parallel = std::abs(axis.x) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+        const Vec3 u = axis.cross(not_parallel).normalized(), v = axis.cross(u);
+        Imath::Box3d circles_box;
         constexpr int kPoints = 720;
         for (int k = 0; k < kPoints; ++k) {
             const double angle = 2 * std::numbers::pi * k / kPoints;
             const Vec3 direction = u * std::cos(angle) + v * std::sin(angle);
-            touched.extendBy(cone.base + direction * cone.base_radius);
-            touched.extendBy(cone.apex + direction * cone.apex_radius);
+            circles_box.extendBy(cone.base + direction * cone.base_radius);
+            circles_box.extendBy(cone.apex + direction * cone.apex_radius);
         }
         CAPTURE(i);
         for (int axis_number = 0; axis_number < 3; ++axis_number) {
-            CHECK(box.min[axis_number] == Approx(touched.min[axis_number]).margin(1e-4));
-            CHECK(box.max[axis_number] == Approx(touched.max[axis_number]).margin(1e-4));
-            CHECK(box.min[axis_number] <= touched.min[axis_number] + 1e-12);
-            CHECK(box.max[axis_number] >= touched.max[axis_number] - 1e-12);
+            CHECK(box.min[axis_number] == Approx(circles_box.min[axis_number]).margin(1e-4));
+            CHECK(box.max[axis_number] == Approx(circles_box.max[axis_number]).margin(1e-4));
+            CHECK(box.min[axis_number] <= circles_box.min[axis_number] + 1e-12);
+            CHECK(box.max[axis_number] >= circles_box.max[axis_number] - 1e-12);
         }
     }
 }

@@ -21,8 +21,8 @@ Vec3 doubled_area(const Outline& outline, const std::array<int, 3>& t) {
     return (corner(outline, t[1]) - corner(outline, t[0])).cross(corner(outline, t[2]) - corner(outline, t[0]));
 }
 
-/// Checks that there are n - 2 triangles with the outline's orientation, that their areas sum to the outline's area (so
-/// that they cover it once), and that every vertex is used.
+/// Checks that an outline of n vertices gives n - 2 triangles with the outline's orientation, that their areas sum to
+/// the outline's area (so that the triangles cover the outline once), and that every vertex is used.
 void check_triangulation(const Outline& outline) {
     const Vec3 normal = newell_normal(outline);
     const auto triangles = triangulate(outline, normal);
@@ -30,16 +30,16 @@ void check_triangulation(const Outline& outline) {
     std::vector<int> used(outline.size(), 0);
     double area = 0;
     for (const auto& t : triangles) {
-        const double own = doubled_area(outline, t).dot(normal.normalized());
-        CHECK(own > 0);
-        area += own;
+        const double triangle_area = doubled_area(outline, t).dot(normal.normalized());
+        CHECK(triangle_area > 0);
+        area += triangle_area;
         for (const int i : t) ++used[static_cast<std::size_t>(i)];
     }
     CHECK(area == Approx(normal.length()).epsilon(1e-12));
     for (const int uses : used) CHECK(uses > 0);
 }
 
-/// The outline, moved to a plane whose normal has no zero component.
+/// Returns the outline, moved to a plane whose normal has no zero component.
 Outline tilted(const Outline& flat) {
     const Vec3 normal = Vec3(0.3, -0.9, 0.4).normalized();
     const Vec3 u = normal.cross(Vec3(0, 0, 1)).normalized();
@@ -63,7 +63,7 @@ TEST_CASE("Newell's normal points to the counter-clockwise side, and its length 
     CHECK(newell_normal({{1e9, 0, 0}, {1e9 + 1, 0, 0}, {1e9, 1, 0}}) == Vec3(0, 0, 1));
 }
 
-TEST_CASE("the dropped axis is that of the largest component, the first of equal ones") {
+TEST_CASE("the dropped axis is that of the largest component, the first such axis in a tie") {
     CHECK(dropped_axis({1, 0, 0}) == 0);
     CHECK(dropped_axis({0.1, -0.9, 0.5}) == 1);
     CHECK(dropped_axis({0.1, 0.2, -0.3}) == 2);
@@ -71,7 +71,7 @@ TEST_CASE("the dropped axis is that of the largest component, the first of equal
     CHECK(dropped_axis({0.5, -1, 1}) == 1);
 }
 
-TEST_CASE("the triangles of simple outlines cover them once") {
+TEST_CASE("the triangles of a simple outline cover it once") {
     for (const Outline& flat : {Outline{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, kU, kSquareWithMidpoints, kSquareHole}) {
         CAPTURE(flat.size());
         check_triangulation(flat);
@@ -84,7 +84,7 @@ TEST_CASE("the sign and the length of the normal do not change the triangulation
     CHECK(triangulate(kU, {0, 0, -5}) == triangulate(kU, {0, 0, 1}));
 }
 
-TEST_CASE("the triangles of random star-shaped outlines cover them once") {
+TEST_CASE("the triangles of a random star-shaped outline cover it once") {
     constexpr std::uint64_t kSeed = 4;
     std::mt19937_64 random(kSeed);
     const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -102,7 +102,7 @@ TEST_CASE("the triangles of random star-shaped outlines cover them once") {
     }
 }
 
-TEST_CASE("triangulate() ends for outlines without area and self-crossing ones") {
+TEST_CASE("triangulate() ends for outlines without area and for self-crossing outlines") {
     CHECK(triangulate({}, {0, 0, 1}).empty());
     CHECK(triangulate({{0, 0, 0}, {1, 0, 0}}, {0, 0, 1}).empty());
     const Outline bow_tie{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};

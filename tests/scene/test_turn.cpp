@@ -1,4 +1,4 @@
-// Turns of the camera: distance, height, direction and exactness.
+// turned() keeps the distance and height of the eye and rotates it by the angle; whole and quarter turns are exact.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -10,11 +10,11 @@ namespace raya {
 namespace {
 
 View random_viewpoint(SplitMix& random) {
-    const auto any = [&] { return random.uniform(-5, 5); };
+    const auto coordinate = [&] { return random.uniform(-5, 5); };
     View view;
-    view.from = {any(), any(), any()};
-    view.at = {any(), any(), any()};
-    view.up = {any(), any(), any()};
+    view.from = {coordinate(), coordinate(), coordinate()};
+    view.at = {coordinate(), coordinate(), coordinate()};
+    view.up = {coordinate(), coordinate(), coordinate()};
     return view;
 }
 
@@ -26,16 +26,16 @@ TEST_CASE("a turn changes only the azimuth of the camera's position, by the angl
         const View view = random_viewpoint(random);
         const double degrees = random.uniform(-1000, 1000);
         CAPTURE(n, degrees);
-        View seen = turned(view, degrees);
-        const Vec3 axis = view.up.normalized(), before = view.from - view.at, after = seen.from - seen.at;
+        View rotated = turned(view, degrees);
+        const Vec3 axis = view.up.normalized(), before = view.from - view.at, after = rotated.from - rotated.at;
         CHECK(after.length() == Approx(before.length()).epsilon(1e-12));
         CHECK(after.dot(axis) == Approx(before.dot(axis)).margin(1e-12));
-        // The components of both vectors perpendicular to the axis enclose the angle, anticlockwise.
-        const Vec3 level = before - axis * before.dot(axis), then = after - axis * after.dot(axis);
-        const double angle = std::atan2(axis.dot(level.cross(then)), level.dot(then));
+        // The components perpendicular to the axis of both vectors enclose the angle, counter-clockwise.
+        const Vec3 level_before = before - axis * before.dot(axis), level_after = after - axis * after.dot(axis);
+        const double angle = std::atan2(axis.dot(level_before.cross(level_after)), level_before.dot(level_after));
         CHECK(std::remainder(angle - degrees * std::numbers::pi / 180, 2 * std::numbers::pi) == Approx(0).margin(1e-9));
-        seen.from = view.from;
-        CHECK(seen == view);
+        rotated.from = view.from;
+        CHECK(rotated == view);
     }
 }
 

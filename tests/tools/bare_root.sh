@@ -1,4 +1,4 @@
-# For tests in a minimal Debian: make_bare_root BUILD creates it in "$bare"; `in_root COMMAND...` runs a command there.
+# For tests in a minimal Debian: make_bare_root BUILD installs one in the folder "$bare"; in_root COMMAND... runs a command in that Debian.
 # Needs root, debootstrap and the network; exit code 77 without. BUILD/debs caches packages for the next run.
 # shellcheck shell=bash
 skip() { echo "skipped: $1"; exit 77; }

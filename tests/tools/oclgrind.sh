@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs every kernel under Oclgrind, an OpenCL implementation that checks each memory access: data races, uninitialised values, wrong API
-# calls, accesses outside a buffer, more than 32 KB of local memory.
+# Runs every kernel under Oclgrind, an OpenCL implementation that detects data races, uninitialised values, wrong API calls, accesses outside a
+# buffer, and more than 32 KB of local memory.
 #   tests/tools/oclgrind.sh RAYA PATCH_KERNELS      the built program; tests/kernels/patch_kernels.cpp
 # Renders each scene of scenes/ with one and four lanes, one and four work-items, on different arrays, and one scene with anti-aliasing.
 # Oclgrind's log must stay empty (its exit code is always 0), and every image must be that of the default device. By default it runs one scene
@@ -51,19 +51,19 @@ fail() { echo "FAILED: $*"; exit 1; }
 hash_of_report() { grep -o '"hash": "[0-9a-f]*"' "$scratch/report.json"; }
 
 check_run() {  # check_run SCENE OPTIONS OPTIONS_OF_THE_DEFAULT_DEVICE     SCENE: one of scenes/, or a file
-    local scene=$1 options=$2 file=$1 wanted found
+    local scene=$1 options=$2 file=$1 expected found
     [[ -e $file ]] || file=$root/scenes/$scene.nff
     local render=(render "$file" -o "$scratch/image.pfm" --report "$scratch/report.json" --quiet --size "$size")
     # shellcheck disable=SC2086  # several words
     "$raya" "${render[@]}" $3
-    wanted=$(hash_of_report)
+    expected=$(hash_of_report)
     rm -f "$scratch/log" "$scratch/report.json"
     # shellcheck disable=SC2086
     under_oclgrind "${render[@]}" $options || fail "$scene $options: exit code $?"
     [[ -e $scratch/log ]] || fail "$scene $options: Oclgrind left no log"
     [[ ! -s $scratch/log ]] || { head -n 40 "$scratch/log"; fail "$scene $options: Oclgrind found faults"; }
     found=$(hash_of_report)
-    [[ $found == "$wanted" ]] || fail "$scene $options: image $found, the default device's $wanted"
+    [[ $found == "$expected" ]] || fail "$scene $options: image $found, on the default device $expected"
 }
 
 # Oclgrind must report an injected fault.
@@ -101,7 +101,7 @@ done
 [[ -z $thorough ]] || check_fault torus/inject.cl $'*next = end;\n        node_barrier();' "*next = end;" "data race" --machine torus --nodes 2x1x1
 [[ -z $thorough ]] || check_fault torus/route.cl $'goal = RAYA_STAYS;\n        node_barrier();' "goal = RAYA_STAYS;" "data race" --machine torus --nodes 2x1x1
 check_fault torus/accept.cl $'vote(votes, goal);\n        node_barrier();' "vote(votes, goal);" "data race" --machine torus --nodes 2x1x1
-# Nodes with several work-items, rays that wait for free queue entries, both methods of making primary rays.
+# Nodes with several work-items, rays that wait for free queue entries, both values of --inject.
 size=6
 [[ -z $thorough ]] || check_run cones "--machine torus --nodes 2x2x1 --lanes 4 --group 3 --queue 200" "--machine grande"
 check_run planes "--machine torus --nodes 2x1x2 --lanes 1 --group 4 --inject root --links torus2d" "--machine grande"

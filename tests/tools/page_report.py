@@ -13,24 +13,24 @@ def report_of(html):
 
 
 def with_report(html, report):
-    """The page with its report replaced; JSON is escaped as in host/report/page/page.cpp."""
+    """Returns the page with its report replaced. The JSON is escaped as in host/report/page/page.cpp."""
     text = json.dumps(report, indent=2, ensure_ascii=False)
     for sign in "<>&":
         text = text.replace(sign, f"\\u{ord(sign):04x}")
     return REPORT.sub(lambda found: found[1] + text + found[3], html)
 
 
-def values_of(value, holds):
-    """Yields (container, key) of every value in a report for which `holds` is true."""
+def values_of(value, predicate):
+    """Yields (container, key) of every value in a report for which predicate(value) is true."""
     for key in value if isinstance(value, dict) else range(len(value)):
-        if holds(value[key]):
+        if predicate(value[key]):
             yield value, key
         if isinstance(value[key], (dict, list)):
-            yield from values_of(value[key], holds)
+            yield from values_of(value[key], predicate)
 
 
 def gpu_day(raya, folder):
-    """(report.json, page.html) of a run of tools/gpu_day with steps that are right, wrong, out of time, or not possible on this machine."""
+    """Returns the paths (report.json, page.html) of a run of tools/gpu_day whose steps are right, wrong, late or impossible on this machine."""
     steps = Path(folder, "steps")
     steps.mkdir(parents=True)
     for name, code, text in [("devices", "1 0 right", "$ raya devices\nGPU"), ("verify-quick", "1 12 exit code 4", "$ raya verify --quick\nGPU (maker, driver 1)\nFAIL  grid \"a\\b\""),

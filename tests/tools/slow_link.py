@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Connects two network namespaces, and delays and drops network packets like `tc netem`, also on Linux kernels without netem.
 
-    slow_link.py NAMESPACE NAMESPACE DELAY_MS LOST_OF     drops one packet of LOST_OF; the device is link0 at both ends
+    slow_link.py NAMESPACE NAMESPACE DELAY_MS LOST_OF     drops every LOST_OF-th packet; the network device is link0 at both ends
 
-Prints `ready`; on SIGTERM prints the numbers of packets and of lost packets, and exits. The link exists as long as this process.
+Prints `ready`; on SIGTERM prints the numbers of packets and of lost packets, and exits. The link exists until this process exits.
 """
 import collections
 import fcntl
@@ -28,6 +28,7 @@ def open_end(namespace):
 
 
 def carry(ends, delay_s, lost_of, counts):
+    """Forwards packets between the two ends, without end, and counts them in `counts`."""
     others = dict(zip(ends, reversed(ends)))
     under_way = collections.deque()  # (time of arrival, receiving end of the link, packet)
     while True:

@@ -38,10 +38,10 @@ in_root /out/install >"$bare.log" 2>&1 || fail "$(<"$bare.log")"
 rm -f "$bare/root/c.ppm"
 bytes=$(du -sx --apparent-size --block-size=1 --exclude="$bare/out" "$bare" | cut -f1)  # sum of file sizes, as container tools report image sizes
 echo "the container's files: $((bytes / 1000000)) MB"
-((bytes < 400000000)) || fail "400 MB or more"
+((bytes < 400000000)) || fail "the container needs 400 MB or more"
 [[ -z $(find "$bare/usr/lib" -name 'libOpenImageIO*') ]] || fail "OpenImageIO is installed"
 output=$(in_root raya render $scene -o /root/c.ppm) || fail "render: $output"
-[[ $output == *"($hash)"* ]] || fail "another picture: $output"
+[[ $output == *"($hash)"* ]] || fail "wrong image: $output"
 in_root raya verify --quick || fail "verify --quick"
 code=0 output=$(in_root raya render $scene -o /root/c.png 2>&1) || code=$?
 [[ $code == 2 && $output == *"install OpenImageIO"*"libopenimageio"* ]] || fail "PNG without OpenImageIO: $code: $output"
@@ -51,7 +51,7 @@ if [[ -n ${RAYA_THOROUGH-} ]]; then
     in_root apt-get -qq update
     in_root sh -c 'apt-get install -qq -y --reinstall /out/raya_*.deb libopenimageio2.4' >"$bare.log" 2>&1 || fail "$(tail "$bare.log")"
     output=$(in_root raya render $scene -o /root/c.png) || fail "render: $output"
-    [[ $output == *"($hash)"* ]] || fail "another PNG: $output"
+    [[ $output == *"($hash)"* ]] || fail "wrong PNG: $output"
 fi
 in_root sh -c 'apt-get remove -qq -y raya' >"$bare.log" 2>&1 || fail "$(<"$bare.log")"
 [[ -z $(find "$bare/usr" -path '*raya*' -print -quit) ]] || fail "left behind: $(find "$bare/usr" -path '*raya*')"

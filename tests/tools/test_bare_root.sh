@@ -18,7 +18,7 @@ in_root tar -xzf /root/raya.tar.gz -C /opt
 top=$(cd "$bare" && echo opt/raya-*)
 in_root "/$top/raya" --version
 output=$(in_root "/$top/raya" render "/$top/scenes/centre.nff" -o /root/centre.ppm) || fail "render: $output"
-[[ $output == *"(474a384374e81c5144a0e5405232a750)"* ]] || fail "another picture: $output"
+[[ $output == *"(474a384374e81c5144a0e5405232a750)"* ]] || fail "wrong image: $output"
 in_root "/$top/raya" verify --quick || fail "verify --quick"
 in_root "/$top/gpu_day" --out /root/day --small --stage 1 || fail "gpu_day"
 echo "a minimal Debian: as expected"

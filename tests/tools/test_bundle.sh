@@ -13,8 +13,8 @@ expect() { [[ $code == "$1" && $out == *"$2"* ]] || fail "exit code $code: $out"
 bundle --build "$build" -o "$scratch/one.tar.gz"
 expect 0 "one.tar.gz: "
 bundle --build "$build" -o "$scratch/two.tar.gz"
-cmp "$scratch"/{one,two}.tar.gz || fail "the same programs make another tarball"
-(($(stat -c %s "$scratch/one.tar.gz") < 20000000)) || fail "20 MB or more"
+cmp "$scratch"/{one,two}.tar.gz || fail "a second run makes another tarball"
+(($(stat -c %s "$scratch/one.tar.gz") < 20000000)) || fail "the tarball has 20 MB or more"
 glibc=$(grep -oE 'glibc [0-9.]+' <<<"$out")
 [[ $(printf '%s\n' "$glibc" "glibc 2.34" | sort -V | head -n 1) == "$glibc" ]] || fail "needs $glibc, newer than RHEL 9's"
 
@@ -24,35 +24,35 @@ tar -xzf "$scratch/one.tar.gz" -C "$scratch/away"
 top=$(echo "$scratch"/away/raya-*)
 ! grep -rqF "$root" "$top" || fail "the path of the sources is in: $(grep -rlF "$root" "$top")"
 grep -q "$glibc or newer" "$top/README.md" || fail "README.md has another glibc than $glibc"
-away() {  # away COMMAND...: sets code, out and loaded
+run_unpacked() {  # run_unpacked COMMAND...: sets code, out and loaded
     rm -f "$scratch"/loaded.*
     code=0
     out=$(cd "$scratch/home" && env -i HOME="$scratch/home" PATH=/usr/bin:/bin POCL_CACHE_DIR="$POCL_CACHE_DIR" LD_DEBUG=files \
         LD_DEBUG_OUTPUT="$scratch/loaded" "$@" 2>&1) || code=$?
     loaded=$(sed -n 's/.*calling init: //p' "$scratch"/loaded.* | sort -u)
 }
-away "$top/raya" --version
+run_unpacked "$top/raya" --version
 expect 0 "raya "
 others=$(grep -vE "^($top/lib/libOpenCL\.so\.1|.*/(libc|libm|ld-linux-x86-64)\.so\.[0-9]+)$" <<<"$loaded" || true)
-[[ -z $others ]] || fail "a start loads $others"
-grep -qF "$top/lib/libOpenCL.so.1" <<<"$loaded" || fail "not its own OpenCL loader: $loaded"
-away "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.ppm"
+[[ -z $others ]] || fail "raya --version loads $others"
+grep -qF "$top/lib/libOpenCL.so.1" <<<"$loaded" || fail "raya does not load its own OpenCL loader: $loaded"
+run_unpacked "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.ppm"
 expect 0 "(474a384374e81c5144a0e5405232a750)"
 loaded=$(grep -vF "$POCL_CACHE_DIR/" <<<"$loaded")  # kernels
 ! grep -E "$root|raya_|OpenImageIO|libmpi|libfmt|libxxhash" <<<"$loaded" || fail "a render loads these libraries"
-[[ $(head -c 15 "$scratch/home/centre.ppm") == $'P6\n256 256\n255' ]] || fail "no PPM"
-away "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.png"
+[[ $(head -c 15 "$scratch/home/centre.ppm") == $'P6\n256 256\n255' ]] || fail "the image is not a PPM"
+run_unpacked "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.png"
 expect 2 "there is no file '$top/raya_pictures.so"
-away "$top/gpu_day" --out "$scratch/day"
+run_unpacked "$top/gpu_day" --out "$scratch/day"
 expect 0 "| 5 | large pictures"
 
 # Two ranks, if a launcher of the module's MPI is installed; then an error of a rank, which the module forwards.
 if [[ -e $top/raya_mpi.so ]] && ldd "$top/raya_mpi.so" | grep -q 'libmpi.* => /' && mpirun=$(command -v mpirun); then
     launch=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "$mpirun" -n 2 "$top/raya" render)
-    away "${launch[@]}" "$top/scenes/centre.nff" -o "$scratch/home/ranks.ppm"
+    run_unpacked "${launch[@]}" "$top/scenes/centre.nff" -o "$scratch/home/ranks.ppm"
     expect 0 "ranks   2 on 1 host"
-    cmp "$scratch"/home/{centre,ranks}.ppm || fail "two ranks make another picture"
-    away "${launch[@]}" "$top/scenes/centre.nff" -o "$scratch/home/ranks.ppm" --device "no such device"
+    cmp "$scratch"/home/{centre,ranks}.ppm || fail "two ranks render another image"
+    run_unpacked "${launch[@]}" "$top/scenes/centre.nff" -o "$scratch/home/ranks.ppm" --device "no such device"
     expect 3 "no OpenCL device matches"
 fi
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The workflow of docs/ci and the commands of docs/ci.md: programs and options exist; packages are those of tools/setup or tools/portability;
+"""Checks the workflow of docs/ci and the commands of docs/ci.md: programs and options exist; packages are those of tools/setup or tools/portability;
 uploaded files are written; tests write the same report as tools/test. The checks themselves are tested with injected faults.
 
-    tests/tools/test_ci_recipe.py RAYA     RAYA: the built program. Exit code 77 where Python has no yaml (Debian: python3-yaml)
+    tests/tools/test_ci_recipe.py RAYA     RAYA: the built program. Exit code 77 if Python has no yaml (Debian: python3-yaml)
 """
 import functools, json, re, shlex, shutil, subprocess, sys, tempfile
 from pathlib import Path
@@ -60,7 +60,7 @@ def junit_of(words):
 
 
 def wrong_with_raya(words, raya, scratch):
-    """Runs the command with an additional unknown option: raya parses everything, must complain only about that option, and renders nothing."""
+    """Runs the command with an additional unknown option. raya parses all options, must complain about this one only, and renders nothing."""
     code, output = output_of([raya, *words[1:], NO_SUCH], cwd=scratch)
     return "" if code == 2 and f": no option {NO_SUCH}; see raya {words[1]} --help\n" in output else output.strip()
 
@@ -98,9 +98,9 @@ def wrong_with_packages(words):
     return f"neither in tools/setup nor named by tools/portability: {strange}" if strange else ""
 
 
-@functools.cache  # most commands repeat with each injected fault
+@functools.cache  # most commands are the same with each injected fault
 def wrong_with(words, raya, scratch):
-    """Text of what is wrong with one command, or an empty string."""
+    """Returns a text on what is wrong with one command; "" if nothing is."""
     name = words[0]
     if name == "build/raya":
         return wrong_with_raya(words, raya, scratch)
@@ -119,19 +119,19 @@ def files_of(words, written):
 
 
 def faults_of(workflow, page, raya, scratch):
-    """(lines on what is wrong with the workflow and the page, number of their commands)"""
+    """Returns (texts on what is wrong with the workflow and the page, number of their commands)."""
     import yaml
     steps = [step for job in yaml.safe_load(workflow)["jobs"].values() for step in job["steps"]]
-    own = [pair for step in steps for pair in commands(step.get("run", ""))]
+    workflow_commands = [pair for step in steps for pair in commands(step.get("run", ""))]
     # The page's commands: indented lines that start with a program.
     lines = [line.strip() for line in page.splitlines() if line.startswith("    ")]
-    shown = [pair for line in lines if line.startswith(("build/raya", "tools/", "ctest", "cmake", "apt-get")) for pair in commands(line)]
-    faults = [f"{' '.join(words)}: {wrong}" for words, _ in own + shown if (wrong := wrong_with(tuple(words), raya, scratch))]
-    written = set().union(*(files_of(*pair) for pair in own))
+    page_commands = [pair for line in lines if line.startswith(("build/raya", "tools/", "ctest", "cmake", "apt-get")) for pair in commands(line)]
+    faults = [f"{' '.join(words)}: {wrong}" for words, _ in workflow_commands + page_commands if (wrong := wrong_with(tuple(words), raya, scratch))]
+    written = set().union(*(files_of(*pair) for pair in workflow_commands))
     uploaded = [name for step in steps for name in step.get("with", {}).get("path", "").split() if "upload" in step.get("uses", "")]
     faults += [f"{name} is uploaded, and no step writes it" for name in uploaded if name not in written]
-    faults += [] if ["tools/setup"] in [words for words, _ in own] else ["no step runs tools/setup"]
-    return faults, len(own + shown)
+    faults += [] if ["tools/setup"] in [words for words, _ in workflow_commands] else ["no step runs tools/setup"]
+    return faults, len(workflow_commands + page_commands)
 
 
 def main():

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Tests the completions of `raya completion` in those of bash, zsh and fish that are installed.
+"""Tests the completions of `raya completion` in bash, zsh and fish, if these are installed.
   test_completion.py RAYA"""
+import functools
 import os
 import pathlib
 import pty
@@ -59,7 +60,7 @@ def in_bash(script, line):
 
 def in_fish(script, line):
     output = subprocess.run(["fish", "-N", "-c", f"source {script}; complete -C '{line}'"], capture_output=True, text=True, check=True).stdout
-    return [one.split("\t")[0] for one in output.split("\n")]
+    return [line.split("\t")[0] for line in output.split("\n")]
 
 
 class Zsh:
@@ -69,29 +70,30 @@ class Zsh:
         folder = pathlib.Path(script).parent / "functions"
         folder.mkdir()
         shutil.copy(script, folder / "_raya")  # the name under which distributions install it
-        self.more = ""  # output after the text that until() has returned
+        self.pending = ""  # output after the text that until() has returned
         pid, self.terminal = pty.fork()
         if pid == 0:
             os.execvpe("zsh", ["zsh", "-f", "-i"], {**os.environ, "TERM": "dumb", "COLUMNS": "200", "LINES": "200"})
         self.keys(f"PS1='>''>>'; unset zle_bracketed_paste; unsetopt prompt_sp; stty cols 200 rows 200; fpath=({folder} $fpath); autoload -Uz compinit && compinit -D -u; "
                   "zstyle ':completion:*' list-prompt ''; LISTMAX=1000; setopt no_auto_menu no_beep; echo EN''D\n")
         self.until("END")
-        self.until(">>>")  # before the prompt, the terminal and not zsh's line editor would receive keys
+        self.until(">>>")  # before the prompt, keys would go to the terminal, not to zsh's line editor
 
     def keys(self, text):
         os.write(self.terminal, text.encode())
 
     def until(self, mark, seconds=20):
-        shown, self.more, end = self.more, "", time.time() + seconds
+        """Returns the output before `mark`."""
+        shown, self.pending, end = self.pending, "", time.time() + seconds
         while mark not in shown and time.time() < end:
             if select.select([self.terminal], [], [], 0.1)[0]:
                 shown += os.read(self.terminal, 65536).decode(errors="replace")
         assert mark in shown, f"zsh does not answer: {shown!r}"
-        shown, _, self.more = shown.partition(mark)
+        shown, _, self.pending = shown.partition(mark)
         return shown
 
     def offered(self, line):
-        """Completions of a line: ^D lists them, ^U clears the line, and the output of `echo` marks the end."""
+        """Returns the completions of a line: ^D lists them, ^U clears the line, and the output of `echo` marks the end."""
         self.keys(line + "\x04" + "\x15echo EN''D\n")
         shown = self.until("END")
         self.until(">>>")
@@ -99,7 +101,7 @@ class Zsh:
 
 
 def check_completions(shell, offered, line, wanted, unwanted):
-    names = {one.rstrip("/").rsplit("/", 1)[-1].rsplit(",", 1)[-1].rsplit("=", 1)[-1] for one in offered} | set(offered)
+    names = {text.rstrip("/").rsplit("/", 1)[-1].rsplit(",", 1)[-1].rsplit("=", 1)[-1] for text in offered} | set(offered)
     for name in wanted:
         if name not in names:
             faults.append(f"{shell}: '{line}' does not offer {name}: {sorted(names)[:40]}")
@@ -123,7 +125,8 @@ def run():
             script = str(pathlib.Path(scratch) / f"raya.{shell}")
             subprocess.run([raya, "completion", shell, "-o", script], check=True)
             subprocess.run([shell, "-n", script], check=True)
-            offered = Zsh(script).offered if shell == "zsh" else lambda line, its={"bash": in_bash, "fish": in_fish}.get(shell), at=script: its(at, line)
+            complete = {"bash": in_bash, "fish": in_fish}.get(shell)
+            offered = Zsh(script).offered if shell == "zsh" else functools.partial(complete, script)
             for line, wanted, unwanted in EXPECTED:
                 line = line.replace("FOLDER", str(folder))
                 check_completions(shell, offered(line), line, wanted, unwanted)

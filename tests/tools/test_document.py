@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The laboratory's document in a browser: static HTML without requests, scripts and errors in the console; every figure is visible and has a
+"""Checks the laboratory's document in a browser: static HTML without requests, scripts and errors in the console; every figure is visible and has a
 description; text has enough contrast; at three widths, light and dark, on paper. The checks themselves are tested with injected faults.
 
     tests/tools/test_document.py PACKAGES       a small document, made with the package raya in this folder (build/python)
@@ -44,8 +44,8 @@ def large_page(lab):
     def series(number):
         x = range(1, 60 if number == 1 else 5)
         style = "steps" if number == 7 else "points" if number == 8 else "line" if number < 7 else "paper"
-        return lab.Series(f"series {number}" if number else HOSTILE, x, [math.exp(0.1 * one) + number for one in x], style,
-                          [0.4 * one for one in x] if number < 3 else [])
+        return lab.Series(f"series {number}" if number else HOSTILE, x, [math.exp(0.1 * value) + number for value in x], style,
+                          [0.4 * value for value in x] if number < 3 else [])
 
     return lab.Page({"scene": HOSTILE, "seeds": [1, 2, 3]}, [HOSTILE], [lab.Comparison(HOSTILE, "", None, math.inf)],
                     [lab.Claim("C 1999", HOSTILE, "Never.", lab.NOT_REPRODUCED, HOSTILE)],
@@ -106,6 +106,7 @@ FAULTS = [
 
 
 def undetected_faults(page, text, count, folder):
+    """Yields the injected faults that check_views() does not detect."""
     for old, new, expected in FAULTS:
         if old not in text:
             yield f"the document has no '{old}': update FAULTS of this test"
@@ -126,15 +127,15 @@ def main(given):
         print("skipped: no Chromium (tools/setup --browser)")
         return 77
     with tempfile.TemporaryDirectory() as folder, browser.Browser() as page:
-        made = Path(given).is_dir()
-        if made:
+        is_package = Path(given).is_dir()
+        if is_package:
             python = os.environ.get("RAYA_PYTHON", "/usr/bin/python3")  # as `raya study` chooses it
             subprocess.run([python, __file__, str(Path(given).resolve()), folder], check=True)
-        index = Path(folder, "index.html") if made else Path(given).resolve()
+        index = Path(folder, "index.html") if is_package else Path(given).resolve()
         text = index.read_text(errors="replace")
         count = text.count("<figure class=\"plot\">")
         wrong = list(check_views(page, index.as_uri(), count))
-        if made:
+        if is_package:
             wrong += [f"{count} figures"] * (count != 5)
             shown = page.value("document.body.textContent").replace("±", "+-")
             wrong += [f"{shown.count(part)} times {part}" for part in HOSTILE.split("`") if shown.count(part) < 400]

@@ -26,7 +26,7 @@ def documents():
 
 
 def anchors(text):
-    """The anchors of a page's headings, as GitHub makes them."""
+    """Returns the anchors of a page's headings, as GitHub makes them."""
     headings = re.findall(r"^#+ (.*)$", text, re.M)
     return {re.sub(r"[^\w\- ]", "", re.sub(r"[`*]", "", heading).lower()).replace(" ", "-") for heading in headings}
 
@@ -36,10 +36,10 @@ def broken_links(page, text):
         if re.match(r"[a-z]+://|mailto:", target):
             continue
         file, _, anchor = target.partition("#")
-        other = page if not file else page.parent / file
-        if not other.exists():
+        target_file = page if not file else page.parent / file
+        if not target_file.exists():
             yield f"{page.relative_to(ROOT)}: {target} does not exist"
-        elif anchor and other.suffix == ".md" and anchor not in anchors(other.read_text()):
+        elif anchor and target_file.suffix == ".md" and anchor not in anchors(target_file.read_text()):
             yield f"{page.relative_to(ROOT)}: {target} has no such heading"
 
 
@@ -61,11 +61,12 @@ def long_texts(page, text):
 
 
 def masked(line):
+    """Returns the line with its measured parts replaced by "#"."""
     return re.sub(r"\s+", " ", MEASURED.sub("#", line) if MEASURED_LINES.match(line) else line).strip()
 
 
 def examples(text):
-    """(command, printed lines) of each block that starts with "    $ "."""
+    """Yields (command, printed lines) of each block that starts with "    $ build/raya"."""
     for block in re.findall(r"(?:^    .*\n)+", text, re.M):
         lines = [line[4:] for line in block.splitlines()]
         if lines[0].startswith("$ build/raya"):
@@ -73,7 +74,7 @@ def examples(text):
 
 
 def stale_counts(verify_output):
-    """docs/verify.md names the number of images that --quick renders."""
+    """Yields a fault if docs/verify.md does not name the number of images that --quick renders."""
     printed = len(re.findall(r"^PASS  image ", verify_output, re.M))
     named = re.search(r"(\d+) images", (ROOT / "docs/verify.md").read_text())
     if not named or int(named[1]) != printed:

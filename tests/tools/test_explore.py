@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The explorer's page in a browser: its figures equal those of `raya render`, to the last printed digit, for every static mapping; it sends no
+"""Checks the explorer's page in a browser: its figures equal those of `raya render`, to the last printed digit, for every static mapping; it sends no
 requests; controls, pointer, keys and links work; at three widths, light and dark, on paper and without scripts. The checks themselves are tested
 with injected faults.
 
@@ -18,19 +18,19 @@ SEED = int(os.environ.get("RAYA_EXPLORE_SEED", "1993"))
 WIDTHS = (400, 820, 1400)
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 
-# Opens links and returns the page's texts and figures for each link; with `whole`, also loads and curves.
+# Opens links and returns the page's texts and figures for each link; if `whole`, also loads and curves.
 FOLLOW_LINKS = r"""(async (cases) => {
   const answers = [];
   for (const {link, whole} of cases) {
     if (location.hash !== "#" + link) {
-      const heard = new Promise((done) => addEventListener("hashchange", done, {once: true}));
+      const changed = new Promise((done) => addEventListener("hashchange", done, {once: true}));
       location.hash = link;
-      await heard;
+      await changed;
     }
     while (whole && explorer.curves.known < explorer.size.width) await new Promise((done) => setTimeout(done, 5));
     const texts = Object.fromEntries([...document.querySelectorAll("[data-figure]")].map((e) => [e.dataset.figure, e.textContent]));
     const {figures: f, curves} = explorer;
-    answers.push({texts, imbalance: f.imbalance, pes: f.setting.pes, moves: [f.rotations, f.rotations * f.setting.pes * 3 * f.share, f.transfers, f.broadcasts], message: document.getElementById("message").hidden ? "" : document.getElementById("message").textContent,
+    answers.push({texts, imbalance: f.imbalance, pes: f.setting.pes, moves: [f.rotations, f.rotations * f.setting.pes * 3 * f.maxShare, f.transfers, f.broadcasts], message: document.getElementById("message").hidden ? "" : document.getElementById("message").textContent,
                   ...(whole ? {loads: [...f.loads], cyclic: [...curves.values.cyclic], block: [...(curves.values.block || curves.values.cyclic)]} : {})});
   }
   return answers;
@@ -48,9 +48,9 @@ def start(page, url, **view):
         page.value("ready")
 
 
-WIDE, HIGH = 48, 36
+WIDTH, HEIGHT = 48, 36
 SQUARE = ["--size", "64x64", "--lanes", "4", "--format", "fp32"]  # on the SPA, which has a time model
-# Both folds, with fewer, as many and more PEs than columns, that divide their number or not; and every other mapping, with unequal sides.
+# Both folds with fewer PEs than columns, as many and more, whose number divides that of the columns or does not; every other mapping.
 SETTINGS = [("cyclic:7", 48, "cyclic"), ("cyclic:13", 12, "cyclic"), ("cyclic:5", 20, "cyclic"), ("cyclic:5", 20, "block"), ("cyclic:40", 12, "block"),
             ("cyclic:11", 100, "cyclic"), ("cyclic:11", 100, "block"), ("column", 7, "block"), ("rows", 7, ""), ("blocks", 10, ""), ("grid:3x8", 24, ""),
             ("grid:7x2", 14, ""), ("tiles:8x3", 9, ""), ("random:1", 17, ""), ("random:4000000000", 48, "")]
@@ -59,18 +59,20 @@ SETTINGS = [("cyclic:7", 48, "cyclic"), ("cyclic:13", 12, "cyclic"), ("cyclic:5"
 def random_setting(rng):
     kind, pes = rng.choice(["cyclic", "cyclic", "rows", "blocks", "grid", "tiles", "random"]), rng.choice([1, 12, 48, rng.randint(2, 300)])
     a, b = rng.randint(1, 12), rng.randint(1, 12)
-    more = {"cyclic": f":{rng.randrange(WIDE)}", "grid": f":{a}x{b}", "tiles": rng.choice([":8x6", ":4x4", ":1x36"]), "random": f":{rng.randrange(2 ** 32)}"}
+    more = {"cyclic": f":{rng.randrange(WIDTH)}", "grid": f":{a}x{b}", "tiles": rng.choice([":8x6", ":4x4", ":1x36"]),
+            "random": f":{rng.randrange(2 ** 32)}"}
     return kind + more.get(kind, ""), a * b if kind == "grid" else pes, rng.choice(["cyclic", "block"]) if kind == "cyclic" else ""
 
 
-def grouped(number):
+def with_separators(number):
     return f"{number:,}".replace(",", "\u202f")
 
 
 def expected_figures(raya, folder, scene, settings):
     """Yields the figures that the page must show for each setting, from renders: loads, and moves of the 3 x 3 filter if the mapping allows it."""
     # A machine without a memory limit, so that all pixels of a PE move at the same time.
-    report, size = Path(folder, "report.json"), ["--size", f"{WIDE}x{HIGH}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32"]
+    report = Path(folder, "report.json")
+    size = ["--size", f"{WIDTH}x{HEIGHT}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32"]
 
     def render(mapping, pes, fold, *more):
         options = ["--mapping", mapping, "--pes", str(pes), *(["--fold", fold] if fold else []), *more]
@@ -78,18 +80,18 @@ def expected_figures(raya, folder, scene, settings):
         return json.loads(report.read_text()), out.stdout
 
     for mapping, pes, fold in settings:
-        made, out = render(mapping, pes, fold)
-        load, link = made["load"], f"mapping={mapping}&pes={pes}" + (f"&fold={fold}" if fold else "")
+        result, out = render(mapping, pes, fold)
+        load, link = result["load"], f"mapping={mapping}&pes={pes}" + (f"&fold={fold}" if fold else "")
         u, speedup, efficiency = re.search(r"^load +u = (.*?), speed-up (.*?), efficiency (.*? %)", out, re.M).groups()
         loads = load["per_pe"]
-        of_pe = lambda cycles: f"{grouped(cycles)} cycles (PE {loads.index(cycles)})"
-        texts = {"u": u, "speedup": speedup, "efficiency": efficiency, "busiest": of_pe(max(loads)), "idlest": of_pe(min(loads)),
-                 "mean": grouped(round(load["mean"], 1)) + " cycles"}
+        load_text = lambda cycles: f"{with_separators(cycles)} cycles (PE {loads.index(cycles)})"
+        texts = {"u": u, "speedup": speedup, "efficiency": efficiency, "busiest": load_text(max(loads)), "idlest": load_text(min(loads)),
+                 "mean": with_separators(round(load["mean"], 1)) + " cycles"}
         case = {"link": link, "texts": texts, "imbalance": load["imbalance"], "pes": pes, "loads": loads, "mapping": mapping, "fold": fold}
         if not mapping.startswith("random"):
             ring, bus, broadcast = (render(mapping, pes, fold, "--antialias", "filter", "--exchange", method)[0]["communication"] for method in ("ring", "bus", "bus-broadcast"))
             case["moves"] = [ring["rotations"], ring["rotation_words"], bus["transfers"], broadcast["pe_broadcasts"]]
-            texts["bus"] = f"{grouped(bus['transfers'])} transfers or {grouped(broadcast['pe_broadcasts'])} broadcasts"
+            texts["bus"] = f"{with_separators(bus['transfers'])} transfers or {with_separators(broadcast['pe_broadcasts'])} broadcasts"
         yield case
 
 
@@ -108,17 +110,17 @@ def figure_differences(page, cases):
 
 
 def check_arithmetic(page):
-    """Complaints about figures that no render prints: shortest vectors (compared with a search of all pairs), rotations on Kohata & Ito's array,
-    digits (compared with fmt's), times."""
+    """Returns complaints about figures that no render prints: shortest vectors (compared with a search of all pairs), rotations on Kohata & Ito's
+    array, digits (compared with fmt's), times."""
     wrong = page.value("""(() => {
       const wrong = [], side = 48;
       const check = (setting, width) => {
         const size = {width, height: side}, owners = ownersOf(setting, size), vector = vectorOf(setting, size);
-        let least = Infinity;
+        let minimum = Infinity;
         for (let i = 0; i < owners.length; ++i)
           for (let j = 0; j < i; ++j)
-            if (owners[i] === owners[j]) least = Math.min(least, (Math.floor(i / width) - Math.floor(j / width)) ** 2 + (i % width - j % width) ** 2);
-        if (!vector || vector[0] ** 2 + vector[1] ** 2 !== least) wrong.push(`${JSON.stringify(setting)}: vector ${vector}, nearest pair ${least}`);
+            if (owners[i] === owners[j]) minimum = Math.min(minimum, (Math.floor(i / width) - Math.floor(j / width)) ** 2 + (i % width - j % width) ** 2);
+        if (!vector || vector[0] ** 2 + vector[1] ** 2 !== minimum) wrong.push(`${JSON.stringify(setting)}: vector ${vector}, nearest pair ${minimum}`);
       };
       for (const pes of [8, 12, 24]) for (let offset = 0; offset < 24; ++offset) check({kind: "slots", fold: "cyclic", offset, pes}, pes === 24 ? 48 : 24);
       for (const [a, b] of [[3, 5], [5, 3], [4, 4], [1, 6]]) check({kind: "grid", pes: a * b, a, b}, 30);
@@ -128,7 +130,7 @@ def check_arithmetic(page):
       for (const [offset, rotations] of [[0, 2], [8, 18], [16, 34]]) {
         const size = {width: 256, height: 256}, f = figuresOf({kind: "slots", fold: "cyclic", offset, pes: 256}, size, new Float64Array(65536).fill(1),
           {cycle_ns: 100, link_words_per_s: 1e6, rotation_sync_ms: 0.25});
-        if (f.rotations !== rotations || f.share !== 256 || f.imbalance !== 0) wrong.push(`p = ${offset}: ${f.rotations} rotations`);
+        if (f.rotations !== rotations || f.maxShare !== 256 || f.imbalance !== 0) wrong.push(`p = ${offset}: ${f.rotations} rotations`);
         if (Math.abs(f.time.compute - 0.0256) > 1e-9 || Math.abs(f.time.rotations - rotations * (0.25 + 0.768)) > 1e-9) wrong.push(`p = ${offset}: ${f.time.compute} and ${f.time.rotations} ms`);
       }
       return wrong;
@@ -142,31 +144,32 @@ def check_arithmetic(page):
 
 
 def check_costs(page, html, folder):
-    """The page must decode costs of any size, up to a sum of 2^53 - 1, and report incomplete costs."""
-    report, rng, changed = report_of(html.read_text()), random.Random(SEED), Path(folder, "costs.html")
+    """Yields a complaint if the page does not decode costs up to a sum of 2^53 - 1, or does not report incomplete costs."""
+    report, rng, changed_page = report_of(html.read_text()), random.Random(SEED), Path(folder, "costs.html")
     for bits in (0, 9, 33, 41):
-        cycles = [rng.getrandbits(bits) if bits else 0 for _ in range(WIDE * HIGH)]
+        cycles = [rng.getrandbits(bits) if bits else 0 for _ in range(WIDTH * HEIGHT)]
         if bits == 41:
             cycles[-1] += 2 ** 53 - 1 - sum(cycles)
         bytes_ = max(1, (max(cycles).bit_length() + 7) // 8)
         planes = b"".join(bytes(cost >> 8 * byte & 255 for cost in cycles) for byte in range(bytes_))
         report["cost"] = {"bytes": bytes_, "gzip": base64.b64encode(gzip.compress(planes)).decode()}
-        changed.write_text(with_report(html.read_text(), report))
-        start(page, changed.as_uri())
-        if page.value("[...explorer.costs]") != cycles or page.value("explorer.figures.sum") != sum(cycles) or grouped(sum(cycles)) not in page.value("document.body.innerText"):
+        changed_page.write_text(with_report(html.read_text(), report))
+        start(page, changed_page.as_uri())
+        figures_right = page.value("[...explorer.costs]") == cycles and page.value("explorer.figures.sum") == sum(cycles)
+        if not figures_right or with_separators(sum(cycles)) not in page.value("document.body.innerText"):
             yield f"costs of {bits} bits are not decoded"
         if not bits and page.value("[explorer.figures.busiest, explorer.figures.idlest]") != [0, 0]:
             yield "equal loads: the page does not name the first PE"
         yield from complaints(page)
     report["cost"]["bytes"] += 1
-    changed.write_text(with_report(html.read_text(), report))
-    start(page, changed.as_uri())
+    changed_page.write_text(with_report(html.read_text(), report))
+    start(page, changed_page.as_uri())
     if "cannot be shown: the embedded costs are incomplete" not in page.value("document.body.innerText"):
         yield "incomplete costs are not reported"
 
 
 def check_views(page, html):
-    """Complaints about the page at all widths, with both colour schemes, printed, and without scripts."""
+    """Yields complaints about the page at all widths, with both colour schemes, printed, and without scripts."""
     for width, dark, scripts, media in [(w, d, True, "") for w in WIDTHS for d in (False, True)] + [(820, False, False, ""), (700, False, True, "print")]:
         start(page, html.as_uri(), width=width, dark=dark, scripts=scripts, media=media)
         view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
@@ -213,7 +216,7 @@ def mouse(page, kind, canvas, across, down=0.5, **more):
 
 
 def check_controls(page, html):
-    """Complaints about pointer, keys, fields, buttons and links of the square page, 64 x 64."""
+    """Yields complaints about pointer, keys, fields, buttons and links of the square page, 64 x 64."""
     state = "[mappingText(explorer.state), settingOf(explorer.state).pes, explorer.state.fold, explorer.state.pe, explorer.state.view]"
 
     def expect(what, *wanted):
@@ -238,13 +241,13 @@ def check_controls(page, html):
     settle(page)
     page.value("document.getElementById('best').click()")
     settle(page)
-    least = page.value("explorer.curves.values.cyclic.indexOf(Math.min(...explorer.curves.values.cyclic))")
-    yield from expect("the best one's button", f"cyclic:{least}", 63)
+    best_offset = page.value("explorer.curves.values.cyclic.indexOf(Math.min(...explorer.curves.values.cyclic))")
+    yield from expect("the best one's button", f"cyclic:{best_offset}", 63)
 
     page.value("document.getElementById('pe').focus()")
     page.ask("Input.insertText", text="12")
     settle(page)
-    yield from expect("a PE's number", f"cyclic:{least}", 63, "cyclic", 12)
+    yield from expect("a PE's number", f"cyclic:{best_offset}", 63, "cyclic", 12)
     if "PE 12 owns" not in page.value("document.getElementById('pointed').textContent"):
         yield "there is no text on the selected PE"
     white = page.value("(() => { const c = document.getElementById('picture'); return new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height)"
@@ -253,7 +256,7 @@ def check_controls(page, html):
     if white != owned:
         yield f"{white} white pixels, {owned} of PE 12"
     page.value("document.getElementById('no-pe').click()")
-    yield from expect("all PEs", f"cyclic:{least}", 63, "cyclic", None)
+    yield from expect("all PEs", f"cyclic:{best_offset}", 63, "cyclic", None)
 
     mouse(page, "mouseMoved", "picture", (10 + 0.5) / 64, (20 + 0.5) / 64)
     words, owner, cost = page.value("[document.getElementById('pointed').textContent, explorer.figures.owners[20 * 64 + 10], grouped(explorer.costs[20 * 64 + 10])]")
@@ -261,7 +264,7 @@ def check_controls(page, html):
         yield f"pointed at row 20, column 10: {words}"
     mouse(page, "mousePressed", "picture", (10 + 0.5) / 64, (20 + 0.5) / 64, button="left", clickCount=1)
     mouse(page, "mouseReleased", "picture", (10 + 0.5) / 64, (20 + 0.5) / 64, button="left", clickCount=1)
-    yield from expect("a click on a pixel", f"cyclic:{least}", 63, "cyclic", owner)
+    yield from expect("a click on a pixel", f"cyclic:{best_offset}", 63, "cyclic", owner)
     mouse(page, "mousePressed", "curves", 0.5, button="left", clickCount=1)
     mouse(page, "mouseMoved", "curves", 0.999, button="left", buttons=1)
     mouse(page, "mouseReleased", "curves", 0.999, button="left", clickCount=1)
@@ -318,15 +321,15 @@ FAULTS = [
     ("loads[pe] > loads[busiest]", "loads[pe] >= loads[busiest]"),
     ("(max - mean) / mean", "max / mean"),
     ("begin = (begin + offset) % width", "begin = (begin + offset + 1) % width"),
-    ("from + pes - to", "from + pes - to - 1"),
+    ("pe + pes - origin", "pe + pes - origin - 1"),
     ("n <= distances.length", "n < distances.length"),
-    ("distant * pes", "distant"),
+    ("otherPes * pes", "otherPes"),
     ("rows * rows < square", "rows < 3"),
     ("width % pes === 0 : width === pes", "true : width === pes"),
     ("b <= a ? [0, b] : [a, 0]", "[a, 0]"),
     ("1e-6 * rates.cycle_ns", "1e-6 * 99"),
-    ("3 * share;", "share;"),
-    ("Number(down.at(-1)) % 2 === 0 ? down : ", ""),
+    ("3 * maxShare;", "maxShare;"),
+    ("Number(truncated.at(-1)) % 2 === 0 ? truncated : ", ""),
     ("2 ** (8 * Math.floor(at / pixels))", "2 ** (7 * Math.floor(at / pixels))"),
     ("new Float64Array(pes);\n  for (let at", "new Float32Array(pes);\n  for (let at"),
 ]
@@ -359,7 +362,7 @@ def main():
             assert not re.search(r"https?://(?!www.w3.org/2000/svg)", html.read_text())
             return html
 
-        html = explore("scene.html", "--size", f"{WIDE}x{HIGH}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32")
+        html = explore("scene.html", "--size", f"{WIDTH}x{HEIGHT}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32")
         square = explore("square.html", *SQUARE)
         cases = list(expected_figures(raya, folder, scene, settings))
         start(page, html.as_uri())

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/gpu_check with injected faults in kernels, in the budget and in the output of compilers; and without compilers. Few kernels, some seconds.
+"""Tests tools/gpu_check with injected faults in kernels, in the budget and in the output of compilers, and without compilers. Takes some seconds.
   test_gpu_check.py BUILD     the build folder: kernel_builds and patch_kernels
 Exit code 77: no compiler for GPUs; the checks that need none have passed."""
 import csv, json, os, pathlib, subprocess, sys, tempfile, time
@@ -9,7 +9,7 @@ BUILD = pathlib.Path(sys.argv[1]).resolve()
 SCRATCH = pathlib.Path(tempfile.mkdtemp())
 sys.path.insert(0, str(ROOT / "tools"))
 from gpu import amd, intel, nvidia  # noqa: E402
-from gpu.budget import HEAD, Budget  # noqa: E402
+from gpu.budget import COLUMNS, Budget  # noqa: E402
 from gpu.figures import Figures  # noqa: E402
 
 
@@ -31,7 +31,7 @@ def check(*options, code=0, path=None, texts=()):
 
 
 def patched(file, *changes):
-    """Folder with a copy of the kernels, with (find, replace) applied to one of them."""
+    """Returns a folder with a copy of the kernels; each change (find, replace) is applied to the kernel `file`."""
     folder = SCRATCH / f"kernels{len(list(SCRATCH.iterdir()))}"
     subprocess.run([BUILD / "tests" / "patch_kernels", folder, *[word for change in changes for word in (file, *change)]], check=True)
     return folder
@@ -61,16 +61,16 @@ for line, fault in (("\tv_fma_f64 v[0:1], v[2:3]", "double"), ("\t.amdhsa_float_
     expect(fault in " ".join(amd.faults_of(f"bar:\n\tv_add_f32 v0, v1, v2\n{line}\n\ts_add_u32 s4, s4, bar@rel32@lo\n")), line)
 expect(not amd.faults_of("bar:\n\tv_add_f32 v0, v1, v2\n\ts_add_u32 s4, s4, bar@rel32@lo\n"))
 
-# The budget: every figure at its limit and above.
+# The budget: every figure at its limit and above the limit.
 file = SCRATCH / "budget.csv"
-had = Figures("k", "v", "t", 32, 32, 100, 0, 40, 0)
-Budget(file).write([had], {"t": "a 1"})
+base_figures = Figures("k", "v", "t", 32, 32, 100, 0, 40, 0)
+Budget(file).write([base_figures], {"t": "a 1"})
 budget = Budget(file)
 expect(budget.applies_to("t", "a 1") and not budget.applies_to("t", "a 2") and not budget.applies_to("u", "a 1"))
 for change, fault in (({}, ""), ({"registers": 105}, ""), ({"registers": 106}, "registers: 106, 100 in the budget"), ({"spills": 1}, "spills: 1, 0"),
                       ({"scalar_spills": 1}, "scalar spills"), ({"stack": 43}, "stack"), ({"local": 4}, "local"),
                       ({"width": 16}, "threads of 16 work-items, 32"), ({"width": 64, "registers": 50}, ""), ({"variant": "w"}, "no budget")):
-    found = list(budget.faults(Figures(**{**had.__dict__, **change})))
+    found = list(budget.faults(Figures(**{**base_figures.__dict__, **change})))
     expect(len(found) == (fault != "") and fault in "".join(found), change, found)
 Budget(file).write([Figures("l", "v", "t", 32, 32, 7, 0, 0, 0)], {"t": "a 1"}, whole=False)
 expect([row["registers"] for row in Budget(file).rows.values()] == ["100", "7"])
@@ -82,48 +82,48 @@ expect(budget.stale({("k", "other", "t")}, ["t"]) == [("k", "v", "t")] and not b
 for options, text in ((["--targets", "sm_1"], "sm_1"), (["--write", "--only", "x"], "--write"), (["--jobs", "0"], "--jobs"),
                       (["--write-budget", "--group", "64"], "--write-budget"), (["--frobnicate"], "frobnicate")):
     check(*options, code=2, texts=[text])
-bare = SCRATCH / "bin"
-bare.mkdir()
+program_folder = SCRATCH / "bin"
+program_folder.mkdir()
 for program in ("env", "python3"):
-    (bare / program).symlink_to("/usr/bin/" + program)
-check(code=3, path=bare, texts=["Debian: clang-15", "Debian: intel-opencl-icd", "tools/setup --gpu"])
-check("--libclc", "/nowhere", code=3, path=bare, texts=["Debian: libclc-15"])
+    (program_folder / program).symlink_to("/usr/bin/" + program)
+check(code=3, path=program_folder, texts=["Debian: clang-15", "Debian: intel-opencl-icd", "tools/setup --gpu"])
+check("--libclc", "/nowhere", code=3, path=program_folder, texts=["Debian: libclc-15"])
 
 # The rest compiles kernels.
-small = ["--only", "torus/compose fp32"]
-done = subprocess.run([ROOT / "tools" / "gpu_check", "--build", BUILD, *small], capture_output=True, text=True)
+few_kernels = ["--only", "torus/compose fp32"]
+done = subprocess.run([ROOT / "tools" / "gpu_check", "--build", BUILD, *few_kernels], capture_output=True, text=True)
 if done.returncode == 3:
     print("skipped: no compiler for GPUs (tools/setup --gpu); the checks that need none have passed")
     sys.exit(77)
 check("--only", "no such kernel", code=2, texts=["there are", "ring/trace"])
 check("--kernel-dir", "/nowhere", code=2, texts=["/nowhere"])
-report = first_report = check(*small)
+report = first_report = check(*few_kernels)
 versions, kernels = report["versions"], report["kernels"]
 expect([k["target"] for k in kernels] == list(versions) and all(k["kernel"] == "torus/compose" and k["registers"] > 0 for k in kernels), kernels)
 
 
 def budget_of(change=lambda row: None, change_version=lambda version: version):
-    rows = [{key: kernel[key] for key in HEAD} for kernel in kernels]
+    rows = [{key: kernel[key] for key in COLUMNS} for kernel in kernels]
     for row in rows:
         change(row)
     path = SCRATCH / "changed.csv"
     with open(path, "w") as to:
         to.writelines(f"# made for {target}: {change_version(version)}\n" for target, version in versions.items())
-        csv.DictWriter(to, HEAD).writeheader()
-        csv.DictWriter(to, HEAD).writerows(rows)
+        csv.DictWriter(to, COLUMNS).writeheader()
+        csv.DictWriter(to, COLUMNS).writerows(rows)
     return "--budget", path
 
 
-check(*small, *budget_of())
-lower = budget_of(lambda row: row.update(registers=int(row["registers"] / 1.06)))
-check(*small, *lower, code=4, texts=[f"torus/compose fp32, {target}: registers: " for target in versions] + ["--write-budget"])
-check(*small, *lower, "--write-budget")
-check(*small, "--budget", lower[1])
-other = budget_of(lambda row: row.update(registers=1), lambda version: version + "x")
-check(*small, *other, "--write-budget", code=2, texts=["would mix them"])
-check(*small, *other, texts=[f"{target}: not compared: the budget is of other compilers" for target in versions])
+check(*few_kernels, *budget_of())
+lower_budget = budget_of(lambda row: row.update(registers=int(row["registers"] / 1.06)))
+check(*few_kernels, *lower_budget, code=4, texts=[f"torus/compose fp32, {target}: registers: " for target in versions] + ["--write-budget"])
+check(*few_kernels, *lower_budget, "--write-budget")
+check(*few_kernels, "--budget", lower_budget[1])
+other_budget = budget_of(lambda row: row.update(registers=1), lambda version: version + "x")
+check(*few_kernels, *other_budget, "--write-budget", code=2, texts=["would mix them"])
+check(*few_kernels, *other_budget, texts=[f"{target}: not compared: the budget is of other compilers" for target in versions])
 only_amd = next((["--targets", target] for target in ("gfx90a", "pvc") if target in versions), [])
-check(*small, *only_amd, *budget_of(lambda row: row.update(variant="x")), code=4, texts=["has no budget"])
+check(*few_kernels, *only_amd, *budget_of(lambda row: row.update(variant="x")), code=4, texts=["has no budget"])
 
 # A kernel with an injected fault is detected for every target.
 sum_line = "sum = vec_mad(vec_of(c.x, c.y, c.z), c.w, sum);"
@@ -131,7 +131,7 @@ head = "__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))\nvoid c
 for text, changes in (("double precision", [(sum_line, "sum = vec_mad(vec_of((float)((double)c.x * c.y / 3.0), c.y, c.z), c.w, sum);")]),
                       ("nowhere", [(sum_line, "sum.x = nowhere(c.x);"), (head, "float nowhere(float x);\n" + head)]),
                       ("does not build", [(sum_line, "sum = vec_nad(sum);")])):
-    report = check(*small, "--kernel-dir", patched("torus/compose.cl", *changes), code=4, texts=[text])
+    report = check(*few_kernels, "--kernel-dir", patched("torus/compose.cl", *changes), code=4, texts=[text])
     expect({fault["target"] for fault in report["faults"]} == set(versions), text, report["faults"])
 
 # A new spill: 600 numbers are read before the first is used.
@@ -143,21 +143,24 @@ reads = """    float many[600];
     for (uint i = 0; i < 600; ++i) sum.x += many[i] * many[599 - i];
     """
 last = "vstore3((float3)(sum.x, sum.y, sum.z), pixel, image);"
-able = next((target for target in ("sm_90", "gfx90a") if target in versions), None)  # the fastest
-if able:
-    check(*small, "--targets", able, *budget_of(), "--kernel-dir", patched("torus/compose.cl", (last, reads + last)), code=4,
-          texts=[f"torus/compose fp32, {able}: spills: "])
+fast_target = next((target for target in ("sm_90", "gfx90a") if target in versions), None)  # the one that compiles fastest
+if fast_target:
+    check(*few_kernels, "--targets", fast_target, *budget_of(), "--kernel-dir", patched("torus/compose.cl", (last, reads + last)), code=4,
+          texts=[f"torus/compose fp32, {fast_target}: spills: "])
     kept = "__attribute__((noinline)) float kept(float x) { return x * x; }\n"
-    check(*small, "--targets", able, "--kernel-dir", patched("torus/compose.cl", (head, kept + head), (sum_line, "sum.x = kept(c.x);")), code=4,
-          texts=[f"torus/compose fp32, {able}: a call is not inlined: "])
+    not_inlined = patched("torus/compose.cl", (head, kept + head), (sum_line, "sum.x = kept(c.x);"))
+    check(*few_kernels, "--targets", fast_target, "--kernel-dir", not_inlined, code=4,
+          texts=[f"torus/compose fp32, {fast_target}: a call is not inlined: "])
 
 # Unchanged kernels are not compiled again and have the same figures; a changed comment is not a change, any changed code is.
 compilations = len(versions) - ("sm_90" in versions and "sm_80" in versions)  # NVIDIA's targets are compiled together
-expect(check(*small, "--anew", texts=["0 of 0 builds cached"]) == first_report == check(*small, texts=[f"{compilations} of {compilations} builds cached"]))
-check(*small, "--kernel-dir", patched("torus/compose.cl", (sum_line, "// a sum\n" + sum_line)), texts=[f"{compilations} of {compilations} builds cached"])
+all_cached = f"{compilations} of {compilations} builds cached"
+expect(check(*few_kernels, "--anew", texts=["0 of 0 builds cached"]) == first_report == check(*few_kernels, texts=[all_cached]))
+check(*few_kernels, "--kernel-dir", patched("torus/compose.cl", (sum_line, "// a sum\n" + sum_line)), texts=[all_cached])
 changed = "--kernel-dir", patched("torus/compose.cl", (sum_line, f"sum.x = c.x * {time.time_ns() % 10**9}.0f;"))  # differs from all earlier runs
-check(*small, *changed, texts=[f"0 of {compilations} builds cached"])
-check(*small, *changed, texts=[f"{compilations} of {compilations} builds cached"])
+check(*few_kernels, *changed, texts=[f"0 of {compilations} builds cached"])
+check(*few_kernels, *changed, texts=[all_cached])
 for _ in range(2):  # a build with a fault is not cached
-    check(*small, "--kernel-dir", patched("torus/compose.cl", (sum_line, "sum.x = (float)((double)c.x * c.y / 3.0);")), code=4, texts=["; 0 of "])
+    check(*few_kernels, "--kernel-dir", patched("torus/compose.cl", (sum_line, "sum.x = (float)((double)c.x * c.y / 3.0);")), code=4,
+          texts=["; 0 of "])
 print(f"tools/gpu_check: as expected, for {', '.join(versions)}")

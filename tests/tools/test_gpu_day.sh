@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests tools/gpu_day: interruption and resuming; page and exit code for steps that are right, wrong, out of time or missing.
 #   test_gpu_day.sh          with a mock raya that renders nothing, in a folder like that of tools/bundle
-#   test_gpu_day.sh RAYA     with the built program on the default device: small pictures, minutes of kernel compilation
+#   test_gpu_day.sh RAYA     with the built program on the default device: small images, minutes of kernel compilation
 set -euo pipefail
 root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
 scratch=$(mktemp -d)
@@ -17,9 +17,9 @@ expect() {  # expect CODE TEXT...
     local text
     for text in "${@:2}"; do [[ $page$(<"$scratch/err") == *"$text"* ]] || fail "no '$text'"; done
 }
-ended() { find "$out" -name '*.code' | wc -l; }
+count_finished() { find "$out" -name '*.code' | wc -l; }
 
-# Rows that are in both renders.csv and gpu_day.csv must be equal. A picture must have the same hash for every accelerator, machine and number of nodes.
+# Rows that are in both renders.csv and gpu_day.csv must be equal. An image has one hash for all accelerators, machines and numbers of nodes.
 common=0
 while IFS=, read -r scene options row; do
     found=$(awk -F, -v scene="$scene" -v options="$options" '$1 == scene && $2 == options { sub(/^[^,]*,[^,]*,/, ""); print }' "$day/gpu_day.csv")
@@ -27,8 +27,8 @@ while IFS=, read -r scene options row; do
     [[ -z $found ]] || common=$((common + 1))
 done < <(grep -v '^#' "$root/tests/portability/renders.csv")
 ((common == 16)) || { echo "FAILED: $common rows in both lists, not the header and 15"; exit 1; }
-several=$(grep -v '^#' "$day/gpu_day.csv" | sed -E 's/ --(accel|machine|nodes) [^ ,]*//g' | cut -d, -f1-3 | sort -u | cut -d, -f1,2 | uniq -d)
-[[ -z $several ]] || { echo "FAILED: several hashes of $several"; exit 1; }
+ambiguous=$(grep -v '^#' "$day/gpu_day.csv" | sed -E 's/ --(accel|machine|nodes) [^ ,]*//g' | cut -d, -f1-3 | sort -u | cut -d, -f1,2 | uniq -d)
+[[ -z $ambiguous ]] || { echo "FAILED: several hashes of $ambiguous"; exit 1; }
 
 if (($# > 0)); then
     ln -s "$(readlink -f "$1")" "$day/raya"
@@ -86,27 +86,27 @@ fi
 # gpu_day is killed while it runs: finished steps must not run again.
 "$day/gpu_day" --out "$out" --small --all >"$scratch/page" 2>"$scratch/err" &
 for ((i = 0; i < 20000; ++i)); do
-    (($(ended) < 6)) || break
+    (($(count_finished) < 6)) || break
     sleep 0.05
 done
-kill -TERM $! || { page=$(<"$scratch/page") && fail "it finished before it could be killed"; }
+kill -TERM $! || { page=$(<"$scratch/page") && fail "gpu_day finished before it could be killed"; }
 wait $! && { page='' && fail "exit code 0 of a killed run"; }
-before=$(ended)
+before=$(count_finished)
 first=$(cd "$out/steps" && md5sum verify-quick.txt devices.txt)
 gpu_day
 expect 0 "| 1 | devices, verify --quick | 2 | 0 | 0" "hashes (not done)"
 gpu_day --next
 expect 0 "| 3 | hashes | 16 | 0 | 0" "verify --full | 1 | 0" "torus: 4 of 4 right" "large pictures, goals, ranks (not done)"
-(($(ended) > before)) || fail "nothing ran after it was killed"
+(($(count_finished) > before)) || fail "nothing ran after it was killed"
 [[ $(cd "$out/steps" && md5sum verify-quick.txt devices.txt) == "$first" ]] || fail "finished steps ran again"
 gpu_day --all
 expect 0 "None of the steps that ran" "64 x 64, 30 spheres" "balls 2, bvh" "roofline, tuning | 1" "goals, ranks |" "torus-spa22: "
 [[ $page != *"not done"* && $page != *"not measured"* ]] || fail "the page is not complete"
-[[ $page == "$(<"$out/page.md")" ]] || fail "page.md is another page"
+[[ $page == "$(<"$out/page.md")" ]] || fail "page.md differs from the printed page"
 [[ -s $out/page.html ]] || fail "there is no page.html"
 [[ $(grep -c '^{"name": .*"verdict": "right"' "$out/report.json") == $(cat "$out"/steps/*.code | grep -c ' right$') ]] || fail "report.json has other steps"
 ! command -v python3 >/dev/null || python3 -m json.tool "$out/report.json" >/dev/null || fail "report.json is not JSON"
-(($(wc -l <"$out/page.md") < 130)) || fail "more than a page"
+(($(wc -l <"$out/page.md") < 130)) || fail "page.md has 130 lines or more"
 
 # A wrong count; then a wrong hash.
 cp "$day/gpu_day.csv" "$scratch/right.csv"
@@ -125,17 +125,17 @@ fi
 expect 4 "fp32, trace kernel | 5000 | 5120 | reached" "a third of that | 1706.67 | 2000.5 | reached" "1000 | 800 | missed"
 
 # Each fault in a new folder: the page names the failed step, and the other steps run.
-another() { out=$scratch/$1; touch "$day/$1"; gpu_day "${@:2}"; rm "$day/$1"; }
+run_with_fault() { out=$scratch/$1; touch "$day/$1"; gpu_day "${@:2}"; rm "$day/$1"; }
 cp "$day/right.csv" "$day/gpu_day.csv"
-another no_device --all
+run_with_fault no_device --all
 expect 3 "no device: raya: no OpenCL device" "devices: exit code 3"
-[[ $(ended) == 1 ]] || fail "steps ran without a device"
-another wrong_verify --all
+[[ $(count_finished) == 1 ]] || fail "steps ran without a device"
+run_with_fault wrong_verify --all
 expect 4 "- verify-full: exit code 4" "FAIL  geometry  grid" "| 3 | hashes | 16 | 0 | 0" "| 1 | devices, verify --quick | 1 | 1 | 0"
 
 # A step that hangs; a stage that is out of time continues when it is requested again.
 sed -i 's/^limits=.*/limits=(0 3 1 0 60 60)/' "$day/gpu_day"
-another slow_verify --all
+run_with_fault slow_verify --all
 expect 4 "- verify-quick: not done after" "| 3 | hashes | 0 | 16 | 0" "- hash-torus-cones-spa22: late" "| 4 | bench, roofline, tuning | 14 | 0 | 0"
 sed -i 's/^limits=.*/limits=(0 60 60 60 60 60)/' "$day/gpu_day"
 gpu_day --stage 3

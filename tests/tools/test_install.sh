@@ -12,7 +12,7 @@ cmake --install "$build" --prefix "$scratch/first place" >"$scratch/log" || fail
 mv "$scratch/first place" "$scratch/prefix"
 prefix=$scratch/prefix
 mkdir "$scratch/home"
-away() {  # away COMMAND...: runs the command without the build's environment; sets code and out
+run_installed() {  # run_installed COMMAND...: runs the command without the build's environment; sets code and out
     code=0
     out=$(cd "$scratch/home" && env -i HOME="$scratch/home" PATH="$prefix/bin:/usr/bin:/bin" POCL_CACHE_DIR="$POCL_CACHE_DIR" "$@" 2>&1) || code=$?
 }
@@ -24,24 +24,24 @@ found=$(grep -rIlF -e "$root/" -e "$build" "$prefix" || true)
 ! objdump -p "$prefix/bin/raya" "$prefix"/lib/raya/*.so | grep -E "R(UN)?PATH.*($root|$build)" || fail "the search path of libraries leads to the build"
 
 # The program, its modules, scenes and documents.
-away raya --version
+run_installed raya --version
 expect 0 "raya "
-away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
+run_installed raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
 expect 0 "(474a384374e81c5144a0e5405232a750)"
 [[ $(head -c 4 "$scratch/home/centre.png" | tail -c 3) == PNG ]] || fail "no PNG"
 if [[ -d $prefix/lib/python3 ]]; then  # the Python module, alone and in `raya study`
-    away env PYTHONPATH="$prefix/lib/python3/dist-packages" /usr/bin/python3 -c \
+    run_installed env PYTHONPATH="$prefix/lib/python3/dist-packages" /usr/bin/python3 -c \
         "import raya; r = raya.render('$prefix/share/raya/scenes/centre.nff'); print(r.hash, raya.program()); open('r.png', 'wb').write(r.png)"
     expect 0 "474a384374e81c5144a0e5405232a750 $prefix/bin/raya"
-    away raya study fig8 --size 17 -q -o study
+    run_installed raya study fig8 --size 17 -q -o study
     expect 0 ""
     [[ -s $scratch/home/study/index.html ]] || fail "there is no document: $out"
     chmod o+w "$prefix/lib/python3/dist-packages/raya"
-    away raya study fig8 --size 17 -q -o study
+    run_installed raya study fig8 --size 17 -q -o study
     expect 2 "refused to run '$prefix/lib/python3/dist-packages': other users may write"
     chmod o-w "$prefix/lib/python3/dist-packages/raya"
 fi
-cmp <("$build/raya" manual render) "$prefix/share/man/man1/raya-render.1" || fail "another page"
+cmp <("$build/raya" manual render) "$prefix/share/man/man1/raya-render.1" || fail "the installed manual page differs"
 for shell in bash-completion/completions/raya zsh/site-functions/_raya fish/vendor_completions.d/raya.fish; do
     [[ -s $prefix/share/$shell ]] || fail "no share/$shell"
 done
@@ -57,11 +57,11 @@ done < <(grep -roP --include='*.md' '\]\(\K(?!https?:|#)[^)]+' "$doc")
 # The number layer in another project: a copy of the example, and a kernel with the options of pkg-config.
 export PKG_CONFIG_PATH=$prefix/share/pkgconfig
 pkg-config --validate raya-number || fail "pkg-config does not know raya-number"
-[[ $(pkg-config --modversion raya-number) == "$("$build/raya" --version | cut -d' ' -f2)" ]] || fail "another version"
+[[ $(pkg-config --modversion raya-number) == "$("$build/raya" --version | cut -d' ' -f2)" ]] || fail "pkg-config has another version of raya-number"
 options=$(pkg-config --cflags raya-number)
 mkdir "$scratch/other"
 cp "$doc"/kernels/number/example/harmonic.* "$scratch/other"
-[[ -z $(find "$prefix/include" -type f ! -name '*.clh') ]] || fail "more than headers in include"
+[[ -z $(find "$prefix/include" -type f ! -name '*.clh') ]] || fail "include contains other files than headers"
 # shellcheck disable=SC2046  # words
 (cd "$scratch/other" && ${CXX:-c++} -std=c++17 -O1 harmonic.cpp -o harmonic $(pkg-config --libs OpenCL))
 # shellcheck disable=SC2086  # words
@@ -73,7 +73,7 @@ expect 1 "OpenCL error"  # without pkg-config's options the kernel does not find
 
 # Without the image module, or without its libraries, raya refuses to write a PNG, with a remedy, and still writes PPM.
 rm "$prefix/lib/raya/raya_pictures.so"
-away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
+run_installed raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
 expect 2 "there is no file '$prefix/lib/raya/raya_pictures.so"
 expect 2 "name a .ppm file instead"
 echo 'extern int nowhere(void); int raya_encode_picture(void) { return nowhere(); }' >"$scratch/m.c"
@@ -81,9 +81,9 @@ echo 'int nowhere(void) { return 0; }' >"$scratch/n.c"
 cc -shared -fPIC "$scratch/n.c" -o "$scratch/libOpenImageIO.so.2.4" -Wl,-soname,libOpenImageIO.so.2.4
 cc -shared -fPIC "$scratch/m.c" -o "$prefix/lib/raya/raya_pictures.so" "$scratch/libOpenImageIO.so.2.4"
 sed -i "s/libOpenImageIO\.so\.2\.4/libOpenImageIO.so.0.0/" "$prefix/lib/raya/raya_pictures.so"
-away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
+run_installed raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
 expect 2 "libOpenImageIO.so.0.0"
 expect 2 "remedy: install OpenImageIO "
-away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.ppm
+run_installed raya render "$prefix/share/raya/scenes/centre.nff" -o centre.ppm
 expect 0 "(474a384374e81c5144a0e5405232a750)"
 echo "an installation: as expected"

@@ -14,7 +14,7 @@ if not shutil.which("man"):
     print("skipped: no man (tools/setup --package)")
     sys.exit(77)
 faults = []
-PLAIN = {**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "900", "MANOPT": "--no-hyphenation --no-justification", "MAN_KEEP_FORMATTING": "",
+PLAIN_TEXT = {**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "900", "MANOPT": "--no-hyphenation --no-justification", "MAN_KEEP_FORMATTING": "",
          "MANROFFOPT": "-c", "PAGER": "cat", "GROFF_NO_SGR": "1"}
 
 
@@ -22,9 +22,9 @@ def squeezed(text):
     return re.sub(r"\s+", " ", text)
 
 
-def shown(page):
-    """Text of a manual page as man prints it, without formatting; adds man's warnings to the faults."""
-    run = subprocess.run(["man", "--warnings", "-l", page], capture_output=True, text=True, env=PLAIN)
+def text_of_page(page):
+    """Returns the text of a manual page as man prints it, without formatting. Adds man's warnings to the faults."""
+    run = subprocess.run(["man", "--warnings", "-l", page], capture_output=True, text=True, env=PLAIN_TEXT)
     if run.returncode or run.stderr:
         faults.append(f"{page}: man ends with {run.returncode}: {run.stderr}")
     return squeezed(re.sub(".\x08", "", run.stdout))
@@ -74,22 +74,22 @@ def run():
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([raya, "manual", "-o", folder], check=True)
         names = {page.name for page in pathlib.Path(folder).iterdir()}
-        commands = check(shown(f"{folder}/raya.1"), [])
+        commands = check(text_of_page(f"{folder}/raya.1"), [])
         if names != {"raya.1"} | {f"raya-{one}.1" for one in commands}:
             faults.append(f"unexpected pages: {sorted(names)}")
         for one in commands:
-            page = shown(f"{folder}/raya-{one}.1")
+            page = text_of_page(f"{folder}/raya-{one}.1")
             for below in check(page, [one]):
                 check(page, [one, below], below=True)
                 count += 1
-            alone = subprocess.run([raya, "manual", one], capture_output=True, text=True, check=True).stdout
-            if alone != pathlib.Path(f"{folder}/raya-{one}.1").read_text():
+            printed = subprocess.run([raya, "manual", one], capture_output=True, text=True, check=True).stdout
+            if printed != pathlib.Path(f"{folder}/raya-{one}.1").read_text():
                 faults.append(f"raya manual {one}: another page than the file")
-            if alone != (built / "man1" / f"raya-{one}.1").read_text():
+            if printed != (built / "man1" / f"raya-{one}.1").read_text():
                 faults.append(f"raya-{one}.1 of the build differs from the program's output")
         if (built / "raya.1").read_text() != pathlib.Path(f"{folder}/raya.1").read_text():
             faults.append("raya.1 of the build differs from the program's output")
-        if "EXIT CODES 0 done, 2 bad option" not in shown(str(built / "raya.1")):
+        if "EXIT CODES 0 done, 2 bad option" not in text_of_page(str(built / "raya.1")):
             faults.append("raya.1: no exit codes")
         count += len(names)
     refused = subprocess.run([raya, "manual", "rendr"], capture_output=True, text=True)

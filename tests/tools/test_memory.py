@@ -60,62 +60,62 @@ class Trial:
         self.inputs.mkdir()
         self.cache = os.environ.get("POCL_CACHE_DIR")
         self.resumable = {}  # {hash of a checkpoint file that a run left: True if raya can resume it}
-        self.plain(SMALL + ["-o", "x.ppm", "--report", str(self.inputs / "saved.json")])
+        self.run_without_fault(SMALL + ["-o", "x.ppm", "--report", str(self.inputs / "saved.json")])
         self.make_checkpoint(options.cl_faults)
         self.expected = {name: self.expect(name) for name in COMMANDS}
 
-    def plain(self, arguments, inputs=(), **variables):
-        """(process, files) of a run in which no allocation fails."""
-        with tempfile.TemporaryDirectory(dir=self.folder) as here:
+    def run_without_fault(self, arguments, inputs=(), **variables):
+        """Runs raya without a failing allocation. Returns (process, files)."""
+        with tempfile.TemporaryDirectory(dir=self.folder) as run_folder:
             for name in inputs:
-                shutil.copy(self.inputs / name, here)
-            done = subprocess.run([self.raya, *arguments], cwd=here, env=environment(**variables), capture_output=True,
+                shutil.copy(self.inputs / name, run_folder)
+            done = subprocess.run([self.raya, *arguments], cwd=run_folder, env=environment(**variables), capture_output=True,
                                   timeout=LIMIT_S)
-            return done, files_of(here)
+            return done, files_of(run_folder)
 
     def make_checkpoint(self, cl_faults):
         """Makes a checkpoint, by a render whose device fails after the checkpoint is written."""
         for launch in range(1, 50):
-            done, files = self.plain(BANDS, LD_PRELOAD=cl_faults, RAYA_FAULT=f"clEnqueueNDRangeKernel {launch} -5")
+            done, files = self.run_without_fault(BANDS, LD_PRELOAD=cl_faults, RAYA_FAULT=f"clEnqueueNDRangeKernel {launch} -5")
             if done.returncode == 3 and "s.rst" in files:
                 (self.inputs / "s.rst").write_bytes(files["s.rst"])
                 return
         raise AssertionError("no failed render left a checkpoint")
 
     def expect(self, name):
-        done, files = self.plain(COMMANDS[name], INPUTS.get(name, ()))
+        done, files = self.run_without_fault(COMMANDS[name], INPUTS.get(name, ()))
         assert done.returncode == 0, done.stderr.decode()
         return {file: comparable(file, content) for file, content in files.items()}
 
     def sites(self, name):
-        """(sorted numbers of the allocation sites in raya that the command reaches, number of its allocations outside raya)"""
-        listed = self.folder / "sites"
-        done, _ = self.plain(COMMANDS[name], INPUTS.get(name, ()), LD_PRELOAD=self.faults,
-                             RAYA_MEMORY_SITES=str(listed))
+        """Returns (sorted numbers of the allocation sites in raya that the command reaches, number of its allocations by other libraries)."""
+        sites_file = self.folder / "sites"
+        done, _ = self.run_without_fault(COMMANDS[name], INPUTS.get(name, ()), LD_PRELOAD=self.faults,
+                             RAYA_MEMORY_SITES=str(sites_file))
         assert done.returncode == 0, done.stderr.decode()
-        rows = [line.split() for line in listed.read_text().splitlines()]
+        rows = [line.split() for line in sites_file.read_text().splitlines()]
         return sorted(row[0] for row in rows if row[0] != "elsewhere"), int(rows[-1][1])
 
     def run_with_fault(self, name, fault):
         """Runs a command in which one allocation fails. Returns (ending, exit code, message)."""
         elsewhere = fault.startswith("+")
         with tempfile.TemporaryDirectory(dir=self.folder) as work:
-            here, mark, cache = Path(work, "run"), Path(work, "failed"), Path(work, "cache")
-            here.mkdir()
+            run_folder, failed_file, cache = Path(work, "run"), Path(work, "failed"), Path(work, "cache")
+            run_folder.mkdir()
             for file in INPUTS.get(name, ()):
-                shutil.copy(self.inputs / file, here)
-            before = files_of(here)
-            variables = {"LD_PRELOAD": self.faults, "RAYA_MEMORY_FAULT": fault, "RAYA_MEMORY_FAILED": str(mark)}
+                shutil.copy(self.inputs / file, run_folder)
+            before = files_of(run_folder)
+            variables = {"LD_PRELOAD": self.faults, "RAYA_MEMORY_FAULT": fault, "RAYA_MEMORY_FAILED": str(failed_file)}
             if elsewhere and self.cache:  # a crashing driver may damage its cache
                 shutil.copytree(self.cache, cache)
                 variables["POCL_CACHE_DIR"] = str(cache)
-            code, output = self.run(COMMANDS[name], here, variables)
+            code, output = self.run(COMMANDS[name], run_folder, variables)
             message = " | ".join(line for line in output.splitlines() if line.startswith("raya: "))
-            return self.classify(name, elsewhere, code, message, mark.exists(), before, files_of(here)), code, message
+            return self.classify(name, elsewhere, code, message, failed_file.exists(), before, files_of(run_folder)), code, message
 
-    def run(self, arguments, here, variables):
+    def run(self, arguments, run_folder, variables):
         """Runs raya; returns (exit code, stderr). Terminates a run in which the driver waits for memory forever; its exit code is that of SIGTERM."""
-        with subprocess.Popen([self.raya, *arguments], cwd=here, env=environment(**variables),
+        with subprocess.Popen([self.raya, *arguments], cwd=run_folder, env=environment(**variables),
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
             try:
                 _, output = process.communicate(timeout=LIMIT_S)
@@ -129,36 +129,36 @@ class Trial:
             return process.returncode, output.decode(errors="replace")
 
     def classify(self, name, elsewhere, code, message, failed, before, after):
-        """Text of a run's outcome; it starts with BAD if raya may not end so. elsewhere: the failed allocation is one of a library."""
+        """Returns the outcome of a run as a text, which starts with BAD if raya is wrong. elsewhere: a library made the failed allocation."""
         if code == 0:
             if {file: comparable(file, content) for file, content in after.items()} != self.expected[name]:
                 return "BAD: exit 0, other files"
             return "survived" if failed else "not reached"
-        left = sorted(file for file in after if after[file] != before.get(file))
-        damaged = [file for file in left if not self.is_whole(name, file, after[file])]
-        lost = sorted(set(before) - set(after) - {"s.rst"})  # raya removes the checkpoint after writing the picture
+        new_files = sorted(file for file in after if after[file] != before.get(file))
+        damaged = [file for file in new_files if not self.is_complete(name, file, after[file])]
+        lost = sorted(set(before) - set(after) - {"s.rst"})  # raya removes the checkpoint after writing the image
         if damaged or lost:
             return f"BAD: damaged {damaged}, lost {lost}"
         if code in (2, 3) and "raya: " in message:
-            return f"exit {code}" + (", files written before stay" if left else "")
+            return f"exit {code}" + (", files written before stay" if new_files else "")
         if elsewhere and code != -signal.SIGKILL:
             return "driver waits for ever" if code == -signal.SIGTERM else "driver's abort"
         return f"BAD: exit {code}"
 
-    def is_whole(self, name, file, content):
-        """Returns true if a file is complete. raya keeps files that it has written before the failure: a failing report must not delete the image."""
+    def is_complete(self, name, file, content):
+        """Returns true if a file is complete. raya keeps the files that it wrote before the failure: a failing report must not delete the image."""
         if file == "s.rst":
-            return self.resumes(content)
+            return self.can_resume(content)
         return comparable(file, content) == self.expected[name].get(file)
 
-    def resumes(self, checkpoint):
+    def can_resume(self, checkpoint):
         key = hashlib.sha256(checkpoint).hexdigest()
         if key not in self.resumable:
-            with tempfile.TemporaryDirectory(dir=self.folder) as here:
-                Path(here, "s.rst").write_bytes(checkpoint)
-                done = subprocess.run([self.raya, *COMMANDS["resume"]], cwd=here, env=environment(),
+            with tempfile.TemporaryDirectory(dir=self.folder) as run_folder:
+                Path(run_folder, "s.rst").write_bytes(checkpoint)
+                done = subprocess.run([self.raya, *COMMANDS["resume"]], cwd=run_folder, env=environment(),
                                       capture_output=True, timeout=LIMIT_S)
-                found = {file: comparable(file, content) for file, content in files_of(here).items()}
+                found = {file: comparable(file, content) for file, content in files_of(run_folder).items()}
             self.resumable[key] = done.returncode == 0 and found == self.expected["resume"]
         return self.resumable[key]
 
@@ -168,7 +168,7 @@ def files_of(folder):
 
 
 def comparable(name, content):
-    """The part of a file that is equal in every run: pixels of an image, names of a report's members, or the end of another complete file."""
+    """Returns the part of a file that is equal in every run: pixels of an image, names of a report's members, or the end of another complete file."""
     if name.endswith((".ppm", ".pfm", ".png")):
         return hashlib.sha256(content).hexdigest()
     if name == "x.json":
@@ -179,7 +179,7 @@ def comparable(name, content):
 
 
 def faults_of(trial, seed, sample):
-    """[(command, fault)]: every allocation site once, in the first command that reaches it, and allocations outside raya."""
+    """Returns [(command, fault)]: every allocation site once, in the first command that reaches it, and allocations by other libraries."""
     seen, sites, elsewhere = set(), [], []
     for name in COMMANDS:
         numbers, count = trial.sites(name)
@@ -187,15 +187,15 @@ def faults_of(trial, seed, sample):
         seen.update(numbers)
         elsewhere += [(name, f"+{at}") for at in range(1, count + 1)]
     print(f"{len(sites)} sites, {len(elsewhere)} allocations elsewhere, seed {seed}", flush=True)
-    chosen = random.Random(seed)
+    generator = random.Random(seed)
     if sample:
-        few = max(1, sample // 5)
-        return chosen.sample(sites, sample - few) + chosen.sample(elsewhere, few)
-    return sites + chosen.sample(elsewhere, LIBRARY_ALLOCATIONS)
+        library_count = max(1, sample // 5)
+        return generator.sample(sites, sample - library_count) + generator.sample(elsewhere, library_count)
+    return sites + generator.sample(elsewhere, LIBRARY_ALLOCATIONS)
 
 
 def read_log(path, program):
-    """{(command, fault): outcome} of finished runs of this program; starts a new log for another program."""
+    """Returns {(command, fault): outcome} of finished runs of this program. Starts a new log if `path` is the log of another program."""
     lines = Path(path).read_text().splitlines() if path and Path(path).exists() else []
     if lines[:1] == [program]:
         return {(row[0], row[1]): row[2:] for row in csv.reader(lines[1:]) if len(row) == 5}

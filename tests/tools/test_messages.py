@@ -17,7 +17,7 @@ PRIVATE = re.compile(r"\b(told|tells|beside|standstill|stands still|in place of|
 
 
 def literals(text, start):
-    """(string literals in the parentheses that open at `start`, " | " between separate arguments; end)."""
+    """Returns (string literals in the parentheses that open at `start`, " | " between separate arguments; end of the parentheses)."""
     depth, at, found = 0, start, []
     joins = False  # true: only white space since the last literal, which the compiler concatenates with the next one
     while at < len(text):

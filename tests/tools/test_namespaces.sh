@@ -18,7 +18,7 @@ mpirun=$(command -v "${2:-mpirun}") || skip "no ${2:-mpirun}"
 # another rank needs its answer (pmodels/mpich pull request 6596).
 [[ $("$mpirun" --version) == *Open* ]] || skip "$mpirun is not Open MPI's"
 
-hosts=("raya-$$-a" "raya-$$-b")  # unique for concurrent runs of this script
+hosts=("raya-$$-a" "raya-$$-b")  # unique, because this script may run several times at once
 scratch=$(mktemp -d)
 disk=$scratch/disk  # mount point; on each host it is $scratch/HOST
 export POCL_CACHE_DIR=${POCL_CACHE_DIR:-$scratch/kernels}
@@ -39,7 +39,7 @@ for host in "${hosts[@]}"; do
     ip netns add "$host" 2>"$scratch/error" || skip "no network namespaces: $(head -n 1 "$scratch/error")"
     ip -n "$host" link set lo up
 done
-number_link() {
+assign_addresses() {
     for i in 0 1; do
         ip -n "${hosts[i]}" address add "10.83.18.$((i + 1))/24" dev link0
         ip -n "${hosts[i]}" link set link0 up
@@ -60,10 +60,10 @@ exec ip netns exec "\$host" unshare --uts sh -c '
 END
 chmod 755 "$scratch/on_host"
 printf '%s\n' "127.0.0.1 localhost" "10.83.18.1 ${hosts[0]}" "10.83.18.2 ${hosts[1]}" >"$scratch/hosts"
-both=${hosts[0]},${hosts[1]}
+host_list=${hosts[0]},${hosts[1]}
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 export OMPI_MCA_plm_rsh_agent=$scratch/on_host OMPI_MCA_pml=ob1 OMPI_MCA_btl=tcp,self
-launch="$mpirun --bind-to none --host $both"
+launch="$mpirun --bind-to none --host $host_list"
 
 bytes_on_link() { ip netns exec "${hosts[0]}" cat /sys/class/net/link0/statistics/{r,t}x_bytes | awk '{ bytes += $1 } END { print bytes }'; }
 
@@ -99,12 +99,12 @@ check() {  # check NAME SCENE OPTION...: renders without MPI, then with one rank
     before=$(bytes_on_link)
     POCL_CACHE_DIR=$disk/kernels timeout 60 "$scratch/on_host" "${hosts[0]}" \
         "$launch -n 2 $raya render $disk/scene.nff $* --quiet -o $disk/image.pfm --report $disk/report.json" || fail "$name: exit code $?"
-    cmp "$scratch/image.pfm" "$scratch/${hosts[0]}/image.pfm" || fail "$name: another picture"
+    cmp "$scratch/image.pfm" "$scratch/${hosts[0]}/image.pfm" || fail "$name: wrong image"
     compare "$name" "$scratch/alone.json" "$scratch/${hosts[0]}/report.json" $(($(bytes_on_link) - before))
 }
 
 ip -n "${hosts[0]}" link add link0 type veth peer name link0 netns "${hosts[1]}" 2>"$scratch/error" || skip "no veth: $(head -n 1 "$scratch/error")"
-number_link
+assign_addresses
 check ring centre --antialias filter --size 24
 check torus planes --machine torus --nodes 2x2x1 --size 16
 
@@ -112,7 +112,7 @@ ip -n "${hosts[0]}" link del link0
 "$tools/slow_link.py" "${hosts[@]}" 5 100 >"$scratch/slow_link" &
 slow_link=$!
 timeout 10 sh -c "until grep -q ready '$scratch/slow_link'; do sleep 0.1; done" || fail "no slow link"
-number_link
+assign_addresses
 check "ring, slow link" centre --antialias filter --size 12 --pes 50 --offset 5
 check "torus, slow link" planes --machine torus --nodes 2x1x1 --size 8
 kill "$slow_link"

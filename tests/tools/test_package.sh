@@ -18,7 +18,7 @@ package --build "$build" -o "$scratch/one"
 expect 0 "$scratch/one/raya_"
 deb=$(echo "$scratch"/one/raya_*_*.deb)
 version=$("$build/raya" --version | cut -d' ' -f2)
-[[ $deb == */raya_${version}_$(dpkg --print-architecture).deb ]] || fail "called $deb"
+[[ $deb == */raya_${version}_$(dpkg --print-architecture).deb ]] || fail "the package is called $deb"
 if command -v lintian >/dev/null; then
     [[ $out != *"lintian is not installed"* ]] || fail "lintian is installed: $out"
 else
@@ -42,13 +42,13 @@ for file in bin/raya lib/raya/raya_pictures.so share/man/man1/raya.1.gz share/ma
     share/doc/raya/changelog.gz share/doc/raya/licences/libcli11-dev include/raya/number/number.clh share/pkgconfig/raya-number.pc; do
     [[ -s $scratch/whole/usr/$file ]] || fail "no /usr/$file"
 done
-zcat "$scratch/whole/usr/share/doc/raya/changelog.gz" | head -n 1 | grep -q "^raya ($version) " || fail "another version in changelog.gz"
+zcat "$scratch/whole/usr/share/doc/raya/changelog.gz" | head -n 1 | grep -q "^raya ($version) " || fail "changelog.gz has another version"
 [[ $(PKG_CONFIG_PATH=$scratch/whole/usr/share/pkgconfig pkg-config --modversion raya-number) == "$version" ]] || fail "another version of raya-number"
 
 # The packager becomes the package's maintainer. Bad options, and a folder that is not a build: no file is written.
 code=0 out=$(DEBFULLNAME="A Packer" DEBEMAIL=packer@debian.example "$root/tools/package" --build "$build" -o "$scratch/two" 2>&1) || code=$?
 expect 0 "raya_"
-[[ $(dpkg-deb -f "$scratch"/two/raya_*.deb Maintainer) == "A Packer <packer@debian.example>" ]] || fail "another maintainer"
+[[ $(dpkg-deb -f "$scratch"/two/raya_*.deb Maintainer) == "A Packer <packer@debian.example>" ]] || fail "the package has another maintainer"
 package --nonsense
 expect 2 "unknown option"
 package --build "$build" -o "$scratch/none"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Pages of reports in a browser: they send no requests, fit their window, and are readable at three widths, light and dark, on paper, without
+"""Checks pages of reports in a browser: they send no requests, fit their window, and are readable at three widths, light and dark, on paper, without
 scripts, with a screen reader and by keyboard; their columns sort. No text of a report becomes markup, and a damaged report is reported. The
 checks themselves are tested with injected faults.
 
@@ -55,27 +55,27 @@ INSPECT_STRUCTURE = r"""(() => {
 
 
 def make_pages(raya, folder):
-    """{name: HTML file} of the pages under test. The reports are in the same folder."""
+    """Makes the pages under test, with their reports in the same folder. Returns {name: HTML file}."""
     small, pages = ["--size", "48x32", "--lanes", "4"], {}
 
-    def one(name, *command, code=0):
-        files = [Path(folder, f"{name}.{end}") for end in ("json", "html")]
+    def make_page(name, *command, code=0):
+        files = [Path(folder, f"{name}.{extension}") for extension in ("json", "html")]
         run = subprocess.run([raya, *map(str, command), "--report", files[0], "--page", files[1]], capture_output=True, text=True)
         assert run.returncode == code, run.stderr
-        again = Path(folder, f"{name}-again.html")
-        subprocess.run([raya, "page", files[0], "-o", again, "--quiet"], check=True)
-        assert again.read_bytes() == files[1].read_bytes(), f"{name}: raya page gives a different page"
-        again.unlink()
+        second_page = Path(folder, f"{name}-again.html")
+        subprocess.run([raya, "page", files[0], "-o", second_page, "--quiet"], check=True)
+        assert second_page.read_bytes() == files[1].read_bytes(), f"{name}: raya page gives a different page"
+        second_page.unlink()
         pages[name] = files[1]
 
     image = ["-o", Path(folder, "x.ppm"), "--quiet"]
     nff = Path(folder, "<script>alert(1)<script> & \"more\" scenes.nff")
     nff.write_bytes((SCENES / "spheres.nff").read_bytes())
-    one("ring", "render", nff, *small, "--pes", "48", "--antialias", "supersample", *image)
-    one("many", "render", SCENES / "planes.nff", *small, "--pes", "1000", "--machine", "grande", *image)
-    one("dynamic", "render", SCENES / "planes.nff", *small, "--pes", "12", "--mapping", "dynamic:4", *image)
-    one("torus", "render", SCENES / "planes.nff", *small, "--machine", "torus", *image)
-    one("verify", "verify", "--only", "machine")
+    make_page("ring", "render", nff, *small, "--pes", "48", "--antialias", "supersample", *image)
+    make_page("many", "render", SCENES / "planes.nff", *small, "--pes", "1000", "--machine", "grande", *image)
+    make_page("dynamic", "render", SCENES / "planes.nff", *small, "--pes", "12", "--mapping", "dynamic:4", *image)
+    make_page("torus", "render", SCENES / "planes.nff", *small, "--machine", "torus", *image)
+    make_page("verify", "verify", "--only", "machine")
     report = json.loads(Path(folder, "verify.json").read_text())
     report["devices"][0]["checks"][2] |= {"status": "FAIL", "result": "1 of `20` words +- 0", "where": "PE 3 <b>", "expected": "0x1 & so on", "got": "line\n" * 200,
                                           "build_options": "-DX", "remedies": ["another driver", "`RAYA_BUILD_OPTIONS`"]}
@@ -84,10 +84,10 @@ def make_pages(raya, folder):
     pages["failed"] = Path(folder, "failed.html")
     subprocess.run([raya, "page", Path(folder, "failed.json"), "-o", pages["failed"], "--quiet"], check=True)
     bench = ["bench", SCENES / "planes.nff", *small, "--samples", "2"]
-    one("base", *bench, "--format", "fp32,e6m15")
+    make_page("base", *bench, "--format", "fp32,e6m15")
     for made, name in zip(gpu_day(raya, Path(folder, "day")), ("gpu_day.json", "gpu_day.html")):
         pages["gpu_day"] = made.rename(Path(folder, name))
-    one("bench", *bench, "--compare", Path(folder, "base.json"), "--tolerance", "100")
+    make_page("bench", *bench, "--compare", Path(folder, "base.json"), "--tolerance", "100")
     return pages
 
 
@@ -138,18 +138,18 @@ def check_map(page, name, html):
 
 STRUCTURE = """[...document.querySelectorAll("*")].filter((e) => /^(SCRIPT|STYLE|TEMPLATE|IFRAME|OBJECT|LINK|META|BASE)$/.test(e.tagName)
   || [...e.attributes].some(({name}) => name.startsWith("on"))).length"""
-NAMED = {"kind", "png", "mapping", "fold", "links", "format", "status"}  # members that select which parts are shown
+SELECTING = {"kind", "png", "mapping", "fold", "links", "format", "status"}  # members whose values select the parts that a page shows
 
 
 def check_escaping(page, name, html, folder):
     """Replaces every text of the report, and names of members, by HOSTILE, which the page must show as text."""
     text, changed = html.read_text(), Path(folder, "hostile.html")
     start(page, html.as_uri())
-    whole = page.value(STRUCTURE)
-    for spared in (NAMED, {"kind"}):
+    active_elements = page.value(STRUCTURE)
+    for kept_members in (SELECTING, {"kind"}):
         report = report_of(text)
         for holder, key in list(values_of(report, lambda value: isinstance(value, str))):
-            if key not in spared:
+            if key not in kept_members:
                 holder[key] = HOSTILE
         for part in ("rays", "shading", "load"):
             if part in report:
@@ -165,7 +165,7 @@ def check_escaping(page, name, html, folder):
         yield from (f"{name}, hostile: {wrong}" for wrong in [*complaints(page), *(w for w in page.value(INSPECT)["wrong"] if "attribute" in w)])
         if page.value("window.hit"):
             yield f"{name}: the page ran a text of the report"
-        if page.value(STRUCTURE) != whole:
+        if page.value(STRUCTURE) != active_elements:
             yield f"{name}: a text of the report became markup"
         if "window.hit = 1</script>" not in page.value("document.body.innerText"):
             yield f"{name}: hostile text is not shown as text"
@@ -199,7 +199,7 @@ def check_damaged_reports(page, name, html, folder, count):
 
 
 def check_sorting(page, html):
-    """The column of counts is sorted by value, although its numbers contain narrow spaces."""
+    """Yields a complaint if the column of counts is not sorted by value; its numbers contain narrow spaces."""
     start(page, html.as_uri(), width=1400)
     order = page.value(r"""(() => { const t = document.querySelector("#counts table"); const b = t.tHead.querySelectorAll("button")[1]; b.click();
       return [...t.tBodies[0].rows].map((r) => +r.cells[1].textContent.replace(/\D/g, "")); })()""")
@@ -210,7 +210,7 @@ def check_sorting(page, html):
 # (text of the page, faulty replacement); the checks must then find a complaint.
 FAULTS = [
     ('<main id="main">', '<main id="main"><img src="https://example.invalid/x.png" alt="x">'),
-    ("`The rendered picture of ${str(r, \"scene\")}, ${pixels}`", '""'),
+    ("`The rendered image of ${str(r, \"scene\")}, ${pixels}`", '""'),
     ("--ink: #1b1b1b", "--ink: #cccccc"),
     ('"loads", torus', '"pictures", torus'),
     ('make("h3", {}, prose(title))', 'make("h4", {}, prose(title))'),

@@ -34,7 +34,7 @@ def make_wheel(folder, name, version, files):
 
 
 def set_up(build, packages, wheels):
-    """(exit code, output) of tools/portability --setup"""
+    """Runs tools/portability --setup. Returns (exit code, output)."""
     variables = {k: v for k, v in os.environ.items() if not k.startswith("PIP_")}
     variables |= {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(wheels)}
     done = subprocess.run([ROOT / "tools" / "portability", "--setup", "--build", build, "--packages", packages], env=variables,
@@ -61,8 +61,8 @@ def check_setting_up(scratch):
     for name, driver in (("intel-cpu", "lib/libintelocl.so"), ("pocl-3.0", "pyopencl/.libs/libpocl-21.so")):
         expect((here / f"{name}.icd").read_text() == f"{here / name / driver}\n", f"{name}.icd")
         expect((here / name / driver).exists(), f"no {driver}")
-    twice = [(here / "intel-cpu" / "lib" / name).stat().st_ino for name in ("libintelocl.so", "libintelocl.so.1")]
-    expect(twice[0] == twice[1], "equal members are not hard links")
+    inodes = [(here / "intel-cpu" / "lib" / name).stat().st_ino for name in ("libintelocl.so", "libintelocl.so.1")]
+    expect(inodes[0] == inodes[1], "equal members are not hard links")
     listed = subprocess.run([ROOT / "tools" / "portability", "--list", "--build", build, "--raya", "/bin/true"], capture_output=True, text=True).stdout
     expect("Intel CPU: here\n" in listed and "PoCL 3.0 (PyPI): here\n" in listed, listed)
 
@@ -73,7 +73,8 @@ def check_setting_up(scratch):
     (packages / "intel-cpu.txt").write_text(wrong)
     code, output = set_up(build, packages, wheels)
     expect(code == 3 and "intel-cpu" in output, f"a wrong hash: {code} {output}")
-    expect((here / "intel-cpu.icd").exists() and (here / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 1", "the old one is gone")
+    expect((here / "intel-cpu.icd").exists() and (here / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 1",
+           "the old driver is gone")
 
     library["{data}/lib/libintelocl.so"] = b"driver 2"
     (packages / "intel-cpu.txt").write_text(make_wheel(wheels, "intel-stand-in", "2.0", library))
@@ -96,16 +97,16 @@ def check_naming_the_cpu(scratch):
     library.write_bytes(DRIVER)
     portability_setup.patch_cpu_name(library, "skylake-avx512")
     code = library.read_bytes()
-    at = 64 + 6  # lea rax, [rip + d]; push length; pop rdx
-    expect(code[at:at + 3] == b"\x48\x8d\x05" and code[at + 7:at + 10] == b"\x6a\x0e\x5a", "the instructions")
-    text = at + 7 + struct.unpack_from("<i", code, at + 3)[0]
-    expect(code[text:text + 15] == b"skylake-avx512\0", "the address of the name")
-    expect(code[:at] == DRIVER[:at] and code[at + 10:] == DRIVER[at + 10:], "something else was changed")
+    position = 64 + 6  # lea rax, [rip + d]; push length; pop rdx
+    expect(code[position:position + 3] == b"\x48\x8d\x05" and code[position + 7:position + 10] == b"\x6a\x0e\x5a", "wrong instructions")
+    text = position + 7 + struct.unpack_from("<i", code, position + 3)[0]
+    expect(code[text:text + 15] == b"skylake-avx512\0", "wrong address of the name")
+    expect(code[:position] == DRIVER[:position] and code[position + 10:] == DRIVER[position + 10:], "something else was changed")
     try:
         portability_setup.patch_cpu_name(library, "haswell")
-        expect(False, "a library without that place was taken")
+        expect(False, "a library without the patched instructions was accepted")
     except portability_setup.SetupError:
-        expect(library.read_bytes() == code, "a library without that place was changed")
+        expect(library.read_bytes() == code, "a library without the patched instructions was changed")
 
 
 def check_missing_devices(scratch):
@@ -115,9 +116,9 @@ def check_missing_devices(scratch):
     raya = scratch / "raya"
     raya.write_text("#!/bin/sh\ncase $OCL_ICD_VENDORS in */other.icd) exit 1 ;; esac; exit 3\n")  # 3: no device; 1: a fault
     raya.chmod(0o755)
-    known = portability_implementations.known_implementations(scratch)
-    portability_implementations.mark_missing_devices(known, str(raya))
-    unavailable = {i.name: i.unavailable for i in known}
+    found = portability_implementations.known_implementations(scratch)
+    portability_implementations.mark_missing_devices(found, str(raya))
+    unavailable = {i.name: i.unavailable for i in found}
     expect(unavailable["gpu"] == "its driver is installed, and shows no device", f"a driver without its device: {unavailable['gpu']}")
     expect(unavailable["other"] is None and unavailable["PoCL"] is None, "a driver with a fault, and PoCL without a device, were left out")
 

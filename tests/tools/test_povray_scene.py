@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/povray_scene.py: reading NFF, triangulating polygons, and POV-Ray's picture, which equals raya's.
+"""Tests tools/povray_scene.py: reading NFF, triangulating polygons, and that POV-Ray's image equals raya's.
 
     tests/tools/test_povray_scene.py RAYA     RAYA: the built program. Exit code 77: POV-Ray is missing (Debian: povray), the other tests pass
 """
@@ -64,7 +64,7 @@ SIZE, BOUNCES = 96, 2
 
 
 def numbers_of_ppm(file):
-    """Values of a PPM file with 16 bits a channel, linear, 0..1."""
+    """Returns the values of a PPM file with 16 bits a channel, linear, 0..1."""
     data = file.read_bytes()
     head = re.match(rb"P6\s(?:#.*\n)*\d+\s\d+\s(\d+)\s", data)
     assert head[1] == b"65535", head
@@ -72,7 +72,7 @@ def numbers_of_ppm(file):
 
 
 def numbers_of_pfm(file):
-    """Values of a PFM file, clamped to 0..1 as in a PPM file, top row first."""
+    """Returns the values of a PFM file, clamped to 0..1 as in a PPM file, top row first."""
     _, size, scale, data = file.read_bytes().split(b"\n", 3)
     width, height = map(int, size.split())
     row = 3 * width
@@ -125,10 +125,10 @@ class Triangles(unittest.TestCase):
     # A comb, with many concave corners.
     comb = [(0, 0), (6, 0), (6, 3), (5, 3), (5, 1), (4, 1), (4, 3), (3, 3), (3, 1), (2, 1), (2, 3), (0, 3)]
 
-    def cut(self, vertices, wanted):
+    def cut(self, vertices, expected_area):
         found = translation.triangles(vertices)
         self.assertEqual(len(found), len(vertices) - 2)
-        self.assertAlmostEqual(sum(area(*(vertices[i] for i in corners)) for corners in found), wanted)  # no overlaps, nothing outside
+        self.assertAlmostEqual(sum(area(*(vertices[i] for i in corners)) for corners in found), expected_area)  # no overlaps, nothing outside
 
     def test_concave_outlines_on_all_axes_either_way_round(self):
         for place in (lambda u, v: (1.0, u, v), lambda u, v: (v, 1.0, u), lambda u, v: (u, v, 1.0), lambda u, v: (u, v, u + v)):
@@ -153,25 +153,25 @@ class Picture(unittest.TestCase):
         (self.folder / "scene.nff").write_text(SCENE)
         subprocess.run([RAYA, "render", "scene.nff", "-o", "raya.pfm", "--machine", "grande", "--format", "fp32", "--lanes", "1", "--size", str(SIZE),
                         "--bounces", str(BOUNCES), "--quiet"], cwd=self.folder, check=True)
-        self.wanted = numbers_of_pfm(self.folder / "raya.pfm")
+        self.raya_values = numbers_of_pfm(self.folder / "raya.pfm")
 
-    def pixels_that_differ(self, text):
-        """Fraction of the values that differ from raya's."""
+    def differing_fraction(self, text):
+        """Renders a POV-Ray scene. Returns the fraction of the values that differ from raya's."""
         (self.folder / "scene.pov").write_text(text)
         command = ["povray", "+Iscene.pov", "+Opovray.ppm", "+FP16", "File_Gamma=1.0", f"+W{SIZE}", f"+H{SIZE}", "-A", "-D", "-V", "-GA"]
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         found = numbers_of_ppm(self.folder / "povray.ppm")
-        self.assertEqual(len(found), len(self.wanted))
-        return sum(abs(a - b) > 0.002 for a, b in zip(found, self.wanted)) / len(found)
+        self.assertEqual(len(found), len(self.raya_values))
+        return sum(abs(a - b) > 0.002 for a, b in zip(found, self.raya_values)) / len(found)
 
     def test_picture_equals_rayas_and_faults_are_detected(self):
         text = translation.povray_scene(translation.parse_nff(SCENE), BOUNCES, SIZE, SIZE)
-        self.assertLess(self.pixels_that_differ(text), 0.001)
+        self.assertLess(self.differing_fraction(text), 0.001)
         for old, new in FAULTS:
             self.assertIn(old, text)
             with self.subTest(old=old, new=new):
-                self.assertGreater(self.pixels_that_differ(text.replace(old, new)), 0.01)
+                self.assertGreater(self.differing_fraction(text.replace(old, new)), 0.01)
 
 
 if __name__ == "__main__":

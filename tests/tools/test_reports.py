@@ -28,13 +28,13 @@ RARE = {
     "render.json: measured.earlier_s": "resumed renders: tests/cli/test_checkpoint.cpp",
     "bench.json: rows[].no_roofline": "devices that do not time their commands",
     "tune.json: results[].configuration.trees": "a parameter of the grid, whose search takes long",
-    "tune.json: results[].configuration.beams": "the same",
+    "tune.json: results[].configuration.beams": "a parameter of the grid",
     "tune.json: results[].configuration.registers": "NVIDIA only",
     "tune.json: results[].configuration.link_exchange": "a parameter of the torus, whose search takes long",
 }
-OF_RANKS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.")  # these members need MPI
+MPI_MEMBERS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.")  # these members need MPI
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
-# (kernel file, text, faulty replacement): mutants, for which a check of verify must fail.
+# (kernel file, text, faulty replacement): a mutant, for which a check of verify must fail.
 FAULT = ("shared/mapping.h", "if (m.kind == RAYA_ROWS) return row % m.pes;", "if (m.kind == RAYA_ROWS) return (row + 1) % m.pes;")
 
 
@@ -53,7 +53,7 @@ class Rules:
         return jsonschema.Draft202012Validator(node.value, resolver=resolver)
 
     def wrong(self, name, report):
-        """Messages of the errors in a report."""
+        """Returns messages on the errors in a report."""
         return [f"{'.'.join(map(str, e.absolute_path)) or 'the report'}: {e.message[:200]}" for e in self.whole[name].iter_errors(report)]
 
     def mark_used(self, node, value, used):
@@ -79,7 +79,7 @@ class Rules:
 
 
 def place(node):
-    """Place of a member's node, as 'render.json: load.simulated'; members of a definition start with its name."""
+    """Returns the place of a member's node, as 'render.json: load.simulated'; in a definition, the path starts with the definition's name."""
     keys, path = iter(node.pointer.strip("/").split("/")), ""
     for key in keys:
         if key in ("properties", "$defs"):
@@ -96,29 +96,30 @@ class Reports:
         self.raya, self.patch_kernels, self.mpirun, self.folder = raya, patch_kernels, mpirun, Path(folder)
         self.folder.mkdir(exist_ok=True)
         cache = os.environ.get("POCL_CACHE_DIR")  # concurrent programs must not share a cache (own_cache.sh)
-        self.own = {**MPI, **({"POCL_CACHE_DIR": str(Path(cache, self.folder.name))} if cache else {})}
+        self.environment = {**MPI, **({"POCL_CACHE_DIR": str(Path(cache, self.folder.name))} if cache else {})}
         if cache:
             Path(cache, self.folder.name).mkdir(exist_ok=True)
         self.made = []  # (file of the schema, command, report)
 
     def run(self, *command, code=0, say=subprocess.DEVNULL, **variables):
         command = [str(word) for word in command]
-        done = subprocess.run(command, cwd=self.folder, env={**os.environ, **self.own, **variables}, stdout=say, stderr=subprocess.PIPE, text=True)
+        done = subprocess.run(command, cwd=self.folder, env={**os.environ, **self.environment, **variables}, stdout=say,
+                              stderr=subprocess.PIPE, text=True)
         assert done.returncode == code, f"{' '.join(command)}: exit code {done.returncode}\n{done.stderr}"
         return done.stdout
 
-    def one(self, form, *command, of="r.json", code=0, launcher=(), **variables):
+    def make(self, schema_name, *command, file="r.json", code=0, launcher=(), **variables):
         start = time.monotonic()
-        (self.folder / of).unlink(missing_ok=True)
+        (self.folder / file).unlink(missing_ok=True)
         self.run(*launcher, self.raya, *command, code=code, **variables)
-        self.take(form, " ".join(map(str, command)), (self.folder / of).read_text(), time.monotonic() - start)
+        self.take(schema_name, " ".join(map(str, command)), (self.folder / file).read_text(), time.monotonic() - start)
 
-    def take(self, form, name, text, seconds=0):
+    def take(self, schema_name, name, text, seconds=0):
         print(f"{seconds:6.2f} s  {name}")
-        self.made.append((form + ".json", name, json.loads(text)))
+        self.made.append((schema_name + ".json", name, json.loads(text)))
 
     def odd_scene(self):
-        """A scene for which raya warns: it has a polygon without area and an unknown entity."""
+        """Writes a scene for which raya warns, with a polygon without area and an unknown entity. Returns its path."""
         path = self.folder / "odd.nff"
         path.write_text((SCENES / "planes.nff").read_text() + "p 3\n0 0 0\n0 0 0\n1 1 1\ntt 1\n")
         return path
@@ -129,7 +130,7 @@ class Reports:
         spheres, ring = SCENES / "spheres.nff", ["--pes", "8"]
 
         def render(scene, *options, output="x.ppm", launcher=()):
-            self.one("render", "render", scene, *options, *few, "-o", output, launcher=launcher)
+            self.make("render", "render", scene, *options, *few, "-o", output, launcher=launcher)
 
         render(spheres, *ring, "--page", "r.html")
         render(odd, *ring, "--mapping", "rows", "--light", "1,2,3", output="x.pfm")
@@ -139,7 +140,7 @@ class Reports:
         render(spheres, *ring, "--mapping", "hybrid:4,10,0.5", "--exposure", "-1")
         for accel in ("grid", "bvh"):
             render(spheres, "--accel", accel, "--machine", "grande")
-        self.one("frames", "render", spheres, *ring, *few[:-2], "--frames", "1:2", "--turn", "90", "-o", "t.ppm", of="t-frames.json")
+        self.make("frames", "render", spheres, *ring, *few[:-2], "--frames", "1:2", "--turn", "90", "-o", "t.ppm", file="t-frames.json")
         torus = ["--machine", "torus", "--nodes", "2x2x2", "--returns", "rays"]
         render(spheres, *torus, "--async", "--packets", "p.csv.gz")
         if self.mpirun:
@@ -151,15 +152,15 @@ class Reports:
     def others(self):
         scene = SCENES / "spheres.nff"
         few = ["--format", "fp32", "--size", "16", "--lanes", "1", "--samples", "1", "--report"]
-        self.one("bench", "bench", scene, *few, "base.json", of="base.json")
-        self.one("bench", "bench", scene, "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *few, "r.json")
-        self.one("bench", "bench", scene, "--variants", "none", *few, "r.json")
-        self.one("bench", "bench", scene, "--build", "--variants", "none,torus", *few, "r.json")
+        self.make("bench", "bench", scene, *few, "base.json", file="base.json")
+        self.make("bench", "bench", scene, "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *few, "r.json")
+        self.make("bench", "bench", scene, "--variants", "none", *few, "r.json")
+        self.make("bench", "bench", scene, "--build", "--variants", "none,torus", *few, "r.json")
         self.tune(scene)
         check = ["verify", "--brief", "--lanes", "1", "--only", "machine mapping: rows", "--report", "r.json"]
-        self.one("verify", *check)
+        self.make("verify", *check)
         self.run(self.patch_kernels, "kernels", *FAULT)
-        self.one("verify", *check, "--kernel-dir", "kernels", code=4)
+        self.make("verify", *check, "--kernel-dir", "kernels", code=4)
         for words in ((self.odd_scene(), "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):
             self.take("info", f"info {words[0]}", self.run(self.raya, "info", *words, "--json", say=subprocess.PIPE))
         self.take("gpu_day", "tools/gpu_day", gpu_day(self.raya, self.folder / "day")[0].read_text())
@@ -167,13 +168,13 @@ class Reports:
             self.run(self.raya, "explore", scene, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "1", "--format", "fp32", "-o", "e.html")
             self.take("explore", "raya explore", json.dumps(report_of((self.folder / "e.html").read_text())))
         for study in ("table2", "table4"):
-            self.one("study", "study", study, "--size", "32", "-o", "study", of=f"study/{study}.json")
+            self.make("study", "study", study, "--size", "32", "-o", "study", file=f"study/{study}.json")
 
     def tune(self, scene):
         """Repeats tune with increasing time limits until at least one candidate has finished, because the machine may be slow."""
         seconds = 3
         while self.made[-1][0] != "tune.json" or not self.made[-1][2]["results"]:
-            self.one("tune", "tune", scene, "--seconds", seconds, "--variants", "none", "--format", "fp32", "--size", "16", "--report", "r.json",
+            self.make("tune", "tune", scene, "--seconds", seconds, "--variants", "none", "--format", "fp32", "--size", "16", "--report", "r.json",
                      XDG_CACHE_HOME=str(self.folder / "cache"))
             seconds *= 2
         self.take("tuned", "the stored settings", next(self.folder.glob("cache/raya/tuned-*.json")).read_text())
@@ -181,8 +182,8 @@ class Reports:
 
 def used_members(rules, made):
     used = set()
-    for form, _, report in made:
-        rules.mark_used(rules.schemas[form], report, used)
+    for schema_name, _, report in made:
+        rules.mark_used(rules.schemas[schema_name], report, used)
     return used
 
 
@@ -192,7 +193,7 @@ def unused_members(rules, used, ranks):
         for node in root.walk():
             for _, member in node.members():
                 name = place(member)
-                if name not in used and name not in RARE and (ranks or not name.startswith(OF_RANKS)):
+                if name not in used and name not in RARE and (ranks or not name.startswith(MPI_MEMBERS)):
                     yield f"{name}: described, but in no report of this test"
     yield from (f"{name}: in RARE, but in a report of this test" for name in RARE if name in used)
 
@@ -204,7 +205,7 @@ def undetected_removals(rules, made, used, seed, wanted=40):
     for name in random.Random(seed).sample(sorted(used & set(members)), wanted):
         properties, key = members[name][0].value["properties"], members[name][1]
         described = properties.pop(key)
-        if all(rules.whole[form].is_valid(report) for form, _, report in made):
+        if all(rules.whole[schema_name].is_valid(report) for schema_name, _, report in made):
             yield f"{name}: removed from its schema, but no report is refused"
         properties[key] = described
 
@@ -225,13 +226,13 @@ def incomplete_schemas(rules):
             for name, member in node.members():
                 if not description(member):
                     yield f"{place(member)}: no description"
-            shut = False in (node.get("additionalProperties"), node.get("unevaluatedProperties"))
-            if node.has("properties") and not shut and id(node.value) not in closed:
+            is_closed = False in (node.get("additionalProperties"), node.get("unevaluatedProperties"))
+            if node.has("properties") and not is_closed and id(node.value) not in closed:
                 yield f"{node.file}{node.pointer}: accepts any member"
 
 
 def relaxed(schema):
-    """The schema with all members optional, for shortened examples."""
+    """Returns the schema with all members optional, for shortened examples."""
     if isinstance(schema, list):
         return [relaxed(one) for one in schema]
     if not isinstance(schema, dict):
@@ -253,9 +254,9 @@ def undetected_damage(rules, damage, wanted):
         if fault is None:
             continue
         injected += 1
-        form, damage_text, report = fault
-        if rules.whole[form].is_valid(report):
-            yield f"not refused: {form}: {damage_text}"
+        schema_name, damage_text, report = fault
+        if rules.whole[schema_name].is_valid(report):
+            yield f"not refused: {schema_name}: {damage_text}"
 
 
 def main(raya, patch_kernels, mpirun=""):
@@ -263,12 +264,12 @@ def main(raya, patch_kernels, mpirun=""):
     print(f"seed {seed}", flush=True)
     rules = Rules()
     with tempfile.TemporaryDirectory() as folder:
-        both = [Reports(Path(raya).resolve(), Path(patch_kernels).resolve(), mpirun, Path(folder, name)) for name in ("renders", "others")]
+        generators = [Reports(Path(raya).resolve(), Path(patch_kernels).resolve(), mpirun, Path(folder, name)) for name in ("renders", "others")]
         with ThreadPoolExecutor() as pool:
-            for done in [pool.submit(both[0].renders), pool.submit(both[1].others)]:
+            for done in [pool.submit(generators[0].renders), pool.submit(generators[1].others)]:
                 done.result()
-    start, made = time.monotonic(), both[0].made + both[1].made
-    wrong = [f"{form}, {name}: {line}" for form, name, report in made for line in rules.wrong(form, report)]
+    start, made = time.monotonic(), generators[0].made + generators[1].made
+    wrong = [f"{schema_name}, {name}: {line}" for schema_name, name, report in made for line in rules.wrong(schema_name, report)]
     used = used_members(rules, made)
     wrong += [*incomplete_schemas(rules), *wrong_examples(), *unused_members(rules, used, bool(mpirun)), *undetected_removals(rules, made, used, seed)]
     print(f"{time.monotonic() - start:6.2f} s  {len(made)} reports compared with {len(rules.schemas)} schemas", flush=True)

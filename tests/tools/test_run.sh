@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests tools/run with mock cmake and setup: it shows the progress of a build, on a terminal and elsewhere, and nothing if there is little to build.
+# Tests tools/run with mock cmake and setup: it prints the progress of a build, on a terminal and otherwise; nothing if few steps are needed.
 set -euo pipefail
 tools=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../tools")
 scratch=$(mktemp -d)

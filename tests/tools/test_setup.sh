@@ -12,7 +12,7 @@ mock_program() {  # mock_program NAME BODY
     chmod 755 "$machine/$1"
 }
 
-# Runs tools/setup with ARGS as an unprivileged user; sets out and code. The script is read from stdin, as that user may have no access to its folder.
+# Runs tools/setup with ARGS as an unprivileged user; sets out and code. The script is read from stdin: that user may have no access to its folder.
 run_setup() {
     local as_nobody=()
     ((EUID != 0)) || as_nobody=("$(command -v setpriv)" --reuid=65534 --regid=65534 --clear-groups)

@@ -18,27 +18,27 @@ module() {
     llvm-spirv-15 --spirv-max-version=1.0 "$scratch/module.bc" -o "$scratch/module.spv"
 }
 
-made=0
+modules=0
 for kernel in "$root"/kernels/*/*.cl; do
-    words=1 accels=(0) widths=(1 16)
+    words_local=1 accels=(0) widths=(1 16)
     case $kernel in
         */ring/trace.cl) accels=(0 1 2) ;;
-        */checks/hits.cl) accels=(0 1 2) words=0 ;;
+        */checks/hits.cl) accels=(0 1 2) words_local=0 ;;
         */ring/filter.cl | */ring/contrast.cl | */torus/compose.cl) widths=(1) ;;  # one pixel at a time
     esac
     for lanes in "${widths[@]}"; do
         for format in "8 23" "6 15"; do
             for accel in "${accels[@]}"; do
                 module "$kernel" -DRAYA_LANES="$lanes" -DRAYA_EXPONENT_BITS="${format% *}" -DRAYA_FRACTION_BITS="${format#* }" \
-                    -DRAYA_ACCEL="$accel" -DRAYA_WORDS_LOCAL="$words"
+                    -DRAYA_ACCEL="$accel" -DRAYA_WORDS_LOCAL="$words_local"
                 spirv-val --target-env opencl1.2 "$scratch/module.spv" ||
                     { echo "FAILED: ${kernel#"$root"/}, $lanes lanes, format $format, accelerator $accel"; exit 1; }
-                made=$((made + 1))
+                modules=$((modules + 1))
             done
         done
     done
 done
-((made >= 40)) || { echo "FAILED: only $made modules"; exit 1; }
+((modules >= 40)) || { echo "FAILED: only $modules modules"; exit 1; }
 truncate -s -8 "$scratch/module.spv"
 ! spirv-val --target-env opencl1.2 "$scratch/module.spv" 2>"$scratch/errors" || { echo "FAILED: a truncated module is valid"; exit 1; }
-echo "SPIR-V: $made modules are valid"
+echo "SPIR-V: $modules modules are valid"

@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 SCENE = ROOT / "scenes" / "glass.nff"
 SIZE = 48
-FACTOR = 7 / (256 * 42 * 100e-6)  # the filter's 7 ms [D] over its budget of 42 cycles of 100 ns for 256 pixels
+FACTOR = 7 / (256 * 42 * 100e-6)  # ratio of the filter's 7 ms [D] to its budget: 42 cycles of 100 ns for each of 256 pixels
 
 
 def run(*arguments):
@@ -27,7 +27,7 @@ def run(*arguments):
 
 
 def read_pfm(path):
-    """Rows of a grey PFM file, top row first."""
+    """Returns the rows of a grey PFM file, top row first."""
     kind, size, scale, values = path.read_bytes().split(b"\n", 3)
     assert kind == b"Pf" and float(scale) < 0
     width, height = map(int, size.split())
@@ -36,7 +36,7 @@ def read_pfm(path):
 
 
 def loads(cost, p, pes=SIZE):
-    """Load of each PE. Slot i has the pixels (row j, column (j p + i) mod N); a PE has the slots with the same i mod (number of PEs)."""
+    """Returns the load of each PE. Slot i has the pixels (row j, column (j p + i) mod N); a PE has the slots with the same i mod (number of PEs)."""
     sums = [0] * pes
     for j, row in enumerate(cost):
         for i in range(SIZE):
@@ -50,14 +50,14 @@ def imbalance(sums):
 
 
 def table(page, name):
-    """Rows of a table: dictionaries {column name without unit: value}."""
-    found = next(one for one in page["tables"] if one["name"] == name)
+    """Returns the rows of a table: dictionaries {column name without unit: value}."""
+    found = next(candidate for candidate in page["tables"] if candidate["name"] == name)
     labels = [column.rsplit(" (", 1)[0] for column in found["columns"]]
     return [dict(zip(labels, row)) for row in found["rows"]]
 
 
-def ours(page, what):
-    return next(one["ours"] for one in page["comparisons"] if one["what"] == what)
+def our_figure(page, what):
+    return next(comparison["ours"] for comparison in page["comparisons"] if comparison["what"] == what)
 
 
 class Figures(unittest.TestCase):
@@ -71,7 +71,7 @@ class Figures(unittest.TestCase):
                 "--cost", folder / f"{p}.pfm", "--report", folder / f"{p}.json")
             cls.reports[p] = json.loads((folder / f"{p}.json").read_text())
         cls.cost = read_pfm(folder / "0.pfm")
-        cls.other = read_pfm(folder / "16.pfm")
+        cls.cost_at_offset_16 = read_pfm(folder / "16.pfm")
         cls.pages = {}
         for study in ("fig7", "fig8", "fig9", "table2", "table3"):
             run("study", study, SCENE, "--size", SIZE, "-o", folder / study)
@@ -82,7 +82,7 @@ class Figures(unittest.TestCase):
         cls.scratch.cleanup()
 
     def test_pixel_cost_does_not_depend_on_its_pe(self):
-        self.assertEqual(self.cost, self.other)
+        self.assertEqual(self.cost, self.cost_at_offset_16)
 
     def test_loads_equal_those_of_the_report(self):
         for p, report in self.reports.items():
@@ -104,13 +104,13 @@ class Figures(unittest.TestCase):
                 sums = loads(self.cost, p, row["P"])
                 self.assertAlmostEqual(row[label], sum(sums) / max(sums), delta=1e-9)
 
-    def test_times_on_the_one_clock(self):
+    def test_times_with_one_clock(self):
         total = sum(map(sum, self.cost))
-        self.assertAlmostEqual(ours(self.pages["table2"], "1 PE: compute"), FACTOR * total * 100e-6, delta=1e-6)
+        self.assertAlmostEqual(our_figure(self.pages["table2"], "1 PE: compute"), FACTOR * total * 100e-6, delta=1e-6)
         speedup = total / max(loads(self.cost, 16))
-        rest = 2 + 140 + 1130
-        self.assertAlmostEqual(ours(self.pages["table2"], "speed-up of the whole job"),
-                               (64800 + rest) / (64800 / speedup + rest), delta=1e-9)
+        other_ms = 2 + 140 + 1130
+        self.assertAlmostEqual(our_figure(self.pages["table2"], "speed-up of the whole job"),
+                               (64800 + other_ms) / (64800 / speedup + other_ms), delta=1e-9)
         rotation = 10 / 32 - 768 / 6e3 + 3 * SIZE / 6e3
         for row in table(self.pages["table3"], "table3"):
             p = row["p"]

@@ -1,16 +1,18 @@
-// Closest hits of given rays (kernels/checks/rays.clh) in one voxel of a torus node: object, distance, normals, colour.
+// Test kernel that finds the nearest hits of given rays (kernels/checks/rays.clh) in one voxel of a torus node.
 #include "kernels/checks/rays.clh"
 #include "kernels/shading/shade.clh"
 #include "kernels/shared/node.h"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void voxel_hits(__global const uint* restrict memories,  // of all nodes
+void voxel_hits(__global const uint* restrict memories,  // the words of all nodes
                 __global const float* restrict rays,
-                const uint start,                        // of the node's words
-                const uint voxel,                        // local number; the node's voxel count: planes only
-                __global uint* restrict objects,         // [ray]: number in the voxel; RAYA_NO_OBJECT: miss
-                __global float* restrict distances,      // [ray]
-                __global float* restrict places)         // [ray][3][3]: G, N, colour; undefined for a miss
+                const uint start,                        // offset of the node's words
+                const uint voxel,                        // index of the voxel in the node; number of the
+                                                         // node's voxels: test planes only
+                __global uint* restrict objects,         // [ray]: object number in the voxel; RAYA_NO_OBJECT: miss
+                __global float* restrict distances,      // [ray]: t; for a miss the ray's limit
+                __global float* restrict places)         // [ray][3][3]: geometric normal, normal, colour; for a
+                                                         // miss undefined
 {
     const words scene = memories + start;
     __global const raya_node* const node = (__global const raya_node*)scene;

@@ -14,14 +14,14 @@ namespace raya {
 class HistoryBuilder {
   public:
     /// Adds a task of the node, started by the message `cause` or by injection; returns the task's number.
-    std::uint32_t add_task(std::uint32_t node, std::uint64_t cycles, std::uint32_t cause = HistoryTask::kInjection) {
+    std::uint32_t add_task(std::uint32_t node, std::uint64_t cycles, std::uint32_t cause = HistoryTask::kNoCause) {
         history.tasks.push_back({.node = node,
                                  .cause = cause,
                                  .cycles = cycles,
                                  .first_message = static_cast<std::uint32_t>(history.messages.size())});
         return static_cast<std::uint32_t>(history.tasks.size()) - 1;
     }
-    /// add_ray() and add_return() add a message that the last task sends, a ray to node `to` or a return to the root.
+    /// add_ray() and add_return() add a message that the last task sends: a ray to node `to`, or a return to the root.
     /// They return the message's number.
     std::uint32_t add_ray(std::uint32_t to) { return send(to, RAYA_PACKET_WORDS, RAYA_KIND_PRIMARY); }
     std::uint32_t add_return() { return send(RAYA_ROOT, RAYA_RETURN_WORDS, RAYA_KIND_RETURN); }
@@ -35,18 +35,18 @@ class HistoryBuilder {
     }
 };
 
-/// A history of about `max_tasks` tasks of very different lengths. Injected tasks start at random nodes or all at the
-/// root. Rays have 8, 16 or 24 words and go to any node, including their sender.
+/// Returns a history of about `max_tasks` tasks of very different lengths. Injected tasks start at random nodes or all
+/// at the root. Rays have 8, 16 or 24 words and go to any node, including their sender.
 inline History random_history(SplitMix& random, const raya_torus& torus, std::uint32_t max_tasks) {
     struct PendingTask {
         std::uint32_t node, cause;
     };
-    const std::uint32_t nodes = raya_nodes(torus), begin = 1 + random_below(random, max_tasks / 4);
-    const bool root = random.next() % 3 == 0;
+    const std::uint32_t nodes = raya_nodes(torus), injected = 1 + random_below(random, max_tasks / 4);
+    const bool at_root = random.next() % 3 == 0;
     const std::uint32_t longest = 1 + random_below(random, 4000);
     std::deque<PendingTask> pending;
-    for (std::uint32_t i = 0; i < begin; ++i)
-        pending.push_back({root ? RAYA_ROOT : random_below(random, nodes), HistoryTask::kInjection});
+    for (std::uint32_t i = 0; i < injected; ++i)
+        pending.push_back({at_root ? RAYA_ROOT : random_below(random, nodes), HistoryTask::kNoCause});
     HistoryBuilder built;
     while (!pending.empty()) {
         const PendingTask next = pending.front();
@@ -64,8 +64,8 @@ inline History random_history(SplitMix& random, const raya_torus& torus, std::ui
     return built.history;
 }
 
-/// The input of torus_time(): the load of each node in cycles, and the words and messages on each link according to the
-/// routing rules.
+/// Returns the input of torus_time(): the load of each node in cycles, and the numbers of words and messages on each
+/// link according to the routing rules.
 inline TorusResult traffic_of(const raya_torus& torus, const History& history) {
     TorusResult result;
     std::vector<std::uint64_t> loads(raya_nodes(torus));
@@ -73,10 +73,10 @@ inline TorusResult traffic_of(const raya_torus& torus, const History& history) {
     result.link_packets.resize(loads.size() * RAYA_LINKS);
     for (const HistoryTask& task : history.tasks) loads[task.node] += task.cycles;
     for (const HistoryMessage& message : history.messages)
-        for (std::uint32_t node = history.tasks[message.task].node; node != message.to;) {
+        for (std::uint32_t node = history.tasks[message.task].node; node != message.destination;) {
             const bool is_return = message.kind == RAYA_KIND_RETURN;
             const std::uint32_t link =
-                is_return ? raya_return_link(torus, node) : raya_next_link(torus, node, message.to);
+                is_return ? raya_return_link(torus, node) : raya_next_link(torus, node, message.destination);
             result.link_words[node * RAYA_LINKS + link] += message.words;
             ++result.link_packets[node * RAYA_LINKS + link];
             node = raya_link_end(torus, node, link);

@@ -21,7 +21,7 @@ inline PackedJob pack(const Scene& scene) {
     return pack_job(scene, settings);
 }
 
-/// A scene with 0 to `max_count` objects of each kind, 1 to 12 surfaces and 0 to 5 lights.
+/// Returns a scene with 0 to `max_count` objects of each kind, 1 to 12 surfaces and 0 to 5 lights.
 inline Scene random_objects(SplitMix& random, std::uint64_t max_count) {
     Scene scene = empty_scene();
     for (const ObjectKind& kind : object_kinds()) {
@@ -42,7 +42,7 @@ inline Scene random_objects(SplitMix& random, std::uint64_t max_count) {
     return scene;
 }
 
-/// A partition whose voxels list no objects; the box and the cell sizes are arbitrary.
+/// Returns a partition whose voxels list no objects, with an arbitrary box and arbitrary cell sizes.
 inline Partition empty_partition(const Divisions& divisions) {
     Partition p;
     p.grid = {{-1, -2, -3}, {0.25F, 0.5F, 0.75F}, {divisions[0], divisions[1], divisions[2]}, 100};
@@ -50,7 +50,7 @@ inline Partition empty_partition(const Divisions& divisions) {
     return p;
 }
 
-/// A partition with the given object lists, indexed by voxel. The lists must not contain planes.
+/// Returns a partition with the given object lists, indexed by voxel. The lists must not contain planes.
 inline Partition partition_of(const Divisions& divisions, const std::vector<std::set<std::uint32_t>>& lists) {
     Partition p = empty_partition(divisions);
     std::set<std::uint32_t> distinct;
@@ -63,7 +63,7 @@ inline Partition partition_of(const Divisions& divisions, const std::vector<std:
     return p;
 }
 
-/// The numbers of all objects of a job except its planes.
+/// Returns the numbers of all objects of a job except its planes.
 inline std::vector<std::uint32_t> finite_objects(const PackedJob& job) {
     const raya_objects o = job.header().objects;
     std::vector<std::uint32_t> finite;
@@ -72,8 +72,8 @@ inline std::vector<std::uint32_t> finite_objects(const PackedJob& job) {
     return finite;
 }
 
-/// Lists every finite object in random voxels: about half of the objects in one voxel, the others in up to
-/// `max_copies` voxels.
+/// Returns a partition that lists every finite object in random voxels: about half of the objects in one voxel, the
+/// others in up to `max_copies` voxels.
 inline Partition random_partition(SplitMix& random, const PackedJob& job, const Divisions& divisions,
                                   std::uint32_t max_copies) {
     std::vector<std::set<std::uint32_t>> lists(divisions[0] * divisions[1] * divisions[2]);
@@ -84,7 +84,7 @@ inline Partition random_partition(SplitMix& random, const PackedJob& job, const 
     return partition_of(divisions, lists);
 }
 
-/// The words of a node, with a count of the reads of each word.
+/// Reads the words of a node and counts how often each word is read.
 class NodeReader {
   public:
     NodeReader(const NodeMemories& memories, std::uint32_t node)
@@ -107,7 +107,7 @@ class NodeReader {
         return words;
     }
 
-    /// The number of words that were read `times` times.
+    /// Returns the number of words that were read `times` times.
     std::size_t words_read(int times) const {
         return static_cast<std::size_t>(std::count(reads_.begin(), reads_.end(), times));
     }

@@ -12,21 +12,21 @@
 
 namespace raya {
 
-/// Three sides of 1..`largest` nodes. At least a quarter of the sides have one node, so that their links lead back to
-/// the same node.
+/// Returns three random sides of 1..`largest` nodes. At least a quarter of the sides have one node, so that their links
+/// lead back to the same node.
 inline std::array<std::uint32_t, 3> random_sides(SplitMix& random, std::uint32_t largest) {
     const auto side = [&] { return random.next() % 4 == 0 ? 1 : 1 + random_below(random, largest); };
     const std::uint32_t first = side(), second = side();
     return {first, second, side()};
 }
 
-/// A random torus with 2-D or 3-D links.
+/// Returns a random torus with 2-D or 3-D links.
 inline raya_torus random_torus(SplitMix& random, std::uint32_t largest) {
     const Links links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
     return make_torus(random_sides(random, largest), links);
 }
 
-/// Node counts and torus sides as text for failure messages: "3x4x6 on 6x12x1".
+/// Returns numbers of nodes and torus sides as text for failure messages: "3x4x6 on 6x12x1".
 inline std::string torus_text(const raya_torus& t) {
     return sides_text({t.nodes[0], t.nodes[1], t.nodes[2]}) + " on " + sides_text({t.sides[0], t.sides[1], t.sides[2]});
 }

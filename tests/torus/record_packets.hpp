@@ -1,4 +1,4 @@
-// A torus render, and a record of every packet that its nodes sent.
+// Renders on a torus and records every packet that a node sends to another.
 #pragma once
 #include <vector>
 

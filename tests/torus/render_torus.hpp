@@ -1,5 +1,5 @@
-// Functions that render on the torus machine in one call. Without an OpenCL device these tests fail; they are not
-// skipped.
+// Functions that render on the torus machine in one call. Tests that use them fail without an OpenCL device; they are
+// not skipped.
 #pragma once
 #include <fmt/core.h>
 
@@ -21,12 +21,12 @@ namespace raya {
 struct TorusCase {
     std::uint32_t width = 20, height = 16;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
-    Divisions voxels{};  // 0: one voxel per node
+    Divisions voxels{};  // all 0: one voxel per node
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     PacketCharge packets{};
     std::uint32_t queue = 0;                                // length in packets; 0: the default
-    std::uint32_t lanes = default_test_lanes(), group = 0;  // 0: the device's default
+    std::uint32_t lanes = default_test_lanes(), group = 0;  // of lanes and of group: 0 is the device's default
     std::uint32_t bounces = 4;
     std::string format = "fp32";
     PixelSubset pixels{};
@@ -59,7 +59,7 @@ inline TorusSettings settings_of(const TorusCase& c) {
     return s;
 }
 
-/// All settings of a case in one line, for failure messages.
+/// Returns the settings of a case in one line, for failure messages.
 inline std::string case_text(const TorusCase& c) {
     return fmt::format(
         "{}x{} nodes {} voxels {} {} {} {} words a ray, a return a {}, queue {} lanes {} group {} bounces {} {} pixels "
@@ -78,8 +78,9 @@ inline TorusResult render_torus(const Scene& scene, const TorusCase& c, const Pa
     return render_torus(session, scene, c, sink);
 }
 
-/// The results that must be equal on all machines, as text: image hash and ray counts. Intersection tests, grid steps
-/// and highlights are omitted, because a node computes a highlight before it is known whether the light is occluded.
+/// Returns the results that must be equal on all machines, as text: image hash and ray counts. Numbers of intersection
+/// tests and grid steps are omitted because they depend on the voxels. Numbers of highlights are omitted because a node
+/// computes a highlight before it is known whether the light is occluded.
 inline std::string image_and_counts(const Image& image, const EventCounts& e) {
     return fmt::format("{} primary {} hits {} reflected {} refracted {} shadow {} shadow hits {} lit {} shaded {}",
                        pixel_hash(image), e[RAYA_PRIMARY], e[RAYA_PRIMARY_HITS], e[RAYA_REFLECTED], e[RAYA_REFRACTED],
@@ -88,8 +89,8 @@ inline std::string image_and_counts(const Image& image, const EventCounts& e) {
 
 inline std::string image_and_counts(const TorusResult& r) { return image_and_counts(r.image, r.events); }
 
-/// image_and_counts() of a ring render of the same size, format and bounces, which tests every ray against every
-/// object.
+/// Returns image_and_counts() of a render on the ring with the same size, format and bounces, which tests every ray
+/// against every object.
 inline std::string ring_image_and_counts(const Scene& scene, const TorusCase& c) {
     const RingCase ring{.width = c.width,
                         .height = c.height,
@@ -116,7 +117,7 @@ inline void add_route(std::vector<std::uint64_t>& words, const raya_torus& torus
 
 inline std::uint32_t lights_of(const Scene& scene) { return static_cast<std::uint32_t>(scene.lights.size()); }
 
-/// A scene with objects of every kind, 1 to 4 lights, and an eye among, near or far from the objects.
+/// Returns a scene with objects of every kind, 1 to 4 lights, and an eye among, near or far from the objects.
 inline Scene random_view_scene(std::uint64_t seed) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0x5eed);
@@ -126,7 +127,7 @@ inline Scene random_view_scene(std::uint64_t seed) {
     scene.view.at = random_point(random, 1);
     scene.view.up = random_direction(random);
     scene.view.angle_degrees = distance > 20 ? 25 : random.uniform(30, 110);
-    // A plane hides everything behind it, so keep a random number of the planes.
+    // A plane hides everything behind it, so the scene keeps only a random number of its planes.
     scene.planes.resize(random_below(random, scene.planes.size() + 1));
     scene.lights.resize(1 + random_below(random, 4), {random_point(random, 8), {}});
     return scene;
@@ -135,8 +136,8 @@ inline Scene random_view_scene(std::uint64_t seed) {
 /// Seeds with which random_view_scene() has many rays of every kind and some lit points.
 inline constexpr std::array<std::uint64_t, 11> kSceneSeeds = {27, 41, 53, 63, 14, 19, 35, 8, 21, 29, 69};
 
-/// A scene with objects of every kind, seen in a mirror so far away that the rays reflected by it are wide (is_wide(),
-/// kernels/grid/traversal.clh).
+/// Returns a scene with objects of every kind, seen in a mirror so far away that rays reflected by the mirror are wide
+/// (is_wide(), kernels/grid/traversal.clh).
 inline Scene far_mirror_scene(std::uint64_t seed, const std::string& format) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0xfa5);

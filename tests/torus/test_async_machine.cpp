@@ -94,9 +94,9 @@ TEST_CASE("a full port makes the main task wait", "[torus]") {
     CHECK(r.nodes[1].port_ms == about((kRays - 4) * (2 * kRayEnd + kRay) - kRayEnd));
     CHECK(r.finish_ms == about(kRays * (2 * kRayEnd + kRay)));
     CHECK(r.nodes[2].queue_max == 1);
-    const AsyncResult roomy = simulate(ring_of(4), h.history, {.buffer = kRays + 1});
-    CHECK(roomy.nodes[1].port_ms == 0);
-    CHECK(roomy.finish_ms == r.finish_ms);
+    const AsyncResult large_buffer = simulate(ring_of(4), h.history, {.buffer = kRays + 1});
+    CHECK(large_buffer.nodes[1].port_ms == 0);
+    CHECK(large_buffer.finish_ms == r.finish_ms);
     CHECK_THROWS_AS(simulate(ring_of(4), h.history, {.buffer = 1}), UserError);
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("a ring whose buffers may fill up deadlocks; with one slot kept free i
         h.add_task(node, 0);
         for (int i = 0; i < 30; ++i) sent.push_back(h.add_ray((node + 3) % 6));
     }
-    for (const std::uint32_t message : sent) h.add_task(h.history.messages[message].to, 0, message);
+    for (const std::uint32_t message : sent) h.add_task(h.history.messages[message].destination, 0, message);
     for (const std::uint32_t buffer : {2u, 3u, 8u}) {
         CAPTURE(buffer);
         CHECK_THROWS_WITH(simulate(torus, h.history, {.buffer = buffer, .entry_slots = 1}),
@@ -124,16 +124,16 @@ TEST_CASE("supersteps can be faster than asynchronous execution, because they or
     constexpr std::uint64_t kLong = 10'000'000;
     HistoryBuilder h;
     h.add_task(0, 10);
-    const std::uint32_t one = h.add_ray(0), other = h.add_ray(1);
-    h.add_task(0, kLong, one);           // superstep 2 of node 0, starts before
-    h.add_task(1, 100'000, other);       // superstep 2 of node 1
+    const std::uint32_t ray_to_0 = h.add_ray(0), ray_to_1 = h.add_ray(1);
+    h.add_task(0, kLong, ray_to_0);      // superstep 2 of node 0; starts before the ray from node 1 arrives
+    h.add_task(1, 100'000, ray_to_1);    // superstep 2 of node 1
     h.add_task(0, 10, h.add_ray(0));     // superstep 3 of node 0
     h.add_task(2, kLong, h.add_ray(2));  // superstep 4 of node 2, after the task above
-    const double none_orders = simulate(ring_of(4), h.history).finish_ms;
+    const double unordered_ms = simulate(ring_of(4), h.history).finish_ms;
     h.history.tasks[1].cycles = 0;
-    const double ordered = simulate(ring_of(4), h.history).finish_ms;
-    CHECK(none_orders > 2 * kLong * kCycle);
-    CHECK(ordered + 0.1 < kLong * kCycle + 10);
+    const double ordered_ms = simulate(ring_of(4), h.history).finish_ms;
+    CHECK(unordered_ms > 2 * kLong * kCycle);
+    CHECK(ordered_ms + 0.1 < kLong * kCycle + 10);
 }
 
 TEST_CASE("random histories: every message is delivered once, within the time bounds, for any buffer size", "[torus]") {
@@ -199,13 +199,13 @@ TEST_CASE("invalid histories are refused", "[torus]") {
     };
     const auto is_ray = [](const HistoryMessage& m) { return m.kind != RAYA_KIND_RETURN; };
     const auto ray = static_cast<std::size_t>(std::ranges::find_if(right.messages, is_ray) - right.messages.begin());
-    const auto caused = [](const HistoryTask& t) { return t.cause != HistoryTask::kInjection; };
+    const auto caused = [](const HistoryTask& t) { return t.cause != HistoryTask::kNoCause; };
     const auto task = static_cast<std::size_t>(std::ranges::find_if(right.tasks, caused) - right.tasks.begin());
-    refused([&](History& h) { h.messages[ray].to ^= 1; });
+    refused([&](History& h) { h.messages[ray].destination ^= 1; });
     refused([&](History& h) { h.messages[ray].kind = RAYA_KIND_RETURN; });
     refused([&](History& h) { h.messages[ray].words = 0; });
     refused([&](History& h) { h.messages[ray].task += 1; });
-    refused([&](History& h) { h.tasks[task].cause = HistoryTask::kInjection; });
+    refused([&](History& h) { h.tasks[task].cause = HistoryTask::kNoCause; });
     refused([&](History& h) { h.tasks[task + 1].cause = h.tasks[task].cause; });
     refused([&](History& h) { h.tasks[task].node = 6; });
     refused([&](History& h) { h.tasks.pop_back(); });

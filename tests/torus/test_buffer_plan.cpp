@@ -1,5 +1,5 @@
-// The plan of a node's memory for queue and mailboxes, in addition to the node's words. The sizes are exact to the
-// byte, and error messages contain the figures and remedies.
+// The plan of a node's memory for queue and mailboxes, in addition to the node's words. The planned sizes are exact to
+// the byte, and error messages contain the figures and remedies.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::uint32_t kDefaultQueue = 8192;
 
-// A row of nodes with one voxel each. Node i's voxel contains counts[i] spheres of one surface; there are no lights and
-// no planes.
+// Returns the memories of nodes with one voxel each. Node i's voxel contains counts[i] spheres with one surface. There
+// are no lights and no planes.
 NodeMemories nodes_with_spheres(const std::vector<std::uint32_t>& counts, const raya_torus& torus) {
     Scene scene = empty_scene();
     scene.lights.clear();
@@ -35,16 +35,16 @@ NodeMemories nodes_with_spheres(const std::vector<std::uint32_t>& counts, const 
 
 constexpr std::uint64_t padded_to_rows(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
 
-// Bytes of such a node's words: header, one voxel, one surface, and six words per sphere. The spheres are padded to
-// whole rows.
+// Returns the size of such a node's words in bytes: header, one voxel, one surface, and six words per sphere. The
+// spheres are padded to whole rows.
 constexpr std::uint64_t node_words_bytes(std::uint32_t spheres) {
     return padded_to_rows(padded_to_rows(sizeof(raya_node) + sizeof(raya_voxel_memory) + 4 * RAYA_SURFACE_WORDS) +
                           24ull * spheres);
 }
 
-// Bytes of queue and mailboxes. Rays have 64 bytes: `queue` rays in the queue, and a quarter of that (at least 1) in an
-// outbox and an inbox of each link. Returns have 32 bytes: as many in an inbox of each link and in one outbox towards
-// the root.
+// Returns the size of queue and mailboxes in bytes. The queue holds `queue` rays of 64 bytes. A mailbox holds a quarter
+// of that number, at least 1. Each link has an outbox and an inbox of rays, and an inbox of returns of 32 bytes. The
+// node has one outbox of returns, towards the root.
 std::uint64_t packet_bytes(std::uint64_t queue, std::uint64_t links) {
     const std::uint64_t box = queue < 8 ? 1 : queue / 4;
     return 64 * (queue + 2 * links * box) + 32 * (links > 0 ? links + 1 : 0) * box;
@@ -175,7 +175,7 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
 
     try {
         plan_buffers("s.nff", memories, torus, limit, 0, 9);
-        FAIL("it fits");
+        FAIL("a scene that does not fit is accepted");
     } catch (const NodesDoNotFit& error) {
         CHECK(error.nodes == 4);
         CHECK(error.fitting == 3);

@@ -11,8 +11,8 @@
 namespace raya {
 namespace {
 
-// Each node creates the primary rays of its window's pixels, and those of its own rows to find the rays that miss the
-// box. The number of discarded rays is the number of pixels in all windows.
+// Returns the number of pixels in all windows. It is the number of discarded rays, because each node makes the rays of
+// its window's pixels and of the pixels in its own rows of the image, and the nodes together keep one ray per pixel.
 std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
     const PackedJob job = pack_job(scene, job_settings(s, length_scale(scene, s.format)));
     std::uint64_t pixels = 0;
@@ -35,20 +35,20 @@ void check_last_lights(const RecordedRender& r) {
         PacketRecord& known = last.emplace(key_of(p), p).first->second;
         if (raya_state_light(state_of(p)) >= raya_state_light(state_of(known))) known = p;
     }
-    std::size_t early = 0, elsewhere = 0, doubled = 0;
+    std::size_t early_returns = 0, misplaced_returns = 0, repeated_returns = 0;
     std::map<RayKey, int> returns;
     for (const PacketRecord& p : r.records) {
         if (kind_of(p) != RAYA_KIND_RETURN) continue;
-        doubled += ++returns[key_of(p)] > 1;
+        repeated_returns += ++returns[key_of(p)] > 1;
         const auto shadow = last.find(key_of(p));
         if (shadow == last.end()) continue;
         const std::uint32_t light = raya_state_light(state_of(shadow->second));
-        early += raya_state_light(state_of(p)) < light;
-        elsewhere += raya_state_light(state_of(p)) == light && p.source != shadow->second.destination;
+        early_returns += raya_state_light(state_of(p)) < light;
+        misplaced_returns += raya_state_light(state_of(p)) == light && p.source != shadow->second.destination;
     }
-    CHECK(early == 0);
-    CHECK(elsewhere == 0);
-    CHECK(doubled == 0);
+    CHECK(early_returns == 0);
+    CHECK(misplaced_returns == 0);
+    CHECK(repeated_returns == 0);
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ TEST_CASE("one return per ray: it leaves where the ray's last shadow ray ends", 
     const std::uint64_t seed = 81;
     SplitMix random(seed);
     Session session(choose_device(""));
-    std::uint64_t late = 0;
+    std::uint64_t added_returns = 0;
     for (unsigned i = 0; i < quick_cases(6, 30); ++i) {
         const Scene scene = random_view_scene(kSceneSeeds[i % kSceneSeeds.size()]);
         TorusCase c{.width = 16, .height = 12, .nodes = {3, 2, 2}, .group = 1 + i % 2};
@@ -94,15 +94,15 @@ TEST_CASE("one return per ray: it leaves where the ray's last shadow ray ends", 
         CAPTURE(seed, i, case_text(c));
         const RecordedRender r = render_and_record(session, scene, c);
         check_last_lights(r);
-        TorusCase terms = c;
-        terms.packets = {};
-        const TorusResult each = render_torus(session, scene, terms);
-        CHECK(image_and_counts(r.result) == image_and_counts(each));
-        CHECK(r.result.returns < each.returns);
-        CHECK(r.result.contributions >= each.contributions);
-        late += r.result.contributions - each.contributions;
+        TorusCase per_term = c;
+        per_term.packets = {};
+        const TorusResult per_term_result = render_torus(session, scene, per_term);
+        CHECK(image_and_counts(r.result) == image_and_counts(per_term_result));
+        CHECK(r.result.returns < per_term_result.returns);
+        CHECK(r.result.contributions >= per_term_result.contributions);
+        added_returns += r.result.contributions - per_term_result.contributions;
     }
-    CHECK(late > 100);  // rays whose last shadow ray was blocked
+    CHECK(added_returns > 100);  // rays whose last shadow ray was blocked
 }
 
 }  // namespace raya

@@ -1,5 +1,5 @@
-// The composer adds each pixel's contributions in the order of the pixel's ray tree, whatever their order of arrival,
-// and rounds once per addition.
+// The composer adds each pixel's contributions in the order of the pixel's ray tree, not in their order of arrival, and
+// rounds once per addition.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -13,8 +13,8 @@
 namespace raya {
 namespace {
 
-// Generates the contributions of a random ray tree in depth-first order, reflection before refraction. This is the
-// expected order after sorting.
+// Generates the contributions of a random ray tree in the order that is expected after sorting: depth first, reflection
+// before refraction.
 class RandomRayTree {
   public:
     RandomRayTree(SplitMix& random, std::vector<raya_head>& to, std::uint32_t pixel)
@@ -62,8 +62,8 @@ std::vector<float> colours_of(const std::vector<raya_head>& packets) {
     return colours;
 }
 
-// Lists of random numbers of the format, one list per pixel; some are empty. The numbers are multiples of 2^-38 below
-// 2^12, so that products and sums are exact in double.
+// Returns random contributions in the format, one list per pixel; some lists are empty. The numbers are multiples of
+// 2^-38 below 2^12, so that products and sums are exact in double.
 Contributions random_lists(SplitMix& random, const NumberFormat& format, std::uint32_t pixels) {
     Contributions lists;
     lists.starts = {0};
@@ -79,12 +79,13 @@ Contributions random_lists(SplitMix& random, const NumberFormat& format, std::ui
     return lists;
 }
 
-// c * w + sum, rounded once.
+// Returns c * w + sum, rounded once.
 float add_to(float sum, float c, float w, const NumberFormat& format) {
     if (format.is_fp32()) return std::fma(c, w, sum);
     return round_to_format(std::fma(static_cast<double>(c), w, sum), format);
 }
 
+// Returns the expected image: red, green and blue of each pixel.
 std::vector<float> sums_of(const Contributions& lists, const NumberFormat& format) {
     std::vector<float> image;
     for (std::size_t pixel = 0; pixel + 1 < lists.starts.size(); ++pixel)
@@ -105,18 +106,18 @@ TEST_CASE("contributions are sorted in depth-first order of their pixels' trees"
         CAPTURE(seed, i);
         SplitMix random(seed + i);
         const std::uint32_t pixels = 1 + random_below(random, 12);
-        std::vector<raya_head> walked;
+        std::vector<raya_head> expected;
         std::vector<std::uint32_t> starts = {0};
         for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
-            RandomRayTree walk(random, walked, pixel);
-            if (walk.below(4)) walk.add_ray(0, 0, walk.below(6) ? walk.below(6) : 31);
-            starts.push_back(static_cast<std::uint32_t>(walked.size()));
+            RandomRayTree tree(random, expected, pixel);
+            if (tree.below(4)) tree.add_ray(0, 0, tree.below(6) ? tree.below(6) : 31);
+            starts.push_back(static_cast<std::uint32_t>(expected.size()));
         }
-        std::vector<raya_head> returns = walked;
+        std::vector<raya_head> returns = expected;
         shuffle(returns, random);
         const Contributions sorted = sort_contributions(returns, pixels);
         CHECK(sorted.starts == starts);
-        CHECK((sorted.colours == colours_of(walked)));
+        CHECK((sorted.colours == colours_of(expected)));
     }
 }
 

@@ -1,5 +1,4 @@
-// Conservation of packets: counts of packets created and ended, hops and words on links, and the voxels that rays
-// visit.
+// Conservation of packets: numbers of packets made and ended, hops and words on links, and the voxels that rays visit.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
@@ -55,7 +54,7 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t light
     CHECK(r.made[RAYA_KIND_RETURN] <= terms + stopped);
 }
 
-// Checks that each record crosses as many links as the torus distance between its nodes, however long it waits.
+// Checks that each packet crosses as many links as the torus distance between its source and destination.
 void check_traffic(const RecordedRender& r, const TorusSettings& s) {
     std::uint64_t hops = 0;
     std::vector<std::uint64_t> words(r.result.link_words.size());
@@ -86,7 +85,8 @@ std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
     return raya_voxel(grid, at.at[0], at.at[1], at.at[2]);
 }
 
-// Returns true if a ray goes from voxel to neighbouring voxel and never reverses its direction along an axis.
+// Returns true if each step of a ray leads to a neighbouring voxel and the ray never reverses its direction along an
+// axis.
 bool is_walk(const std::vector<PacketRecord>& stages) {
     bool right = true;
     for (std::size_t i = 1; i < stages.size(); ++i) {
@@ -121,11 +121,13 @@ bool is_tour(const std::vector<PacketRecord>& stages, const raya_torus& torus, c
     return right;
 }
 
+// Numbers of rays.
 struct RayCounts {
     std::size_t narrow = 0, wide = 0;
 };
 
-// Checks the voxels that each ray visits. The case must have one voxel per node, so that every step is a record.
+// Checks the voxels that each ray visits. Each node must hold one voxel, so that every step sends a packet, which is
+// recorded.
 RayCounts check_walks(const RecordedRender& r, const TorusSettings& s) {
     RayCounts walked;
     std::size_t broken = 0, early = 0, wrong_walks = 0, wrong_tours = 0;
@@ -150,15 +152,15 @@ RayCounts check_walks(const RecordedRender& r, const TorusSettings& s) {
 // Checks that every return goes to the root, and that each ray of a pixel's ray tree, shadow rays included, has at most
 // one return.
 void check_returns(const RecordedRender& r) {
-    std::map<LightKey, int> answers;
+    std::map<LightKey, int> return_counts;
     std::size_t misrouted = 0;
     for (const PacketRecord& p : r.records) {
         if (kind_of(p) != RAYA_KIND_RETURN) continue;
         misrouted += p.destination != RAYA_ROOT || p.source == RAYA_ROOT;
-        ++answers[light_key(p)];
+        ++return_counts[light_key(p)];
     }
     CHECK(misrouted == 0);
-    CHECK(std::all_of(answers.begin(), answers.end(), [](const auto& a) { return a.second == 1; }));
+    CHECK(std::all_of(return_counts.begin(), return_counts.end(), [](const auto& a) { return a.second == 1; }));
 }
 
 struct Row {
@@ -187,7 +189,7 @@ TEST_CASE("random machines: packets, hops and words agree with the events and th
     const std::uint64_t seed = 5150;
     SplitMix random(seed);
     Session session(choose_device(""));
-    RayCounts all;
+    RayCounts total;
     const unsigned cases = quick_cases(20, 60);
     for (unsigned i = 0; i < cases; ++i) {
         const std::string format = i % 6 == 0 ? "spa22" : "fp32";
@@ -200,8 +202,8 @@ TEST_CASE("random machines: packets, hops and words agree with the events and th
         c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
         c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
         c.packets = random_charge(random);
-        const bool one_each = i % 4 > 0 || i % 8 == 0;
-        if (!one_each)
+        const bool one_voxel_per_node = i % 4 > 0 || i % 8 == 0;
+        if (!one_voxel_per_node)
             for (std::size_t axis = 0; axis < 3; ++axis) c.voxels[axis] = 1 + random_below(random, 7);
         c.pixels.stride = i % 5 == 4 ? 1 + random_below(random, 5) : 1;
         CAPTURE(seed, i, case_text(c));
@@ -210,23 +212,24 @@ TEST_CASE("random machines: packets, hops and words agree with the events and th
         check_kinds(r.result, (c.width * c.height - 1) / c.pixels.stride + 1, lights_of(scene), c.packets.return_a_ray);
         check_traffic(r, s);
         check_returns(r);
-        if (!one_each) continue;
-        const RayCounts here = check_walks(r, s);
-        all.narrow += here.narrow;
-        all.wide += here.wide;
+        if (!one_voxel_per_node) continue;
+        const RayCounts case_counts = check_walks(r, s);
+        total.narrow += case_counts.narrow;
+        total.wide += case_counts.wide;
     }
-    CHECK(all.narrow > (thorough() ? 5'000 : 1'000));
-    CHECK(all.wide > (thorough() ? 100 : 20));
+    CHECK(total.narrow > (thorough() ? 5'000 : 1'000));
+    CHECK(total.wide > (thorough() ? 100 : 20));
 }
 
 TEST_CASE("recording the packets changes no result", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kSceneSeeds[1]);
     const TorusCase c{.nodes = {3, 2, 2}, .lanes = 4, .group = 1};
-    const TorusResult with = render_and_record(session, scene, c).result, without = render_torus(session, scene, c);
-    CHECK(image_and_counts(with) == image_and_counts(without));
-    CHECK(with.link_words == without.link_words);
-    CHECK(with.supersteps.size() == without.supersteps.size());
+    const TorusResult recorded = render_and_record(session, scene, c).result,
+                      unrecorded = render_torus(session, scene, c);
+    CHECK(image_and_counts(recorded) == image_and_counts(unrecorded));
+    CHECK(recorded.link_words == unrecorded.link_words);
+    CHECK(recorded.supersteps.size() == unrecorded.supersteps.size());
 }
 
 TEST_CASE("the supersteps' maxima sum to between the busiest node or link and the total", "[torus]") {

@@ -1,5 +1,5 @@
-// Short queues. The shortest queue is sufficient if nodes need not wait for each other; a queue one packet shorter is
-// rejected; a machine that deadlocks finishes with the queue length that the search finds.
+// Short queues. The shortest queue is sufficient if nodes need not wait for each other. A queue one packet shorter is
+// refused. A machine that deadlocks finishes with the queue length that the search finds.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -16,8 +16,8 @@ std::uint32_t min_queue_of(const Scene& scene, const TorusCase& c) {
     return raya_min_queue(lights_of(scene), c.bounces);
 }
 
-// Mirrors and glass in a hollow mirror ball that also contains the eye and the lights, and a small sphere in each of
-// two distant corners. All rays stay in one of the 4 x 4 x 4 voxels.
+// Returns a scene of mirrors and glass in a hollow mirror ball, which also contains the eye and the lights. A small
+// sphere in each of two distant corners enlarges the box, so that all rays stay in one of the 4 x 4 x 4 voxels.
 Scene scene_in_one_voxel(std::uint64_t seed) {
     SplitMix random(seed);
     Scene scene = empty_scene();
@@ -36,7 +36,7 @@ Scene scene_in_one_voxel(std::uint64_t seed) {
     return scene;
 }
 
-// Hash and counts of a finished render, or the figures of its deadlock.
+// Image hash and counts of a finished render, or the figures of its deadlock.
 struct RenderOutcome {
     std::string image;
     std::optional<DeadlockFigures> deadlock;
@@ -50,11 +50,12 @@ RenderOutcome render_outcome(TorusRenderer& renderer) {
     }
 }
 
+// Returns the result of the search for a queue longer than `queue` with which the machine finishes.
 QueueSearchResult search(TorusRenderer& renderer, std::uint32_t queue) {
     return find_longer_queue(queue, renderer.queue_trial());
 }
 
-bool same(const DeadlockFigures& a, const DeadlockFigures& b) {
+bool same_figures(const DeadlockFigures& a, const DeadlockFigures& b) {
     return a.superstep == b.superstep && a.live == b.live && a.full == b.full && a.queue == b.queue;
 }
 
@@ -75,7 +76,7 @@ TEST_CASE("a single node renders with the shortest queue", "[torus]") {
     }
 }
 
-TEST_CASE("the shortest queue suffices for a node that has all rays", "[torus]") {
+TEST_CASE("the shortest queue suffices if one node processes all rays", "[torus]") {
     Session session(choose_device(""));
     for (std::uint64_t seed = 1; seed <= 2; ++seed)
         for (const Links links : {Links::kTorus3d, Links::kTorus2d})
@@ -94,7 +95,7 @@ TEST_CASE("the shortest queue suffices for a node that has all rays", "[torus]")
             }
 }
 
-TEST_CASE("a queue shorter than the shortest is refused, with the shortest length", "[torus]") {
+TEST_CASE("a queue below the minimum length is refused, and the message names the minimum", "[torus]") {
     Session session(choose_device(""));
     SplitMix random(1);
     for (int i = 0; i < 20; ++i) {
@@ -110,7 +111,7 @@ TEST_CASE("a queue shorter than the shortest is refused, with the shortest lengt
     }
 }
 
-TEST_CASE("a machine that deadlocks ends with the queue that the search finds", "[torus]") {
+TEST_CASE("a machine that deadlocks finishes with the queue that the search finds", "[torus]") {
     const char* const name = GENERATE("centre", "mirrors");
     const Scene scene = project_scene(name);
     Session session(choose_device(""));
@@ -120,34 +121,34 @@ TEST_CASE("a machine that deadlocks ends with the queue that the search finds", 
     const std::string expected = ring_image_and_counts(scene, c);
     int deadlocks = 0;
     for (const Injection inject : {Injection::kAll, Injection::kRoot}) {
-        TorusCase short_one = c;
-        short_one.queue += inject == Injection::kRoot ? 3 : 0;
-        short_one.inject = inject;
-        CAPTURE(name, case_text(short_one));
-        TorusRenderer renderer(session, scene, settings_of(short_one));
+        TorusCase short_queue = c;
+        short_queue.queue += inject == Injection::kRoot ? 3 : 0;
+        short_queue.inject = inject;
+        CAPTURE(name, case_text(short_queue));
+        TorusRenderer renderer(session, scene, settings_of(short_queue));
         const RenderOutcome first = render_outcome(renderer);
         if (!first.deadlock) CHECK(first.image == expected);
         if (!first.deadlock) continue;
         ++deadlocks;
-        CHECK(first.deadlock->queue == short_one.queue);
+        CHECK(first.deadlock->queue == short_queue.queue);
         CHECK(first.deadlock->nodes == 64);
         CHECK(first.deadlock->full <= 64);
-        CHECK(first.deadlock->live > first.deadlock->full * short_one.queue);
+        CHECK(first.deadlock->live > first.deadlock->full * short_queue.queue);
         CHECK(first.deadlock->superstep > 0);
-        const QueueSearchResult found = search(renderer, short_one.queue);
+        const QueueSearchResult found = search(renderer, short_queue.queue);
         CHECK((found.completes && found.fits));
-        CHECK(found.queue > short_one.queue);
+        CHECK(found.queue > short_queue.queue);
         const TorusResult r = renderer.render();  // with the queue that was found
         CHECK(image_and_counts(r) == expected);
         CHECK(r.queue_max <= found.queue);
         CHECK(r.made == r.ended);
         // The deadlock repeats identically: no state of the first render or of the search remains.
-        renderer.set_queue(short_one.queue);
+        renderer.set_queue(short_queue.queue);
         const RenderOutcome again = render_outcome(renderer);
         REQUIRE(again.deadlock);
-        CHECK(same(*again.deadlock, *first.deadlock));
+        CHECK(same_figures(*again.deadlock, *first.deadlock));
     }
-    CHECK(deadlocks >= 2);  // else this test is void
+    CHECK(deadlocks >= 2);  // otherwise the test checks nothing
 }
 
 TEST_CASE("the queue that the search finds fits a node's memory", "[torus]") {
@@ -171,7 +172,7 @@ TEST_CASE("the queue that the search finds fits a node's memory", "[torus]") {
     CHECK(image_and_counts(TorusRenderer(session, scene, settings).render()) == ring_image_and_counts(scene, c));
 }
 
-TEST_CASE("with one packet less than just enough the machine deadlocks", "[torus]") {
+TEST_CASE("with a queue one packet shorter than the shortest sufficient one, the machine deadlocks", "[torus]") {
     const Scene scene = project_scene("mirrors");
     Session session(choose_device(""));
     TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
@@ -186,15 +187,16 @@ TEST_CASE("with one packet less than just enough the machine deadlocks", "[torus
         return image.empty() ? refusal : image;
     };
     std::uint32_t queue = shortest;
-    std::string last, here = outcome(queue);
-    for (; here != expected && queue < 4 * shortest; here = outcome(++queue)) last = here;
-    CAPTURE(shortest, queue, last);
-    CHECK(here == expected);
-    REQUIRE(queue > shortest);  // else this test is void
-    CHECK_THAT(last, Catch::Contains("deadlock") && Catch::Contains("are full at " + std::to_string(queue - 1)));
+    std::string previous, current = outcome(queue);
+    for (; current != expected && queue < 4 * shortest; current = outcome(++queue)) previous = current;
+    CAPTURE(shortest, queue, previous);
+    CHECK(current == expected);
+    REQUIRE(queue > shortest);  // otherwise the test checks nothing
+    CHECK_THAT(previous, Catch::Contains("deadlock") && Catch::Contains("are full at " + std::to_string(queue - 1)));
 }
 
-TEST_CASE("queues of any length give the ring's image, or a deadlock that a found queue resolves", "[torus]") {
+TEST_CASE("queues of any length give the ring's image, or a deadlock that does not occur with the queue found",
+          "[torus]") {
     const std::uint64_t seed = 616;
     SplitMix random(seed);
     Session session(choose_device(""));

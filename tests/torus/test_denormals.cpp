@@ -1,4 +1,4 @@
-// Lanes without a packet compute with normal numbers, not with slow denormals (tests/ring/test_denormals.cpp).
+// Lanes without a packet compute with normal numbers, because denormals are slow (tests/ring/test_denormals.cpp).
 #include <catch2/catch.hpp>
 
 #include "tests/kernels/denormals.hpp"

@@ -52,7 +52,7 @@ const KernelFault kKernelFaults[] = {
      {"torus/shade_packets.clh", "f->path.all | (index)(0x80000000u) >> levels_of(f);", "f->path.all;"}},
     {"a light's number is one off",
      {"torus/shade_packets.clh", "shadow.light = (index)(l + 1);", "shadow.light = (index)(l);"}},
-    {"discarded rays are not counted", {"torus/inject.cl", "number += !own.lane[lane];", "number += 0;"}},
+    {"discarded rays are not counted", {"torus/inject.cl", "number += !own_rays.lane[lane];", "number += 0;"}},
     {"a ray's return leaves before its shadow rays",
      {"torus/shade_packets.clh", "put_shadow_rays(n, f, struck, &lit);\n    if (!f->charged) charge_newest(f, struck);",
       "if (!f->charged) charge_newest(f, struck);\n    put_shadow_rays(n, f, struck, &lit);"}},
@@ -62,18 +62,20 @@ const KernelFault kKernelFaults[] = {
      {"torus/accept.cl", "if (packet.state & RAYA_STATE_CHARGED) shared_add", "shared_add"}},
     {"every return from a queue is a message", {"torus/route.cl", "packet.head.state & RAYA_STATE_CHARGED", "1"}},
     {"no queue slots are reserved",
-     {"torus/trace_voxel.cl", "if (*all + need > f->capacity) continue;", "chosen.lane[lane] = RAYA_TRUE; continue;"}},
+     {"torus/trace_voxel.cl", "if (*used_slots + needed_slots > f->capacity) continue;",
+      "chosen.lane[lane] = RAYA_TRUE; continue;"}},
 };
 
 struct Traffic {
     std::string image;
     PacketCounts made{};
     std::uint64_t discarded = 0;
-    std::vector<std::uint64_t> words, expected;  // [node][link]: counted, and by the routing rules
+    std::vector<std::uint64_t> words;     // [node][link]: number of words that the render counted
+    std::vector<std::uint64_t> expected;  // [node][link]: number of words by the routing rules
     bool operator==(const Traffic&) const = default;
 };
 
-// Stops a machine that does not finish.
+// Throws an exception at the 5001st call, to end the render of a mutant that does not finish.
 void limit_calls(int& calls) {
     if (++calls > 5'000) throw std::runtime_error("does not end");
 }
@@ -120,7 +122,7 @@ TEST_CASE("every injected kernel fault is detected", "[torus][.][faults]") {
     TorusCase wide_rays{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
     wide_rays.format = "spa22";
     wide_rays.packets = {22, true};
-    // The eye is outside the box, so several nodes test the same pixel.
+    // The eye is outside the box, so several nodes make a ray for the same pixel.
     const TorusCase outside{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
     const Trial trials[] = {{random_view_scene(kSceneSeeds[1]), narrow_rays},
                             {far_mirror_scene(kSceneSeeds[3], "spa22"), wide_rays},
@@ -132,11 +134,11 @@ TEST_CASE("every injected kernel fault is detected", "[torus][.][faults]") {
     for (const KernelFault& fault : kKernelFaults) {
         CAPTURE(fault.what);
         check_patches({.patches = {fault.patch}});
-        std::string how;
-        for (std::size_t i = 0; i < right.size() && how.empty(); ++i)
-            how = detect_fault(session, trials[i].scene, trials[i].c, right[i], fault.patch);
-        WARN(fault.what << ": " << how);
-        CHECK(how != "");
+        std::string detection;
+        for (std::size_t i = 0; i < right.size() && detection.empty(); ++i)
+            detection = detect_fault(session, trials[i].scene, trials[i].c, right[i], fault.patch);
+        WARN(fault.what << ": " << detection);
+        CHECK(detection != "");
     }
 }
 

@@ -1,4 +1,4 @@
-// Histories of renders agree with the renders' counts: each node's cycles, and every message on every link.
+// Histories of renders agree with the renders' counts: cycles of each node, words and messages on each link.
 #include <catch2/catch.hpp>
 #include <map>
 #include <stdexcept>
@@ -31,12 +31,12 @@ RenderHistory render_with_history(const Scene& scene, const TorusCase& c) {
     return r;
 }
 
-// By kind: the number of messages whose sending task was started by a message of another kind or by injection.
+// Returns, by kind, the number of messages whose sending task was started by a message of another kind or by injection.
 std::map<std::uint32_t, std::uint64_t> count_new_messages(const History& history) {
     std::map<std::uint32_t, std::uint64_t> made;
     for (const HistoryMessage& message : history.messages) {
         const std::uint32_t cause = history.tasks[message.task].cause;
-        if (cause == HistoryTask::kInjection || history.messages[cause].kind != message.kind) ++made[message.kind];
+        if (cause == HistoryTask::kNoCause || history.messages[cause].kind != message.kind) ++made[message.kind];
     }
     return made;
 }
@@ -107,9 +107,10 @@ TEST_CASE("the cost of discarded rays is charged to the rays that a node keeps",
     CHECK(cycles == std::vector<std::uint64_t>{50, 51, 100, 100, 5, 20});
     CHECK(h.tasks[5].node == 1);
 
-    HistoryRecorder lost(torus);
+    HistoryRecorder recorder_without_cause(torus);
     const std::vector<raya_processed> shadow = {{4, raya_state(RAYA_KIND_SHADOW, 0, 1), 0, 100}};
-    CHECK_THROWS_AS(lost.add({.node = 0, .processed = shadow, .queue = std::vector<raya_packet>(1)}), std::logic_error);
+    CHECK_THROWS_AS(recorder_without_cause.add({.node = 0, .processed = shadow, .queue = std::vector<raya_packet>(1)}),
+                    std::logic_error);
 }
 
 TEST_CASE("reading a history without settings.history is an error", "[torus]") {
@@ -129,14 +130,14 @@ TEST_CASE("every injected fault in the cost counters is detected", "[.][faults]"
         CAPTURE(fault.find);
         TorusCase c{.nodes = {2, 2, 2}, .voxels = {3, 3, 3}, .queue = 60};
         c.sources.patches = {fault};
-        bool seen = false;
+        bool detected = false;
         try {
             const RenderHistory r = render_with_history(test_scene(), c);
-            seen = cycles_of_tasks(r) != r.result.load.per_pe;
+            detected = cycles_of_tasks(r) != r.result.load.per_pe;
         } catch (const std::logic_error&) {
-            seen = true;
+            detected = true;
         }
-        CHECK(seen);
+        CHECK(detected);
     }
 }
 

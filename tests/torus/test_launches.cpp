@@ -1,4 +1,4 @@
-// Image and counts do not change if launches do little work each, or if a kernel instead of copy commands moves the
+// Image and counts do not change if each launch does little work, or if a kernel instead of copy commands moves the
 // packets over the links.
 #include <fmt/core.h>
 
@@ -58,7 +58,7 @@ TorusCase random_case(SplitMix& random, const Scene& scene) {
     return c;
 }
 
-// Two nodes, each with one voxel of `spheres` spheres.
+// Returns the memories of two nodes, each with one voxel of `spheres` spheres.
 NodeMemories two_nodes(const raya_torus& torus, std::uint32_t spheres) {
     NodeMemories memories;
     memories.starts = {0};
@@ -88,7 +88,7 @@ TEST_CASE("bounded launches and links moved by a kernel give the image and count
     const std::uint64_t seed = 20261;
     SplitMix random(seed);
     Session session(choose_device(""));
-    std::uint64_t once = 0, bounded = 0;
+    std::uint64_t single_launches = 0, bounded_launches = 0;
     for (unsigned i = 0; i < quick_cases(40, 300); ++i) {
         const Scene scene = random_view_scene(kSceneSeeds[i % kSceneSeeds.size()]);
         TorusCase c = random_case(random, scene);
@@ -102,13 +102,13 @@ TEST_CASE("bounded launches and links moved by a kernel give the image and count
             const TorusResult whole = render_torus(session, scene, c);
             const TorusResult parts = TorusRenderer(session, scene, settings).render();
             check_same(parts, whole);
-            once += launches_of(whole);
-            bounded += launches_of(parts);
-        } catch (const TorusDeadlock&) {  // then both renders must deadlock
+            single_launches += launches_of(whole);
+            bounded_launches += launches_of(parts);
+        } catch (const TorusDeadlock&) {  // both renders must deadlock
             CHECK_THROWS_AS(TorusRenderer(session, scene, settings).render(), TorusDeadlock);
         }
     }
-    CHECK(bounded > 4 * once);
+    CHECK(bounded_launches > 4 * single_launches);
 }
 
 // Group sizes up to a GPU's default and the maximum.
@@ -127,11 +127,12 @@ TEST_CASE("work-groups of many work-items give the same image", "[torus][slow]")
     }
 }
 
-TEST_CASE("the link method is the device's tuned one unless an option names it", "[torus]") {
+TEST_CASE("the method that moves packets over links is tuned for the device unless an option names it", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kSceneSeeds[0]);
-    const auto rendered = [&](LinkMove named) {
-        const TorusCase c{.width = 6, .height = 5, .nodes = {2, 1, 1}, .lanes = 0, .bounces = 1, .link_move = named};
+    const auto rendered = [&](LinkMove link_move) {
+        const TorusCase c{
+            .width = 6, .height = 5, .nodes = {2, 1, 1}, .lanes = 0, .bounces = 1, .link_move = link_move};
         return render_torus(session, scene, c);
     };
     const bool cpu = session.device().type == "cpu";
@@ -143,25 +144,25 @@ TEST_CASE("the link method is the device's tuned one unless an option names it",
         values.link_exchange = static_cast<std::uint32_t>(LinkMove::kCopies);
         return std::optional(TunedChoice{values, "FILE, DATE"});
     });
-    const TorusResult tuned = rendered(LinkMove::kAutomatic), named = rendered(LinkMove::kKernel);
+    const TorusResult tuned = rendered(LinkMove::kAutomatic), by_option = rendered(LinkMove::kKernel);
     CHECK_FALSE(tuned.links_by_kernel);
     CHECK(tuned.links_origin == "FILE, DATE");
-    CHECK(named.links_by_kernel);
-    CHECK(named.links_origin == "options");
+    CHECK(by_option.links_by_kernel);
+    CHECK(by_option.links_origin == "options");
     CHECK(image_and_counts(tuned) == image_and_counts(untuned));
-    CHECK(image_and_counts(named) == image_and_counts(untuned));
+    CHECK(image_and_counts(by_option) == image_and_counts(untuned));
 }
 
 TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterations where the device limits them",
           "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
-    const NodeShare share(torus);
+    const NodeDistribution distribution(torus);
     TorusSettings settings;
     settings.torus = torus;
     DeviceInfo device;
     device.correctly_rounded_divide_sqrt = true;
     const auto plan_of = [&](std::uint32_t spheres) {
-        return LaunchPlan(settings, two_nodes(torus, spheres), share, {8192, 2048}, {}, device);
+        return LaunchPlan(settings, two_nodes(torus, spheres), distribution, {8192, 2048}, {}, device);
     };
     NodeStatus status(2);
     status.words[RAYA_STATUS_QUEUE] = 1000;
@@ -182,13 +183,14 @@ TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterati
     CHECK(short_loops.route() == LaunchBudget{7679, false});  // (65535 - 4096) / 8; a queue may hold 8192 packets
     CHECK_FALSE(short_loops.accept().single_launch);
     // Units of work per packet: 1 for its batch, 100 for the tests, 12 for its processing (RAYA_WORK_OF_PROCESSING).
-    for (const auto& [packets, once] : {std::pair{22u, true}, std::pair{23u, false}}) {
+    for (const auto& [packets, single_launch] : {std::pair{22u, true}, std::pair{23u, false}}) {
         NodeStatus waiting(2);
         waiting.words[RAYA_STATUS_QUEUE] = packets - 5;
         waiting.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 5;
         short_loops.update(waiting);
         CAPTURE(packets);
-        CHECK(short_loops.trace_voxel() == (once ? LaunchBudget{2559, true} : LaunchBudget{2559 - 113, false}));
+        CHECK(short_loops.trace_voxel() ==
+              (single_launch ? LaunchBudget{2559, true} : LaunchBudget{2559 - 113, false}));
     }
     one_voxel_too_long.update(status);
     CHECK(one_voxel_too_long.trace_voxel() == LaunchBudget{1, false});  // one packet per launch
@@ -196,15 +198,19 @@ TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterati
 
 TEST_CASE("a launch of any kernel whose loops are cut is repeated with half the work", "[torus]") {
     struct Row {
-        const char *kernel, *ruined;  // statements that corrupt what a cut launch may have written
+        const char* kernel;
+        const char* corruption;  // statements that corrupt what a cut launch may have written
     };
-    const char* const counted =
+    const char* const corrupt_counts =
         "events[(size_t)slot * RAYA_EVENTS] += 1000; made[(size_t)slot * RAYA_KINDS + 1] += 9; "
         "queues[(size_t)slot * run->queue].head.pixel += 1;";
-    const char* const moved =
+    const char* const corrupt_moves =
         "ended[(size_t)slot * RAYA_KINDS + 2] += 9; status[RAYA_STATUS_QUEUE_MAX] += 1000; "
         "queues[(size_t)slot * run->queue].head.pixel += 1;";
-    const Row rows[] = {{"inject", counted}, {"trace_voxel", counted}, {"route", moved}, {"accept", moved}};
+    const Row rows[] = {{"inject", corrupt_counts},
+                        {"trace_voxel", corrupt_counts},
+                        {"route", corrupt_moves},
+                        {"accept", corrupt_moves}};
     const Scene scene = random_view_scene(kSceneSeeds[0]);
     TorusCase c{.width = 6, .height = 5, .nodes = {2, 2, 1}, .lanes = 1, .group = 3, .bounces = 3};
     for (const Row& row : rows) {
@@ -216,7 +222,7 @@ TEST_CASE("a launch of any kernel whose loops are cut is repeated with half the 
         const std::string text = kernel_file(file);
         const std::size_t at = text.find("if (loops_were_cut("), end = text.find('\n', at);
         c.sources.patches = {{file, text.substr(at, end - at),
-                              fmt::format("if (work > 3u) {{ status[RAYA_STATUS_CUT] = 1; {} }}", row.ruined)}};
+                              fmt::format("if (work > 3u) {{ status[RAYA_STATUS_CUT] = 1; {} }}", row.corruption)}};
         session.launch_limit(row.kernel) = 8;
         check_same(render_torus(session, scene, c), whole);
         CHECK(session.launch_limit(row.kernel) == 2);

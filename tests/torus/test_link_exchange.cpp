@@ -24,8 +24,8 @@ class Mailboxes {
           nodes_(raya_nodes(torus)),
           capacity_(capacity),
           words_(words),
-          share_(torus),
-          links_(session, share_, capacity, {"test", words, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
+          distribution_(torus),
+          links_(session, distribution_, capacity, {"test", words, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
           status_(nodes_),
           device_status_(session.buffer<std::uint32_t>("status", status_.words.size())),
           out_(links_.outboxes().size(), kUnsent),
@@ -34,14 +34,14 @@ class Mailboxes {
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) out_[at(box)] = 0;
     }
 
-    /// From now on moves packets with the exchange kernel instead of copy commands.
+    /// Makes further exchanges use the exchange kernel instead of copy commands.
     void use_kernel(Kernels& kernels) {
         links_.use_kernel(kernels.get<ExchangeKernel>(), kernels.options().group_size, device_status_);
     }
 
     /// For each outbox, with probability 1 / `rareness`: adds a random number of packets, at most `max_packets` and at
-    /// most the free space.
-    void put(SplitMix& random, std::uint32_t rareness, std::uint32_t max_packets) {
+    /// most as many as fit.
+    void add_packets(SplitMix& random, std::uint32_t rareness, std::uint32_t max_packets) {
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             for (std::uint32_t node = 0; node < nodes_ && torus_.sides[link / 2] > 1; ++node) {
                 std::uint32_t& packets = outbox(link, node);
@@ -58,7 +58,7 @@ class Mailboxes {
         session_.write("test", links_.outboxes(), out_);
         if (record)
             links_.visit_new_packets(status_, [&](std::uint32_t node, const raya_head& packet) {
-                ++seen_[packet.pixel];
+                ++visits_[packet.pixel];
                 CHECK(sources_[packet.pixel] == node);
             });
         const std::vector<std::uint32_t> before = in_;
@@ -88,8 +88,8 @@ class Mailboxes {
         CHECK(words == expected);
     }
 
-    /// Removes none, some or all packets from each inbox, as the nodes would.
-    void take(SplitMix& random, std::uint32_t rareness) {
+    /// Removes a random number of packets from each inbox, often all or none, as the nodes would.
+    void remove_packets(SplitMix& random, std::uint32_t rareness) {
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) {
             std::uint32_t& left = inbox(box / nodes_, raya_link_end(torus_, box % nodes_, box / nodes_));
             left = random_below(random, rareness) == 0 ? random_below(random, left + 1) : left;
@@ -106,16 +106,17 @@ class Mailboxes {
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box)
             waiting += status_.at(box % nodes_, RAYA_STATUS_OUTBOX + box / nodes_);
         for (const std::uint64_t packets : links_.packets()) counted += packets;
-        CHECK(arrived_.size() + waiting == sources_.size());
-        CHECK(counted == arrived_.size());
-        CHECK(std::all_of(arrived_.begin(), arrived_.end(), [](const auto& a) { return a.second == 1; }));
+        CHECK(arrivals_.size() + waiting == sources_.size());
+        CHECK(counted == arrivals_.size());
+        CHECK(std::all_of(arrivals_.begin(), arrivals_.end(), [](const auto& a) { return a.second == 1; }));
         if (!record) return;
-        CHECK(seen_.size() == sources_.size());
-        CHECK(std::all_of(seen_.begin(), seen_.end(), [](const auto& a) { return a.second == 1; }));
+        CHECK(visits_.size() == sources_.size());
+        CHECK(std::all_of(visits_.begin(), visits_.end(), [](const auto& a) { return a.second == 1; }));
     }
 
-    std::uint64_t arrived() const { return arrived_.size(); }
-    /// Copy commands of several mailboxes, and of a single one.
+    /// Returns the number of packets that have arrived.
+    std::uint64_t arrived_packets() const { return arrivals_.size(); }
+    /// Numbers of copy commands that copied several mailboxes, and a single mailbox.
     static inline std::uint64_t multi_box_copies = 0, single_box_copies = 0;
 
   private:
@@ -140,7 +141,7 @@ class Mailboxes {
         const std::size_t box = at(link * nodes_ + node);
         CHECK(in_[box] == packets);
         CHECK(std::equal(&in_[box] + words_, &in_[box] + (1 + packets) * words_, &out_[box] + words_));
-        for (std::uint32_t i = 1; i <= packets; ++i) ++arrived_[in_[box + i * words_]];
+        for (std::uint32_t i = 1; i <= packets; ++i) ++arrivals_[in_[box + i * words_]];
         inbox(link, end) = packets;
         outbox(link, node) = 0;
         out_[box] = 0;
@@ -156,13 +157,13 @@ class Mailboxes {
     Session& session_;
     raya_torus torus_;
     std::uint32_t nodes_, capacity_, words_;
-    NodeShare share_;
+    NodeDistribution distribution_;
     LinkExchange links_;
     NodeStatus status_;
     Buffer<std::uint32_t> device_status_;
     std::vector<std::uint32_t> out_, in_;
-    std::vector<std::uint32_t> sources_;           // by packet number: its source node
-    std::map<std::uint32_t, int> arrived_, seen_;  // by packet number: arrivals, visits
+    std::vector<std::uint32_t> sources_;              // by packet number: its source node
+    std::map<std::uint32_t, int> arrivals_, visits_;  // by packet number: number of arrivals, of visits
 };
 
 }  // namespace
@@ -171,26 +172,26 @@ TEST_CASE("random toruses: links carry every packet to the neighbour once", "[to
     const std::uint64_t seed = 8472;
     SplitMix random(seed);
     Session session(choose_device(""));
-    Kernels alone(session, {}), groups(session, {.group_size = 4});
-    std::uint64_t arrived = 0;
+    Kernels one_item_kernels(session, {}), group_kernels(session, {.group_size = 4});
+    std::uint64_t arrived_packets = 0;
     for (int i = 0; i < 150; ++i) {
         const raya_torus torus = random_torus(random, 5);
         const std::uint32_t capacity = 1 + random_below(random, 12);
         const bool record = i % 2;
         CAPTURE(seed, i, torus_text(torus), capacity, record);
         Mailboxes boxes(session, torus, capacity, i % 3 ? RAYA_PACKET_WORDS : RAYA_RETURN_WORDS);
-        if (i % 4 >= 2) boxes.use_kernel(i % 4 == 2 ? alone : groups);
+        if (i % 4 >= 2) boxes.use_kernel(i % 4 == 2 ? one_item_kernels : group_kernels);
         const std::uint32_t rareness = i % 5 == 0 ? 20 : 1 + random_below(random, 3);
         for (int round = 0; round < 6; ++round) {
             CAPTURE(round);
-            boxes.put(random, rareness, capacity);
+            boxes.add_packets(random, rareness, capacity);
             boxes.exchange(record);
-            boxes.take(random, 1 + random_below(random, 3));
+            boxes.remove_packets(random, 1 + random_below(random, 3));
         }
         boxes.check_totals(record);
-        arrived += boxes.arrived();
+        arrived_packets += boxes.arrived_packets();
     }
-    CHECK(arrived > 10'000);
+    CHECK(arrived_packets > 10'000);
     CHECK(Mailboxes::multi_box_copies > 100);
     CHECK(Mailboxes::single_box_copies > 100);
 }
@@ -199,8 +200,8 @@ TEST_CASE("a long mailbox is copied separately from short ones if that moves few
     Session session(choose_device(""));
     constexpr std::uint32_t kCapacity = 4096, kWords = RAYA_PACKET_WORDS, kBox = (1 + kCapacity) * kWords;
     const raya_torus torus = make_torus({4, 1, 1}, Links::kTorus3d);
-    const NodeShare share(torus);
-    LinkExchange links(session, share, kCapacity, {"test", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
+    const NodeDistribution distribution(torus);
+    LinkExchange links(session, distribution, kCapacity, {"test", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
     links.clear();
     NodeStatus status(4);
     std::vector<std::uint32_t> out(links.outboxes().size()), in(out.size());
@@ -226,11 +227,11 @@ TEST_CASE("a long mailbox is copied separately from short ones if that moves few
     }
 }
 
-TEST_CASE("links charge the counted messages, not the packets that they move", "[torus]") {
+TEST_CASE("a link's words are those of the charged messages, not of the packets that it moves", "[torus]") {
     Session session(choose_device(""));
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
-    const NodeShare share(torus);
-    LinkExchange links(session, share, 8,
+    const NodeDistribution distribution(torus);
+    LinkExchange links(session, distribution, 8,
                        {"test", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX, 6,
                         RAYA_STATUS_RETURN_CHARGED});
     links.clear();

@@ -15,8 +15,9 @@ namespace {
 constexpr std::size_t kRays = 640;
 
 struct VoxelHits {
-    std::vector<std::uint32_t> objects;  // their numbers in the voxel
-    std::vector<float> distances, places;
+    std::vector<std::uint32_t> objects;  // object numbers in the voxel
+    std::vector<float> distances;        // t
+    std::vector<float> places;           // [ray][9]: geometric normal, normal, colour
 };
 
 VoxelHits voxel_hits(KernelRunner& runner, const NodeMemories& memories, std::uint32_t node, std::uint32_t voxel,
@@ -33,7 +34,8 @@ VoxelHits voxel_hits(KernelRunner& runner, const NodeMemories& memories, std::ui
     return {runner.read(objects), runner.read(distances), runner.read(places)};
 }
 
-// Reduces patches to three corners, so that none is split and the job's objects match the scene's objects one to one.
+// Returns the scene with all patches reduced to three corners. No patch is then split, so the job's objects match the
+// scene's objects one to one.
 Scene with_triangles(Scene scene) {
     for (Polygon& polygon : scene.polygons)
         if (!polygon.normals.empty()) {
@@ -43,9 +45,9 @@ Scene with_triangles(Scene scene) {
     return scene;
 }
 
-// The scene with only the listed objects and all planes.
-Scene only(const Scene& scene, const std::set<std::uint32_t>& list) {
-    Scene some = scene;
+// Returns the scene with only the listed objects and all planes.
+Scene only_listed(const Scene& scene, const std::set<std::uint32_t>& list) {
+    Scene reduced = scene;
     std::uint32_t number = 0;
     const auto keep = [&](auto& objects, bool all) {
         auto kept = objects;
@@ -54,15 +56,15 @@ Scene only(const Scene& scene, const std::set<std::uint32_t>& list) {
             if (all | list.contains(number++)) kept.push_back(object);
         objects = kept;
     };
-    keep(some.spheres, false);
-    keep(some.planes, true);
-    keep(some.polygons, false);
-    keep(some.cones, false);
-    return some;
+    keep(reduced.spheres, false);
+    keep(reduced.planes, true);
+    keep(reduced.polygons, false);
+    keep(reduced.cones, false);
+    return reduced;
 }
 
-// The scene's numbers of a voxel's objects, indexed by the objects' numbers in the voxel.
-std::vector<std::uint32_t> whole_numbers(NodeReader& node, const raya_voxel_memory& voxel) {
+// Returns the scene-wide numbers of a voxel's objects, indexed by the objects' numbers in the voxel.
+std::vector<std::uint32_t> scene_numbers(NodeReader& node, const raya_voxel_memory& voxel) {
     const raya_objects& o = voxel.objects;
     std::vector<std::uint32_t> numbers = node.section(voxel.numbers_at, o.spheres + o.polygons + o.cones);
     std::vector<std::uint32_t> planes(o.planes);
@@ -71,21 +73,22 @@ std::vector<std::uint32_t> whole_numbers(NodeReader& node, const raya_voxel_memo
     return numbers;
 }
 
-// The number of rays whose hits differ.
-std::size_t differences(const VoxelHits& own, const VoxelHits& theirs) {
+// Returns the number of rays whose hits differ.
+std::size_t differences(const VoxelHits& found_hits, const VoxelHits& expected_hits) {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < own.objects.size(); ++i) {
-        const bool hit = own.objects[i] != kNoObject;
+    for (std::size_t i = 0; i < found_hits.objects.size(); ++i) {
+        const bool hit = found_hits.objects[i] != kNoObject;
         const auto place = [&](const VoxelHits& hits) {
             return std::vector<float>(hits.places.begin() + 9 * i, hits.places.begin() + 9 * i + 9);
         };
-        count += own.objects[i] != theirs.objects[i] || own.distances[i] != theirs.distances[i] ||
-                 (hit && bits(place(own)) != bits(place(theirs)));
+        count += found_hits.objects[i] != expected_hits.objects[i] ||
+                 found_hits.distances[i] != expected_hits.distances[i] ||
+                 (hit && bits(place(found_hits)) != bits(place(expected_hits)));
     }
     return count;
 }
 
-// The hits in the job's own words, in the format of voxel_hits().
+// Returns the hits in the job's words, in the same form as voxel_hits().
 VoxelHits job_hits(KernelRunner& runner, const PackedJob& job, const std::vector<float>& rays) {
     const ProbedHits hits = closest_hits(runner, job.words(), rays);
     const ProbedPlaces probed = find_places(runner, job.words(), rays);
@@ -98,10 +101,11 @@ VoxelHits job_hits(KernelRunner& runner, const PackedJob& job, const std::vector
 
 }  // namespace
 
-TEST_CASE("rays hit the same in a node's voxel as in a job of the voxel's objects", "[torus]") {
+TEST_CASE("rays have the same hits in a node's voxel as in a job of the voxel's objects", "[torus]") {
     std::size_t struck = 0, copies = 0;
     for (const std::uint32_t lanes : {1u, 16u}) {
-        KernelRunner of_job("tests/kernels/probe.cl", {lanes, true}), of_node("tests/torus/probe.cl", {lanes, true});
+        KernelRunner job_runner("tests/kernels/probe.cl", {lanes, true}),
+            node_runner("tests/torus/probe.cl", {lanes, true});
         for (std::uint64_t seed = 1; seed <= 12; ++seed) {
             SplitMix random(100 * lanes + seed);
             const Scene scene = with_triangles(random_objects(random, 4));
@@ -114,14 +118,14 @@ TEST_CASE("rays hit the same in a node's voxel as in a job of the voxel's object
             const std::uint32_t number = raya_node_of_voxel(torus, partition.grid, voxel);
             const std::uint32_t local = raya_local_voxel(torus, partition.grid, voxel);
             NodeReader node(memories, number);
-            const std::vector<std::uint32_t> numbers = whole_numbers(node, node.voxel(local));
+            const std::vector<std::uint32_t> numbers = scene_numbers(node, node.voxel(local));
             CAPTURE(lanes, seed, torus_text(torus), voxel, number, local);
             REQUIRE(std::is_sorted(numbers.begin(), numbers.end()));
             const std::set<std::uint32_t> list(numbers.begin(), numbers.end());
-            const VoxelHits expected = job_hits(of_job, pack(only(scene, list)), rays);
-            CHECK(differences(voxel_hits(of_node, memories, number, local, rays), expected) == 0);
-            const VoxelHits planes = job_hits(of_job, pack(only(scene, {})), rays);
-            CHECK(differences(voxel_hits(of_node, memories, number, node.header().voxels, rays), planes) == 0);
+            const VoxelHits expected = job_hits(job_runner, pack(only_listed(scene, list)), rays);
+            CHECK(differences(voxel_hits(node_runner, memories, number, local, rays), expected) == 0);
+            const VoxelHits planes = job_hits(job_runner, pack(only_listed(scene, {})), rays);
+            CHECK(differences(voxel_hits(node_runner, memories, number, node.header().voxels, rays), planes) == 0);
             struck += kRays - std::count(expected.objects.begin(), expected.objects.end(), kNoObject);
             copies += memories.copies;
         }
@@ -130,8 +134,8 @@ TEST_CASE("rays hit the same in a node's voxel as in a job of the voxel's object
     CHECK(copies > 50);
 }
 
-TEST_CASE("rays hit the same in a voxel that has all objects as in the job", "[torus]") {
-    KernelRunner of_job("tests/kernels/probe.cl", {16, true}), of_node("tests/torus/probe.cl", {16, true});
+TEST_CASE("rays have the same hits in a voxel that lists all objects as in the job", "[torus]") {
+    KernelRunner job_runner("tests/kernels/probe.cl", {16, true}), node_runner("tests/torus/probe.cl", {16, true});
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         SplitMix random(seed);
         const PackedJob job = pack(random_objects(random, 4));  // some patches are split into triangles
@@ -140,16 +144,16 @@ TEST_CASE("rays hit the same in a voxel that has all objects as in the job", "[t
         const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus2d);
         const NodeMemories memories = pack_nodes(job, partition_of({2, 2, 3}, lists), torus);
         const std::vector<float> rays = ray_words(random_rays(50 + seed, kRays));
-        const VoxelHits expected = job_hits(of_job, job, rays);
+        const VoxelHits expected = job_hits(job_runner, job, rays);
         for (std::uint32_t number = 0; number < 4; ++number) {
             NodeReader node(memories, number);
             for (std::uint32_t local = 0; local < node.header().voxels; ++local) {
                 CAPTURE(seed, number, local);
-                VoxelHits own = voxel_hits(of_node, memories, number, local, rays);
-                const std::vector<std::uint32_t> numbers = whole_numbers(node, node.voxel(local));
-                for (std::uint32_t& object : own.objects)
+                VoxelHits found_hits = voxel_hits(node_runner, memories, number, local, rays);
+                const std::vector<std::uint32_t> numbers = scene_numbers(node, node.voxel(local));
+                for (std::uint32_t& object : found_hits.objects)
                     if (object != kNoObject) object = numbers.at(object);
-                CHECK(differences(own, expected) == 0);
+                CHECK(differences(found_hits, expected) == 0);
             }
         }
     }

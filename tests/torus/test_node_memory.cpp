@@ -1,4 +1,4 @@
-// The memories of torus nodes, compared with the job word by word, for random scenes and object lists.
+// Compares the memories of torus nodes with the job word by word, for random scenes and object lists.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
@@ -14,7 +14,7 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-// Compares a node with the job: every word of each object, and everything that the object refers to.
+// Compares a node with the job: every word of each object, and the surfaces and corners to which the object refers.
 class NodeCheck {
   public:
     NodeCheck(const PackedJob& job, NodeReader& node) : job_(job), header_(job.header()), node_(node) {}
@@ -29,41 +29,41 @@ class NodeCheck {
     void objects(std::uint32_t at, std::uint32_t words, const Words& numbers, std::uint32_t first,
                  std::uint32_t job_at) {
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-            const std::size_t own_at = at + i * words, theirs_at = job_at + (numbers[i] - first) * words;
-            Words own = node_.section(own_at, words), theirs = job_section(theirs_at, words);
-            surface(own[RAYA_OBJECT_SURFACE_AT], theirs[RAYA_OBJECT_SURFACE_AT]);
-            own[RAYA_OBJECT_SURFACE_AT] = theirs[RAYA_OBJECT_SURFACE_AT];
-            if (words == RAYA_POLYGON_WORDS) outline(own, theirs);
-            if (own != theirs) FAIL("words of object " << numbers[i]);
+            const std::size_t node_words_at = at + i * words, job_words_at = job_at + (numbers[i] - first) * words;
+            Words node_words = node_.section(node_words_at, words), job_words = job_section(job_words_at, words);
+            surface(node_words[RAYA_OBJECT_SURFACE_AT], job_words[RAYA_OBJECT_SURFACE_AT]);
+            node_words[RAYA_OBJECT_SURFACE_AT] = job_words[RAYA_OBJECT_SURFACE_AT];
+            if (words == RAYA_POLYGON_WORDS) outline(node_words, job_words);
+            if (node_words != job_words) FAIL("words of object " << numbers[i]);
         }
     }
 
     // Compares sphere rows, which start at a multiple of four words, and the surface references that follow them.
-    void spheres(const raya_objects& own, const Words& numbers) {
+    void spheres(const raya_objects& node_objects, const Words& numbers) {
         const raya_objects& all = header_.objects;
-        const std::uint32_t own_surfaces = raya_sphere_surfaces_at(own.spheres_at, own.spheres);
+        const std::uint32_t own_surfaces = raya_sphere_surfaces_at(node_objects.spheres_at, node_objects.spheres);
         const std::uint32_t all_surfaces = raya_sphere_surfaces_at(all.spheres_at, all.spheres);
-        CHECK(own.spheres_at % 4 == 0);
+        CHECK(node_objects.spheres_at % 4 == 0);
         for (std::uint32_t i = 0; i < numbers.size(); ++i) {
-            const Words row = node_.section(own.spheres_at + i * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS);
+            const Words row = node_.section(node_objects.spheres_at + i * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS);
             if (row != job_section(all.spheres_at + numbers[i] * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS))
                 FAIL("words of sphere " << numbers[i]);
             surface(node_.section(own_surfaces + i, 1)[0], job_section(all_surfaces + numbers[i], 1)[0]);
         }
     }
 
-    void surface(std::uint32_t own_at, std::uint32_t job_at) {
-        const auto [entry, is_new] = surfaces_.try_emplace(job_at, own_at);
-        if (entry->second != own_at) FAIL("two copies of the surface at " << job_at);
-        if (is_new && node_.section(own_at, RAYA_SURFACE_WORDS) != job_section(job_at, RAYA_SURFACE_WORDS))
+    void surface(std::uint32_t node_at, std::uint32_t job_at) {
+        const auto [entry, is_new] = surfaces_.try_emplace(job_at, node_at);
+        if (entry->second != node_at) FAIL("two copies of the surface at " << job_at);
+        if (is_new && node_.section(node_at, RAYA_SURFACE_WORDS) != job_section(job_at, RAYA_SURFACE_WORDS))
             FAIL("words of the surface at " << job_at);
     }
 
     // Checks that the surfaces follow the header without gaps, in the job's order.
     void surfaces() const {
         std::uint32_t at = sizeof(raya_node) / 4;
-        for (const auto& [job_at, own_at] : surfaces_) {
-            CHECK(own_at == at);
+        for (const auto& [job_at, node_at] : surfaces_) {
+            CHECK(node_at == at);
             at += RAYA_SURFACE_WORDS;
         }
     }
@@ -71,18 +71,20 @@ class NodeCheck {
     const raya_job& header() const { return header_; }
 
   private:
-    // Compares corners and normals, then overwrites the two offsets ("at" words) so that they are equal.
-    void outline(Words& own, const Words& theirs) {
-        const std::size_t corners = theirs[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS;
-        if (node_.section(own[RAYA_POLYGON_CORNERS_AT], corners) !=
-            job_section(theirs[RAYA_POLYGON_CORNERS_AT], corners))
+    // Compares corners and normals. Then overwrites the polygon's offsets of corners and normals with those of the job.
+    void outline(Words& node_words, const Words& job_words) {
+        const std::size_t corners = job_words[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS;
+        if (node_.section(node_words[RAYA_POLYGON_CORNERS_AT], corners) !=
+            job_section(job_words[RAYA_POLYGON_CORNERS_AT], corners))
             FAIL("corners");
-        if ((own[RAYA_POLYGON_NORMALS_AT] == 0) != (theirs[RAYA_POLYGON_NORMALS_AT] == 0)) FAIL("polygon or patch");
-        if (theirs[RAYA_POLYGON_NORMALS_AT] != 0 && node_.section(own[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS) !=
-                                                        job_section(theirs[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS))
+        if ((node_words[RAYA_POLYGON_NORMALS_AT] == 0) != (job_words[RAYA_POLYGON_NORMALS_AT] == 0))
+            FAIL("polygon or patch");
+        if (job_words[RAYA_POLYGON_NORMALS_AT] != 0 &&
+            node_.section(node_words[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS) !=
+                job_section(job_words[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS))
             FAIL("normals");
-        own[RAYA_POLYGON_CORNERS_AT] = theirs[RAYA_POLYGON_CORNERS_AT];
-        own[RAYA_POLYGON_NORMALS_AT] = theirs[RAYA_POLYGON_NORMALS_AT];
+        node_words[RAYA_POLYGON_CORNERS_AT] = job_words[RAYA_POLYGON_CORNERS_AT];
+        node_words[RAYA_POLYGON_NORMALS_AT] = job_words[RAYA_POLYGON_NORMALS_AT];
     }
 
     const PackedJob& job_;
@@ -91,7 +93,7 @@ class NodeCheck {
     std::map<std::uint32_t, std::uint32_t> surfaces_;  // word offset in the job -> in the node
 };
 
-// Compares all header words except the offsets ("at" words).
+// Compares all header words except the offsets, which are the members named *_at.
 void check_header(const raya_node& node, const raya_job& job, const Partition& partition, const raya_torus& torus) {
     raya_job expected = job;
     expected.lights_at = node.job.lights_at;
@@ -102,7 +104,7 @@ void check_header(const raya_node& node, const raya_job& job, const Partition& p
     CHECK(node.voxels == raya_node_voxels(torus, partition.grid, node.number));
 }
 
-// The numbers of a voxel's list that lie in [first, last).
+// Returns the numbers of a voxel's list that lie in [first, last).
 Words numbers_between(const Words& list, std::uint32_t first, std::uint32_t last) {
     Words numbers;
     std::copy_if(list.begin(), list.end(), std::back_inserter(numbers), [&](auto n) { return first <= n && n < last; });
@@ -110,19 +112,19 @@ Words numbers_between(const Words& list, std::uint32_t first, std::uint32_t last
 }
 
 void check_voxel(NodeCheck& check, NodeReader& node, const raya_voxel_memory& voxel, const Words& list) {
-    const raya_objects &own = voxel.objects, all = check.header().objects;
+    const raya_objects &node_objects = voxel.objects, all = check.header().objects;
     const std::uint32_t polygon = all.spheres + all.planes, cone = polygon + all.polygons;
     const Words spheres = numbers_between(list, 0, all.spheres), polygons = numbers_between(list, polygon, cone);
     const Words cones = numbers_between(list, cone, cone + all.cones);
-    CHECK(own.spheres == spheres.size());
-    CHECK(own.polygons == polygons.size());
-    CHECK(own.cones == cones.size());
-    CHECK((own.planes == all.planes && own.planes_at == node.header().job.objects.planes_at));
+    CHECK(node_objects.spheres == spheres.size());
+    CHECK(node_objects.polygons == polygons.size());
+    CHECK(node_objects.cones == cones.size());
+    CHECK((node_objects.planes == all.planes && node_objects.planes_at == node.header().job.objects.planes_at));
     CHECK(voxel.first_plane == all.spheres);
     CHECK(node.section(voxel.numbers_at, list.size()) == list);
-    check.spheres(own, spheres);
-    check.objects(own.polygons_at, RAYA_POLYGON_WORDS, polygons, polygon, all.polygons_at);
-    check.objects(own.cones_at, RAYA_CONE_WORDS, cones, cone, all.cones_at);
+    check.spheres(node_objects, spheres);
+    check.objects(node_objects.polygons_at, RAYA_POLYGON_WORDS, polygons, polygon, all.polygons_at);
+    check.objects(node_objects.cones_at, RAYA_CONE_WORDS, cones, cone, all.cones_at);
 }
 
 void check_node(const PackedJob& job, const Partition& partition, const raya_torus& torus, NodeReader& node) {
@@ -140,12 +142,12 @@ void check_node(const PackedJob& job, const Partition& partition, const raya_tor
         check_voxel(check, node, node.voxel(local), {first, partition.objects.begin() + partition.starts[voxel + 1]});
     }
     check.surfaces();
-    // Only the padding before rows was not read, and no word was read twice.
+    // Only the padding before sphere rows was not read, and no word was read twice.
     CHECK(node.words_read(1) + node.words_read(0) == node.size());
     CHECK(node.words_read(0) <= 3 * (node.header().voxels + 1));
 }
 
-// The number of objects in the fullest node, counted from the lists.
+// Returns the number of objects in the node with the most objects, counted from the lists.
 std::uint64_t max_objects(const PackedJob& job, const Partition& p, const raya_torus& torus) {
     std::vector<std::uint64_t> held(raya_nodes(torus), job.header().objects.planes);
     for (std::uint32_t voxel = 0; voxel < raya_voxels(p.grid); ++voxel)
@@ -156,7 +158,7 @@ std::uint64_t max_objects(const PackedJob& job, const Partition& p, const raya_t
 }  // namespace
 
 TEST_CASE("nodes hold copies of the job's objects in their voxels, and nothing else", "[torus]") {
-    std::size_t objects = 0, idle = 0, shared = 0;
+    std::size_t objects = 0, empty_nodes = 0, multi_voxel_nodes = 0;
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
         SplitMix random(seed);
         const PackedJob job = pack(random_objects(random, 4));
@@ -174,8 +176,8 @@ TEST_CASE("nodes hold copies of the job's objects in their voxels, and nothing e
             REQUIRE(node.header().number == number);
             check_node(job, partition, torus, node);
             max_words = std::max<std::uint64_t>(max_words, node.size());
-            idle += node.header().voxels == 0;
-            shared += node.header().voxels > 1;
+            empty_nodes += node.header().voxels == 0;
+            multi_voxel_nodes += node.header().voxels > 1;
         }
         CHECK(fullest_node_words(job, partition, torus) == max_words);
         CHECK(memories.copies == partition.objects.size() - finite_objects(job).size());
@@ -183,8 +185,8 @@ TEST_CASE("nodes hold copies of the job's objects in their voxels, and nothing e
         objects += partition.objects.size();
     }
     CHECK(objects > 5000);
-    CHECK(idle > 100);    // nodes without a voxel
-    CHECK(shared > 100);  // nodes with several voxels
+    CHECK(empty_nodes > 100);        // number of nodes without a voxel
+    CHECK(multi_voxel_nodes > 100);  // number of nodes with several voxels
 }
 
 TEST_CASE("a node holds only the surfaces of its own objects and of the planes", "[torus]") {
@@ -218,11 +220,13 @@ TEST_CASE("nodes hold the same words on a 2-D torus as on a 3-D one", "[torus]")
         const auto nodes = random_sides(random, 4);
         const Partition partition = random_partition(random, job, random_sides(random, 6), 4);
         const raya_torus flat = make_torus(nodes, Links::kTorus2d), deep = make_torus(nodes, Links::kTorus3d);
-        const NodeMemories on_flat = pack_nodes(job, partition, flat), on_deep = pack_nodes(job, partition, deep);
+        const NodeMemories flat_memories = pack_nodes(job, partition, flat),
+                           deep_memories = pack_nodes(job, partition, deep);
         CAPTURE(seed, torus_text(flat));
         for (std::uint32_t number = 0; number < raya_nodes(flat); ++number) {
             const raya_place place = raya_node_place(flat, number);
-            NodeReader a(on_flat, number), b(on_deep, raya_node_of(deep, place.at[0], place.at[1], place.at[2]));
+            NodeReader a(flat_memories, number),
+                b(deep_memories, raya_node_of(deep, place.at[0], place.at[1], place.at[2]));
             REQUIRE(a.size() == b.size());
             const std::size_t header = sizeof(raya_node) / 4, rest = a.size() - header;
             CHECK(a.section(header, rest) == b.section(header, rest));

@@ -1,4 +1,4 @@
-// If raya rejects a partitioned scene, the machine that its message recommends can hold the scene.
+// If a scene does not fit a machine, raya's message names a machine and a memory size that can hold the scene.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <regex>
@@ -22,7 +22,7 @@ struct PartitionedJob {
     }
 };
 
-// The value of an option in a message, such as "16x16x8"; `otherwise` if the option is missing.
+// Returns the value of an option in a message, such as "16x16x8"; `otherwise` if the message does not name the option.
 Divisions sides_in(const std::string& message, const std::string& option, const Divisions& otherwise) {
     std::smatch m;
     if (!std::regex_search(message, m, std::regex(option + " (\\d+)x(\\d+)x(\\d+)"))) return otherwise;
@@ -39,31 +39,32 @@ Scene small_spheres(SplitMix& random, int count) {
 }  // namespace
 
 TEST_CASE("the scene fits on the machine and in the memory that a refusal names", "[torus]") {
-    int machines = 0;
+    int named_machines = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         SplitMix random(seed);
-        const PartitionedJob cut{pack(small_spheres(random, 1000 + static_cast<int>(random_below(random, 3000)))), {}};
+        const PartitionedJob partitioned_job{
+            pack(small_spheres(random, 1000 + static_cast<int>(random_below(random, 3000)))), {}};
         const auto nodes = random_sides(random, 3);
         const Divisions voxels = seed % 2 ? nodes : random_sides(random, 6);
         const std::uint64_t memory = 3000 + random_below(random, 4000);
-        const std::string message = user_error_message([&] { cut.plan(nodes, voxels, memory); });
+        const std::string message = user_error_message([&] { partitioned_job.plan(nodes, voxels, memory); });
         CAPTURE(seed, sides_text(nodes), sides_text(voxels), memory, message);
         if (message == "no error") continue;
-        std::smatch enough;
-        REQUIRE(std::regex_search(message, enough, std::regex("--pe-memory (\\d+)$")));
-        CHECK_NOTHROW(cut.plan(nodes, voxels, std::stoull(enough[1])));
+        std::smatch memory_option;
+        REQUIRE(std::regex_search(message, memory_option, std::regex("--pe-memory (\\d+)$")));
+        CHECK_NOTHROW(partitioned_job.plan(nodes, voxels, std::stoull(memory_option[1])));
         if (message.find("--nodes") == std::string::npos) continue;
         const Divisions larger = sides_in(message, "--nodes", {});
-        CHECK_NOTHROW(cut.plan(larger, sides_in(message, "--voxels", larger), memory));
-        ++machines;
+        CHECK_NOTHROW(partitioned_job.plan(larger, sides_in(message, "--voxels", larger), memory));
+        ++named_machines;
     }
-    CHECK(machines > 30);
+    CHECK(named_machines > 30);
 }
 
 TEST_CASE("if every object is in every voxel, the refusal names no larger machine", "[torus]") {
     SplitMix random(1);
-    const PartitionedJob cut{pack(small_spheres(random, 5000)), parse_format("e8m7")};
+    const PartitionedJob partitioned_job{pack(small_spheres(random, 5000)), parse_format("e8m7")};
     for (const auto& nodes : {std::array<std::uint32_t, 3>{1, 1, 1}, {4, 4, 4}})
-        CHECK_THAT(user_error_message([&] { cut.plan(nodes, nodes, 32768); }),
+        CHECK_THAT(user_error_message([&] { partitioned_job.plan(nodes, nodes, 32768); }),
                    Contains("no machine of up to 65536 nodes is large enough; use --pe-memory"));
 }

@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-// The number of random machines; RAYA_TORUS_CASES overrides it.
+// Returns the number of random machines, which the environment variable RAYA_TORUS_CASES can set.
 std::uint32_t random_cases() {
     const char* text = std::getenv("RAYA_TORUS_CASES");
     return text ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10)) : quick_cases(6, 16);
@@ -21,16 +21,18 @@ std::uint32_t random_cases() {
 
 constexpr std::uint32_t kMaxTestNodes = 100;
 
-// Random nodes, voxels, links, injection and queue length. They need no other kernels.
+// Returns c with random nodes, voxels, links, injection, packet charge and queue length. None of them requires other
+// builds of the kernels.
 TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
     do c.nodes = random_sides(random, 5);
     while (c.nodes[0] * c.nodes[1] * c.nodes[2] > kMaxTestNodes);
-    const std::uint32_t how = random_below(random, 4);
+    const std::uint32_t voxel_choice = random_below(random, 4);
     for (std::size_t axis = 0; axis < 3; ++axis)
-        c.voxels[axis] = how == 0   ? c.nodes[axis]
-                         : how == 1 ? 1 + random_below(random, c.nodes[axis])        // at most as many voxels as nodes
-                         : how == 2 ? c.nodes[axis] * (1 + random_below(random, 3))  // a multiple of the nodes
-                                    : 1 + random_below(random, 9);
+        c.voxels[axis] = voxel_choice == 0 ? c.nodes[axis]
+                         : voxel_choice == 1
+                             ? 1 + random_below(random, c.nodes[axis])  // at most as many voxels as nodes
+                         : voxel_choice == 2 ? c.nodes[axis] * (1 + random_below(random, 3))  // a multiple of the nodes
+                                             : 1 + random_below(random, 9);
     c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
     c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
     c.packets = random_charge(random);
@@ -40,13 +42,13 @@ TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
     return c;
 }
 
-// Renders; if the machine deadlocks, searches for a queue that is long enough and renders again.
+// Returns a render. If the machine deadlocks, searches for a queue that is long enough and renders with that queue.
 TorusResult render_without_deadlock(Session& session, const Scene& scene, const TorusCase& c) {
     TorusRenderer renderer(session, scene, settings_of(c));
     try {
         return renderer.render();
-    } catch (const TorusDeadlock& still) {
-        if (!find_longer_queue(still.figures.queue, renderer.queue_trial()).completes) throw;
+    } catch (const TorusDeadlock& deadlock) {
+        if (!find_longer_queue(deadlock.figures.queue, renderer.queue_trial()).completes) throw;
         return renderer.render();
     }
 }
@@ -89,7 +91,8 @@ TEST_CASE("ten scenes on several machines and queue lengths: the image is the ri
             c.links = row.links;
             c.inject = row.inject;
             c.queue = row.queue * raya_min_queue(lights_of(scene), c.bounces);
-            if (row.queue == 1 && scenes_done % 4) c.queue = 0;  // the shortest queues take very many supersteps
+            if (row.queue == 1 && scenes_done % 4)
+                c.queue = 0;  // renders with the shortest queue take very many supersteps
             CAPTURE(scene.name, case_text(c));
             CHECK(image_and_counts(render_without_deadlock(session, scene, c)) == expected);
         }
@@ -109,9 +112,9 @@ TEST_CASE("random scenes on random machines: the image is the ring's", "[torus][
         c.format = format;
         const std::string expected = ring_image_and_counts(scene, c);
         for (std::uint32_t k = 0; k < random_cases() / scenes; ++k) {
-            const TorusCase drawn = random_machine(random, scene, c);
-            CAPTURE(seed, i, k, case_text(drawn));
-            CHECK(image_and_counts(render_without_deadlock(session, scene, drawn)) == expected);
+            const TorusCase machine = random_machine(random, scene, c);
+            CAPTURE(seed, i, k, case_text(machine));
+            CHECK(image_and_counts(render_without_deadlock(session, scene, machine)) == expected);
         }
     }
 }
@@ -169,9 +172,9 @@ TEST_CASE("subsets of the pixels combine to the whole image", "[torus]") {
             for (std::size_t e = 0; e < events.size(); ++e) events[e] += part.events[e];
             std::size_t outside = 0;
             for (std::size_t at = 0; at < whole.rgb.size(); ++at) {
-                const bool own = at / 3 >= c.pixels.first && (at / 3 - c.pixels.first) % c.pixels.stride == 0;
-                if (own) whole.rgb[at] = part.image.rgb[at];
-                outside += !own && part.image.rgb[at] != 0;
+                const bool in_subset = at / 3 >= c.pixels.first && (at / 3 - c.pixels.first) % c.pixels.stride == 0;
+                if (in_subset) whole.rgb[at] = part.image.rgb[at];
+                outside += !in_subset && part.image.rgb[at] != 0;
             }
             CHECK(outside == 0);
         }

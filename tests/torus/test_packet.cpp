@@ -12,15 +12,16 @@ using namespace raya;
 
 namespace {
 
-constexpr std::uint32_t kLastLevel = 31;  // after the maximum number of bounces
+constexpr std::uint32_t kLastLevel = 31;  // level of a ray after the maximum number of bounces
 
 struct Contribution {
     std::uint32_t path, state;
     bool operator==(const Contribution&) const = default;
 };
 
-// A random ray tree in the order of a recursive ray tracer: a ray's own contributions, then its reflected subtree, then
-// its refracted subtree. Chains of only reflections or only refractions often reach the last level.
+// The contributions of a random ray tree in the order of a recursive ray tracer: those of a ray, then those of its
+// reflected subtree, then those of its refracted subtree. Chains of only reflections or only refractions often reach
+// the last level.
 struct RandomTree {
     SplitMix random;
     std::uint32_t last_level = kLastLevel;
@@ -31,15 +32,15 @@ struct RandomTree {
         contributions.push_back({path, raya_state(RAYA_KIND_RETURN, level, light)});
     }
 
-    void walk(std::uint32_t path, std::uint32_t level) {
+    void add_subtree(std::uint32_t path, std::uint32_t level) {
         add(path, level, 0);
         for (std::uint32_t light = 1; light <= 3; ++light)
             if (random.next() % 2) add(path, level, light);
         if (random.next() % 16 == 0) add(path, level, RAYA_MAX_LIGHTS);
         if (level == last_level || contributions.size() > max_contributions) return;
-        const std::uint64_t choice = random.next() % 64;  // of 64: 14 both, 24 reflected, 24 refracted, 2 none
-        if (choice < 38) walk(raya_path_reflected(path), level + 1);
-        if (choice < 14 || (choice >= 38 && choice < 62)) walk(raya_path_refracted(path, level), level + 1);
+        const std::uint64_t choice = random.next() % 64;  // of 64 values: 14 both, 24 reflected, 24 refracted, 2 no ray
+        if (choice < 38) add_subtree(raya_path_reflected(path), level + 1);
+        if (choice < 14 || (choice >= 38 && choice < 62)) add_subtree(raya_path_refracted(path, level), level + 1);
     }
 };
 
@@ -56,7 +57,7 @@ TEST_CASE("contributions sort into the depth-first order of the ray tree, reflec
     for (std::uint64_t seed = 1; seed <= 500; ++seed) {
         SplitMix random(seed);
         RandomTree tree{random, 1 + random_below(random, kLastLevel)};
-        tree.walk(0, 0);
+        tree.add_subtree(0, 0);
         std::vector<Contribution> sorted = shuffled(tree.contributions, random);
         std::sort(sorted.begin(), sorted.end(), [](const Contribution& a, const Contribution& b) {
             return raya_comes_before(a.path, a.state, b.path, b.state);
@@ -73,15 +74,15 @@ TEST_CASE("contributions sort into the depth-first order of the ray tree, reflec
 TEST_CASE("the contributions of a complete tree of ten levels sort into its order", "[torus]") {
     struct Whole {
         std::vector<Contribution> contributions{};
-        void walk(std::uint32_t path, std::uint32_t level) {
+        void add_subtree(std::uint32_t path, std::uint32_t level) {
             for (const std::uint32_t light : {0u, 1u})
                 contributions.push_back({path, raya_state(RAYA_KIND_RETURN, level, light)});
             if (level == 9) return;
-            walk(raya_path_reflected(path), level + 1);
-            walk(raya_path_refracted(path, level), level + 1);
+            add_subtree(raya_path_reflected(path), level + 1);
+            add_subtree(raya_path_refracted(path, level), level + 1);
         }
     } tree;
-    tree.walk(0, 0);
+    tree.add_subtree(0, 0);
     SplitMix random(7);
     std::vector<Contribution> sorted = shuffled(tree.contributions, random);
     std::sort(sorted.begin(), sorted.end(), [](const Contribution& a, const Contribution& b) {

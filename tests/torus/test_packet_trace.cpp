@@ -1,4 +1,5 @@
-// The packet trace: its rows and the numbers of rays and parents, compared with the names of generated ray trees.
+// The packet trace: rows and the numbers of rays and parents are compared with the names of rays in generated ray
+// trees.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -28,7 +29,7 @@ class NamedRayTree {
   public:
     explicit NamedRayTree(std::uint64_t seed) : random_(seed) {}
 
-    /// Adds packets of the ray and of its subtree, each sent up to three times.
+    /// Adds the packets of the ray and of its subtree, each sent up to three times. `depth`: level of the deepest rays.
     void grow(std::uint32_t pixel, std::uint32_t path, std::uint32_t level, const std::string& name,
               std::uint32_t depth) {
         const std::string parent = level == 0 ? "" : name.substr(0, name.size() - 1);
@@ -44,7 +45,8 @@ class NamedRayTree {
             if (below(2) == 0) break;
         }
         if (level == depth) return;
-        const std::uint32_t which = 1 + below(level < 3 ? 3 : 2);  // both only near the root: 31 levels exist
+        const std::uint32_t which =
+            1 + below(level < 3 ? 3 : 2);  // both only near the primary ray, because there are up to 31 levels
         if (which & 1) grow(pixel, raya_path_reflected(path), level + 1, name + "R", depth);
         if (which & 2) grow(pixel, raya_path_refracted(path, level), level + 1, name + "T", depth);
     }
@@ -88,7 +90,7 @@ raya_head head_of(std::uint32_t pixel, std::uint32_t state, std::uint32_t path) 
     return head;
 }
 
-// The expected rows; rays are numbered in the order in which their names first appear in the table.
+// Returns the expected rows. Rays are numbered in the order in which their names first appear in the rows.
 std::string expected_rows(const std::vector<SentPacket>& sent) {
     std::map<std::string, std::size_t> numbers;
     const auto number = [&](const std::string& name) { return numbers.emplace(name, numbers.size()).first->second; };

@@ -1,4 +1,4 @@
-// The search for a queue length that avoids a deadlock: long enough, and within the limits of node, device and option.
+// The search for a queue that is long enough to avoid a deadlock and within the limits of node, device and option.
 #include <catch2/catch.hpp>
 #include <vector>
 
@@ -40,7 +40,7 @@ using Queues = std::vector<std::uint32_t>;
 
 }  // namespace
 
-TEST_CASE("the queue length is doubled until the machine ends", "[torus]") {
+TEST_CASE("the queue length is doubled until the machine finishes", "[torus]") {
     SimulatedMachine machine{.sufficient_queue = 100};
     CHECK(machine.remedy(20) == "--queue 160 is long enough (tried)");
     CHECK(machine.tried == Queues{40, 80, 160});
@@ -59,7 +59,7 @@ TEST_CASE("if no queue that fits is long enough, the remedy also names the memor
     CHECK(machine.tried == Queues{60, 100, 200, 400, 800});
 }
 
-TEST_CASE("if the queue already is the longest that fits, it is not tried again", "[torus]") {
+TEST_CASE("if the queue that deadlocked is the longest that fits, it is not tried again", "[torus]") {
     SimulatedMachine machine{.sufficient_queue = 101, .node_memory = 10 * 100};
     CHECK(machine.remedy(100) ==
           "no queue that fits a node's memory is long enough, --queue 200 --pe-memory 2048 is (tried)");
@@ -71,14 +71,14 @@ TEST_CASE("the search ends at the longest queue that the device holds", "[torus]
     CHECK(machine.remedy(50) ==
           "no queue up to 200 packets is long enough, and the device cannot hold longer ones; use fewer nodes");
     CHECK(machine.tried == Queues{100, 200});
-    SimulatedMachine surprised{.sufficient_queue = 5000, .driver_limit = 300};
-    CHECK(surprised.remedy(50) == machine.remedy(50));
-    CHECK(surprised.tried == Queues{100, 200, 400});
+    SimulatedMachine limited_by_driver{.sufficient_queue = 5000, .driver_limit = 300};
+    CHECK(limited_by_driver.remedy(50) == machine.remedy(50));
+    CHECK(limited_by_driver.tried == Queues{100, 200, 400});
     SimulatedMachine endless{.sufficient_queue = UINT32_MAX};
     CHECK(endless.remedy(1).find("no queue up to 1073741824 packets") == 0);
 }
 
-TEST_CASE("a search with a maximum length tries that one last", "[torus]") {
+TEST_CASE("a search with a maximum length tries the maximum last", "[torus]") {
     SimulatedMachine machine{.sufficient_queue = 90, .max_queue = 100};
     const QueueSearchResult found = machine.search(30);
     CHECK(machine.tried == Queues{60, 100});
@@ -93,14 +93,14 @@ TEST_CASE("bisection finds the last number that satisfies the predicate, in at m
     for (const std::uint64_t above : {6ull, 7ull, 1000ull, 1ull << 32})
         for (const std::uint64_t last : {5ull, 6ull, 999ull, (1ull << 32) - 1}) {
             if (last >= above) continue;
-            int asked = 0;
+            int calls = 0;
             const auto holds = [&](std::uint32_t number) {
-                ++asked;
+                ++calls;
                 return number <= last;
             };
             CAPTURE(above, last);
-            CHECK(last_where(5, above, holds) == last);
-            CHECK(asked <= 32);
+            CHECK(largest_where(5, above, holds) == last);
+            CHECK(calls <= 32);
         }
 }
 

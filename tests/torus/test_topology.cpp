@@ -17,7 +17,8 @@ constexpr std::uint32_t kLinks[] = {0, 1, 2, 3, 4, 5};
 
 bool same(const raya_place& a, const raya_place& b) { return std::equal(a.at, a.at + 3, b.at); }
 
-// Distances from one node to all others by breadth-first search over the links, independent of sides and routing.
+// Returns the distances from one node to all nodes, found by breadth-first search over the links, independent of sides
+// and routing.
 std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint32_t from) {
     std::vector<std::uint32_t> distances(raya_nodes(torus), UINT32_MAX), front = {from};
     distances[from] = 0;
@@ -35,7 +36,7 @@ std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint
     return distances;
 }
 
-// The links that a packet takes. Stops after as many steps as there are nodes.
+// Returns the links that a packet takes, at most one more than there are nodes.
 std::vector<std::uint32_t> route_of(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
     std::vector<std::uint32_t> links;
     for (std::uint32_t node = from; links.size() <= raya_nodes(torus);) {
@@ -47,7 +48,7 @@ std::vector<std::uint32_t> route_of(const raya_torus& torus, std::uint32_t from,
     return links;
 }
 
-// The route that kernels/shared/torus.h defines, found by trying both directions round each side.
+// Returns the route that kernels/shared/torus.h defines, found by trying both directions round each side.
 std::vector<std::uint32_t> defined_route(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
     const raya_place a = raya_torus_place(torus, from), b = raya_torus_place(torus, to);
     std::vector<std::uint32_t> links;
@@ -175,7 +176,7 @@ TEST_CASE("every voxel has one node and one local number", "[torus]") {
     }
 }
 
-TEST_CASE("a link joins neighbouring places, and its opposite leads back", "[torus]") {
+TEST_CASE("a link leads to a neighbouring place, and the opposite link of that place leads back", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         SplitMix random(seed);
         const raya_torus t = random_torus(random, 9);

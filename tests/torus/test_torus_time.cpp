@@ -1,4 +1,4 @@
-// Modelled times of a torus, compared with times computed by hand. The lower bound never exceeds the upper bound.
+// Modelled times of a torus, compared with times computed by hand. The overlapped time never exceeds the stepwise time.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -30,7 +30,7 @@ void send(TorusResult& result, std::uint32_t node, std::uint32_t link, std::uint
 
 Approx about_ms(double value) { return Approx(value).epsilon(1e-12); }
 
-TEST_CASE("a node's time is computing, sending and receiving; a message takes time at both ends", "[torus]") {
+TEST_CASE("a node's time consists of computing, sending and receiving; a message takes time at both ends", "[torus]") {
     const raya_torus torus = make_torus({4, 1, 1}, Links::kTorus3d);
     TorusResult result = result_of(torus);
     result.load = load_of({1'000'000, 2'000'000, 0, 0});
@@ -50,7 +50,7 @@ TEST_CASE("both directions share a link, wrap-around links included", "[torus]")
     TorusResult result = result_of(torus);
     const std::uint32_t from = raya_node_of(torus, 0, 2, 0), to = raya_node_of(torus, 0, 0, 0);
     send(result, from, 2, 100, 16);  // up along y from the last row to the first
-    send(result, to, 3, 100, 16);    // and back
+    send(result, to, 3, 100, 16);    // and in the opposite direction over the same link
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
     send(result, to, 2, 90, 16);  // another link
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
@@ -73,7 +73,7 @@ TEST_CASE("stepwise time sums each superstep's busiest node and busiest link", "
     CHECK(torus_time(torus, result).stepwise_ms == about_ms(6000 * kCycleMs + 336 * kBothWaysWordMs));
 }
 
-/// A result with supersteps of random work and traffic, and with the totals of nodes and links.
+/// Returns a result with supersteps of random work and traffic, and with the totals of nodes and links.
 TorusResult random_render(SplitMix& random, const raya_torus& torus) {
     TorusResult result = result_of(torus);
     std::vector<std::uint64_t> cycles(raya_nodes(torus));

@@ -24,16 +24,16 @@ struct Traced {
 Traced render(const Scene& scene, const TorusCase& c, std::size_t nodes) {
     Session session(choose_device(""));
     Traced t{settings_of(c), {}, {}};
-    TorusTrace seen(t.settings.torus);
+    TorusTrace torus_trace(t.settings.torus);
     t.result = TorusRenderer(session, scene, t.settings)
                    .render({}, {.packets =
                                     [&](const PacketRecord& p) {
-                                        seen.add_packet(p);
+                                        torus_trace.add_packet(p);
                                         ++t.packets;
                                     },
-                                .supersteps = [&](const SuperstepDetail& step) { seen.add_superstep(step); }});
+                                .supersteps = [&](const SuperstepDetail& step) { torus_trace.add_superstep(step); }});
     TraceFile trace(10'000'000);
-    seen.add_to(trace, t.result, nodes);
+    torus_trace.add_to(trace, t.result, nodes);
     t.trace = Document::parse(trace.finish(false));
     return t;
 }
@@ -66,7 +66,7 @@ TEST_CASE("the traced torus ends at the stepwise time, and its nodes compute for
             CHECK(std::abs(computing - static_cast<std::int64_t>(40 * t.result.load.per_pe[node])) <=
                   static_cast<std::int64_t>(2 * steps.size()));
         }
-        // All nodes are shown, and there are fewer packets than the sample holds: every packet is a flow.
+        // All nodes are shown, and the sample holds all packets, so every packet is a flow.
         REQUIRE(t.packets < TorusTrace::kMaxPackets);
         CHECK(schema.flows() == t.packets);
         CHECK(t.trace["otherData"]["machine"]["flows"] == t.packets);
@@ -75,16 +75,16 @@ TEST_CASE("the traced torus ends at the stepwise time, and its nodes compute for
 
 TEST_CASE("the trace has each superstep's counters", "[torus]") {
     const Traced t = render(random_view_scene(27), {.lanes = 4}, 3);
-    std::vector<double> live, busiest;
+    std::vector<double> live, busiest_link_words;
     for (const Document& e : t.trace["traceEvents"]) {
         if (e["name"] == "live rays") live.push_back(e["args"]["packets"]);
-        if (e["name"] == "link words") busiest.push_back(e["args"]["busiest"]);
+        if (e["name"] == "link words") busiest_link_words.push_back(e["args"]["busiest"]);
     }
     REQUIRE(live.size() == t.result.supersteps.size());
-    REQUIRE(busiest.size() == live.size());
+    REQUIRE(busiest_link_words.size() == live.size());
     for (std::size_t i = 0; i < live.size(); ++i) {
         CHECK(live[i] == static_cast<double>(t.result.supersteps[i].live));
-        CHECK(busiest[i] == static_cast<double>(t.result.supersteps[i].max_link_words));
+        CHECK(busiest_link_words[i] == static_cast<double>(t.result.supersteps[i].max_link_words));
     }
     const TraceSchema schema(t.trace);
     CHECK(schema.tracks().size() == 4);
@@ -92,7 +92,7 @@ TEST_CASE("the trace has each superstep's counters", "[torus]") {
     CHECK(TraceSchema(render(random_view_scene(27), {.lanes = 4}, 0).trace).faults().empty());
 }
 
-TEST_CASE("recording every fourth superstep gives the same packets of these as recording all", "[torus]") {
+TEST_CASE("recording every fourth superstep gives the same packets of these supersteps as recording all", "[torus]") {
     const Scene scene = random_view_scene(27);
     const TorusCase c{.links = Links::kTorus2d, .queue = 200, .lanes = 4};  // packets wait in their outboxes
     const auto record_packets = [&](std::uint32_t every) {
@@ -118,31 +118,31 @@ TEST_CASE("recording every fourth superstep gives the same packets of these as r
 
 TEST_CASE("the packet sample has its maximum size and is uniform over time", "[torus]") {
     const raya_torus torus = make_torus({1, 2, 1}, Links::kTorus3d);
-    TorusTrace seen(torus);
+    TorusTrace torus_trace(torus);
     const std::uint32_t all = 5 * TorusTrace::kMaxPackets;
     for (std::uint32_t i = 0; i < all; ++i) {
         PacketRecord p{.superstep = i / 1000, .source = 0, .destination = 1};
         p.head.state = RAYA_KIND_SHADOW;
-        seen.add_packet(p);
+        torus_trace.add_packet(p);
     }
     TorusResult result;
     result.load = load_of({1, 1});
     const std::vector<std::uint64_t> words(2 * RAYA_LINKS);
     for (std::uint32_t step = 0; step < all / 1000 + 2; ++step) {
         result.supersteps.push_back({.max_node_cycles = 100});
-        seen.add_superstep({result.supersteps.back(), {100, 50}, words});
+        torus_trace.add_superstep({result.supersteps.back(), {100, 50}, words});
     }
     TraceFile trace(10'000'000);
-    seen.add_to(trace, result, 2);
+    torus_trace.add_to(trace, result, 2);
     const Document json = Document::parse(trace.finish(false));
     const TraceSchema schema(json);
     CHECK(schema.faults() == std::vector<std::string>{});
     CHECK(schema.flows() == TorusTrace::kMaxPackets);
-    std::vector<int> of_quarter(4);
+    std::vector<int> flows_per_quarter(4);
     for (const Document& e : json["traceEvents"])
         if (e["ph"] == "s")
-            ++of_quarter[std::min<std::size_t>(3, static_cast<std::size_t>(e["ts"].get<double>() / 4 / 25))];
-    for (const int count : of_quarter) CHECK(std::abs(count - 5000) < 400);  // 400: 6 standard deviations
+            ++flows_per_quarter[std::min<std::size_t>(3, static_cast<std::size_t>(e["ts"].get<double>() / 4 / 25))];
+    for (const int count : flows_per_quarter) CHECK(std::abs(count - 5000) < 400);  // 400: 6 standard deviations
 }
 
 TEST_CASE("the work of the torus's kernels agrees with the counts", "[torus]") {

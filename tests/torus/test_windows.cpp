@@ -22,8 +22,8 @@ double rounded(double value, const NumberFormat& format) {
 
 Vec3 vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-// The direction of the ray through an image point. As in the kernels (shading/camera.clh), each operation is rounded to
-// the format.
+// Returns the direction of the ray through an image point. Each operation is rounded to the format, as in the kernels
+// (shading/camera.clh).
 Vec3 direction_of(const Camera& c, double row, double column) {
     const auto in = [&](double value) { return rounded(value, c.format); };
     Vec3 d;
@@ -36,7 +36,8 @@ Vec3 direction_of(const Camera& c, double row, double column) {
 
 constexpr double kNoEntry = std::numeric_limits<double>::infinity();
 
-// The distance in double at which a ray enters the block of voxels from `first` to `last`; kNoEntry if it misses them.
+// Returns the distance, in double precision, at which a ray enters the block of voxels from `first` to `last`; kNoEntry
+// if the ray misses the block.
 double entry_distance(const raya_grid& grid, const raya_place& first, const raya_place& last, const Vec3& origin,
                       const Vec3& direction) {
     double in = 0, out = kNoEntry;
@@ -65,7 +66,7 @@ struct EntryBounds {
     bool any() const { return low[0] <= high[0]; }
 };
 
-// Finds that range from `rays_per_side` x `rays_per_side` rays per pixel.
+// Finds EntryBounds from `rays_per_side` x `rays_per_side` rays per pixel.
 EntryBounds entry_bounds(const Camera& c, const raya_grid& grid, const raya_torus& torus, std::uint32_t node,
                          int rays_per_side) {
     EntryBounds bounds;
@@ -105,11 +106,12 @@ Vec3 middle_of(const raya_grid& grid) {
     return middle;
 }
 
-// A random camera with its eye at the distance `away` from the middle of the box; for short distances the eye is
-// inside.
-Camera random_camera(SplitMix& random, const raya_grid& grid, const NumberFormat& format, double away, double angle) {
+// Returns a random camera whose eye is at `distance` from the middle of the box; for short distances the eye is in the
+// box.
+Camera random_camera(SplitMix& random, const raya_grid& grid, const NumberFormat& format, double distance,
+                     double angle) {
     Scene scene = empty_scene();
-    scene.view.from = middle_of(grid) + away * random_direction(random);
+    scene.view.from = middle_of(grid) + distance * random_direction(random);
     scene.view.at = middle_of(grid) + random_point(random, 0.4);
     scene.view.up = random_direction(random);
     scene.view.angle_degrees = angle;
@@ -125,21 +127,21 @@ Camera random_camera(SplitMix& random, const raya_grid& grid, const NumberFormat
 TEST_CASE("a node's window holds every pixel whose ray enters the box at its voxels", "[torus]") {
     const std::uint64_t seed = 9183;
     SplitMix random(seed);
-    std::size_t met = 0, partial = 0;
+    std::size_t met = 0, partial_windows = 0;
     for (int i = 0; i < 800; ++i) {
         const NumberFormat format = parse_format(std::array{"fp32", "spa22", "e8m12t", "e5m10", "e5m6"}[i % 5u]);
         const raya_torus torus = random_torus(random, 3);
         const raya_grid grid = random_grid(
             random, {1 + random_below(random, 5), 1 + random_below(random, 5), 1 + random_below(random, 5)});
-        const double away = std::array{0.0, 0.3, 2.0, 8.0, 30.0, 300.0, 3000.0, 10000.0}[random_below(random, 8)];
+        const double distance = std::array{0.0, 0.3, 2.0, 8.0, 30.0, 300.0, 3000.0, 10000.0}[random_below(random, 8)];
         // From far away, the pixel spacing is as small as the last bits of a direction.
-        const double angle = away < 50 ? random.uniform(10, 150) : random.uniform(50, 300) / away;
-        const Camera camera = random_camera(random, grid, format, away, angle);
+        const double angle = distance < 50 ? random.uniform(10, 150) : random.uniform(50, 300) / distance;
+        const Camera camera = random_camera(random, grid, format, distance, angle);
         const auto windows = pixel_windows(camera.job, grid, torus, format);
         REQUIRE(windows.size() == raya_nodes(torus));
         for (std::uint32_t node = 0; node < windows.size(); ++node) {
             const PixelWindow& w = windows[node];
-            CAPTURE(seed, i, torus_text(torus), node, away, w.rows[0], w.rows[1], w.columns[0], w.columns[1]);
+            CAPTURE(seed, i, torus_text(torus), node, distance, w.rows[0], w.rows[1], w.columns[0], w.columns[1]);
             const bool empty = w.rows[0] >= w.rows[1] || w.columns[0] >= w.columns[1];
             CHECK((raya_node_voxels(torus, grid, node) > 0 || empty));
             CHECK(w.rows[1] <= camera.job.mapping.height);
@@ -147,7 +149,7 @@ TEST_CASE("a node's window holds every pixel whose ray enters the box at its vox
             const EntryBounds m = entry_bounds(camera, grid, torus, node, 1);
             if (!m.any()) continue;
             ++met;
-            partial += w.rows[1] - w.rows[0] < camera.job.mapping.height;
+            partial_windows += w.rows[1] - w.rows[0] < camera.job.mapping.height;
             CHECK(m.low[0] >= w.rows[0]);
             CHECK(m.high[0] < w.rows[1]);
             CHECK(m.low[1] >= w.columns[0]);
@@ -155,14 +157,14 @@ TEST_CASE("a node's window holds every pixel whose ray enters the box at its vox
         }
     }
     CHECK(met > 1000);
-    CHECK(partial > 200);
+    CHECK(partial_windows > 200);
 }
 
 TEST_CASE("a window exceeds the projection of the node's outer faces by at most five pixels", "[torus]") {
     const std::uint64_t seed = 77;
     SplitMix random(seed);
     const raya_torus torus = make_torus({3, 3, 3}, Links::kTorus3d);
-    int whole = 0;
+    int unclipped = 0;
     for (int i = 0; i < 40; ++i) {
         const raya_grid grid = random_grid(random, {3, 3, 3});
         Camera camera = random_camera(random, grid, parse_format("fp32"), 12, random.uniform(20, 60));
@@ -172,18 +174,18 @@ TEST_CASE("a window exceeds the projection of the node's outer faces by at most 
             const EntryBounds m = entry_bounds(camera, grid, torus, node, 4);
             CAPTURE(seed, i, node, w.rows[0], w.rows[1], w.columns[0], w.columns[1], m.low[0], m.high[0], m.low[1],
                     m.high[1]);
-            // The window of a projection that the image's edge clips may be larger.
-            const bool cut = m.low[0] <= 0 || m.low[1] <= 0 || m.high[0] > camera.job.mapping.height - 1.5 ||
-                             m.high[1] > camera.job.mapping.width - 1.5;
-            if (!m.any() || cut) continue;
-            ++whole;
+            // If the image's edge clips the projection, the window may exceed the bounds by more.
+            const bool clipped = m.low[0] <= 0 || m.low[1] <= 0 || m.high[0] > camera.job.mapping.height - 1.5 ||
+                                 m.high[1] > camera.job.mapping.width - 1.5;
+            if (!m.any() || clipped) continue;
+            ++unclipped;
             CHECK(w.rows[0] + 4 >= m.low[0]);
             CHECK(w.rows[1] <= m.high[0] + 5);
             CHECK(w.columns[0] + 4 >= m.low[1]);
             CHECK(w.columns[1] <= m.high[1] + 5);
         }
     }
-    CHECK(whole > 100);
+    CHECK(unclipped > 100);
 }
 
 }  // namespace raya

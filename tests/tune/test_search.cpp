@@ -1,4 +1,5 @@
-// The search with synthetic cost functions: the cost found relative to the minimum, and the number of trials.
+// Tests of the search with synthetic cost functions: the cost of the best candidate relative to the minimum, and the
+// number of trials.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -12,7 +13,7 @@ namespace {
 
 using Cost = std::function<double(const Candidate&)>;
 
-const ShouldStop kNeverEnds = [] { return false; };
+const ShouldStop kNeverStop = [] { return false; };
 
 Space random_space(std::mt19937& random) {
     const auto below = [&](std::uint32_t end) { return static_cast<std::size_t>(random() % end); };
@@ -31,8 +32,8 @@ double minimum_cost(const Space& space, const Cost& cost) {
     return minimum;
 }
 
-// A cost factor for each parameter, with its minimum at a random best value of the parameter. Each step away from this
-// value multiplies the cost by the same factor, which is random for each parameter.
+// A cost factor for each parameter. Each parameter has a random best value and a random growth factor; each step away
+// from the best value multiplies the cost by the growth factor.
 struct CostValley {
     CostValley(const Space& space, std::mt19937& random) {
         std::uniform_real_distribution<double> step(0.02, 0.6);
@@ -41,64 +42,66 @@ struct CostValley {
             steps.push_back(step(random));
         }
     }
-    double at(std::size_t parameter, double place) const {
-        return std::exp(steps[parameter] * std::abs(place - static_cast<double>(best[parameter])));
+    double factor(std::size_t parameter, double value_index) const {
+        return std::exp(steps[parameter] * std::abs(value_index - static_cast<double>(best[parameter])));
     }
 
-    std::vector<std::size_t> best;
-    std::vector<double> steps;
+    std::vector<std::size_t> best;  // [parameter]: index of the best value
+    std::vector<double> steps;      // [parameter]: logarithm of the growth factor
 };
 
+// Returns a cost in which the parameters do not interact.
 Cost separable(const Space& space, std::mt19937& random) {
     return [valley = CostValley(space, random)](const Candidate& c) {
         double cost = 1;
-        for (std::size_t k = 0; k < c.size(); ++k) cost *= valley.at(k, static_cast<double>(c[k]));
+        for (std::size_t k = 0; k < c.size(); ++k) cost *= valley.factor(k, static_cast<double>(c[k]));
         return cost;
     };
 }
 
-// The best value of parameter 1 depends on the value of parameter 0. Example: lanes and group size share a device's
-// registers.
-Cost shared(const Space& space, std::mt19937& random) {
-    const double share = std::uniform_real_distribution<double>(-0.8, 0.8)(random);
-    return [valley = CostValley(space, random), share](const Candidate& c) {
+// Returns a cost in which the best value of parameter 1 depends on the value of parameter 0. Example: lanes and group
+// size share a device's registers.
+Cost coupled(const Space& space, std::mt19937& random) {
+    const double coupling = std::uniform_real_distribution<double>(-0.8, 0.8)(random);
+    return [valley = CostValley(space, random), coupling](const Candidate& c) {
         double cost = 1;
         for (std::size_t k = 0; k < c.size(); ++k) {
-            const double other = k == 1 ? static_cast<double>(c[0]) - static_cast<double>(valley.best[0]) : 0;
-            cost *= valley.at(k, static_cast<double>(c[k]) - share * other);
+            const double deviation = k == 1 ? static_cast<double>(c[0]) - static_cast<double>(valley.best[0]) : 0;
+            cost *= valley.factor(k, static_cast<double>(c[k]) - coupling * deviation);
         }
         return cost;
     };
 }
 
-// The cost jumps where the sum of two parameters exceeds a limit, as when a kernel spills registers.
+// Returns a cost that is 1.5 times higher if the sum of two parameters exceeds a limit, as when a kernel spills
+// registers.
 Cost spilling(const Space& space, std::mt19937& random) {
     const std::size_t limit = 2 + random() % 5;
     return [valley = CostValley(space, random), limit](const Candidate& c) {
         double cost = c[0] + c[1] > limit ? 1.5 : 1.0;
-        for (std::size_t k = 0; k < c.size(); ++k) cost *= valley.at(k, static_cast<double>(c[k]));
+        for (std::size_t k = 0; k < c.size(); ++k) cost *= valley.factor(k, static_cast<double>(c[k]));
         return cost;
     };
 }
 
 /// The result of a search, compared with an exhaustive search.
 struct SearchQuality {
-    double loss;   // cost found / minimum cost
-    double share;  // candidates tried / size of the space
+    double loss;            // cost of the best candidate found / minimum cost
+    double tried_fraction;  // number of candidates tried / size of the space
 };
 
-// Searches `space`. Each measurement has a relative error, uniform in -noise..noise.
+// Searches `space`. Each measured ratio has a random relative error, uniformly distributed in -noise..noise.
 SearchQuality search_quality(const Space& space, const Cost& cost, std::mt19937& random, double noise) {
     std::uniform_real_distribution<double> error(-noise, noise);
-    std::map<Candidate, int> asked;
-    const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
-        CHECK(++asked[candidate] == 1);
+    std::map<Candidate, int> measurements;
+    const MeasureRatio measure = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
+        CHECK(++measurements[candidate] == 1);
         CHECK(candidate != space.start);
         return cost(candidate) / cost(best) * (1 + error(random));
     };
-    const SearchResult result = search(space, judge, kNeverEnds);
+    const SearchResult result = search(space, measure, kNeverStop);
     CHECK(result.ended);
-    CHECK(result.tried == asked.size());
+    CHECK(result.tried == measurements.size());
     return {cost(result.best) / minimum_cost(space, cost),
             static_cast<double>(result.tried) / static_cast<double>(space.size())};
 }
@@ -107,27 +110,27 @@ TEST_CASE("search: ends within 5 % of the minimum after trying a fraction of the
     struct Family {
         const char* name;
         Cost (*make)(const Space&, std::mt19937&);
-        int max_missed;  // searches that may end more than 5 % above the minimum, of 200
+        int max_missed;  // maximum number of searches, of 200, that may end more than 5 % above the minimum
     };
     constexpr int kSpaces = 200;
     for (const Family& family :
-         {Family{"separable", separable, 0}, Family{"shared", shared, 10}, Family{"spilling", spilling, 4}})
+         {Family{"separable", separable, 0}, Family{"coupled", coupled, 10}, Family{"spilling", spilling, 4}})
         for (const double noise : {0.0, 0.01}) {
             int missed = 0;
-            double share = 0;
+            double tried_fraction = 0;
             for (unsigned seed = 1; seed <= kSpaces; ++seed) {
                 std::mt19937 random(seed);
                 const Space space = random_space(random);
                 const SearchQuality found = search_quality(space, family.make(space, random), random, noise);
                 missed += found.loss > 1.05;
-                share += found.share / kSpaces;
+                tried_fraction += found.tried_fraction / kSpaces;
                 INFO(family.name << ", noise " << noise << ", seed " << seed << ": " << found.loss);
                 CHECK(found.loss < 1.5);
             }
-            INFO(family.name << ", noise " << noise << ": " << missed << " of " << kSpaces << " missed, " << share
-                             << " tried");
+            INFO(family.name << ", noise " << noise << ": " << missed << " of " << kSpaces << " missed, "
+                             << tried_fraction << " tried");
             CHECK(missed <= family.max_missed);
-            CHECK(share < 0.2);
+            CHECK(tried_fraction < 0.2);
         }
 }
 
@@ -137,27 +140,27 @@ TEST_CASE("search: never returns a dropped candidate", "[tune]") {
         const Space space = random_space(random);
         const Cost cost = separable(space, random);
         const std::size_t bad = random() % space.parameters[0].values.size();
-        const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
+        const MeasureRatio measure = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
             if (candidate[0] == bad) return {};
             return cost(candidate) / cost(best);
         };
-        const SearchResult result = search(space, judge, kNeverEnds);
+        const SearchResult result = search(space, measure, kNeverStop);
         CAPTURE(seed, bad);
         CHECK((result.best[0] != bad || space.start[0] == bad));
     }
 }
 
-TEST_CASE("search: ends when the caller says so, with the best candidate so far", "[tune]") {
+TEST_CASE("search: ends when ShouldStop returns true, with the best candidate so far", "[tune]") {
     std::mt19937 random(7);
     const Space space = random_space(random);
     const Cost cost = separable(space, random);
     for (const std::size_t limit : {0, 1, 3}) {
-        std::size_t judged = 0;
-        const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) {
-            ++judged;
+        std::size_t measured = 0;
+        const MeasureRatio measure = [&](const Candidate& best, const Candidate& candidate) {
+            ++measured;
             return std::optional(cost(candidate) / cost(best));
         };
-        const SearchResult result = search(space, judge, [&] { return judged >= limit; });
+        const SearchResult result = search(space, measure, [&] { return measured >= limit; });
         CHECK(result.tried == limit);
         CHECK_FALSE(result.ended);
         CHECK(cost(result.best) <= cost(space.start));
@@ -168,39 +171,38 @@ TEST_CASE("search: tries the parameters with two values first", "[tune]") {
     for (unsigned seed = 1; seed <= 200; ++seed) {
         std::mt19937 random(seed);
         Space space = random_space(random);
-        const std::size_t gains =
-            space.parameters.size();  // index of the parameter added below, the only one with a gain
+        const std::size_t added = space.parameters.size();  // index of the parameter that is added here
         space.parameters.push_back({&TunedValues::link_exchange, {0, 1}});
         space.start.push_back(random() % 2);
-        const auto switches = static_cast<std::size_t>(
+        const auto two_valued = static_cast<std::size_t>(
             std::count_if(space.parameters.begin(), space.parameters.end(),
                           [](const TuningParameter& parameter) { return parameter.values.size() == 2; }));
-        std::size_t judged = 0;
-        const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) {
-            ++judged;
-            return std::optional(candidate[gains] != best[gains] ? 0.7 : 1.1);
+        std::size_t measured = 0;
+        const MeasureRatio measure = [&](const Candidate& best, const Candidate& candidate) {
+            ++measured;
+            return std::optional(candidate[added] != best[added] ? 0.7 : 1.1);  // only the added parameter gives a gain
         };
-        const SearchResult result = search(space, judge, [&] { return judged >= switches; });
-        CAPTURE(seed, switches);
-        CHECK(result.best[gains] != space.start[gains]);
+        const SearchResult result = search(space, measure, [&] { return measured >= two_valued; });
+        CAPTURE(seed, two_valued);
+        CHECK(result.best[added] != space.start[added]);
     }
 }
 
-TEST_CASE("search: a gain within the noise does not win", "[tune]") {
+TEST_CASE("search: a candidate with a gain within the noise is not better", "[tune]") {
     std::mt19937 random(1);
     const Space space = random_space(random);
-    const MeasureRatio judge = [&](const Candidate&, const Candidate&) { return std::optional(0.985); };
-    CHECK(search(space, judge, kNeverEnds).best == space.start);
+    const MeasureRatio measure = [&](const Candidate&, const Candidate&) { return std::optional(0.985); };
+    CHECK(search(space, measure, kNeverStop).best == space.start);
 }
 
 TEST_CASE("search_all: finds the minimum", "[tune]") {
     std::mt19937 random(3);
     const Space space = random_space(random);
-    const Cost cost = shared(space, random);
-    const MeasureRatio judge = [&](const Candidate& best, const Candidate& candidate) {
+    const Cost cost = coupled(space, random);
+    const MeasureRatio measure = [&](const Candidate& best, const Candidate& candidate) {
         return std::optional(cost(candidate) / cost(best));
     };
-    const SearchResult all = search_all(space, space.start, judge, kNeverEnds);
+    const SearchResult all = search_all(space, space.start, measure, kNeverStop);
     CHECK(all.tried == space.size() - 1);
     CHECK(cost(all.best) <= minimum_cost(space, cost) / kMaxWinRatio);
 }
@@ -226,14 +228,18 @@ TEST_CASE("space_of: starts at the defaults, and has only values that the device
             CHECK(limits_registers == (device.platform == "NVIDIA CUDA"));
             for_each_candidate(space, [&](const Candidate& candidate) {
                 const KernelChoice kernels = with_values({}, space.values_of(candidate));
-                CHECK_NOTHROW(build_options(
-                    {.lanes = kernels.lanes, .group_size = kernels.group_size, .accel = accel, .more = kernels.more},
-                    device));
+                CHECK_NOTHROW(build_options({.lanes = kernels.lanes,
+                                             .group_size = kernels.group_size,
+                                             .accel = accel,
+                                             .tuning = kernels.tuning},
+                                            device));
             });
         }
 }
 
-TEST_CASE("space_of: groups on CPUs have a few work-items, more if they form vectors, one per torus node", "[tune]") {
+TEST_CASE(
+    "space_of: groups on CPUs have at most 4 work-items, 16 if the driver vectorises over work-items, 1 on the torus",
+    "[tune]") {
     const auto groups_of = [](std::uint32_t max_loop_iterations, const TuningKey& workload) {
         DeviceInfo device;
         device.type = "cpu";
@@ -251,7 +257,7 @@ TEST_CASE("space_of: groups on CPUs have a few work-items, more if they form vec
 }
 
 TEST_CASE(
-    "space_of: link exchange is a parameter of the torus only, with an explicit kernel if that is not the default",
+    "space_of: link exchange is a parameter of the torus only; value 2, the kernel, only if it is not the default",
     "[tune]") {
     const auto moves_of = [](const char* type, const TuningKey& workload) {
         DeviceInfo device;

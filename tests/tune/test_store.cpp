@@ -1,4 +1,4 @@
-// The file of tuned values: writing, reading, damaged files, and use by renders.
+// Tests of the file of tuned values: writing, reading, damaged files, and use by renders.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -33,13 +33,13 @@ const TunedFile kFile{.date = "2026-11-22",
                                    .scene = "x.nff"}}};
 
 /// For its lifetime, sets XDG_CACHE_HOME to a new folder and unsets RAYA_TUNED.
-class OwnCache {
+class ScopedCacheFolder {
   public:
-    OwnCache() {
+    ScopedCacheFolder() {
         setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1);
         unsetenv("RAYA_TUNED");
     }
-    ~OwnCache() {
+    ~ScopedCacheFolder() {
         unsetenv("XDG_CACHE_HOME");
         setenv("RAYA_TUNED", "off", 1);
     }
@@ -49,7 +49,7 @@ class OwnCache {
     ScratchFolder folder_;
 };
 
-/// A source of tuned values that records its warnings.
+/// A source of stored tuned values, and the warnings of the source.
 struct WarningRecorder {
     std::vector<std::string> texts{};
     TunedSource source = stored_choices([this](const std::string& text) { texts.push_back(text); });
@@ -68,13 +68,13 @@ TEST_CASE("read_tuned: inverts tuned_text", "[tune]") {
     }
 }
 
-TEST_CASE("read_tuned: refuses damaged and foreign files with the reason", "[tune]") {
+TEST_CASE("read_tuned: refuses damaged files and files for other devices, with the reason", "[tune]") {
     const DeviceInfo device = some_device();
     const std::string text = tuned_text(device, kFile);
     const auto changed = [&](const std::string& from, const std::string& to) {
-        std::string other = text;
-        REQUIRE(contains(other, from));
-        return other.replace(other.find(from), from.size(), to);
+        std::string changed_text = text;
+        REQUIRE(contains(changed_text, from));
+        return changed_text.replace(changed_text.find(from), from.size(), to);
     };
     for (const auto& [bad, reason] :
          {std::pair<std::string, std::string>{text.substr(0, text.size() / 2), "not valid JSON"},
@@ -97,8 +97,8 @@ TEST_CASE("read_tuned: refuses damaged and foreign files with the reason", "[tun
     }
 }
 
-TEST_CASE("stored values: found by device, driver and kind of kernels", "[tune]") {
-    const OwnCache cache;
+TEST_CASE("stored values: are found by device, driver and tuning key", "[tune]") {
+    const ScopedCacheFolder cache;
     const DeviceInfo device = some_device();
     save_tuned(device, kFile);
     WarningRecorder warned;
@@ -114,21 +114,21 @@ TEST_CASE("stored values: found by device, driver and kind of kernels", "[tune]"
     CHECK(cache.folder().entries() == 1);
 }
 
-TEST_CASE("stored values: an entry replaces that of the same kind, and others stay", "[tune]") {
-    const OwnCache cache;
+TEST_CASE("save_tuned: an entry replaces the entry with the same key, and the others stay", "[tune]") {
+    const ScopedCacheFolder cache;
     const DeviceInfo device = some_device();
     save_tuned(device, kFile);
-    TunedEntry other = kFile.entries[0];
-    other.values.lanes = 16;
-    save_tuned(device, {"2027-01-01", {other}});
+    TunedEntry replacement = kFile.entries[0];
+    replacement.values.lanes = 16;
+    save_tuned(device, {"2027-01-01", {replacement}});
     WarningRecorder warned;
-    CHECK(warned.source(device, other.key)->values.lanes == 16);
+    CHECK(warned.source(device, replacement.key)->values.lanes == 16);
     CHECK(warned.source(device, kFile.entries[1].key)->values == kFile.entries[1].values);
     CHECK(warned.source(device, kFile.entries[1].key)->origin.ends_with(", 2027-01-01"));
 }
 
-TEST_CASE("stored values: an invalid file causes one warning, is ignored, and overwritten", "[tune]") {
-    const OwnCache cache;
+TEST_CASE("stored values: an invalid file causes one warning, is ignored, and is overwritten", "[tune]") {
+    const ScopedCacheFolder cache;
     const DeviceInfo device = some_device();
     const std::filesystem::path file = tuned_path(device);
     for (const bool folder : {false, true}) {
@@ -148,7 +148,7 @@ TEST_CASE("stored values: an invalid file causes one warning, is ignored, and ov
 }
 
 TEST_CASE("stored values: a file that other users may write causes a warning and is ignored", "[tune]") {
-    const OwnCache cache;
+    const ScopedCacheFolder cache;
     const DeviceInfo device = some_device();
     save_tuned(device, kFile);
     std::filesystem::permissions(tuned_path(device), std::filesystem::perms(0666));
@@ -159,8 +159,8 @@ TEST_CASE("stored values: a file that other users may write causes a warning and
                Catch::Contains("other users may write '") && Catch::Contains("(mode 0666); the file is ignored"));
 }
 
-TEST_CASE("stored values: RAYA_TUNED=off and a relative home folder leave the defaults", "[tune]") {
-    const OwnCache cache;
+TEST_CASE("stored values: are not used if RAYA_TUNED is off or the cache folder is relative", "[tune]") {
+    const ScopedCacheFolder cache;
     const DeviceInfo device = some_device();
     save_tuned(device, kFile);
     setenv("RAYA_TUNED", "off", 1);
@@ -176,14 +176,14 @@ TEST_CASE("chosen: uses stored values unless lanes or group are given", "[tune]"
     device.native_float_width = 16;
     const TuningKey workload{.torus = false, .accel = RAYA_ACCEL_NONE, .fp32 = true};
     CHECK(chosen({}, device, workload).origin == "defaults");
-    const ScopedTunedSource use([](const DeviceInfo&, const TuningKey& asked) -> std::optional<TunedChoice> {
-        if (asked.torus) return {};
+    const ScopedTunedSource source([](const DeviceInfo&, const TuningKey& key) -> std::optional<TunedChoice> {
+        if (key.torus) return {};
         return TunedChoice{{4, 2, 0, 8, 2, 1, 96, 2}, "FILE, DATE"};
     });
     const KernelChoice tuned = chosen({}, device, workload);
     CHECK(tuned.origin == "FILE, DATE");
     CHECK((tuned.lanes == 4 && tuned.group_size == 2 && !tuned.local_words));
-    CHECK(tuned.more == KernelTuning{8, 2, 1, 96});
+    CHECK(tuned.tuning == KernelTuning{8, 2, 1, 96});
     CHECK(tuned.link_move == LinkMove::kKernel);
     CHECK(tuned.link_origin == "FILE, DATE");
     const KernelChoice unknown = chosen({}, device, {.torus = true});
@@ -194,12 +194,12 @@ TEST_CASE("chosen: uses stored values unless lanes or group are given", "[tune]"
     CHECK(chosen(by_copies, device, workload).link_move == LinkMove::kCopies);
     CHECK(chosen(by_copies, device, workload).link_origin == "options");
     CHECK(chosen(by_copies, device, workload).lanes == 4);
-    KernelChoice named;
-    named.group_size = 3;
-    const KernelChoice options = chosen(named, device, workload);
+    KernelChoice with_group;
+    with_group.group_size = 3;
+    const KernelChoice options = chosen(with_group, device, workload);
     CHECK(options.origin == "options");
     CHECK((options.lanes == 16 && options.group_size == 3 && options.local_words));
-    CHECK(options.more == KernelTuning{});
+    CHECK(options.tuning == KernelTuning{});
     CHECK((options.link_move == LinkMove::kAutomatic && options.link_origin.empty()));
 }
 

@@ -1,4 +1,4 @@
-// The T4 report of trials, and the decision whether a candidate is faster.
+// Tests of the T4 report of trials, and of the decision whether a candidate is faster.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -29,30 +29,31 @@ TEST_CASE("t4_text: follows results-schema.json 1.0.0", "[tune]") {
     CHECK(report["metadata"]["timeunit"] == "milliseconds");
     const Document& results = report["results"];
     REQUIRE(results.size() == 5);  // without the unfinished trial
-    std::vector<std::string> ends;
-    for (const Document& one : results) {
-        for (const char* key : {"configuration", "times", "invalidity", "correctness"}) CHECK(one.contains(key));
-        ends.push_back(one["invalidity"]);
-        CHECK(one["configuration"]["workload"] == "ring none fp32");
-        CHECK(one["configuration"].size() == 1 + tuning.space.parameters.size());
+    std::vector<std::string> invalidities;
+    for (const Document& result : results) {
+        for (const char* key : {"configuration", "times", "invalidity", "correctness"}) CHECK(result.contains(key));
+        invalidities.push_back(result["invalidity"]);
+        CHECK(result["configuration"]["workload"] == "ring none fp32");
+        CHECK(result["configuration"].size() == 1 + tuning.space.parameters.size());
         for (const TuningParameter& parameter : tuning.space.parameters)
-            CHECK(one["configuration"][parameter.name()].is_number_unsigned());
-        CHECK(one["correctness"] == (one["invalidity"] == "correctness" ? 0 : 1));
-        CHECK(one["times"]["compilation_time"] == 500.0);
-        for (const Document& measured : one["measurements"])
-            CHECK((measured["name"].is_string() && measured["value"].is_number() && measured["unit"].is_string()));
+            CHECK(result["configuration"][parameter.name()].is_number_unsigned());
+        CHECK(result["correctness"] == (result["invalidity"] == "correctness" ? 0 : 1));
+        CHECK(result["times"]["compilation_time"] == 500.0);
+        for (const Document& measurement : result["measurements"])
+            CHECK((measurement["name"].is_string() && measurement["value"].is_number() &&
+                   measurement["unit"].is_string()));
     }
-    CHECK(ends == std::vector<std::string>{"correct", "compile", "runtime", "correctness", "timeout"});
+    CHECK(invalidities == std::vector<std::string>{"correct", "compile", "runtime", "correctness", "timeout"});
     CHECK(results[0]["times"]["runtimes"].size() == 3);
     CHECK(results[0]["measurements"][0]["value"].get<double>() == Approx(80));
 }
 
-TEST_CASE("wins_significantly: requires nearly all pairs and a gain above the noise", "[tune]") {
+TEST_CASE("wins_significantly: requires a gain in nearly all pairs, and above the noise", "[tune]") {
     Trial trial = make_trial(TrialStatus::kCorrect);
     const std::vector<double> defaults(9, 0.1), better(9, 0.09);
     trial.samples = {defaults, better};
     CHECK(wins_significantly(trial));
-    trial.samples[1][4] = 0.2;  // one sample slowed down by other programs
+    trial.samples[1][4] = 0.2;  // a sample that other programs slowed down
     CHECK(wins_significantly(trial));
     trial.samples[1][7] = 0.2;
     CHECK_FALSE(wins_significantly(trial));
@@ -61,7 +62,7 @@ TEST_CASE("wins_significantly: requires nearly all pairs and a gain above the no
     CHECK_FALSE(wins_significantly(make_trial(TrialStatus::kCorrectness)));
 }
 
-TEST_CASE("ratio_of: the larger ratio of minimum times and of the median of pairs", "[tune]") {
+TEST_CASE("ratio_of: is the larger of the ratio of minimum times and the median ratio of pairs", "[tune]") {
     const Trial wins = make_trial(TrialStatus::kCorrect);  // minima: 0.08 / 0.1; pairs: 0.4, 1.0, 0.8
     CHECK(ratio_of(wins) == Approx(0.8));
     Trial one_spike = wins;

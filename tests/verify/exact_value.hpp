@@ -1,5 +1,5 @@
-// MPFR numbers for the exact results of operations, and the features of their rounding (ties, overflow, ...). The known
-// answers are selected so that they cover all features.
+// MPFR numbers for the exact results of operations, and features of the rounding of a result, such as ties and
+// overflow. The known answers are selected so that they cover all features.
 #pragma once
 #include <mpfr.h>
 
@@ -27,8 +27,8 @@ class Mpfr {
     mpfr_t value_;
 };
 
-/// A precision in bits at which sums, products and a * b + c of fp32 numbers are exact. Quotients and square roots are
-/// truncated to it.
+/// Precision in bits at which sums, products and a * b + c of fp32 numbers are exact. Quotients and square roots are
+/// truncated to this precision.
 inline constexpr mpfr_prec_t kExactBits = 700;
 
 /// fp32 operations computed with MPFR, with the infinities, NaNs and denormal numbers of IEEE 754.
@@ -55,15 +55,16 @@ class IeeeOracle {
     float round(double value) { return static_cast<float>(value); }
 
   private:
-    static mpfr_ptr take(Mpfr& to, float value) {
-        mpfr_set_flt(to, value, MPFR_RNDN);
-        return to;
+    // Assigns `value` to `number`, and returns `number`.
+    static mpfr_ptr take(Mpfr& number, float value) {
+        mpfr_set_flt(number, value, MPFR_RNDN);
+        return number;
     }
     template <class Operation>
     float rounded(const Operation& operation) {
         const mpfr_exp_t lowest = mpfr_get_emin(), highest = mpfr_get_emax();
         int inexact = operation(z_);
-        mpfr_set_emin(-148);  // the range of binary32 (MPFR manual)
+        mpfr_set_emin(-148);  // exponent range of binary32 (MPFR manual)
         mpfr_set_emax(128);
         inexact = mpfr_check_range(z_, inexact, MPFR_RNDN);
         mpfr_subnormalize(z_, inexact, MPFR_RNDN);
@@ -75,26 +76,29 @@ class IeeeOracle {
     Mpfr a_{24}, b_{24}, c_{24}, z_{24};
 };
 
-/// Feature of results that would differ if they were rounded to fp32 first and then to the format.
+/// Feature of a result that would differ if it were rounded first to fp32 and then to the format.
 inline constexpr const char* kTwice = "rounded twice is wrong";
 
 /// Returns the features of the rounding of `exact` to `expected`: the position of `exact` between neighbouring numbers
 /// of the format, a result of 0, infinity or NaN, a carry into the exponent, and kTwice.
 inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const NumberFormat& format) {
     const int bits = format.fraction_bits + 1;
-    std::set<std::string> all;
-    const auto note = [&](const std::string& feature) { all.insert(feature + (std::signbit(expected) ? " -" : " +")); };
+    std::set<std::string> features;
+    const auto note = [&](const std::string& feature) {
+        features.insert(feature + (std::signbit(expected) ? " -" : " +"));
+    };
     if (!mpfr_number_p(exact) || mpfr_zero_p(exact)) {
         note(std::isnan(expected) ? "nan" : std::isinf(expected) ? "infinite" : "zero");
-        return all;
+        return features;
     }
     if (expected == 0) {
         note("flushed");
-        return all;
+        return features;
     }
-    // Truncations of `exact` to the format, with 1 and with 12 bits more; the 12 bits more also rounded away from 0.
+    // `exact` truncated to the format's precision, to 1 bit more, and to 12 bits more; and rounded away from 0 to 12
+    // bits more.
     Mpfr truncated(bits), half_steps(bits + 1), fine(bits + 12), fine_away(bits + 12);
-    Mpfr midpoint(bits + 1);           // between `truncated` and the next number of the format
+    Mpfr midpoint(bits + 1);           // of `truncated` and the format's next number away from 0
     Mpfr as_fp32(24), via_fp32(bits);  // `exact` rounded to fp32, and then to the format
     mpfr_set(truncated, exact, MPFR_RNDZ);
     mpfr_set(half_steps, exact, MPFR_RNDZ);
@@ -122,10 +126,10 @@ inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const N
     // Does rounding to fp32 first give another result?
     mpfr_set(as_fp32, exact, MPFR_RNDN);
     mpfr_set(via_fp32, as_fp32, format.truncates ? MPFR_RNDZ : MPFR_RNDN);
-    if (bits < 24 && mpfr_get_flt(via_fp32, MPFR_RNDN) != expected) all.insert(kTwice);
+    if (bits < 24 && mpfr_get_flt(via_fp32, MPFR_RNDN) != expected) features.insert(kTwice);
     int exponent = 0;
     if (up && std::frexp(std::abs(expected), &exponent) == 0.5F) note("carries into the next binade");
-    return all;
+    return features;
 }
 
 }  // namespace raya

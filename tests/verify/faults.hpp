@@ -1,4 +1,5 @@
-// Mutants of kernels: patches of the code under test, not of the checks, that simulate faults of device or compiler.
+// Injected faults: patches of kernels that simulate faults of a device or compiler. Except kBarrierFault, they change
+// the code under test, not the checks.
 #pragma once
 #include <fmt/core.h>
 
@@ -11,9 +12,9 @@ namespace raya {
 
 /// Ties round to the number with an odd significand.
 inline const SourcePatch kRoundingFault{"number/reduced.clh", "even = ~(bits <<", "even = (bits <<"};
-/// The compiler may fuse a * b + c.
+/// The compiler is allowed to fuse a * b + c.
 inline const SourcePatch kContractionFault{"number/lanes.clh", "FP_CONTRACT OFF", "FP_CONTRACT ON"};
-/// The device divides by a multiplication with the reciprocal.
+/// The device computes a / b as a multiplication by the reciprocal of b.
 inline const SourcePatch kDivisionFault{"number/divide.clh", "return a / b;", "return a * (1.0f / b);"};
 /// Of several objects at the same distance, the last one is hit instead of the first.
 inline const SourcePatch kTieFault{"geometry/sphere.clh", "& (t < h.distance)",
@@ -30,18 +31,17 @@ inline const SourcePatch kBarrierFault{
 inline const SourcePatch kBorderFault{"ring/filter.cl", "raya_has_neighbour(m, pixel, RAYA_RIGHT)", "1"};
 /// The link exchange of the torus flips a bit of a colour or limit in a packet. It does not drop words, because stale
 /// memory could contain a ray that never terminates.
-inline const SourcePatch kExchangeFault{"torus/exchange.cl", "to[i] = from[i];",
-                                        "to[i] = from[i] ^ (uint8)(0, 0, 0, 0, 0, 0, 1 << 21, 0);"};
-/// A resumed launch takes the returns that the previous launch wrote as already transferred, and overwrites them.
+inline const SourcePatch kExchangeFault{"torus/exchange.cl", "target[i] = source[i];",
+                                        "target[i] = source[i] ^ (uint8)(0, 0, 0, 0, 0, 0, 1 << 21, 0);"};
+/// A resumed launch assumes that the returns of the previous launch have been transferred, and overwrites them.
 inline const SourcePatch kResumedLaunchFault{"torus/accept.cl", "already_sent = !resume && (root",
                                              "already_sent = (root"};
 
-/// A fault of one counter, which a kernel increments at one place: counted as another event, not counted, or counted
-/// twice.
+/// A fault at a place where a kernel counts an event: it counts another event, nothing, or the event twice.
 struct CountFault {
     const char* event;  // name of the counter in raya verify
     SourcePatch patch;
-    const char* only;  // one of the checks that must fail
+    const char* only;  // value of --only that selects one of the checks that must fail
 };
 
 inline const char* const kOnGlass = "image glass fp32: tiles";
@@ -88,8 +88,8 @@ inline const std::vector<CountFault> kCountFaults = {
      kOnTorus},
     {"shadow_hits", {"torus/shade_packets.clh", "RAYA_SHADOW_HITS, stopped", "RAYA_LIT, stopped"}, kOnTorus}};
 
-/// The same faults for any event (RAYA_*), in the sum of a pixel's counts (ring) or a node's counts (torus). `how`: 0:
-/// counted as another event, 1: not counted, 2: counted twice.
+/// Return a fault in the code that sums the counts of a pixel (ring) or node (torus). `event`: RAYA_*. `how`: 0: the
+/// event is counted as another event; 1: not counted; 2: counted twice.
 inline SourcePatch ring_count_fault(int event, int how) {
     if (how == 0)
         return {"ring/pixel_store.clh", "store->totals[e].all += events;",

@@ -1,5 +1,5 @@
-// Makes the known answers of the number layer: rows with an operation, its operands and its result by MPFR. The
-// operands are selected so that the rows of each operation cover every rounding feature.
+// Makes the known answers of the number layer: rows with an operation, its operands, and the result that MPFR computes.
+// The operands are selected so that the rows of each operation cover every rounding feature.
 #pragma once
 #include <bit>
 #include <cmath>
@@ -14,12 +14,11 @@
 
 namespace raya {
 
-/// Feature of rows whose result would differ with another method: a * b + c fused instead of unfused or the reverse, or
-/// a quotient by multiplication with the reciprocal.
+/// Feature of a row whose result would differ with another method: a * b + c fused instead of unfused or the reverse,
+/// or a division as multiplication by the reciprocal.
 inline constexpr const char* kOtherMethod = "another method is wrong";
 
-/// Computes operations with an oracle, and the rounding features of their results. Oracle: MpfrOracle, or IeeeOracle
-/// for fp32.
+/// Computes operations, and the rounding features of the results. `Oracle`: MpfrOracle, or IeeeOracle for fp32.
 template <class Oracle>
 class AnswerMaker {
   public:
@@ -29,21 +28,21 @@ class AnswerMaker {
         return operation == kPower ? power(a, b) : oracle_result(oracle_, operation, a, b, c);
     }
 
-    /// Returns the features of the row with these operands. Rows with the same features test the same.
+    /// Returns the features of the row with these operands. Rows with the same features are redundant.
     std::set<std::string> features(std::size_t operation, float a, float b, float c) {
         const float expected = result(operation, a, b, c);
-        exact(operation, a, b, c);
-        std::set<std::string> all = features_of(exact_, expected, format_);
+        set_exact(operation, a, b, c);
+        std::set<std::string> features = features_of(exact_, expected, format_);
         // Other methods that a compiler or device may use for the operation.
         if ((operation == kMad || operation == kMulAdd) &&
             differ(oracle_.mad(a, b, c), oracle_.add(oracle_.mul(a, b), c)))
-            all.insert(kOtherMethod);
-        if (operation == kDiv && differ(expected, oracle_.mul(a, oracle_.div(1, b)))) all.insert(kOtherMethod);
+            features.insert(kOtherMethod);
+        if (operation == kDiv && differ(expected, oracle_.mul(a, oracle_.div(1, b)))) features.insert(kOtherMethod);
         const double largest = format_.is_fp32() ? INFINITY : largest_number();
-        if (std::abs(expected) == largest) all.insert(std::signbit(expected) ? "largest -" : "largest +");
-        if (std::fpclassify(expected) == FP_SUBNORMAL) all.insert("denormal");
-        if (std::abs(expected) == std::ldexp(1.0, range_of(format_).lowest)) all.insert("smallest");
-        return all;
+        if (std::abs(expected) == largest) features.insert(std::signbit(expected) ? "largest -" : "largest +");
+        if (std::fpclassify(expected) == FP_SUBNORMAL) features.insert("denormal");
+        if (std::abs(expected) == std::ldexp(1.0, range_of(format_).lowest)) features.insert("smallest");
+        return features;
     }
 
   private:
@@ -54,7 +53,7 @@ class AnswerMaker {
     }
 
     // Sets exact_ to the exact value if the operation rounds once, otherwise to the operation's result.
-    void exact(std::size_t operation, float a, float b, float c) {
+    void set_exact(std::size_t operation, float a, float b, float c) {
         Mpfr x(24), y(24), z(24);
         mpfr_set_flt(x, a, MPFR_RNDN);
         mpfr_set_flt(y, b, MPFR_RNDN);
@@ -79,7 +78,7 @@ class AnswerMaker {
             mpfr_set_flt(exact_, result(operation, a, b, c), MPFR_RNDZ);
     }
 
-    // Does the same operations as kernels/number/power.clh, in the same order.
+    // log2(), exp2() and power() do the same operations as kernels/number/power.clh, in the same order.
     float constant(float value) { return format_.is_fp32() ? value : round_to_format(value, format_); }
     float log2(float x) {
         const auto bits = std::bit_cast<std::int32_t>(x);
@@ -109,7 +108,7 @@ class AnswerMaker {
     Mpfr exact_{kExactBits};
 };
 
-/// Returns special numbers of the format, with both signs: the ends of its range, the neighbours of 1, ...
+/// Returns special numbers of the format, with both signs, such as the ends of its range and the neighbours of 1.
 inline std::vector<float> special_numbers(const NumberFormat& format) {
     const Range range = range_of(format);
     const double unit = std::ldexp(1.0, -format.fraction_bits), base = std::ldexp(1.0, range.highest - 1);
@@ -162,38 +161,40 @@ inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const
             all.push_back({rounded(1 - std::ldexp(random.uniform(0, 1), -i)), rounded(random.uniform(1, 30)), 1});
         return all;
     }
-    // Random operands come first, because each has more features. Special numbers add the missing features.
+    // Random operands come first, because a row of them has more features. Special numbers add the missing features.
     const NumberFormat operand_format =
         operation == kRound ? NumberFormat{} : format;  // the operand of num_round is an fp32 number
     const NumberRows rows = RandomOperands(operand_format, kSeed).rows(kRandomRows);
     for (std::size_t i = 0; i < rows.count(); ++i) all.push_back({rows.a[i], rows.b[i], rows.c[i]});
-    const std::vector<float> marks = special_numbers(format);
-    for (const float a : marks)
-        for (const float b : marks)
-            for (const float c : {1.0F, -a, b, marks[all.size() % marks.size()]}) all.push_back({a, b, c});
+    const std::vector<float> specials = special_numbers(format);
+    for (const float a : specials)
+        for (const float b : specials)
+            for (const float c : {1.0F, -a, b, specials[all.size() % specials.size()]}) all.push_back({a, b, c});
     return all;
 }
 
-/// Returns the rows of one operation: candidates in order, each kept if it has a feature that fewer than two rows have
-/// (six for some features).
+/// Returns the rows of one operation: goes through the candidates in order, and keeps a candidate if one of its
+/// features is in fewer than two rows so far (six for kOtherMethod and kTwice).
 template <class Oracle>
 std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t operation, const NumberFormat& format) {
-    const auto enough = [](const std::string& feature) { return feature == kOtherMethod || feature == kTwice ? 6 : 2; };
+    const auto wanted_rows = [](const std::string& feature) {
+        return feature == kOtherMethod || feature == kTwice ? 6 : 2;
+    };
     const std::size_t operands = kNumberOperations[operation].operands;
     std::map<std::string, int> seen;
-    std::set<std::array<std::uint32_t, 3>> taken;
+    std::set<std::array<std::uint32_t, 3>> used_operands;
     std::vector<KnownAnswer> answers;
     for (auto [a, b, c] : candidates(operation, format)) {
         // num_round accepts only normal numbers and zeros.
         if (operation == kRound && (std::fpclassify(a) == FP_SUBNORMAL || std::isinf(a))) continue;
         if (operands < 2) b = 1;
         if (operands < 3) c = 1;
-        bool wanted = operation == kPower;  // num_power keeps all candidates
+        bool wanted = operation == kPower;  // all candidates of num_power are kept
         const std::set<std::string> features = maker.features(operation, a, b, c);
-        for (const std::string& feature : features) wanted = wanted || seen[feature] < enough(feature);
+        for (const std::string& feature : features) wanted = wanted || seen[feature] < wanted_rows(feature);
         const std::array<std::uint32_t, 3> bits = {std::bit_cast<std::uint32_t>(a), std::bit_cast<std::uint32_t>(b),
                                                    std::bit_cast<std::uint32_t>(c)};
-        if (!wanted || !taken.insert(bits).second) continue;
+        if (!wanted || !used_operands.insert(bits).second) continue;
         for (const std::string& feature : features) ++seen[feature];
         float result = maker.result(operation, a, b, c);
         if (std::isnan(result)) result = std::bit_cast<float>(0x7fc00000u);  // the same bits for every NaN
@@ -203,7 +204,7 @@ std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t 
 }
 
 template <class Oracle>
-FormatAnswers answers_by(Oracle& oracle, const NumberFormat& format) {
+FormatAnswers oracle_answers(Oracle& oracle, const NumberFormat& format) {
     AnswerMaker<Oracle> maker(oracle, format);
     FormatAnswers all{format, {}};
     for (std::size_t k = 0; k < kAnsweredOperations; ++k) all.operations[k] = choose_answers(maker, k, format);
@@ -213,13 +214,14 @@ FormatAnswers answers_by(Oracle& oracle, const NumberFormat& format) {
 inline FormatAnswers answers_in(const NumberFormat& format) {
     if (format.is_fp32()) {
         IeeeOracle oracle;
-        return answers_by(oracle, format);
+        return oracle_answers(oracle, format);
     }
     MpfrOracle oracle(format);
-    return answers_by(oracle, format);
+    return oracle_answers(oracle, format);
 }
 
-/// Returns the text of host/verify/known_answers.csv. It has at least one format for each variant of the number layer.
+/// Returns the text of host/verify/known_answers.csv. The text has at least one format for each code path of
+/// the number layer.
 inline std::string make_known_answers() {
     std::vector<FormatAnswers> all;
     for (const char* name :

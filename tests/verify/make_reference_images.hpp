@@ -1,4 +1,4 @@
-// Renders the reference images with the reference settings on the default device, and makes the text of
+// Renders the reference images with reference_settings() on the default device, and makes the text of
 // reference_images.txt.
 #pragma once
 #include <string>

@@ -1,4 +1,4 @@
-// struct Check: exceptions, remedies, depths, and conversion to JSON and back.
+// Tests of struct Check and of the selection of checks: exceptions, remedies, depths, and conversion to JSON and back.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -16,7 +16,7 @@ std::string text_of(const std::vector<std::string>& lines) {
     return text;
 }
 
-// Returns the remedies of a check that throws an `Error` with this message.
+// Returns the remedies of a check that throws an exception of type `Error` with this message.
 template <class Error>
 std::string remedies_after(const std::string& message) {
     const Check check = run_check("layer", "name", [&]() -> Verdict { throw Error(message); });
@@ -26,7 +26,7 @@ std::string remedies_after(const std::string& message) {
 
 }  // namespace
 
-TEST_CASE("run_check: a check that throws fails, with remedies for the reason", "[verify]") {
+TEST_CASE("run_check: a check that throws an exception fails, with remedies for the reason", "[verify]") {
     using Catch::Contains;
     CHECK_THAT(remedies_after<DeviceError>("building program 'x.cl': clBuildProgram failed with "
                                            "CL_BUILD_PROGRAM_FAILURE (-11)\n  options: -w"),
@@ -40,15 +40,15 @@ TEST_CASE("run_check: a check that throws fails, with remedies for the reason", 
                Contains("report it") && !Contains("driver"));
 }
 
-TEST_CASE("remedies: leave out what is set already", "[verify]") {
+TEST_CASE("remedies: leave out options that are already set", "[verify]") {
     using Catch::Contains;
     ::unsetenv("RAYA_BUILD_OPTIONS");
     CHECK_THAT(text_of(compiler_remedies()), Contains("-cl-opt-disable"));
     ::setenv("RAYA_BUILD_OPTIONS", "-cl-opt-disable", 1);
     CHECK_THAT(text_of(compiler_remedies()), !Contains("-cl-opt-disable"));
     ::unsetenv("RAYA_BUILD_OPTIONS");
-    const auto remedies = [](Depth depth, std::uint32_t given, std::uint32_t lanes) {
-        const VerifySettings settings{.depth = depth, .lanes = given};
+    const auto remedies = [](Depth depth, std::uint32_t given_lanes, std::uint32_t lanes) {
+        const VerifySettings settings{.depth = depth, .lanes = given_lanes};
         return text_of(Verification(choose_device(""), settings, {}).lanes_remedies(lanes));
     };
     CHECK_THAT(remedies(Depth::kQuick, 0, 8), Contains("raya verify --lanes 1"));
@@ -58,12 +58,12 @@ TEST_CASE("remedies: leave out what is set already", "[verify]") {
     CHECK(remedies(Depth::kFull, 0, 1).empty());
 }
 
-TEST_CASE("check_names: a deeper level has all checks of the levels above, and more", "[verify]") {
+TEST_CASE("check_names: a greater depth has all checks of the smaller depths, and more", "[verify]") {
     const auto names = [](Depth depth) { return check_names(choose_device(""), {.depth = depth, .lanes = 1}); };
     const std::vector<std::string> brief = names(Depth::kBrief), quick = names(Depth::kQuick),
                                    full = names(Depth::kFull);
-    const auto has = [](const std::vector<std::string>& all, const std::vector<std::string>& some) {
-        return std::all_of(some.begin(), some.end(), [&](const std::string& name) {
+    const auto has = [](const std::vector<std::string>& all, const std::vector<std::string>& subset) {
+        return std::all_of(subset.begin(), subset.end(), [&](const std::string& name) {
             return std::find(all.begin(), all.end(), name) != all.end();
         });
     };
@@ -89,9 +89,10 @@ TEST_CASE("verify: skips the first `done` checks", "[verify]") {
     const cl::Device device = choose_device("");
     const std::vector<std::string> names = check_names(device, {.only = "rotations"});
     REQUIRE(names.size() == 3);
-    const std::vector<Check> rest = verify(device, {.only = "rotations", .done = 1});
-    REQUIRE(rest.size() == 2);
-    for (std::size_t i = 0; i < rest.size(); ++i) CHECK(rest[i].layer + " " + rest[i].name == names[i + 1]);
+    const std::vector<Check> remaining = verify(device, {.only = "rotations", .done = 1});
+    REQUIRE(remaining.size() == 2);
+    for (std::size_t i = 0; i < remaining.size(); ++i)
+        CHECK(remaining[i].layer + " " + remaining[i].name == names[i + 1]);
 }
 
 }  // namespace raya

@@ -1,4 +1,4 @@
-// Fault injection into kernels: with each fault exactly the checks that cover the faulty code fail.
+// Tests of fault injection into kernels: with each fault exactly the checks that cover the faulty code fail.
 #include <catch2/catch.hpp>
 #include <set>
 #include <stdexcept>
@@ -42,8 +42,8 @@ const Fault& first_fault(const std::vector<Check>& checks) {
     throw std::logic_error("nothing failed");
 }
 
-// Returns a patch with which the kernel returns without doing anything.
-SourcePatch emptied(const std::string& file, const std::string& kernel) {
+// Returns a patch that makes the kernel return without doing anything.
+SourcePatch empty_kernel_patch(const std::string& file, const std::string& kernel) {
     const std::string text = kernel_file(file);
     const std::size_t at = text.find("void " + kernel + "(");
     const std::string opening = text.substr(at, text.find("\n{", at) + 2 - at);
@@ -52,7 +52,7 @@ SourcePatch emptied(const std::string& file, const std::string& kernel) {
 
 }  // namespace
 
-TEST_CASE("rounding fault: fails the formats that round to nearest, no others", "[verify][faults]") {
+TEST_CASE("rounding fault: the formats that round to nearest fail, no others", "[verify][faults]") {
     const auto checks = run({kRoundingFault}, "number");
     CHECK(beginnings(checks, Outcome::kFail) == Names{"e5m10", "e6m15", "e8m12"});
     CHECK(beginnings(checks, Outcome::kPass) == Names{"fp32", "e6m15t", "e8m21t"});
@@ -65,20 +65,20 @@ TEST_CASE("rounding fault: fails the formats that round to nearest, no others", 
     CHECK_FALSE(fault.remedies.empty());
 }
 
-TEST_CASE("contraction fault: fails the operation mul_add, not mad", "[verify][faults]") {
+TEST_CASE("contraction fault: the operation mul_add fails, not mad", "[verify][faults]") {
     const auto checks = run({kContractionFault}, "number fp32");
     REQUIRE(checks.size() == 1);
     CHECK_THAT(checks[0].verdict.result, Catch::Contains("mul_add") && !Catch::Contains(" of mad"));
     CHECK_THAT(checks[0].verdict.fault.where, Catch::StartsWith("mul_add("));
 }
 
-TEST_CASE("division fault: fails div, not mul", "[verify][faults]") {
+TEST_CASE("division fault: div fails, not mul", "[verify][faults]") {
     const auto checks = run({kDivisionFault}, "number fp32");
     REQUIRE(failures(checks).size() == 1);
     CHECK_THAT(checks[0].verdict.result, Catch::Contains(" of div") && !Catch::Contains(" of mul"));
 }
 
-TEST_CASE("tie fault: fails known hits of coincident spheres, no others", "[verify][faults]") {
+TEST_CASE("tie fault: known hits of coincident spheres fail, no others", "[verify][faults]") {
     const auto checks = run({kTieFault}, ", fp32");
     CHECK(beginnings(checks, Outcome::kFail) == Names{"known hits of spheres"});
     CHECK(beginnings(checks, Outcome::kPass) ==
@@ -88,13 +88,13 @@ TEST_CASE("tie fault: fails known hits of coincident spheres, no others", "[veri
     CHECK_THAT(first_fault(checks).got, Catch::StartsWith("object 3"));
 }
 
-TEST_CASE("grid fault: fails all checks of hits by search", "[verify][faults]") {
+TEST_CASE("grid fault: all checks of hits with the grid fail", "[verify][faults]") {
     const auto checks = run({kGridFault}, ", fp32");
     CHECK(failures(checks).size() == 5);
-    CHECK_THAT(first_fault(checks).where, Catch::Contains("hits_by_search"));
+    CHECK_THAT(first_fault(checks).where, Catch::Contains("hits_with_accel"));
 }
 
-TEST_CASE("faults of arithmetic, hits and grid: fail image checks too", "[verify][faults]") {
+TEST_CASE("faults of arithmetic, hits and grid: image checks fail too", "[verify][faults]") {
     struct Row {
         SourcePatch fault;
         const char* only;
@@ -120,55 +120,55 @@ TEST_CASE("faults of arithmetic, hits and grid: fail image checks too", "[verify
     }
 }
 
-TEST_CASE("a kernel that does nothing: fails its checks", "[verify][faults]") {
+TEST_CASE("a kernel that does nothing: its checks fail", "[verify][faults]") {
     struct Row {
         const char *file, *kernel, *only;
         std::size_t wrong;
     };
-    const Row rows[] = {{"checks/hits.cl", "hits_of_all", ", fp32", 5},
-                        {"checks/hits.cl", "hits_by_search", ", fp32", 5},
+    const Row rows[] = {{"checks/hits.cl", "hits_without_accel", ", fp32", 5},
+                        {"checks/hits.cl", "hits_with_accel", ", fp32", 5},
                         {"checks/machine.cl", "find_owners", "mapping", 7},
                         {"checks/machine.cl", "find_routes", "routes", 1},
                         {"checks/machine.cl", "reverse_words", "local memory", 2},
                         {"checks/numbers.cl", "operations", "number fp32", 1}};
     for (const Row& row : rows) {
         CAPTURE(row.kernel);
-        const auto checks = run({emptied(row.file, row.kernel)}, row.only);
+        const auto checks = run({empty_kernel_patch(row.file, row.kernel)}, row.only);
         CHECK(failures(checks).size() == row.wrong);
         CHECK(checks.size() == row.wrong);
     }
 }
 
-TEST_CASE("integer and barrier faults: fail their machine checks, no others", "[verify][faults]") {
+TEST_CASE("integer and barrier faults: the machine checks that cover them fail, no others", "[verify][faults]") {
     CHECK(failures(run({}, "machine")) == Names{});
     CHECK(failures(run({kMappingFault}, "machine")) == Names{"mapping: cyclic, block fold", "mapping: blocks"});
     CHECK(failures(run({kBarrierFault}, "machine")) == Names{"local memory and barriers, 32 work-items"});
 }
 
-TEST_CASE("border fault: fails images with the filter only, and names the pixel", "[verify][faults]") {
+TEST_CASE("border fault: only images with the filter fail, and the check names the pixel", "[verify][faults]") {
     const auto checks = run({kBorderFault}, "image glass");
     CHECK(failures(checks) == Names{"glass fp32 filter: cyclic:5 on 10"});
     CHECK(checks.size() > 4);
     CHECK_THAT(first_fault(checks).where, Catch::StartsWith("row 0, column 19"));
 }
 
-TEST_CASE("faults of link exchange by kernel and of resumed launches: fail the torus checks with them, no others",
+TEST_CASE("faults of link exchange by kernel and of resumed launches: the torus checks that cover them fail, no others",
           "[verify][faults]") {
     const Names by_kernel = {
         "torus3d: exchange of all mailboxes by a kernel", "torus3d: exchange of few mailboxes by a kernel",
         "torus2d: exchange of all mailboxes by a kernel", "torus2d: exchange of few mailboxes by a kernel"};
     CHECK(failures(run({kExchangeFault}, "exchange of")) == by_kernel);
-    CHECK(failures(run({emptied("torus/exchange.cl", "exchange")}, "exchange of")) == by_kernel);
-    const Names bounded = {"polygons fp32: torus3d 2x2x2, launches of 3 units, links by a kernel"};
+    CHECK(failures(run({empty_kernel_patch("torus/exchange.cl", "exchange")}, "exchange of")) == by_kernel);
+    const Names limited_launches = {"polygons fp32: torus3d 2x2x2, launches of 3 units, links by a kernel"};
     for (const SourcePatch& fault : {kExchangeFault, kResumedLaunchFault}) {
         CAPTURE(fault.file);
         const auto checks = run({fault}, "image polygons fp32: torus3d 2x2x2");
         CHECK(checks.size() == 2);
-        CHECK(failures(checks) == bounded);
+        CHECK(failures(checks) == limited_launches);
     }
 }
 
-TEST_CASE("count faults at one place: fail the image check with the event", "[verify][faults][slow]") {
+TEST_CASE("count faults at one place: the image check with the event fails", "[verify][faults][slow]") {
     for (const CountFault& fault : kCountFaults) {
         CAPTURE(fault.event, fault.patch.file, fault.patch.replace);
         const auto checks = run({fault.patch}, fault.only);
@@ -183,7 +183,7 @@ TEST_CASE("count faults at one place: fail the image check with the event", "[ve
     }
 }
 
-TEST_CASE("count faults of every event: fail an image check", "[verify][faults][.][long]") {
+TEST_CASE("count faults of every event: an image check fails", "[verify][faults][.][long]") {
     for (int event = 0; event < RAYA_EVENTS; ++event)
         for (const int how : {0, 1, 2}) {
             const bool walks = event == RAYA_WALKS || event == RAYA_STEPS, torus = event == RAYA_DISCARDED;
@@ -199,7 +199,7 @@ TEST_CASE("count faults of every event: fail an image check", "[verify][faults][
         }
 }
 
-TEST_CASE("count faults: fail only image checks, all with the event", "[verify][faults][slow]") {
+TEST_CASE("count faults: only image checks fail, all that count the event", "[verify][faults][slow]") {
     const auto checks = run({kCountFaults.front().patch, torus_count_fault(RAYA_SHADOW, 2)}, "");
     std::set<std::string> layers;
     for (const Check& check : checks)
@@ -211,7 +211,7 @@ TEST_CASE("count faults: fail only image checks, all with the event", "[verify][
     CHECK(failures(checks).size() >= 8);
 }
 
-TEST_CASE("reference images: have the counts of a ring and of the other variants", "[verify]") {
+TEST_CASE("reference images: have the counts of the ring and of other variants", "[verify]") {
     for (const ReferenceImage& image : reference_images()) CHECK(stored_image(image).counts.contains("ring"));
     CHECK_THAT(stored_image(reference_image_named("polygons fp32")).counts.at("bvh"),
                Catch::StartsWith("primary 400 "));

@@ -1,4 +1,4 @@
-// The known answers of the number layer: they equal the results of MPFR and cover every rounding feature.
+// Tests of the known answers of the number layer: they equal the results of MPFR and cover every rounding feature.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -40,11 +40,11 @@ TEST_CASE("known answers in fp32: equal the host's results", "[verify]") {
         }
 }
 
-TEST_CASE("known answers: every format has every operation, ties and both ends of the range", "[verify]") {
+TEST_CASE("known answers: every format has every operation, and covers ties and both ends of the range", "[verify]") {
     CHECK(known_answers().size() == 11);
     for (const FormatAnswers& answers : known_answers()) {
         CAPTURE(format_name(answers.format));
-        for (const auto& of_operation : answers.operations) CHECK(of_operation.size() >= 3);
+        for (const auto& operation_answers : answers.operations) CHECK(operation_answers.size() >= 3);
         MpfrOracle oracle(answers.format);
         std::set<std::string> seen;
         if (!answers.format.is_fp32()) {
@@ -63,7 +63,7 @@ TEST_CASE("known answers: every format has every operation, ties and both ends o
     }
 }
 
-TEST_CASE("parse_known_answers: refuses other texts", "[verify]") {
+TEST_CASE("parse_known_answers: refuses invalid texts", "[verify]") {
     for (const char* text :
          {"3f8 3f8\n", "fp32 add\n3f8 3f8\n", "fp32 add\n3f8 3f8 3f8x\n", "fp32 pow\n", "fp32 sqrt\n123456789 0\n"}) {
         CAPTURE(text);

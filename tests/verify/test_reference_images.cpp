@@ -1,5 +1,5 @@
-// The stored reference images (reference_images.txt), compared with new renders on the default device and with the
-// double-precision reference renderer.
+// Tests of the stored reference images (reference_images.txt): comparison with new renders on the default device and
+// with the double-precision reference renderer.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <stdexcept>
@@ -11,10 +11,11 @@
 
 namespace raya {
 
-// The test tools.verify runs raya verify --quick, which compares the other images.
-TEST_CASE("reference images not in verify --quick: equal new renders on the default device", "[verify][slow]") {
+// The test tools.verify runs raya verify --quick, which compares the remaining images.
+TEST_CASE("reference images that verify --quick does not check: equal new renders on the default device",
+          "[verify][slow]") {
     const std::vector<std::string> quick = check_names(choose_device(""), {.only = "image "});
-    std::size_t made = 0;
+    std::size_t compared = 0;
     for (const ReferenceImage& image : reference_images()) {
         CAPTURE(image.name);
         const std::string beginning = "image " + image.name + ": ";
@@ -23,9 +24,9 @@ TEST_CASE("reference images not in verify --quick: equal new renders on the defa
         CHECK(pixel_hash(render_reference(image)) == stored_image(image).hash);
         Session session(choose_device(""));
         CHECK(counts_by_variant(session, image) == stored_image(image).counts);
-        ++made;
+        ++compared;
     }
-    CHECK(made == 6);
+    CHECK(compared == 6);
 }
 
 TEST_CASE("reference images in fp32: equal the reference renderer within its tolerance", "[verify]") {
@@ -37,10 +38,10 @@ TEST_CASE("reference images in fp32: equal the reference renderer within its tol
                                          .height = kReferenceSide,
                                          .bounces = kReferenceBounces,
                                          .corners = image.sampling == Sampling::kCorners};
-        const reference::Difference d =
+        const reference::Difference difference =
             reference::compare(reference::render(scene, options), stored_image(image).image.rgb, scene, options);
-        CHECK(d.psnr_db >= 50);
-        CHECK(d.above_limit == d.excused);
+        CHECK(difference.psnr_db >= 50);
+        CHECK(difference.above_limit == difference.excused);
     }
 }
 

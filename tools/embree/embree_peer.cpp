@@ -4,7 +4,7 @@
 //   embree_peer SCENE.nff WxH BOUNCES centres|corners SAMPLES
 //
 // Prints "METHOD RAYS SECONDS..." for each of two methods, one time per sample, and "build SECONDS". `single`
-// traces ray by ray; `sixteen` traces the ray trees of sixteen pixels, 4 x 4, in lockstep, in packets of sixteen rays.
+// traces single rays; `sixteen` traces the ray trees of 16 pixels, 4 x 4, in lockstep, in packets of 16 rays.
 // Only the loop over the pixels is timed. RAYS: number of rays; SECONDS: of one render. Exit codes: 0 done; 2 an error.
 #include <chrono>
 #include <cstdio>
@@ -39,8 +39,8 @@ int run(char** arguments) {
     const Whitted whitted(scene, embree, std::atoi(arguments[2]));
     Picture picture(whitted, camera_of(scene.view, width, height, std::string(arguments[3]) == "corners"));
     const int samples = std::atoi(arguments[4]);
-    measure("single", picture, &Picture::single, samples);
-    measure("sixteen", picture, &Picture::sixteen, samples);
+    measure("single", picture, &Picture::render_single_rays, samples);
+    measure("sixteen", picture, &Picture::render_packets, samples);
     std::printf("build %f\n", embree.build_s());
     return 0;
 }

@@ -26,17 +26,17 @@ void cone_bounds(const RTCBoundsFunctionArguments* args) {
     RTCBounds* box = args->bounds_o;
     const float* base = &c.base.x;
     const float* axis = &c.axis.x;
-    float* low = &box->lower_x;
-    float* high = &box->upper_x;
+    float* lower = &box->lower_x;
+    float* upper = &box->upper_x;
     for (int i = 0; i < 3; ++i) {
-        const float across = std::sqrt(std::max(0.0f, 1 - axis[i] * axis[i]));
-        const float end = base[i] + c.height * axis[i], far = std::abs(c.radius + c.slope * c.height);
-        low[i] = std::min(base[i] - c.radius * across, end - far * across);
-        high[i] = std::max(base[i] + c.radius * across, end + far * across);
+        const float disc_extent = std::sqrt(std::max(0.0f, 1 - axis[i] * axis[i]));
+        const float apex = base[i] + c.height * axis[i], apex_radius = std::abs(c.radius + c.slope * c.height);
+        lower[i] = std::min(base[i] - c.radius * disc_extent, apex - apex_radius * disc_extent);
+        upper[i] = std::max(base[i] + c.radius * disc_extent, apex + apex_radius * disc_extent);
     }
 }
 
-// Returns t of the ray's nearest hit between `near` and `far`, or a value beyond `far` if there is no hit.
+// Returns t of the ray's nearest hit between `near` and `far`; kNoHit if there is none.
 float cone_hit(const PeerCone& c, V3 origin, V3 direction, float near, float far, V3& normal) {
     // Starts from the point of the ray nearest to the cone's base: otherwise, through rounding, a ray that starts on
     // the cone would hit it.
@@ -47,20 +47,20 @@ float cone_hit(const PeerCone& c, V3 origin, V3 direction, float near, float far
     const float radius = c.radius + c.slope * z, dradius = c.slope * dz;
     const float a = dot(dside, dside) - dradius * dradius, b = dot(side, dside) - radius * dradius;
     const float constant = dot(side, side) - radius * radius, discriminant = b * b - a * constant;
-    constexpr float none = 1e30f;
-    if (!(discriminant > 0)) return none;
+    constexpr float kNoHit = 1e30f;
+    if (!(discriminant > 0)) return kNoHit;
     const float root = std::sqrt(discriminant), q = b > 0 ? -(b + root) : root - b;
     const float by_a = q / a, by_q = constant / q;
     const float in = b > 0 ? by_a : by_q, out = b > 0 ? by_q : by_a;  // t where the ray enters and leaves the cone
     for (const float t : {std::min(in, out), std::max(in, out)}) {
         if (c.inside && t != out) continue;
-        const float at = z + t * dz, distance = t + moved;
-        if (!(distance > near && distance < far && at >= 0 && at <= c.height)) continue;
-        const V3 arm = side + t * dside;
-        normal = arm - (c.slope * (c.radius + c.slope * at)) * c.axis;
+        const float axis_position = z + t * dz, distance = t + moved;
+        if (!(distance > near && distance < far && axis_position >= 0 && axis_position <= c.height)) continue;
+        const V3 from_axis = side + t * dside;
+        normal = from_axis - (c.slope * (c.radius + c.slope * axis_position)) * c.axis;
         return distance;
     }
-    return none;
+    return kNoHit;
 }
 
 V3 origin_of(const RTCRayN* ray, unsigned n, unsigned i) {
@@ -164,10 +164,10 @@ void EmbreeScene::add_triangles(const Scene& scene) {
 
 void EmbreeScene::add_cones(const Scene& scene) {
     for (const Cone& c : scene.cones) {
-        const Vec3 along = c.apex - c.base;
-        const double height = along.length();
+        const Vec3 base_to_apex = c.apex - c.base;
+        const double height = base_to_apex.length();
         const double base = std::abs(c.base_radius), apex = std::abs(c.apex_radius);
-        cones_.push_back({to_float(c.base), to_float(along / height), static_cast<float>(base),
+        cones_.push_back({to_float(c.base), to_float(base_to_apex / height), static_cast<float>(base),
                           static_cast<float>(height), static_cast<float>((apex - base) / height),
                           c.base_radius < 0 || c.apex_radius < 0, c.surface});
     }

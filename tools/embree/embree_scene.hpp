@@ -44,7 +44,7 @@ struct PeerCone {
 /// The nearest hit of a ray.
 struct PeerHit {
     float t = 0;
-    V3 geometric, normal;  // of the object, not yet turned towards the ray
+    V3 geometric, normal;  // normals of the object, not turned towards the ray
     int surface = -1;      // -1: no hit
 };
 

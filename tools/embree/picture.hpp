@@ -1,4 +1,5 @@
-// Renders a picture with Embree on all cores: ray by ray, or the ray trees of sixteen pixels in lockstep.
+// Renders a picture with Embree on all cores: with single rays, or with packets of 16 rays for the ray trees of 16
+// pixels.
 #pragma once
 #include <embree3/rtcore.h>
 #include <pmmintrin.h>
@@ -12,7 +13,7 @@
 
 namespace raya {
 
-inline constexpr int kWide = 16, kTile = 4;
+inline constexpr int kPacketRays = 16, kTileSide = 4;  // number of rays in a packet; side of its tile in pixels
 inline constexpr float kFar = 1e30f;
 
 /// Stack of the pending rays of a pixel's ray tree.
@@ -42,16 +43,16 @@ class Picture {
             threads.emplace_back([&] {
                 _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);  // recommended by Embree's manual
                 _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-                long own = 0;
-                for (int row = next++; row < rows; row = next++) own += trace_row(row);
-                rays += own;
+                long thread_rays = 0;
+                for (int row = next++; row < rows; row = next++) thread_rays += trace_row(row);
+                rays += thread_rays;
             });
         for (std::thread& thread : threads) thread.join();
         return rays;
     }
 
-    /// Renders ray by ray; returns the number of rays.
-    long single() {
+    /// Renders with single rays. Returns the number of rays.
+    long render_single_rays() {
         return trace_rows(camera_.height, [&](int row) {
             long rays = 0;
             for (int column = 0; column < camera_.width; ++column)
@@ -60,17 +61,19 @@ class Picture {
         });
     }
 
-    /// Renders tiles of 4 x 4 pixels with packets of sixteen rays; returns the number of rays.
-    long sixteen() {
-        const int across = (camera_.width + kTile - 1) / kTile, down = (camera_.height + kTile - 1) / kTile;
-        return trace_rows(down, [&](int row) {
+    /// Renders tiles of 4 x 4 pixels with packets of 16 rays. Returns the number of rays.
+    long render_packets() {
+        const int tile_columns = (camera_.width + kTileSide - 1) / kTileSide,
+                  tile_rows = (camera_.height + kTileSide - 1) / kTileSide;
+        return trace_rows(tile_rows, [&](int row) {
             long rays = 0;
-            for (int column = 0; column < across; ++column) rays += trace_tile(row * kTile, column * kTile);
+            for (int column = 0; column < tile_columns; ++column)
+                rays += trace_tile(row * kTileSide, column * kTileSide);
             return rays;
         });
     }
 
-    /// Mean colour of the pixels.
+    /// Returns the mean colour of the pixels.
     V3 mean() const {
         V3 sum;
         for (const V3& p : pixels_) sum = sum + p;
@@ -103,18 +106,18 @@ class Picture {
             const ShadingPoint m = whitted_.shading_point(r, h);
             colour = colour + r.weight * whitted_.ambient(m);
             for (const PeerLight& light : whitted_.lights()) {
-                const V3 arm = light.position - m.outer;
-                if (!(dot(m.normal, arm) > 0)) continue;
+                const V3 light_offset = light.position - m.outer;
+                if (!(dot(m.normal, light_offset) > 0)) continue;
                 ++rays;
-                const float distance = std::sqrt(dot(arm, arm));
-                const V3 to_light = (1 / distance) * arm;
+                const float distance = std::sqrt(dot(light_offset, light_offset));
+                const V3 to_light = (1 / distance) * light_offset;
                 if (whitted_.embree().plane_blocks(m.outer, to_light, distance)) continue;
                 RTCRay s = {m.outer.x,  m.outer.y, m.outer.z, 0,   to_light.x, to_light.y,
                             to_light.z, 0,         distance,  ~0u, 0,          0};
                 rtcOccluded1(whitted_.embree().rtc(), &context, &s);
-                if (s.tfar > 0) colour = colour + r.weight * whitted_.lit(r, m, light, to_light);
+                if (s.tfar > 0) colour = colour + r.weight * whitted_.light_contribution(r, m, light, to_light);
             }
-            whitted_.follow(stack, r, m);
+            whitted_.push_secondary_rays(stack, r, m);
         }
         return colour;
     }
@@ -130,16 +133,16 @@ class Picture {
     long trace_tile(int top, int left) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        std::array<Lane, kWide> lanes;
-        for (int i = 0; i < kWide; ++i) {
-            const int row = top + i / kTile, column = left + i % kTile;
+        std::array<Lane, kPacketRays> lanes;
+        for (int i = 0; i < kPacketRays; ++i) {
+            const int row = top + i / kTileSide, column = left + i % kTileSide;
             if (row < camera_.height && column < camera_.width)
                 lanes[i].stack.push_back({camera_.eye, camera_.direction(row, column), 1, 0});
         }
         long rays = 0;
         while (const long taken = step(lanes, context, rays)) rays += taken;
-        for (int i = 0; i < kWide; ++i) {
-            const int row = top + i / kTile, column = left + i % kTile;
+        for (int i = 0; i < kPacketRays; ++i) {
+            const int row = top + i / kTileSide, column = left + i % kTileSide;
             if (row < camera_.height && column < camera_.width) pixel(row, column) = lanes[i].colour;
         }
         return rays;
@@ -147,11 +150,11 @@ class Picture {
 
     // Traces the next ray of each lane's tree. Returns the number of traced rays; adds the number of shadow rays to
     // `rays`.
-    long step(std::array<Lane, kWide>& lanes, RTCIntersectContext& context, long& rays) const {
-        alignas(64) std::array<int, kWide> valid{};
+    long step(std::array<Lane, kPacketRays>& lanes, RTCIntersectContext& context, long& rays) const {
+        alignas(64) std::array<int, kPacketRays> valid{};
         alignas(64) RTCRayHit16 q;
         long taken = 0;
-        for (int i = 0; i < kWide; ++i) {
+        for (int i = 0; i < kPacketRays; ++i) {
             if (lanes[i].stack.empty()) continue;
             const PendingRay& r = lanes[i].ray = lanes[i].stack.pop();
             valid[i] = -1;
@@ -161,7 +164,7 @@ class Picture {
         }
         if (taken == 0) return 0;
         rtcIntersect16(valid.data(), whitted_.embree().rtc(), &context, &q);
-        for (int i = 0; i < kWide; ++i) {
+        for (int i = 0; i < kPacketRays; ++i) {
             if (valid[i] == 0) continue;
             Lane& lane = lanes[i];
             const PeerHit h = whitted_.embree().hit(lane.ray.origin, lane.ray.direction, q.ray.tfar[i], q.hit.geomID[i],
@@ -176,37 +179,38 @@ class Picture {
             lane.colour = lane.colour + lane.ray.weight * whitted_.ambient(lane.point);
         }
         for (const PeerLight& light : whitted_.lights()) rays += add_light(lanes, valid, light, context);
-        for (int i = 0; i < kWide; ++i)
-            if (valid[i] != 0) whitted_.follow(lanes[i].stack, lanes[i].ray, lanes[i].point);
+        for (int i = 0; i < kPacketRays; ++i)
+            if (valid[i] != 0) whitted_.push_secondary_rays(lanes[i].stack, lanes[i].ray, lanes[i].point);
         return taken;
     }
 
     // Adds the contribution of a light to the lanes with a hit. Returns the number of shadow rays.
-    long add_light(std::array<Lane, kWide>& lanes, const std::array<int, kWide>& valid, const PeerLight& light,
-                   RTCIntersectContext& context) const {
-        alignas(64) std::array<int, kWide> open{};
+    long add_light(std::array<Lane, kPacketRays>& lanes, const std::array<int, kPacketRays>& valid,
+                   const PeerLight& light, RTCIntersectContext& context) const {
+        alignas(64) std::array<int, kPacketRays> unblocked{};
         alignas(64) RTCRay16 s;
-        std::array<V3, kWide> to_light;
+        std::array<V3, kPacketRays> to_light;
         long rays = 0;
         bool any = false;
-        for (int i = 0; i < kWide; ++i) {
+        for (int i = 0; i < kPacketRays; ++i) {
             const ShadingPoint& m = lanes[i].point;
             if (valid[i] == 0) continue;
-            const V3 arm = light.position - m.outer;
-            if (!(dot(m.normal, arm) > 0)) continue;
+            const V3 light_offset = light.position - m.outer;
+            if (!(dot(m.normal, light_offset) > 0)) continue;
             ++rays;
-            const float distance = std::sqrt(dot(arm, arm));
-            to_light[i] = (1 / distance) * arm;
+            const float distance = std::sqrt(dot(light_offset, light_offset));
+            to_light[i] = (1 / distance) * light_offset;
             if (whitted_.embree().plane_blocks(m.outer, to_light[i], distance)) continue;
             set_ray(s, i, m.outer, to_light[i], distance);
-            open[i] = -1;
+            unblocked[i] = -1;
             any = true;
         }
-        if (any) rtcOccluded16(open.data(), whitted_.embree().rtc(), &context, &s);
-        for (int i = 0; i < kWide; ++i)
-            if (open[i] != 0 && s.tfar[i] > 0)
-                lanes[i].colour = lanes[i].colour +
-                                  lanes[i].ray.weight * whitted_.lit(lanes[i].ray, lanes[i].point, light, to_light[i]);
+        if (any) rtcOccluded16(unblocked.data(), whitted_.embree().rtc(), &context, &s);
+        for (int i = 0; i < kPacketRays; ++i)
+            if (unblocked[i] != 0 && s.tfar[i] > 0)
+                lanes[i].colour =
+                    lanes[i].colour +
+                    lanes[i].ray.weight * whitted_.light_contribution(lanes[i].ray, lanes[i].point, light, to_light[i]);
         return rays;
     }
 

@@ -11,14 +11,14 @@ namespace raya {
 struct Camera {
     V3 eye, gaze, right, top;  // right and top: from the image's centre to its sides, at distance 1
     int width, height;
-    bool corners;
+    bool corners;  // sample the pixels' corners instead of their centres
 
     V3 direction(int row, int column) const {
-        const auto share = [&](int at, int of) {
-            if (corners) return of > 1 ? static_cast<float>(at) / static_cast<float>(of - 1) : 0.5f;
-            return (static_cast<float>(at) + 0.5f) / static_cast<float>(of);
+        const auto fraction = [&](int index, int count) {
+            if (corners) return count > 1 ? static_cast<float>(index) / static_cast<float>(count - 1) : 0.5f;
+            return (static_cast<float>(index) + 0.5f) / static_cast<float>(count);
         };
-        return normalized(gaze + (2 * share(column, width) - 1) * right + (1 - 2 * share(row, height)) * top);
+        return normalized(gaze + (2 * fraction(column, width) - 1) * right + (1 - 2 * fraction(row, height)) * top);
     }
 };
 
@@ -69,7 +69,7 @@ class Whitted {
     const std::vector<PeerLight>& lights() const { return lights_; }
     V3 background() const { return background_; }
 
-    /// The hit point of a ray, with its normal, colour and the origins of the next rays.
+    /// Returns the hit point of a ray, with its normal, colour and the origins of the next rays.
     ShadingPoint shading_point(const PendingRay& r, const PeerHit& h) const {
         ShadingPoint m;
         m.surface = &embree_.surfaces()[static_cast<std::size_t>(h.surface)];
@@ -79,44 +79,45 @@ class Whitted {
         m.normal = dot(h.normal, geometric) < 0 ? -1 * h.normal : h.normal;
         m.outer = m.point + margin_ * geometric;
         m.inner = m.point - margin_ * geometric;
-        m.colour = m.surface->checker > 0 ? square(m, geometric) : m.surface->even;
+        m.colour = m.surface->checker > 0 ? checker_colour(m, geometric) : m.surface->even;
         return m;
     }
 
     V3 ambient(const ShadingPoint& m) const { return (ambient_ * m.surface->diffuse) * m.colour; }
 
-    /// Contribution of a visible light; `to_light` has length 1.
-    V3 lit(const PendingRay& r, const ShadingPoint& m, const PeerLight& light, V3 to_light) const {
+    /// Returns the contribution of a visible light; `to_light` has length 1.
+    V3 light_contribution(const PendingRay& r, const ShadingPoint& m, const PeerLight& light, V3 to_light) const {
         const PeerSurface& s = *m.surface;
         const V3 mirror = r.direction - 2 * dot(m.normal, r.direction) * m.normal;
         const float cosine = dot(mirror, to_light);
-        const float bright = s.specular > 0 && cosine > 0 ? s.specular * std::pow(cosine, s.shine) : 0;
-        return times(light.colour, (s.diffuse * dot(m.normal, to_light)) * m.colour + V3{bright, bright, bright});
+        const float highlight = s.specular > 0 && cosine > 0 ? s.specular * std::pow(cosine, s.shine) : 0;
+        return times(light.colour,
+                     (s.diffuse * dot(m.normal, to_light)) * m.colour + V3{highlight, highlight, highlight});
     }
 
     /// Pushes the reflected and refracted rays on the stack; the last one pushed is traced first.
     template <class Stack>
-    void follow(Stack& stack, const PendingRay& r, const ShadingPoint& m) const {
+    void push_secondary_rays(Stack& stack, const PendingRay& r, const ShadingPoint& m) const {
         if (r.level >= bounces_) return;
         const PeerSurface& s = *m.surface;
-        float mirrored = s.specular;
+        float mirror_weight = s.specular;
         if (s.transmittance > 0) {
             const float e = m.leaving ? s.refraction : 1 / s.refraction, c = -dot(m.normal, r.direction);
             const float g = 1 - e * e * (1 - c * c);
             if (g < 0) {
-                mirrored += s.transmittance;
+                mirror_weight += s.transmittance;
             } else {
                 const V3 through = normalized(e * r.direction + (e * c - std::sqrt(g)) * m.normal);
                 stack.push_back({m.inner, through, r.weight * s.transmittance, r.level + 1});
             }
         }
-        if (mirrored > 0)
-            stack.push_back(
-                {m.outer, r.direction - 2 * dot(m.normal, r.direction) * m.normal, r.weight * mirrored, r.level + 1});
+        if (mirror_weight > 0)
+            stack.push_back({m.outer, r.direction - 2 * dot(m.normal, r.direction) * m.normal, r.weight * mirror_weight,
+                             r.level + 1});
     }
 
   private:
-    static V3 square(const ShadingPoint& m, V3 geometric) {
+    static V3 checker_colour(const ShadingPoint& m, V3 geometric) {
         const float x = std::abs(geometric.x), y = std::abs(geometric.y), z = std::abs(geometric.z);
         const float side = m.surface->checker;
         const float u = x >= y && x >= z ? m.point.y : y >= z ? m.point.z : m.point.x;

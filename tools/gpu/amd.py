@@ -11,7 +11,7 @@ from gpu.figures import Core, Fault, Figures, first_line, kernel_name, rounded_u
 
 CORES = {"gfx90a": Core(32, 16, 64 * 1024, 64 * 1024, 512, max_single_warp_groups=32)}
 LIBRARY = "amdgcn--amdhsa.bc"
-MUST_NOT = {"double precision": re.compile(r"^\s*v_\w+_f64\b", re.M),
+FORBIDDEN = {"double precision": re.compile(r"^\s*v_\w+_f64\b", re.M),
             "does not round to nearest": re.compile(r"\.amdhsa_float_round_mode_32 [^0]"),
             "denormals are flushed": re.compile(r"\.amdhsa_float_denorm_mode_32 [^3]"),
             "a call is not inlined": re.compile(r"^\s*s_swappc_b64\b", re.M)}
@@ -19,14 +19,14 @@ SYMBOL = re.compile(r"\b([A-Za-z_]\w*)@(?:gotpcrel|rel)32")
 
 
 def faults_of(text):
-    """Texts of the faults in AMD assembly."""
-    found = [f"{what}: {first_line(text, pattern)}" for what, pattern in MUST_NOT.items() if pattern.search(text)]
+    """Returns texts on the faults in AMD assembly."""
+    found = [f"{what}: {first_line(text, pattern)}" for what, pattern in FORBIDDEN.items() if pattern.search(text)]
     unresolved = sorted({name for name in SYMBOL.findall(text) if not re.search(rf"^{re.escape(name)}:", text, re.M)})
     return found + [f"unresolved: {name}" for name in unresolved]
 
 
 def waves_of(vector, scalar):
-    """Number of waves for which a CU has registers; vector, scalar: registers of one."""
+    """Returns the number of waves for which a CU has registers. vector: number of registers of a work-item; scalar: of a wave."""
     return 4 * min(8, 512 // rounded_up(max(vector, 1), 8), 800 // rounded_up(max(scalar, 1), 16))
 
 
@@ -48,14 +48,14 @@ class Amd:
 
     @staticmethod
     def batches(targets):
-        """Lists of targets that compile() takes together."""
+        """Returns lists of targets that compile() takes together."""
         return [[target] for target in targets]
 
     def compiler_input(self, folder, build, targets):
         return b"\0".join(self.clang.preprocessed(folder, build, options_of(target)) for target in targets)
 
     def compile(self, folder, build, targets):
-        """(figures, faults) of the build's kernels for these targets."""
+        """Returns (figures, faults) of the build's kernels for these targets."""
         figures, faults = [], []
         for target in targets:
             text, error = self.clang.assembly(folder, build, LIBRARY, options_of(target))

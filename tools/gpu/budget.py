@@ -1,7 +1,7 @@
-"""The resource budget of kernels: a file of recorded figures, with the versions of the compilers that gave them."""
+"""The resource budget of kernels: a file of recorded figures, with the versions of the compilers that made them."""
 import csv
 
-HEAD = ["kernel", "variant", "target", "width", "registers", "spills", "scalar_spills", "stack", "local"]
+COLUMNS = ["kernel", "variant", "target", "width", "registers", "spills", "scalar_spills", "stack", "local"]
 BOUNDED = ["registers", "spills", "scalar_spills", "stack", "local"]  # may exceed the budget by at most 5 %
 VERSION = "# made for "
 HEADER = "# GPU resources of kernels: written by `tools/gpu_check --write-budget`, do not edit. docs/gpu_resources.md defines the figures.\n"
@@ -30,20 +30,20 @@ class Budget:
             return
         if figures.width < int(row["width"]):
             yield f"threads of {figures.width} work-items, {row['width']} in the budget"
-        for what in BOUNDED:
-            figure, budget = getattr(figures, what), int(row[what])
+        for column in BOUNDED:
+            figure, budget = getattr(figures, column), int(row[column])
             if figure > 1.05 * budget:
-                yield f"{what.replace('_', ' ')}: {figure}, {budget} in the budget"
+                yield f"{column.replace('_', ' ')}: {figure}, {budget} in the budget"
 
     def stale(self, found, targets):
-        """Names of the rows for these targets whose kernels no longer exist."""
+        """Returns the names of the rows for these targets whose kernels no longer exist."""
         return sorted(name for name in set(self.rows) - found if name[2] in targets)
 
     def write(self, all_figures, versions, whole=True):
         """Writes the file with new figures. Keeps the rows of other targets; unless all kernels were built (whole), also those of other kernels."""
         self.versions.update(versions)
         rows = {name: row for name, row in self.rows.items() if not whole or name[2] not in versions}
-        rows.update({f.name: {key: getattr(f, key) for key in HEAD} for f in all_figures})
-        lines = [HEADER, *(f"{VERSION}{target}: {version}\n" for target, version in self.versions.items()), ",".join(HEAD) + "\n"]
-        lines += [",".join(str(row[key]) for key in HEAD) + "\n" for _, row in sorted(rows.items())]
+        rows.update({f.name: {key: getattr(f, key) for key in COLUMNS} for f in all_figures})
+        lines = [HEADER, *(f"{VERSION}{target}: {version}\n" for target, version in self.versions.items()), ",".join(COLUMNS) + "\n"]
+        lines += [",".join(str(row[key]) for key in COLUMNS) + "\n" for _, row in sorted(rows.items())]
         self.path.write_text("".join(lines))

@@ -33,7 +33,7 @@ class Cache:
         figures, faults = vendor.compile(folder, build, targets)
         figures = list(figures)
         if not faults:
-            whole = file.with_suffix(f".{os.getpid()}")
-            whole.write_text(json.dumps([dataclasses.asdict(f) for f in figures]))
-            whole.replace(file)
+            temporary = file.with_suffix(f".{os.getpid()}")
+            temporary.write_text(json.dumps([dataclasses.asdict(f) for f in figures]))
+            temporary.replace(file)
         return figures, faults

@@ -1,7 +1,7 @@
 """clang and libclc, used instead of the OpenCL compilers of NVIDIA and AMD."""
 import hashlib, re, shutil, subprocess
 
-INLINES = ["-mllvm", "-inline-threshold=1000000"]  # inline all calls that can be inlined, as the drivers' compilers do
+INLINE_OPTIONS = ["-mllvm", "-inline-threshold=1000000"]  # inline all calls that can be inlined, as the drivers' compilers do
 
 
 class Clang:
@@ -9,7 +9,7 @@ class Clang:
         self.program, self.libclc = program, libclc
 
     def missing(self, library):
-        """Programs and libraries that are not installed, with their Debian packages."""
+        """Returns the programs and libraries that are not installed, with their Debian packages."""
         found = []
         if not shutil.which(self.program):
             found.append(f"{self.program} (Debian: clang-15)")
@@ -24,20 +24,20 @@ class Clang:
         return f"clang {number[1] if number else output.split(chr(10))[0]}; libclc {digest}"
 
     def preprocessed(self, folder, build, options):
-        """The build's preprocessed source, without blank lines; empty if the preprocessor fails."""
+        """Returns the build's preprocessed source, without blank lines; empty if the preprocessor fails."""
         done = subprocess.run([self.program, "-x", "cl", "-nogpulib", *options, *build["options"], "-E", "-P", str(folder / build["source"])],
                               capture_output=True)
         return b"" if done.returncode else b"\n".join(filter(None, map(bytes.strip, done.stdout.splitlines())))
 
     def assembly(self, folder, build, library, options):
-        """(assembly, None), or (None, the compiler's first error)."""
-        to = folder / f"{build['source']}.{library}.s"
-        done = subprocess.run([self.program, "-x", "cl", "-O3", *INLINES, "-nogpulib", "-Wno-linker-warnings", *options, *build["options"], "-Xclang",
-                               "-mlink-builtin-bitcode", "-Xclang", str(self.libclc / library), "-S", "-o", str(to),
+        """Returns (assembly, None), or (None, the compiler's first error)."""
+        output_file = folder / f"{build['source']}.{library}.s"
+        done = subprocess.run([self.program, "-x", "cl", "-O3", *INLINE_OPTIONS, "-nogpulib", "-Wno-linker-warnings", *options, *build["options"],
+                               "-Xclang", "-mlink-builtin-bitcode", "-Xclang", str(self.libclc / library), "-S", "-o", str(output_file),
                                str(folder / build["source"])], capture_output=True, text=True)
         if done.returncode:
             return None, first_error(done.stderr)
-        return to.read_text(), None
+        return output_file.read_text(), None
 
 
 def first_error(text):

@@ -29,7 +29,7 @@ class Figures:
     local: int
     scalar_spills: int = 0  # AMD: scalar registers spilled to lanes of vector registers
     warps: int = 0          # maximum number of warps that fit in a core at the same time
-    local_left: int = 0
+    local_left: int = 0     # local memory of a group up to which registers limit the number of groups
 
     @property
     def name(self):
@@ -58,25 +58,25 @@ class Core:
 
     def set_occupancy(self, figures, warps_by_registers):
         """Sets warps and local_left of the figures, and returns them."""
-        each = rounded_up(figures.group, figures.width) // figures.width
-        max_groups = self.max_single_warp_groups if each == 1 and self.max_single_warp_groups else self.groups
-        groups = min(min(self.warps, warps_by_registers) // each, max_groups)
+        warps_per_group = rounded_up(figures.group, figures.width) // figures.width
+        max_groups = self.max_single_warp_groups if warps_per_group == 1 and self.max_single_warp_groups else self.groups
+        groups = min(min(self.warps, warps_by_registers) // warps_per_group, max_groups)
         if figures.local:
             groups = min(groups, self.local // rounded_up(figures.local + self.reserved, self.unit))
-        figures.warps = groups * each
+        figures.warps = groups * warps_per_group
         if groups:
             figures.local_left = min(self.group_local, self.local // groups // self.unit * self.unit - self.reserved)
         return figures
 
 
 def kernel_name(build, function):
-    """`ring/trace`; for a function with another name than its file, `ring/filter take_means`."""
+    """Returns `ring/trace`; for a function with another name than its file, `ring/filter take_means`."""
     stem = build["file"].removesuffix(".cl")
     return stem if stem.split("/")[-1] == function else f"{stem} {function}"
 
 
 def first_line(text, pattern):
-    """The first line that matches, stripped; None if there is none."""
+    """Returns the first line that matches, stripped; None if there is none."""
     match = pattern.search(text)
     if not match:
         return None

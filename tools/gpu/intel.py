@@ -30,44 +30,44 @@ class Intel:
 
     @staticmethod
     def batches(targets):
-        """Lists of targets that compile() takes together."""
+        """Returns lists of targets that compile() takes together."""
         return [[target] for target in targets]
 
     @staticmethod
-    def run_ocloc(folder, build, target, to, *more):
-        """(True if it compiled, output)"""
+    def run_ocloc(folder, build, target, out_folder, *more):
+        """Runs ocloc. Returns (True if it compiled, output)."""
         done = subprocess.run(["ocloc", "compile", *more, "-file", str(folder / build["source"]), "-device", target,
-                               "-options", " ".join(build["options"]), "-out_dir", str(to)], capture_output=True, text=True)
+                               "-options", " ".join(build["options"]), "-out_dir", str(out_folder)], capture_output=True, text=True)
         return done.returncode == 0, done.stdout + done.stderr
 
     def compiler_input(self, folder, build, targets):
-        """The build as SPIR-V, which takes little time compared with machine code; empty if it does not compile."""
+        """Returns the build as SPIR-V, which takes little time compared with machine code; empty if it does not compile."""
         found = []
         for target in targets:
-            to = folder / target / "spirv" / build["source"]
-            done, _ = self.run_ocloc(folder, build, target, to, "-spv_only")
-            found += [path.read_bytes() for path in to.glob("*.spv")] if done else []
+            out_folder = folder / target / "spirv" / build["source"]
+            done, _ = self.run_ocloc(folder, build, target, out_folder, "-spv_only")
+            found += [path.read_bytes() for path in out_folder.glob("*.spv")] if done else []
         return b"".join(found) if len(found) == len(targets) else b""
 
     def compile(self, folder, build, targets):
-        """(figures, faults) of the build's kernels for these targets."""
+        """Returns (figures, faults) of the build's kernels for these targets."""
         figures, faults = [], []
         for target in targets:
-            to = folder / target / build["source"]
-            done, output = self.run_ocloc(folder, build, target, to, "--format", "zebin")
-            made = [next(to.glob(f"*.{end}"), None) for end in ("bin", "spv")] if done else [None]
-            if not all(made):
+            out_folder = folder / target / build["source"]
+            done, output = self.run_ocloc(folder, build, target, out_folder, "--format", "zebin")
+            files = [next(out_folder.glob(f"*.{end}"), None) for end in ("bin", "spv")] if done else [None]
+            if not all(files):
                 texts = [f"does not build: {first_error(output)}"]
             else:
-                about = section(made[0].read_bytes(), ".ze_info")
-                texts = faults_of(made[1].read_bytes()) + ["a call is not inlined"] * ("has_stack_calls: true" in about)
-                figures += self.figures(build, target, about, dict(SPILLED.findall(output)))
+                info = section(files[0].read_bytes(), ".ze_info")
+                texts = faults_of(files[1].read_bytes()) + ["a call is not inlined"] * ("has_stack_calls: true" in info)
+                figures += self.figures(build, target, info, dict(SPILLED.findall(output)))
             faults += [Fault(build["file"].removesuffix(".cl"), build["variant"], target, what) for what in texts]
         return figures, faults
 
     @staticmethod
-    def figures(build, target, about, spilled):
-        listed = about.split("kernels_misc_info:")[0]
+    def figures(build, target, info, spilled):
+        listed = info.split("kernels_misc_info:")[0]
         for kernel in re.split(r"^  - name: +", listed, flags=re.M)[1:]:
             value = {key: int(number) for key, number in re.findall(r"^      (\w+): +(\d+)$", kernel, re.M)}
             function, group = kernel.split()[0], re.search(r"required_work_group_size: \[ (\d+)", kernel)
@@ -78,7 +78,7 @@ class Intel:
 
 
 def stack_of(kernel, simd):
-    """Bytes of stack of a work-item. The compiler lists memory of a thread, or of a work-item with is_simt_thread."""
+    """Returns the bytes of stack of a work-item. The compiler lists memory of a thread, or of a work-item with is_simt_thread."""
     bytes_of_item = 0
     for memory in re.split(r"^      - type:", kernel.split("per_thread_memory_buffers:")[-1], flags=re.M)[1:]:
         size = re.search(r"^        size: +(\d+)", memory, re.M)
@@ -88,7 +88,7 @@ def stack_of(kernel, simd):
 
 
 def section(elf, name):
-    """Text of a section of a 64-bit ELF file."""
+    """Returns the text of a section of a 64-bit ELF file."""
     start, = struct.unpack_from("<Q", elf, 0x28)
     size, count, names_at = struct.unpack_from("<HHH", elf, 0x3A)
     headers = [struct.unpack_from("<IIQQQQ", elf, start + i * size) for i in range(count)]
@@ -100,15 +100,15 @@ def section(elf, name):
 
 
 def faults_of(code):
-    """Texts of the faults in a SPIR-V module: double precision, and undefined functions."""
+    """Returns texts on the faults in a SPIR-V module: double precision, and undefined functions."""
     words = struct.unpack(f"<{len(code) // 4}I", code)
-    at, found = 5, []
-    while at < len(words):
-        length, operation = words[at] >> 16, words[at] & 0xFFFF
-        if operation == 22 and words[at + 2] == 64:  # OpTypeFloat
+    position, found = 5, []
+    while position < len(words):
+        length, operation = words[position] >> 16, words[position] & 0xFFFF
+        if operation == 22 and words[position + 2] == 64:  # OpTypeFloat
             found.append("double precision: OpTypeFloat 64")
-        if operation == 71 and words[at + 2] == 41 and words[at + length - 1] == 1:  # OpDecorate, LinkageAttributes, Import
-            name = code[4 * (at + 3):4 * (at + length - 1)].split(b"\0")[0].decode()
+        if operation == 71 and words[position + 2] == 41 and words[position + length - 1] == 1:  # OpDecorate, LinkageAttributes, Import
+            name = code[4 * (position + 3):4 * (position + length - 1)].split(b"\0")[0].decode()
             found += [] if name.startswith("__spirv_BuiltIn") else [f"unresolved: {name}"]
-        at += length
+        position += length
     return found

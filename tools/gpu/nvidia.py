@@ -13,16 +13,16 @@ KB = 1024
 CORES = {"sm_80": Core(64, 32, 164 * KB, 163 * KB, 128, KB), "sm_90": Core(64, 32, 228 * KB, 227 * KB, 128, KB)}
 LIBRARY = "nvptx64--nvidiacl.bc"
 OPTIONS = ["-target", "nvptx64-nvidia-nvcl", "-Xclang", "-target-cpu", "-Xclang", "sm_80"]  # the newest that clang 15 has; PTX is the same
-# Each must round once, to nearest (.rn), and keep denormals. Without .rn ptxas may fuse two instructions.
+# Each of these instructions must round once, to nearest (.rn), and keep denormals. Without .rn ptxas may fuse two instructions.
 ARITHMETIC = re.compile(r"^\s*(?:@\S+\s+)?(?:add|sub|mul|mad|fma|div|sqrt|rcp|rsqrt|sin|cos|lg2|ex2|tanh)(\.[a-z0-9_]+)*\.f32\b.*$", re.M)
-MUST_NOT = {"double precision": re.compile(r"\.f64\b"), "denormals are flushed": re.compile(r"\.ftz\b"),
+FORBIDDEN = {"double precision": re.compile(r"\.f64\b"), "denormals are flushed": re.compile(r"\.ftz\b"),
             "unresolved": re.compile(r"^\.extern \.func", re.M), "a call is not inlined": re.compile(r"^\s*(?:@\S+\s+)?call\b", re.M)}
 USED = re.compile(r"Compiling entry function '(\w+)' for '\w+'.*?(\d+) bytes stack frame, (\d+) bytes spill stores.*?Used (\d+) registers"
                   r"[^\n]*?(?:, (\d+) bytes smem)?[^\n]*\n", re.S)
 
 
 def find_ptxas(given):
-    """Path of ptxas: `given` or below that folder; else in PATH or in the CUDA toolkit. None if there is none."""
+    """Returns the path of ptxas: `given`, or in the folder `given`; otherwise in PATH or in the CUDA toolkit. None if there is none."""
     if given:
         candidates = [given, *sorted(glob.glob(os.path.join(given, "**", "ptxas"), recursive=True))]
         return next((path for path in candidates if os.path.isfile(path) and os.access(path, os.X_OK)), None)
@@ -30,14 +30,14 @@ def find_ptxas(given):
 
 
 def faults_of(ptx):
-    """Texts of the faults in PTX."""
-    found = [f"{what}: {first_line(ptx, pattern)}" for what, pattern in MUST_NOT.items() if pattern.search(ptx)]
-    otherwise = [m[0].split() for m in ARITHMETIC.finditer(ptx) if ".rn." not in m[0] or ".approx" in m[0]]
-    return found + ([f"not rounded to nearest once: {' '.join(otherwise[0])}"] if otherwise else [])
+    """Returns texts on the faults in PTX."""
+    found = [f"{what}: {first_line(ptx, pattern)}" for what, pattern in FORBIDDEN.items() if pattern.search(ptx)]
+    wrongly_rounded = [m[0].split() for m in ARITHMETIC.finditer(ptx) if ".rn." not in m[0] or ".approx" in m[0]]
+    return found + ([f"not rounded to nearest once: {' '.join(wrongly_rounded[0])}"] if wrongly_rounded else [])
 
 
 def warps_of(registers):
-    """Number of warps for which an SM has registers; registers: of a work-item."""
+    """Returns the number of warps for which an SM has registers. registers: number of registers of a work-item."""
     return 4 * (16384 // (32 * rounded_up(registers, 8)))
 
 
@@ -58,14 +58,14 @@ class Nvidia:
 
     @staticmethod
     def batches(targets):
-        """Lists of targets that compile() takes together: they share the PTX."""
+        """Returns lists of targets that compile() takes together: they share the PTX."""
         return [targets]
 
     def compiler_input(self, folder, build, targets):
         return self.clang.preprocessed(folder, build, OPTIONS)
 
     def compile(self, folder, build, targets):
-        """(figures, faults) of the build's kernels for these targets."""
+        """Returns (figures, faults) of the build's kernels for these targets."""
         def fault(target, text):
             return Fault(build["file"].removesuffix(".cl"), build["variant"], target, text)
 

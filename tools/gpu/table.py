@@ -17,13 +17,13 @@ def cell(f):
 
 
 def rows(all_figures, targets):
-    """Rows of cells, the header first, in the order of the figures."""
+    """Returns rows of cells, the header first, in the order of the figures."""
     by_name = {f.name: f for f in all_figures}
     kernels = dict.fromkeys((f.kernel, f.variant, f.group) for f in all_figures)
     found = [["kernel", "variant", "group", *targets]]
     for kernel, variant, group in kernels:
-        of_targets = [by_name.get((kernel, variant, target)) for target in targets]
-        found.append([kernel, variant, str(group), *[cell(f) if f else "-" for f in of_targets]])
+        figures_by_target = [by_name.get((kernel, variant, target)) for target in targets]
+        found.append([kernel, variant, str(group), *[cell(f) if f else "-" for f in figures_by_target]])
     return found
 
 
@@ -37,10 +37,10 @@ def markdown(cells):
 
 
 def page(cells, versions, vendors):
-    """Text of docs/gpu_resources.md. The docstrings of the vendors' modules describe how figures are made."""
+    """Returns the text of docs/gpu_resources.md. The docstrings of the vendors' modules describe how figures are made."""
     words = {vendor: sys.modules[type(vendor).__module__].__doc__.strip().split("\n\n") for vendor, _ in vendors}
-    made = "".join(f"| {target} | {CORE[target]} | {version} |\n" for target, version in versions.items())
-    about = "".join(f"**{', '.join(vendor.targets)}.** {' '.join(text)}\n\n" for vendor, text in words.items())
+    core_rows = "".join(f"| {target} | {CORE[target]} | {version} |\n" for target, version in versions.items())
+    descriptions = "".join(f"**{', '.join(vendor.targets)}.** {' '.join(text)}\n\n" for vendor, text in words.items())
     return f"""# Resource usage of kernels on GPUs
 
 Written by `tools/gpu_check --write`, which compiles the kernels for GPUs on a machine without one, with raya's own options
@@ -49,12 +49,12 @@ all calls; the compilers of their drivers may give other figures. ocloc is the c
 
 | target | core | compilers |
 | --- | --- | --- |
-{made}
+{core_rows}
 ## Occupancy
 
 {figures.__doc__.strip()}
 
-{about}## Kernels
+{descriptions}## Kernels
 
 {LEGEND}
 

@@ -27,8 +27,8 @@ EXIT_USER, EXIT_DEVICE = 2, 3
 
 
 def settings_of(arguments):
-    """The options of `raya study`, as a namespace. `raya study` passes them as JSON (--settings); raya's own parser parses the arguments of a direct
-    call."""
+    """Returns the options of `raya study` as a namespace. `raya study` passes them as JSON (--settings); raya's own parser parses the arguments of a
+    direct call."""
     if arguments[:1] != ["--settings"]:
         arguments = ["--settings", _engine.study_settings(arguments)]
     options = SimpleNamespace(**json.loads(arguments[1]))
@@ -37,7 +37,7 @@ def settings_of(arguments):
     return options
 
 
-def wanted_studies(name):
+def selected_studies(name):
     """Returns (studies to run, one sentence for each skipped study). Raises ValueError if the named study cannot run on this machine."""
     if name.endswith(".py"):
         return [study_of_file(name)], []
@@ -46,12 +46,12 @@ def wanted_studies(name):
         if known[name].missing():
             raise ValueError(f"study {name}: {known[name].missing()}")
         return [known[name]], []
-    left_out = [f"study {one.name} is skipped: {one.missing()}" for one in known.values() if one.missing()]
-    return [one for one in known.values() if not one.missing()], left_out
+    left_out = [f"study {study.name} is skipped: {study.missing()}" for study in known.values() if study.missing()]
+    return [study for study in known.values() if not study.missing()], left_out
 
 
 def command_of(study, options):
-    """The command line that repeats one study."""
+    """Returns the command line that repeats one study."""
     scenes = options.scenes[:1] if study.one_scene else options.scenes
     arguments = ["raya", "study", options.study if options.study.endswith(".py") else study.name, *map(quote, scenes)]
     arguments += [f"--size {options.size}"] if options.size else []
@@ -74,7 +74,7 @@ def print_page(page, folder):
 
 def make_folder(path):
     """Creates a folder and its missing parents. Returns the created folders, the innermost first. Raises ValueError if the folder is not writable."""
-    missing = [one for one in [path, *path.parents] if not one.exists()]
+    missing = [folder for folder in [path, *path.parents] if not folder.exists()]
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -92,19 +92,19 @@ def run_all(options, chosen, left_out, scenes):
     with tempfile.TemporaryDirectory(prefix="raya-lab-") as cache:
         try:
             bar = tqdm(chosen, disable=options.verbosity < 0 or not sys.stderr.isatty(), unit="study", leave=False)
-            for one in bar:
-                bar.set_description(f"study {one.name}")
+            for study in bar:
+                bar.set_description(f"study {study.name}")
                 try:
-                    name = options.study if options.study.endswith(".py") else one.name
+                    name = options.study if options.study.endswith(".py") else study.name
                     page, device = worker.run(name, scenes, cache, options)
                 except raya.DeviceError as error:
                     if len(chosen) == 1:
                         raise
-                    left_out.append(f"study {one.name} is skipped: {error}")
+                    left_out.append(f"study {study.name} is skipped: {error}")
                     print(f"raya: {left_out[-1]}", file=sys.stderr)
                     code = EXIT_DEVICE
                     continue
-                page.run = {"command": command_of(one, options), "version": f"raya {raya.__version__}",
+                page.run = {"command": command_of(study, options), "version": f"raya {raya.__version__}",
                             "device": f"{device['name']} ({device['platform']}, driver {device['driver']})"}
                 drawings[page.name] = write_page(folder, page)
                 pages.append(page)
@@ -113,9 +113,9 @@ def run_all(options, chosen, left_out, scenes):
                     print_page(page, folder)
         finally:
             worker.close()
-            for one in missing if not pages else []:
-                if one.exists() and not any(one.iterdir()):
-                    one.rmdir()
+            for created in missing if not pages else []:
+                if created.exists() and not any(created.iterdir()):
+                    created.rmdir()
     if pages:
         write_document(folder, pages, drawings, left_out)
         if options.verbosity >= 0:
@@ -126,7 +126,7 @@ def run_all(options, chosen, left_out, scenes):
 def main(arguments):
     options = settings_of(arguments)
     warn_as_raya(options)
-    chosen, left_out = wanted_studies(options.study)
+    chosen, left_out = selected_studies(options.study)
     for line in left_out:
         print(f"raya: {line}", file=sys.stderr)
     if len(chosen) == 1 and chosen[0].one_scene and len(options.scenes) > 1:
@@ -141,12 +141,12 @@ class Terminated(BaseException):
 
 
 if __name__ == "__main__":
-    def end(number, frame):
+    def terminate(number, frame):
         raise Terminated(number)
 
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         if signal.getsignal(number) != signal.SIG_IGN:
-            signal.signal(number, end)
+            signal.signal(number, terminate)
     try:
         sys.exit(main(sys.argv[1:]))
     except Terminated as signalled:

@@ -57,14 +57,14 @@ def write_atomically(path, content):
         raise
 
 
-def plain(value):
+def json_value(value):
     """Converts a value for JSON: numpy numbers to Python's, nan to null, inf to text."""
     if dataclasses.is_dataclass(value):
-        return plain({f.name: getattr(value, f.name) for f in dataclasses.fields(value)})
+        return json_value({f.name: getattr(value, f.name) for f in dataclasses.fields(value)})
     if isinstance(value, dict):
-        return {key: plain(one) for key, one in value.items()}
+        return {key: json_value(member) for key, member in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):
-        return [plain(one) for one in value]
+        return [json_value(item) for item in value]
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):
@@ -73,29 +73,31 @@ def plain(value):
 
 
 def rows_of(table):
-    """[row][column]: cells of a table. Each cell has the type of its column; iterating over pandas rows would convert integers to floats."""
+    """Returns the cells of a table, [row][column]. Each cell has the type of its column; iterating over pandas rows would convert integers to
+    floats."""
     return list(table.rows.itertuples(index=False, name=None))
 
 
 def json_of(page):
-    """The page as a JSON value, described by docs/schema/study.json."""
+    """Returns the page as a JSON value, described by docs/schema/study.json."""
     tables = [{"name": t.name, "title": t.title, "columns": list(t.rows.columns), "rows": rows_of(t)}
               for t in page.tables]
     pictures = [{"name": p.name, "title": p.title, "words": p.words} for p in page.pictures]
-    comparisons = [{**plain(c), "ratio": plain(ratio(c))} for c in page.comparisons]
-    drawn = [{**plain(p), "description": plots.description(p)} for p in page.plots]
+    comparisons = [{**json_value(c), "ratio": json_value(ratio(c))} for c in page.comparisons]
+    drawn = [{**json_value(p), "description": plots.description(p)} for p in page.plots]
     members = {f.name: getattr(page, f.name) for f in dataclasses.fields(page) if f.name not in ("name", "placeholders")}
-    return {"study": page.name, **plain({**members, "tables": tables, "pictures": pictures,
+    return {"study": page.name, **json_value({**members, "tables": tables, "pictures": pictures,
                                          "comparisons": comparisons, "plots": drawn})}
 
 
 def ratio(comparison):
-    """Our figure divided by the paper's; nan without a figure of the paper."""
+    """Returns our figure divided by the paper's; nan without a figure of the paper."""
     return comparison.ours / comparison.paper if comparison.paper else math.nan
 
 
 def cells_of_comparisons(page):
-    """[row][column]: table of comparisons, the header first. Omits the paper's columns if no comparison has a paper's figure, and empty remarks."""
+    """Returns the table of comparisons, [row][column], the header first. Omits the paper's columns if no comparison has a paper's figure, and empty
+    remarks."""
     def ours(c):
         return f"{format_value(c.ours)}{f' +- {c.half_width:.2g}' if c.half_width else ''} {c.unit}".rstrip()
 
@@ -136,26 +138,27 @@ def cells_of_table(table):
 
 
 def lines_of_run(page):
-    """[(name, value)] of the command, version, device and settings that made a page, as text."""
-    return [(key, value if isinstance(value, str) else json.dumps(plain(value)))
+    """Returns [(name, value)] of the command, version, device and settings that made a page, as text."""
+    return [(key, value if isinstance(value, str) else json.dumps(json_value(value)))
             for key, value in [*page.run.items(), *page.settings.items()]]
 
 
 def command_of(pages):
-    """The command that makes all pages. For several pages: the longest command, because it has all options and scenes, with `all` as the study."""
+    """Returns the command that makes all pages. For several pages: the longest command, because it has all options and scenes, with `all` as the
+    study."""
     command = max((page.run.get("command", "") for page in pages), key=len)
     return command if len(pages) == 1 else re.sub(r"^raya study \S+", "raya study all", command)
 
 
 def verdict_sentences(pages):
-    """Sentences with the number of claims for each verdict: one for all claims; if there are several papers, also one for each paper."""
+    """Returns sentences with the number of claims for each verdict: one for all claims; if there are several papers, also one for each paper."""
     claims = [claim for page in pages for claim in page.claims]
     if not claims:
         return ["This study tests no claim of a paper."] if len(pages) == 1 else ["These studies test no claim of a paper."]
 
-    def sentence(some, whose):
-        count = Counter(claim.verdict for claim in some)
-        return (f"Of {len(some)} claim{'' if len(some) == 1 else 's'} {whose}: {count[REPRODUCED]} reproduced, "
+    def sentence(counted_claims, source):
+        count = Counter(claim.verdict for claim in counted_claims)
+        return (f"Of {len(counted_claims)} claim{'' if len(counted_claims) == 1 else 's'} {source}: {count[REPRODUCED]} reproduced, "
                 f"{count[NOT_REPRODUCED]} not reproduced, {count[UNDECIDED]} undecided.")
 
     papers = list(dict.fromkeys(claim.paper for claim in claims))
@@ -171,7 +174,7 @@ def not_reproduced(pages):
 
 
 def prose(text):
-    """Escaped HTML of a sentence. Text in backquotes becomes a code element, +- becomes ±."""
+    """Returns the escaped HTML of a sentence. Text in backquotes becomes a code element, +- becomes ±."""
     return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", str(escape(text)).replace("+-", "±")))
 
 
@@ -180,14 +183,14 @@ NUMBER = re.compile(r"-?|(-?[\d.]+(e[-+]?\d+)?|-?inf)( \+- \S+)?( [^\s\d]+)?( \(
 
 
 def classes_of(cells):
-    """CSS class of each column. n: only numbers; w: longest cell over 60 characters; t: over 15 characters; otherwise empty."""
+    """Returns the CSS class of each column. n: only numbers; w: longest cell over 60 characters; t: over 15 characters; otherwise empty."""
     columns = list(zip(*cells[1:])) or [()] * len(cells[0])
     return ["n" if all(map(NUMBER.fullmatch, c)) else "w" if max(map(len, c)) > 60 else
             "t" if max(map(len, c)) > 15 else "" for c in columns]
 
 
 def inlined(svg):
-    """Inline SVG for the document: colours become CSS variables, which the dark colour scheme redefines."""
+    """Returns inline SVG for the document: colours become CSS variables, which the dark colour scheme redefines."""
     return Markup(re.sub(r": #([0-9a-f]{6})", r": var(--plot-\1, #\1)", svg[svg.index("<svg"):]))
 
 
@@ -201,15 +204,15 @@ def items(lines):
 
 
 def environment():
-    made = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), trim_blocks=True,
+    jinja_environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), trim_blocks=True,
                               autoescape=jinja2.select_autoescape(["html.j2"]), lstrip_blocks=True,
                               undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
-    made.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
-    made.globals.update({one.__name__: one for one in (
+    jinja_environment.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
+    jinja_environment.globals.update({function.__name__: function for function in (
         cells_of_claims, cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run,
         not_reproduced, title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY),
         OPEN_ROWS=OPEN_ROWS, MAX_ROWS=MAX_ROWS)
-    return made
+    return jinja_environment
 
 
 def write_page(folder, page):
@@ -233,9 +236,9 @@ def write_page(folder, page):
 
 def write_document(folder, pages, drawings, left_out=()):
     """Writes index.html, and index.md if there are several pages. `left_out`: sentences on studies that did not run."""
-    made = environment()
-    body = made.get_template("document.html.j2").render(pages=pages, drawings=drawings, left_out=left_out,
+    jinja_environment = environment()
+    body = jinja_environment.get_template("document.html.j2").render(pages=pages, drawings=drawings, left_out=left_out,
                                                         references=REFERENCES)
     write_atomically(folder / "index.html", body)
     if len(pages) > 1:
-        write_atomically(folder / "index.md", made.get_template("index.md.j2").render(pages=pages, left_out=left_out))
+        write_atomically(folder / "index.md", jinja_environment.get_template("index.md.j2").render(pages=pages, left_out=left_out))

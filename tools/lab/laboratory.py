@@ -15,12 +15,12 @@ TESTS = tuple(f"{kind}_tests" for kind in ("sphere", "plane", "polygon", "cone")
 
 
 def rays_of(events):
-    """Number of rays of all kinds in a render's event counts."""
+    """Returns the number of rays of all kinds in a render's event counts."""
     return sum(events[kind] for kind in ("primary", "reflected", "refracted", "shadow"))
 
 
 def tests_of(events):
-    """Number of intersection tests with objects of all kinds in a render's event counts."""
+    """Returns the number of intersection tests with objects of all kinds in a render's event counts."""
     return sum(events[kind] for kind in TESTS)
 
 
@@ -30,9 +30,9 @@ class Costs:
 
     label: str
     trace: np.ndarray  # uint64 [H, W]: modelled cycles of each pixel in the first pass
-    supersample: np.ndarray  # the same for supersampling; None without it
+    supersample: np.ndarray  # the same for the supersampling pass; None without supersampling
     report: dict
-    job_words: int  # 32-bit words of the scene that a PE stores
+    job_words: int  # number of 32-bit words that the scene takes in each PE
 
     @property
     def recomputed(self):
@@ -49,7 +49,7 @@ class Ensemble:
 
 
 def format_for(scene):
-    """The SPA's number format; fp32 if the scene does not fit the memory of a PE of the SPA."""
+    """Returns the SPA's number format; fp32 if the scene does not fit the memory of a PE of the SPA."""
     return SPA["format"] if 4 * raya.job_words(scene) <= SPA["pe_memory_bytes"] else "fp32"
 
 
@@ -71,12 +71,12 @@ class Laboratory:
         return self._size or default
 
     def render(self, scene, **options):
-        """raya.render() on the laboratory's device."""
+        """Calls raya.render() on the laboratory's device."""
         common = {k: v for k, v in self._options.items() if k != "device"}
         return raya.render(scene, session=self.session, **common, **options)
 
     def costs(self, scene, size, antialias="none"):
-        """Cost image (`Costs`) of the scene, size x size pixels, on PEs of the SPA without their memory limit."""
+        """Returns the cost images (`Costs`) of the scene, size x size pixels, on PEs of the SPA without their memory limit."""
         options = dict(machine="grande", format=format_for(scene), bounces=SPA["bounces"], size=size, pes=size,
                        offset=16 % size, accel="none", antialias=antialias)
         key = hashlib.sha256(repr((scene.nff, sorted(options.items()))).encode()).hexdigest()
@@ -92,8 +92,8 @@ class Laboratory:
         return costs
 
     def ensemble(self, scene, size, antialias="none", max_views=VIEWS):
-        """Costs of the scene and of random views (`Ensemble`). There are max_views views, or fewer so that views x pixels x objects is at most 2^27,
-        but at least min(4, max_views)."""
+        """Returns the costs of the scene and of random views (`Ensemble`). There are max_views views, or fewer so that views x pixels x objects is
+        at most 2^27, but at least min(4, max_views)."""
         count = max(min(4, max_views), min(2**27 // (size * size * max(scene.objects, 1)), max_views))
         views = [self.costs(scene.random_view(seed).renamed(f"{scene.name}, view {seed}"), size, antialias)
                  for seed in range(1, count + 1)]
@@ -101,16 +101,16 @@ class Laboratory:
 
 
 def first_scene(scenes):
-    """The first scene of the command line; by default the example scene centre, which resembles the scene of Kohata & Ito."""
+    """Returns the first scene of the command line; by default the example scene centre, which resembles the scene of Kohata & Ito."""
     return scenes[0] if scenes else raya.example("centre")
 
 
 def costs_of_pass(lab, scenes, first):
-    """Cost images of the first pass, or of supersampling if `first` is false, for one scene with a PE for each column. Returns (settings, cost image
-    of the picture, cost images of the views). A cost image is uint64 [H, W]: modelled cycles of each pixel."""
+    """Renders the cost images of the first pass, or of supersampling if `first` is false, for one scene with a PE for each column. Returns (settings,
+    cost image of the picture, cost images of the views). A cost image is uint64 [H, W]: modelled cycles of each pixel."""
     scene, size = first_scene(scenes), lab.size(256)
     ensemble = lab.ensemble(scene, size, "none" if first else "supersample")
-    picture, *views = (one.trace if first else one.supersample for one in [ensemble.picture, *ensemble.views])
+    picture, *views = (costs.trace if first else costs.supersample for costs in [ensemble.picture, *ensemble.views])
     return {"scene": scene.name, "size": size, "pes": size, "views": len(views), "view_seeds": f"1..{len(views)}",
             "lowest_view_degrees": 5, "highest_view_degrees": 75}, picture, views
 
@@ -121,7 +121,7 @@ VIEWS_PROSE = """
   looks at."""  # part of the method of fig7, fig8, fig12 and fig13
 
 
-Timing = namedtuple("Timing", "minimum median maximum runs")  # of seconds; runs: number of samples
+Timing = namedtuple("Timing", "minimum median maximum runs")  # minimum, median, maximum in seconds; runs: number of samples
 
 
 def time_calls(run, runs, sampling_s, warm=True):
@@ -136,7 +136,8 @@ def time_calls(run, runs, sampling_s, warm=True):
 
 
 def mean_seconds(run, minimum_s=0.02):
-    """Mean of the seconds that run() returns, over as many calls as take minimum_s seconds: clock and launch overhead distort shorter times."""
+    """Returns the mean of the seconds that run() returns, over as many calls as take minimum_s seconds, because clock and launch overhead distort
+    shorter times."""
     total = calls = 0
     while total < minimum_s:
         total += run()

@@ -7,13 +7,13 @@ import numpy as np
 
 
 def squarest_grid(pes):
-    """(A, B): A rows of B PEs, where A is the largest divisor of `pes` that is at most sqrt(pes)."""
+    """Returns (A, B): A rows of B PEs, where A is the largest divisor of `pes` that is at most sqrt(pes)."""
     rows = max(a for a in range(1, int(pes**0.5) + 1) if pes % a == 0)
     return rows, pes // rows
 
 
 def shortest_square(offset, side):
-    """Squared length of the lattice's shortest vector, in pixels squared."""
+    """Returns the squared length of the lattice's shortest vector, in pixels squared."""
     rows = np.arange(1, side + 1)  # after `side` rows a PE is back in its column
     right = rows * offset % side
     return int((rows**2 + np.minimum(right, side - right)**2).min())

@@ -31,15 +31,15 @@ STYLE = {
 }
 
 
-def plain(text):
+def escape_dollars(text):
     """Escapes dollar signs, which start formulas in matplotlib."""
     return str(text).replace("$", r"\$")
 
 
 def line_options(style, number, count):
-    """matplotlib's options for series `number`, which has `count` points. Colours, dashes and markers repeat with different periods, so that series
-    with the same colour differ in dash or marker."""
-    colour, dash, marker = (some[number % len(some)] for some in (COLOURS, DASHES, MARKERS))
+    """Returns matplotlib's options for series `number`, which has `count` points. Colours, dashes and markers repeat with different periods, so that
+    series with the same colour differ in dash or marker."""
+    colour, dash, marker = (cycle[number % len(cycle)] for cycle in (COLOURS, DASHES, MARKERS))
     if style in ("line", "steps"):
         options = {"color": colour, "linestyle": dash, "linewidth": 1.7 if count <= 100 else 1.3}
         if style == "steps":
@@ -62,7 +62,7 @@ def draw_intervals(axes, plot, series, colour):
     points = [(x, y, h) for x, y, h in zip(series.x, series.y, series.half_widths) if is_shown(plot, x, y)]
     if not points:
         return
-    x, y, half = (np.array(some) for some in zip(*points))
+    x, y, half = (np.array(values) for values in zip(*points))
     positive = np.concatenate([y, y - half])
     floor = positive[positive > 0].min() / 2 if "y" in plot.log else -math.inf
     low = np.maximum(y - half, floor)
@@ -74,11 +74,11 @@ def draw_intervals(axes, plot, series, colour):
 
 def draw_series(axes, plot):
     """Draws all series. Returns matplotlib's lines for the legend."""
-    lines, kinds = [], {True: 0, False: 0}
+    lines, series_counts = [], {True: 0, False: 0}  # number of drawn series, by "is the paper's"
     for series in plot.series:
         paper = series.style == "paper"
-        options = line_options(series.style, kinds[paper], len(series.x))
-        kinds[paper] += 1
+        options = line_options(series.style, series_counts[paper], len(series.x))
+        series_counts[paper] += 1
         y = [value if math.isfinite(value) else math.nan for value in series.y]
         lines += axes.plot(series.x, y, **options)
         if any(series.half_widths):
@@ -94,9 +94,9 @@ def label_paper_points(axes, plot):
     for series in papers:
         for x, y in zip(series.x, series.y):
             if is_shown(plot, x, y):
-                right = axes.transAxes.inverted().transform(axes.transData.transform((x, y)))[0] > 0.85
-                axes.annotate(f"{y:.3g}" if y < 1000 else f"{y:.0f}", (x, y), xytext=(-11 if right else 11, 5),
-                              textcoords="offset points", ha="right" if right else "left", zorder=6,
+                is_near_right_edge = axes.transAxes.inverted().transform(axes.transData.transform((x, y)))[0] > 0.85
+                axes.annotate(f"{y:.3g}" if y < 1000 else f"{y:.0f}", (x, y), xytext=(-11 if is_near_right_edge else 11, 5),
+                              textcoords="offset points", ha="right" if is_near_right_edge else "left", zorder=6,
                               path_effects=HALO)
 
 
@@ -118,7 +118,7 @@ def mark_powers_of_two(axis, values):
 
 
 def mark_powers_of_ten(axis, values):
-    """Puts ticks at powers of ten; also at 2 and 5 times each if the range is small."""
+    """Puts ticks at powers of ten; also at 2 and 5 times each power if the range is small."""
     low, high = (min(values), max(values)) if values else (1, 10)
     axis.set_major_locator(LogLocator(base=10, subs=(1, 2, 5) if high / low < 300 else (1,), numticks=12))
     axis.set_minor_formatter(NullFormatter())
@@ -135,8 +135,8 @@ def set_log_axis(axes, name, values):
 
 def set_axes(axes, plot, points):
     """Sets scales and labels. The y axis starts at 0 if the lowest value is at most half of the highest."""
-    axes.set_xlabel(plain(plot.x_label))
-    axes.set_ylabel(plain(plot.y_label))
+    axes.set_xlabel(escape_dollars(plot.x_label))
+    axes.set_ylabel(escape_dollars(plot.y_label))
     x, y = zip(*points) if points else ((), ())
     for name, values in (("x", x), ("y", y)):
         if name in plot.log:
@@ -148,20 +148,21 @@ def set_axes(axes, plot, points):
 
 
 def draw(plot):
-    labels = [textwrap.fill(plain(series.label), 24) for series in plot.series]
+    """Returns matplotlib's figure of the plot."""
+    labels = [textwrap.fill(escape_dollars(series.label), 24) for series in plot.series]
     lines = sum(label.count("\n") + 1 for label in labels)
     figure = Figure(figsize=(9, max(5.2, 0.24 * lines)), layout="constrained")  # inches: 900 pixels wide at 100 an inch
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     handles = draw_series(axes, plot)
-    points = [at for series in plot.series for at in zip(series.x, series.y)]
-    inside = [at for at in points if is_shown(plot, *at)]
-    set_axes(axes, plot, inside)
-    axes.set_title(textwrap.fill(plain(plot.title), 76))
+    points = [point for series in plot.series for point in zip(series.x, series.y)]
+    shown_points = [point for point in points if is_shown(plot, *point)]
+    set_axes(axes, plot, shown_points)
+    axes.set_title(textwrap.fill(escape_dollars(plot.title), 76))
     if any(labels):  # to the right of the data; matplotlib omits labels that begin with "_"
         axes.legend(handles, [" " + text if text.startswith("_") else text for text in labels], loc="upper left",
                     bbox_to_anchor=(1.01, 1), borderaxespad=0, handlelength=2.6)
-    hidden = len(points) - len(inside)
+    hidden = len(points) - len(shown_points)
     if hidden:
         figure.text(0.01, 0.01, f"{hidden} point{'s' if hidden > 1 else ''} not shown "
                     "(infinite, or not above 0 on a logarithmic axis)", fontsize=9, color="#555555", va="bottom")
@@ -181,7 +182,7 @@ def range_of(values):
 
 
 def description(plot):
-    """Text description of a plot, for readers who do not see it."""
+    """Returns the text description of a plot, for readers who do not see it."""
     def axis(label, name, values):
         return f"{label}{', logarithmic' if name in plot.log else ''}, {range_of(values)}"
 
@@ -192,7 +193,7 @@ def description(plot):
 
 
 def with_description(svg, plot):
-    """The SVG with its title and description, and with ids that are unique on a page."""
+    """Returns the SVG with its title and description, and with ids that are unique on a page."""
     name = f"plot-{plot.name}"
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
     svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{name}-", svg)

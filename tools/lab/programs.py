@@ -12,19 +12,19 @@ LAUNCHER = shlex.split(os.environ.get("RAYA_MPIRUN", "mpirun --bind-to none"))
 
 
 def sibling_program(name):
-    """Path of a program next to raya; None if it was not built."""
+    """Returns the path of a program next to raya; None if it was not built."""
     path = os.path.join(os.path.dirname(raya.program()), name)
     return path if os.access(path, os.X_OK) else None
 
 
 def output_of(command, name, **options):
-    """Standard output of a command. If the command fails, raises InputError with `name` and the last line of stderr that starts with "raya: ", or
-    else the last line. options: arguments of subprocess.run()."""
+    """Returns the standard output of a command. If the command fails, raises InputError with `name` and the last line of stderr that starts with
+    "raya: ", or else the last line. options: arguments of subprocess.run()."""
     run = subprocess.run(command, capture_output=True, text=True, **options)
     if run.returncode:
         lines = [line for line in run.stderr.splitlines() if line.strip()]
-        of_raya = [line for line in lines if line.startswith("raya: ")]
-        raise raya.InputError(f"{name}: {(of_raya or lines or [f'exit code {run.returncode}'])[-1]}")
+        raya_lines = [line for line in lines if line.startswith("raya: ")]
+        raise raya.InputError(f"{name}: {(raya_lines or lines or [f'exit code {run.returncode}'])[-1]}")
     return run.stdout
 
 
@@ -37,7 +37,7 @@ def missing_mpirun():
 
 
 def run_on_ranks(ranks, arguments):
-    """Standard output of raya on `ranks` MPI ranks with one thread each; arguments: of raya."""
+    """Runs raya with these arguments on `ranks` MPI ranks with one thread each. Returns its standard output."""
     settings = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
                 "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     command = LAUNCHER + ["-n", str(ranks), "env", "POCL_MAX_PTHREAD_COUNT=1", raya.program(), *arguments]
@@ -45,7 +45,7 @@ def run_on_ranks(ranks, arguments):
 
 
 def render_on_ranks(ranks, arguments):
-    """Report (raya render --report) of a render on `ranks` MPI ranks; arguments: of raya render."""
+    """Runs raya render with these arguments on `ranks` MPI ranks. Returns its report."""
     with tempfile.TemporaryDirectory(prefix="raya-ranks-") as folder:
         report = os.path.join(folder, "report.json")
         run_on_ranks(ranks, ["render", *arguments, "--quiet", "-o", os.path.join(folder, "image.pfm"), "--report", report])

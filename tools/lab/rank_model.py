@@ -13,7 +13,7 @@ PARTS = ("compute", "host", "exchange", "collect", "broadcast")  # parts of a re
 
 
 def rounds(ranks):
-    """Number of rounds of a broadcast."""
+    """Returns the number of rounds of a broadcast to all ranks."""
     return (ranks - 1).bit_length()
 
 
@@ -39,14 +39,15 @@ class RingModel:
         self.arrays = [f"{part['pes']} PEs" for part in self.parts]
 
     def weak(self, ranks):
-        """Arguments of a render with `ranks` times as many pixels (weak scaling)."""
+        """Returns the arguments of a render with `ranks` times as many pixels (weak scaling)."""
         return [*self.arguments[:-1], str(round(int(self.arguments[-1]) * ranks**0.5))]
 
-    def predict(self, i, one, network, processors):
-        """{part: predicted seconds} for PARTS, on self.ranks[i] ranks. one: measured seconds of one rank, by part; network: (alpha, beta)."""
+    def predict(self, i, one_rank, network, processors):
+        """Returns {part: predicted seconds} for PARTS, on self.ranks[i] ranks. one_rank: measured seconds of one rank, by part; network: (alpha,
+        beta)."""
         part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
         parts = dict.fromkeys(PARTS, 0.0)
-        parts.update(compute=(one["trace"] * (1 + part["u"]) + one["rest"]) / processors, host=one["host"])
+        parts.update(compute=(one_rank["trace"] * (1 + part["u"]) + one_rank["rest"]) / processors, host=one_rank["host"])
         if ranks > 1:
             parts["exchange"] = part["rotations"] * (alpha + beta * part["block"])
             parts["collect"] = 2 * (ranks - 1) * alpha + beta * part["image"] * (1 - 1 / ranks)
@@ -77,27 +78,27 @@ class TorusModel:
         self.objects = scene.objects
 
     def weak(self, ranks):
-        """Arguments of a render with `ranks` times as many objects, spread evenly (weak scaling)."""
+        """Returns the arguments of a render with `ranks` times as many objects, spread evenly (weak scaling)."""
         file = os.path.join(os.path.dirname(self.arguments[0]), f"even-{ranks}.nff")
         even_scene(self.objects * ranks).save(file)
         return [file, *self.arguments[1:]]
 
-    def predict(self, i, one, network, processors):
+    def predict(self, i, one_rank, network, processors):
         part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
-        busiest = one["trace"] * part["cycles"] / part["total_cycles"] + one["rest"] * part["max_nodes"] / part["nodes"]
+        busiest_rank_s = one_rank["trace"] * part["cycles"] / part["total_cycles"] + one_rank["rest"] * part["max_nodes"] / part["nodes"]
         parts = dict.fromkeys(PARTS, 0.0)
-        parts.update(compute=busiest * ranks / processors, host=one["host"] * part["host"])
+        parts.update(compute=busiest_rank_s * ranks / processors, host=one_rank["host"] * part["host"])
         if ranks > 1:
-            others = 1 - 1 / ranks
+            remote_fraction = 1 - 1 / ranks
             parts["exchange"] = part["messages"] * alpha + part["bytes"] * beta
-            parts["collect"] = part["supersteps"] * (rounds(ranks) * alpha + beta * part["status"] * others)
-            parts["broadcast"] = (ranks - 1) * alpha + beta * part["scene"] * others
+            parts["collect"] = part["supersteps"] * (rounds(ranks) * alpha + beta * part["status"] * remote_fraction)
+            parts["broadcast"] = (ranks - 1) * alpha + beta * part["scene"] * remote_fraction
         return parts
 
 
 def count_on_bricks(result, ranks):
-    """Counts of a torus render on ranks: cycles, messages and bytes, each the sum over the supersteps of the maximum over the ranks. A rank has a
-    brick, a cuboid of nodes. In a superstep, all packets from a brick to another rank in one direction form one message."""
+    """Returns the counts of a torus render on ranks: cycles, messages and bytes, each the sum over the supersteps of the maximum over the ranks. A
+    rank has a brick, a cuboid of nodes. In a superstep, all packets from a brick to another rank in one direction form one message."""
     rank_of, ends = raya.ranks_of_nodes(SIDES, ranks), raya.link_ends(SIDES)
     cycles, words = result.step_cycles, result.step_link_words
     by_rank = np.stack([cycles[:, rank_of == rank].sum(1) for rank in range(ranks)], 1)

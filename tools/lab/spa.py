@@ -13,14 +13,14 @@ FACTORS = list(range(1, 9))  # of the clock model: the range for which conclusio
 
 
 def spa_ms(cycles):
-    """Milliseconds of a PE for modelled cycles, without the clock model's factor (FACTOR)."""
+    """Returns the milliseconds of a PE for modelled cycles, without the clock model's factor (FACTOR)."""
     return cycles * SPA["cycle_ns"] * 1e-6
 
 
 FILTER_BUDGET_MS = spa_ms(raya.filter_cycles(papers.SIZE))
 # The filter's arithmetic takes 9 - 2 = 19 - 12 = 7 ms (Tables 3 and 4); each of these four times is rounded to 1 ms.
-FACTOR, FACTOR_MIN, FACTOR_MAX = ((papers.FILTER_ARITHMETIC_MS + off) / FILTER_BUDGET_MS
-                                     for off in (0, -2 * ROUNDING, 2 * ROUNDING))
+FACTOR, FACTOR_MIN, FACTOR_MAX = ((papers.FILTER_ARITHMETIC_MS + rounding_ms) / FILTER_BUDGET_MS
+                                     for rounding_ms in (0, -2 * ROUNDING, 2 * ROUNDING))
 CLOCK = (f"modelled on one clock. Computing takes the instruction budget's cycles of 100 ns times a factor of {FACTOR:.2f} "
          f"({FACTOR_MIN:.2f} .. {FACTOR_MAX:.2f} by rounding): the filter's 7 ms [D] over the time that the budget gives it, "
          "which does not depend on a scene. Rotations, exchanges and transfers take the printed rates. Nothing is fitted to a "
@@ -28,8 +28,8 @@ CLOCK = (f"modelled on one clock. Computing takes the instruction budget's cycle
 
 
 def host_model():
-    """{name: (minimum, maximum)} of the host model: set-up of a call (ms), a rotation (ms), and words per second. Follows from the printed times of 2
-    and 34 rotations (Table 4) and of a transfer of 256 x 256 x 3 words (Table 2), each rounded to 1 ms."""
+    """Returns {name: (minimum, maximum)} of the host model: set-up of a call (ms), a rotation (ms), and words per second. Follows from the printed
+    times of 2 and 34 rotations (Table 4) and of a transfer of 256 x 256 x 3 words (Table 2), each rounded to 1 ms."""
     few, many = 2, 34
     few_ms, many_ms, image_ms = (np.array([value - ROUNDING, value + ROUNDING]) for value in
                                  (papers.EXCHANGE_0_MS, papers.EXCHANGE_16_MS, papers.IMAGE_MS))
@@ -48,12 +48,12 @@ class SpaRun:
     report: dict
 
     def time(self, factor=FACTOR):
-        """The report's modelled_ms. Computing times are multiplied by the factor; the set-up time of exchanges is added."""
+        """Returns the report's modelled_ms. Computing times are multiplied by the factor; the set-up time of exchanges is added."""
         t = dict(self.report["modelled_ms"])
-        more = (factor - 1) * t["compute"]
+        added_ms = (factor - 1) * t["compute"]
         setup = papers.EXCHANGE_SETUP_MS if self.rotations else 0
         t.update(compute=factor * t["compute"], filter=factor * t["filter"], compare=factor * t["compare"],
-                 communication=t["communication"] + setup, total=t["total"] + more + setup)
+                 communication=t["communication"] + setup, total=t["total"] + added_ms + setup)
         return t
 
     @property
@@ -73,8 +73,8 @@ def run_on_spa(lab, scene, size, pes, offset, antialias="none"):
 
 
 def offset_times(costs, pes, antialias, factor=FACTOR):
-    """Data frame of modelled times with the cyclic fold, one row per offset: columns offset, imbalance, trace_ms, smooth_ms, supersample_ms,
-    ring_ms, rotations, total_ms. Broadcast and gather are excluded, because they take the same time for every offset."""
+    """Returns a data frame of modelled times with the cyclic fold, one row per offset: columns offset, imbalance, trace_ms, smooth_ms,
+    supersample_ms, ring_ms, rotations, total_ms. Broadcast and gather are excluded, because they take the same time for every offset."""
     times = pd.DataFrame(raya.offset_times(costs.trace, pes, antialias,
                                            costs.supersample if antialias == "supersample" else None))
     times[["trace_ms", "smooth_ms", "supersample_ms"]] *= factor
@@ -95,14 +95,14 @@ class SmoothingRuns:
     costs: object
 
     def rows(self, factor=FACTOR):
-        """Data frame with a row for each rendered offset; times in ms."""
+        """Returns a data frame with a row for each rendered offset; times in ms."""
         all_rows = []
         for p, run in self.runs.items():
             t, load = run.time(factor), run.report["load"]
-            last = load["supersample" if self.antialias == "supersample" else "trace"]
+            last_load = load["supersample" if self.antialias == "supersample" else "trace"]
             row = {"p": p, "rotations": run.rotations, "communication": t["communication"], "filter": t["filter"],
                    "compare": t["compare"], "trace": factor * spa_ms(load["trace"]["max"]),
-                   "supersample": factor * spa_ms(last["max"]), "u": last["imbalance"]}
+                   "supersample": factor * spa_ms(last_load["max"]), "u": last_load["imbalance"]}
             row["filtering"] = row["filter"] + row["communication"]
             row["filtered"] = row["trace"] + row["filtering"]
             row["alone"] = row["compare"] + row["supersample"]
@@ -128,8 +128,8 @@ def smoothing_runs(lab, scenes, antialias):
 
 
 def default_size(scene):
-    """Default pixels per side of the study best-offset: the scene's image size if it is square, else 256. Halves the size while pixels x objects
-    exceed 2^30, because larger renders take minutes."""
+    """Returns the default pixels per side of the study best-offset: the scene's image size if it is square, else 256. Halves the size while pixels x
+    objects exceed 2^30, because larger renders take minutes."""
     square = scene.width == scene.height and 16 <= scene.width <= 4096
     size = scene.width if square else 256
     while size // 2 >= 64 and size * size * scene.objects > 2**30:

@@ -18,11 +18,11 @@ class Study:
     missing: Callable = lambda: ""  # returns a message with a remedy if the study cannot run on this machine, else ""
 
 
-def study(name, *, prose=None, **more):
+def study(name, *, prose=None, **options):
     """Decorator that declares a study; studies.txt must list its name. `prose` defaults to the docstring of its module."""
     def declare(run):
         text = prose or importlib.import_module(run.__module__).__doc__
-        REGISTRY[name] = Study(name, run, text, **more)
+        REGISTRY[name] = Study(name, run, text, **options)
         return run
     return declare
 
@@ -32,7 +32,7 @@ ORDER = [line.partition(":")[0] for line in (Path(__file__).parent / "studies.tx
 
 
 def studies():
-    """{name: Study} of all built-in studies, in the order of studies.txt."""
+    """Returns {name: Study} of all built-in studies, in the order of studies.txt."""
     from raya.lab import studies as package
 
     for module in pkgutil.iter_modules(package.__path__):

@@ -19,18 +19,18 @@ def sides_text(sides):
 
 
 def near_cube(count):
-    """Sides of the cuboid of 2^n nodes or voxels that is nearest to a cube, longer sides first: 1x1x1, 2x1x1, 2x2x1, 2x2x2, ..."""
+    """Returns the sides of the cuboid of 2^n nodes or voxels that is nearest to a cube, longer sides first: 1x1x1, 2x1x1, 2x2x1, 2x2x2, ..."""
     bits = count.bit_length() - 1
     return 1 << (bits + 2) // 3, 1 << (bits + 1) // 3, 1 << bits // 3
 
 
 def powers_of_two(maximum):
-    """[1, 2, 4, ...]: the powers of two up to `maximum`."""
+    """Returns [1, 2, 4, ...]: the powers of two up to `maximum`."""
     return [1 << k for k in range(maximum.bit_length())]
 
 
 def even_scene(count):
-    """A scene of `count` spheres, spread evenly over 4 x 4 x 4 voxels."""
+    """Returns a scene of `count` spheres, spread evenly over 4 x 4 x 4 voxels."""
     return raya.generate.uniform(count, (4, 4, 4)).renamed(f"even-{count}")
 
 
@@ -85,7 +85,7 @@ class Run:
 def run_cases(cases, run, columns):
     """Calls run(**case), which returns a Run, for each case. Returns a data frame with a row for each case: the arguments, `columns` of the Run, and
     the Run itself in column `run`."""
-    return pd.DataFrame([{**case, **one.row(columns), "run": one} for case in cases for one in [run(**case)]])
+    return pd.DataFrame([{**case, **result.row(columns), "run": result} for case in cases for result in [run(**case)]])
 
 
 def run_on_torus(lab, scene, size, nodes, voxels, queue=None, **options):

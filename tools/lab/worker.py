@@ -23,23 +23,23 @@ def run_study(study, scenes, folder, options):
     """Runs one study. Returns (page, device description); raises ValueError for an error in the study's code."""
     global laboratory
     warn_as_raya(options)
-    one = study_of_file(study) if study.endswith(".py") else studies()[study]
+    chosen_study = study_of_file(study) if study.endswith(".py") else studies()[study]
     if laboratory is None:
-        more = {"no_tuned": True} if options.no_tuned else {}
-        laboratory = Laboratory(folder, options.size, options.network, device=options.device, **more)
+        tuning_options = {"no_tuned": True} if options.no_tuned else {}
+        laboratory = Laboratory(folder, options.size, options.network, device=options.device, **tuning_options)
     try:
-        page = one.run(laboratory, scenes)
+        page = chosen_study.run(laboratory, scenes)
     except (raya.InputError, raya.DeviceError, OSError):
         raise
     except Exception as error:
-        raise ValueError(f"study {one.name}: {error_location(error, one.run)}{type(error).__name__}: {error}") from error
+        raise ValueError(f"study {chosen_study.name}: {error_location(error, chosen_study.run)}{type(error).__name__}: {error}") from error
     if not isinstance(page, Page):
-        raise ValueError(f"study {one.name}: run() returns {type(page).__name__}, not a Page")
-    return page.describe(one.name, one.prose), laboratory.session.device
+        raise ValueError(f"study {chosen_study.name}: run() returns {type(page).__name__}, not a Page")
+    return page.describe(chosen_study.name, chosen_study.prose), laboratory.session.device
 
 
 def error_location(error, run):
-    """'FILE.py, line N: ', the study's innermost frame in the error's traceback; empty if there is none."""
+    """Returns 'FILE.py, line N: ' for the study's innermost frame in the error's traceback; empty if there is none."""
     file = run.__code__.co_filename
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
     return f"{os.path.basename(file)}, line {lines[-1]}: " if lines else ""
@@ -70,10 +70,10 @@ class Worker:
         """Runs run_study(*arguments) in the child and returns its result. Raises its error, or DeviceError if the child crashes."""
         if self._process is None:
             context = get_context("spawn")
-            self._pipe, theirs = context.Pipe()
-            self._process = context.Process(target=serve, args=(theirs,), daemon=True)
+            self._pipe, child_pipe = context.Pipe()
+            self._process = context.Process(target=serve, args=(child_pipe,), daemon=True)
             self._process.start()
-            theirs.close()
+            child_pipe.close()
         try:
             self._pipe.send(arguments)
             result, error = self._pipe.recv()

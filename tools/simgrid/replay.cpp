@@ -51,13 +51,13 @@ struct Task {
     std::vector<Message*> sends;
 };
 
-// One direction of a link. For each class of messages: `out`, the messages in the output thread; `taken`, true while
-// the input thread has a message.
+// One direction of a link. For each class of messages: `out`, the messages in the output thread; `is_input_busy`, true
+// while the input thread has a message.
 struct Port {
     std::size_t from = 0, to = 0;
     int direction = 0;
     std::array<std::deque<Message*>, 2> out;
-    std::array<bool, 2> taken{};
+    std::array<bool, 2> is_input_busy{};
     std::array<sg::Mailbox*, 2> wire{};
 };
 
@@ -65,7 +65,7 @@ struct Node {
     sg::Host* host = nullptr;
     sg::MutexPtr lock = sg::Mutex::create(), communication = sg::Mutex::create();
     sg::ConditionVariablePtr changed = sg::ConditionVariable::create();
-    std::deque<std::size_t> queue, own;  // tasks started by messages; tasks that the node starts itself
+    std::deque<std::size_t> message_tasks, own_tasks;  // tasks started by messages; tasks that the node starts itself
 };
 
 struct Machine {
@@ -102,18 +102,18 @@ void deliver(Message* message, std::size_t at) {
     ++machine.delivered;
     machine.finish_one();
     if (message->task == kNoTask) return;
-    machine.nodes[at].queue.push_back(message->task);
+    machine.nodes[at].message_tasks.push_back(message->task);
     wake(machine.nodes[at]);
 }
 
-// Puts a message into the output thread of its next link; waits for a free buffer. `came`: direction from which the
+// Puts a message into the output thread of its next link; waits for a free buffer. `arrival`: direction in which the
 // message arrived; -1: from the main task.
-void put(std::size_t at, Message* message, int came) {
+void put(std::size_t at, Message* message, int arrival) {
     Node& node = machine.nodes[at];
     const Hop next = message->route[message->hop];
     Port& port = *machine.ports.at({at, next.direction});
     std::deque<Message*>& out = port.out[message->cls];
-    const bool stays_in_ring = message->cls == 0 || came == next.direction;
+    const bool stays_in_ring = message->cls == 0 || arrival == next.direction;
     const std::size_t needs = stays_in_ring ? 1 : machine.entering;
     std::unique_lock<sg::Mutex> lock(*node.lock);
     while (out.size() + needs > machine.buffer) node.changed->wait(lock);
@@ -127,10 +127,10 @@ void main_task(std::size_t at) {
         std::size_t task = kNoTask;
         {
             std::unique_lock<sg::Mutex> lock(*node.lock);
-            while (node.queue.empty() && node.own.empty()) node.changed->wait(lock);
-            auto& from = node.queue.empty() ? node.own : node.queue;
-            task = from.front();
-            from.pop_front();
+            while (node.message_tasks.empty() && node.own_tasks.empty()) node.changed->wait(lock);
+            auto& tasks = node.message_tasks.empty() ? node.own_tasks : node.message_tasks;
+            task = tasks.front();
+            tasks.pop_front();
         }
         if (machine.tasks[task].cycles > 0) sg::this_actor::execute(machine.tasks[task].cycles);
         machine.finish_one();
@@ -149,10 +149,10 @@ void output_thread(Port* port) {
         int cls = -1;
         {
             std::unique_lock<sg::Mutex> lock(*node.lock);
-            const auto can = [&](int c) { return !port->out[c].empty() && !port->taken[c]; };
-            while (!can(0) && !can(1)) node.changed->wait(lock);
-            cls = can(0) ? 0 : 1;
-            port->taken[cls] = true;
+            const auto is_sendable = [&](int c) { return !port->out[c].empty() && !port->is_input_busy[c]; };
+            while (!is_sendable(0) && !is_sendable(1)) node.changed->wait(lock);
+            cls = is_sendable(0) ? 0 : 1;
+            port->is_input_busy[cls] = true;
         }
         Message* const message = port->out[cls].front();
         handle(node, *message);
@@ -171,12 +171,12 @@ void input_thread(Port* port, int cls) {
             deliver(message, port->to);
         else
             put(port->to, message, port->direction);
-        port->taken[cls] = false;
+        port->is_input_busy[cls] = false;
         wake(machine.nodes[port->from]);
     }
 }
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
+[[noreturn]] void fail(const std::string& reason) { throw std::runtime_error(reason); }
 
 void read_message(std::istringstream& words) {
     Message message;
@@ -198,7 +198,7 @@ void read_task(std::istringstream& words) {
     if (!(words >> task.node >> task.cycles >> cause) || task.node >= machine.nodes.size())
         fail("expected t NODE CYCLES CAUSE");
     if (cause == "-")
-        machine.nodes[task.node].own.push_back(machine.tasks.size());
+        machine.nodes[task.node].own_tasks.push_back(machine.tasks.size());
     else
         machine.messages.at(std::stoul(cause)).task = machine.tasks.size();
     machine.tasks.push_back(task);
@@ -209,17 +209,17 @@ void read_replay(const std::string& file) {
     if (!in) fail(file + ": cannot open file");
     for (std::string line; std::getline(in, line);) {
         std::istringstream words(line);
-        std::string what;
-        words >> what;
-        if (what == "machine") {
+        std::string kind;
+        words >> kind;
+        if (kind == "machine") {
             std::size_t nodes = 0;
             if (!(words >> nodes >> machine.buffer >> machine.entering >> machine.message_cycles >>
                   machine.word_cycles))
                 fail("expected machine NODES BUFFER ENTERING MESSAGE_CYCLES WORD_CYCLES");
             machine.nodes = std::vector<Node>(nodes);
-        } else if (what == "t") {
+        } else if (kind == "t") {
             read_task(words);
-        } else if (what == "m") {
+        } else if (kind == "m") {
             read_message(words);
         } else {
             fail("unknown line: " + line);
@@ -248,9 +248,9 @@ void start_actors() {
                 from = hop.node;
             }
         }
-    for (auto& [place, port] : machine.ports) {
+    for (auto& [key, port] : machine.ports) {
         Port* const p = port.get();
-        const std::string name = std::to_string(place.first) + ":" + std::to_string(place.second);
+        const std::string name = std::to_string(key.first) + ":" + std::to_string(key.second);
         for (int cls = 0; cls < 2; ++cls) {
             p->wire[cls] = sg::Mailbox::by_name(name + ":" + std::to_string(cls));
             start("in " + name, machine.nodes[p->to].host, [p, cls] { input_thread(p, cls); });

@@ -1,6 +1,6 @@
 // _dl_find_object() for C libraries before glibc 2.35. gcc's unwinder calls it to find unwind tables when an exception
-// is thrown. It is the only function of glibc 2.35 that a statically linked unwinder needs. Hidden from other
-// libraries.
+// is thrown. It is the only function of glibc 2.35 that a statically linked unwinder needs. The function
+// is hidden from other libraries.
 #include <dlfcn.h>
 #include <link.h>
 

@@ -54,37 +54,37 @@ from raya._engine import (
 
 
 @contextlib.contextmanager
-def _shown(progress):
-    """Context manager that yields the engine's progress callback: one that draws a bar for True, None for False, else
-    `progress` itself."""
+def _callback(progress):
+    """Context manager that yields the progress callback for the engine: if `progress` is True, a function that draws a
+    progress bar; if it is False, None; else `progress` itself."""
     if progress is not True:
         yield progress or None
         return
     from tqdm import tqdm
 
     with tqdm(total=100, unit="%", leave=False) as bar:
-        yield lambda share: bar.update(round(100 * share) - bar.n)
+        yield lambda fraction: bar.update(round(100 * fraction) - bar.n)
 
 
 def render(scene, *, progress=False, session=None, **options):
     """Renders a scene and returns a Result.
 
     scene: a Scene, or the path of an NFF file. options: those of `raya render`; cost=True and packets=True store the
-    arrays in the Result instead of a file. progress: True draws a progress bar; a function is called with the completed
-    fraction of the work, 0..1. session: a Session; default: one that all renders on the same device share. Raises
+    arrays in the Result instead of writing files. progress: True draws a progress bar; a function is called with the completed
+    fraction of the work, 0..1. session: a Session; by default, all renders on the same device use one session. Raises
     ValueError, DeviceError.
     """
     if not isinstance(scene, Scene):
         scene = load(scene)
-    with _shown(progress) as callback:
+    with _callback(progress) as callback:
         if session is not None:
             return session.render(scene, progress=callback, **options)
         return _engine.render(scene, progress=callback, **options)
 
 
 def program():
-    """Returns the path of the program `raya`: the environment variable RAYA_PROGRAM if it names a program, else the program
-    of the build or installation that contains this package, else the one in PATH. Raises FileNotFoundError."""
+    """Returns the path of the program `raya`: the value of the environment variable RAYA_PROGRAM if it is the path of a
+    program, else the program of the build or installation that contains this package, else the program in PATH. Raises FileNotFoundError."""
     package = Path(__file__).absolute().parent
     candidates = [os.environ.get("RAYA_PROGRAM"), package / "raya", package / "../../raya", package / "../../../../bin/raya",
                   shutil.which("raya")]
@@ -95,8 +95,8 @@ def program():
 
 
 def _run_program():
-    """Runs the program `raya` in place of this process. Entry point of the command `raya` that pip installs; studies use
-    this Python interpreter."""
+    """Runs the program `raya` in place of this process. Entry point of the command `raya` that pip installs; studies then
+    run with this Python interpreter."""
     os.environ.setdefault("RAYA_PYTHON", sys.executable)
     path = program()
     os.execv(path, [path, *sys.argv[1:]])

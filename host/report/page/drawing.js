@@ -1,8 +1,11 @@
-// Draws charts as SVG in the page's colours, and pixel maps on canvases. `description`: text for screen readers.
+// Draws charts as SVG in the page's colours, and pixel maps on canvases. Parameter `description`: text for screen
+// readers.
 "use strict";
 
-// --- Colours in OKLCH (B. Ottosson, "A perceptual color space for image processing", 2020), where all hues have equal
-// lightness. Hue in degrees.
+// --- Colours in OKLCH (B. Ottosson, "A perceptual color space for image processing", 2020), a colour space in which
+// all hues of a lightness look equally light.
+
+// Returns [red, green, blue], 0..255. light: 0..1, hue: degrees.
 
 function rgbOf(light, chroma, hue) {
   const a = chroma * Math.cos(hue * Math.PI / 180), b = chroma * Math.sin(hue * Math.PI / 180);
@@ -18,10 +21,11 @@ function rgbOf(light, chroma, hue) {
 }
 
 const hueOf = (pe, pes) => (205 + 360 * pe / pes) % 360;
-const bright = (pe, pes, light, alpha = 1) => `rgb(${rgbOf(light, 0.13, hueOf(pe, pes)).join(" ")} / ${alpha})`;
+// Returns the CSS colour of a PE.
+const peColour = (pe, pes, light, alpha = 1) => `rgb(${rgbOf(light, 0.13, hueOf(pe, pes)).join(" ")} / ${alpha})`;
 const wordOf = ([r, g, b]) => (255 << 24 | b << 16 | g << 8 | r) >>> 0;  // RGBA pixel of a canvas, little-endian
 
-// word(row, column): RGBA word of a pixel.
+// Returns a canvas with a pixel map. word(row, column): returns the RGBA word of a pixel.
 function pixelMap(width, height, description, word) {
   const canvas = make("canvas", {class: "picture", width, height, role: "img", "aria-label": description});
   const pixels = new Uint32Array(width * height), context = canvas.getContext("2d");
@@ -31,25 +35,26 @@ function pixelMap(width, height, description, word) {
   return canvas;
 }
 
-// Returns a function value -> RGBA word: red above the mean, blue below, saturated at the value farthest from the mean.
+// Returns a function that maps a value to an RGBA word: red above the mean, blue below; the value farthest from the
+// mean has the full colour.
 function diverging(values) {
   const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
   const farthest = values.reduce((max, value) => Math.max(max, Math.abs(value - mean)), 0) || 1;
   return (value) => {
-    const distance = (value - mean) / farthest, far = Math.min(Math.abs(distance), 1);
-    return wordOf(rgbOf(0.93 - 0.4 * far, 0.17 * far, distance < 0 ? 255 : 29));
+    const deviation = (value - mean) / farthest, size = Math.min(Math.abs(deviation), 1);
+    return wordOf(rgbOf(0.93 - 0.4 * size, 0.17 * size, deviation < 0 ? 255 : 29));
   };
 }
 
-// --- SVG, in units of the view box; the font size is 12.5 (style.css).
+// --- SVG. Lengths are in units of the view box, in which the font size is 12.5 (style.css).
 
 const WIDE = 480, HIGH = 250, LEFT = 52, RIGHT = 456, TOP = 26, BOTTOM = 212;
 
 function svg(tag, attributes, ...children) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  made.append(...children);
-  return made;
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
 }
 
 const at = (v) => v.toFixed(2);
@@ -70,7 +75,8 @@ function ticksOf(max, count) {
   return Array.from({length: Math.floor(max / step * 1.0001) + 1}, (_, i) => Number((i * step).toPrecision(6)));
 }
 
-// A linear axis. `to` maps a value to 0..1. `whole`: ticks are integers without a unit prefix.
+// Returns a linear axis from 0 to `max` with about `count` ticks. Function `to` maps a value to 0..1. `whole`: true if
+// the ticks are integers without a unit prefix.
 function linear(name, max, count, whole = false) {
   const [unit, prefix] = max >= 1e9 ? [1e9, "thousand million "] :
     max >= 1e6                      ? [1e6, "million "] :
@@ -85,7 +91,7 @@ function linear(name, max, count, whole = false) {
   };
 }
 
-// A logarithmic axis over whole decades.
+// Returns a logarithmic axis over whole decades.
 function decades(name, min, max) {
   const begin = Math.floor(Math.log10(min)), end = Math.max(begin + 1, Math.ceil(Math.log10(max)));
   const step = Math.max(1, Math.ceil((end - begin) / 8)), ticks = [];
@@ -99,6 +105,8 @@ function decades(name, min, max) {
   };
 }
 
+// Returns a coordinate system with the axes `across` and `up`: x() and y() map values to positions; `grid` has lines
+// and labels.
 function plane(across, up) {
   const x = (v) => LEFT + (RIGHT - LEFT) * across.to(v), y = (v) => BOTTOM - (BOTTOM - TOP) * up.to(v);
   const grid = [label("start", 4, 14, up.name), label("end", RIGHT, HIGH - 4, across.name)];
@@ -108,29 +116,30 @@ function plane(across, up) {
   return {x, y, grid};
 }
 
-// Vertical bars of `values`, and a line at their mean. If there are more than 416 values, a column shows several of
-// them: dark up to their minimum, pale up to their maximum. `colour(first, count)`: colour of the column with these
-// values; optional.
+// Returns a chart with vertical bars of `values`, and a line at their mean. If there are more than 416 values, a column
+// shows several of them: dark up to their minimum, pale up to their maximum. colour(first, count), optional: returns
+// the colour of the column that shows the values first .. first + count - 1. top: minimum for the upper end of the
+// axis.
 function bars(description, [across, up], values, mean, {colour = null, top = 0} = {}) {
   const count = values.length, columns = count <= 416 ? count : 208, wide = (RIGHT - LEFT) / columns,
         gap = columns > 100 ? 0.1 : 0.2;
   const max = values.reduce((a, b) => Math.max(a, b), Math.max(top, 1e-9));
   const {x, y, grid} = plane(linear(across, count, 8, true), linear(up, max * 1.04, 5)), marks = [];
   for (let column = 0; column < columns; ++column) {
-    const from = Math.floor(column * count / columns),
-          own = values.slice(from, Math.floor((column + 1) * count / columns));
-    const low = Math.min(...own), high = Math.max(...own), left = x(column * count / columns) + wide * gap / 2,
+    const first = Math.floor(column * count / columns),
+          shown = values.slice(first, Math.floor((column + 1) * count / columns));
+    const low = Math.min(...shown), high = Math.max(...shown), left = x(column * count / columns) + wide * gap / 2,
           right = left + wide * (1 - gap);
     if (high > low) marks.push(box("bar pale", left, y(high), right, y(low)));
     marks.push(box("bar", left, y(low), right, BOTTOM));
     if (colour)
-      for (const mark of marks.slice(high > low ? -2 : -1)) mark.style.fill = colour(from, own.length);
+      for (const mark of marks.slice(high > low ? -2 : -1)) mark.style.fill = colour(first, shown.length);
   }
   return chart(description, [grid, marks, line("mark", [LEFT, y(mean)], [RIGHT, y(mean)])]);
 }
 
-// Horizontal bars with names above them: {name, text, value, mark}. mark: value at which a line crosses the bar;
-// optional.
+// Returns a chart with a horizontal bar for each row {name, text, value, mark}, and the name above the bar. mark,
+// optional: value at which a line crosses the bar.
 function namedBars(description, rows) {
   const max = rows.reduce((a, {value, mark = 0}) => Math.max(a, value, mark), 1e-300), x = (v) => 6 + 358 * v / max;
   return chart(
@@ -145,30 +154,30 @@ function namedBars(description, rows) {
     36 * rows.length + 6);
 }
 
-// Roofline chart: numbered points [operations per byte, operations per second], and the roof min(x * slope, top). A
-// second, lower top is drawn dashed.
+// Returns a roofline chart: numbered points [operations per byte, thousand million operations per second], and the roof
+// min(x * slope, top). tops: [name, top]; the second, lower top is dashed.
 function roof(description, slope, tops, points) {
   const xs = [tops[0][1] / slope, ...points.map(([x]) => x)],
         ys = [...tops.map(([, v]) => v), ...points.map(([, y]) => y)];
   const across = decades("operations per byte", Math.min(...xs) / 2, Math.max(...xs) * 2);
   const up = decades("thousand million operations per second", Math.min(...ys) / 1.5, Math.max(...ys) * 1.2);
-  const {x, y, grid} = plane(across, up), from = Math.max(across.min, up.min / slope);
+  const {x, y, grid} = plane(across, up), roofStart = Math.max(across.min, up.min / slope);
   for (const tick of across.ticks) grid.push(line("grid", [x(tick), TOP], [x(tick), BOTTOM]));
   const marks = tops.flatMap(
     ([name, top], i) =>
-      [i ? line("roof dashed", [x(Math.max(from, top / slope)), y(top)], [RIGHT, y(top)]) :
-           line("roof", [x(from), y(from * slope)], [x(top / slope), y(top)], [RIGHT, y(top)]),
+      [i ? line("roof dashed", [x(Math.max(roofStart, top / slope)), y(top)], [RIGHT, y(top)]) :
+           line("roof", [x(roofStart), y(roofStart * slope)], [x(top / slope), y(top)], [RIGHT, y(top)]),
        label("end", RIGHT, y(top) - 5, name)]);
-  marks.push(label("start", x(from) + 4, Math.min(y(from * slope) + 14, BOTTOM - 4), "copies"));
-  const taken = [];  // positions of labels; a label that is too close to another is placed below it
+  marks.push(label("start", x(roofStart) + 4, Math.min(y(roofStart * slope) + 14, BOTTOM - 4), "copies"));
+  const taken = [];  // positions of labels; a label too close to another label is placed below that label
   const places = points.map(([px, py], i) => [x(px), y(py), i + 1]).sort((a, b) => a[1] - b[1]);
   for (const [px, py, number] of places) {
-    const right = px + 22 > RIGHT, lx = right ? px - 8 : px + 8;
+    const isLeft = px + 22 > RIGHT, lx = isLeft ? px - 8 : px + 8;  // label to the left of the point
     let ly = py + 4;
     for (const [ox, oy] of taken)
       if (Math.abs(ox - lx) < 18 && ly < oy + 12) ly = oy + 12;
     taken.push([lx, ly]);
-    marks.push(dot(px, py), label(right ? "end" : "start", lx, ly, String(number)));
+    marks.push(dot(px, py), label(isLeft ? "end" : "start", lx, ly, String(number)));
   }
   return chart(description, [grid, marks]);
 }

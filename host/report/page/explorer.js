@@ -1,8 +1,8 @@
-// The explorer: an interactive page about the costs of the pixels of one render. Decodes the costs, stores the state,
-// and displays the figures that model.js computes.
+// The explorer: an interactive page about the costs of the pixels of one rendered image. This file decodes the costs,
+// stores the state, and displays the figures that model.js computes.
 "use strict";
 
-// Makes a command line break only between options.
+// Returns the words of a command as elements, so that line breaks occur only between words.
 const commandElements = (text) => text.split(" ").flatMap((word, i) => [i ? " " : "", make("span", {}, word)]);
 
 const explorer = {
@@ -14,8 +14,9 @@ const explorer = {
   pointed: "",
   curves: {pes: 0, known: 0, values: null, best: null, worst: 0},
 
+  // The highlighted PE, or null.
   get focus() { return this.hovered ?? this.state.pe; },
-  get root() { return rootOf(this.figures.setting.pes); },  // may exceed the maximum offset
+  get root() { return rootOf(this.figures.setting.pes); },  // √P, rounded; may exceed the maximum offset
 
   // --- From the report to the first view
 
@@ -53,7 +54,7 @@ const explorer = {
     return costs;
   },
 
-  // Decodes the image's pixels, and computes the lightness of each.
+  // Decodes the image's pixels, and computes their lightness, 0..63.
   async decodeImage() {
     const {width, height} = this.size, photo = picture(this.report, "image.png", "the image");
     const context = make("canvas", {width, height}).getContext("2d");
@@ -81,7 +82,7 @@ const explorer = {
 
   pick(pe) { this.choose("pe", pe); },
 
-  // Sets the state from the page's address, at the start and when a link is followed.
+  // Sets the state from the page's address, when the page is loaded and when the user follows a link.
   followLink() {
     if (location.hash === this.hash) return;
     const {state, problems} = withLink(this.initialState, location.hash, this.size);
@@ -131,8 +132,8 @@ const explorer = {
     if (this.curves.pes !== setting.pes) this.computeCurves(setting.pes);
   },
 
-  // Updates the link, the command and, with a delay, the page's address, because browsers limit the rate of its
-  // changes.
+  // Updates the link and the command. Updates the page's address after a delay, because browsers limit the rate at
+  // which the address may change.
   updateLink() {
     const link = linkText(this.state), before = location.hash;
     $("link").setAttribute("href", link);
@@ -149,16 +150,16 @@ const explorer = {
   computeCurves(pes) {
     const {width} = this.size, values = {cyclic: new Float64Array(width)};
     if (pes !== width) values.block = new Float64Array(width);
-    const own = this.curves = {pes, known: 0, values, best: null, worst: 0};
-    const more = () => {
-      if (own !== this.curves) return;  // the number of PEs has changed since
-      own.known = addToCurves(values, this.costs, this.size, pes, own.known, performance.now() + 10);
-      if (own.known < width) setTimeout(more);
+    const started = this.curves = {pes, known: 0, values, best: null, worst: 0};
+    const computeMore = () => {
+      if (started !== this.curves) return;  // curves for another number of PEs have been started
+      started.known = addToCurves(values, this.costs, this.size, pes, started.known, performance.now() + 10);
+      if (started.known < width) setTimeout(computeMore);
       else
         this.finishCurves();
       this.requestDraw();
     };
-    setTimeout(more);
+    setTimeout(computeMore);
   },
 
   finishCurves() {
@@ -179,21 +180,21 @@ const explorer = {
     const {figures: f, state, curves, focus, texts} = this, {best, values} = curves, setting = mappingText(state);
     drawPicture($("picture"), f, this, state.view, focus);
     $("bars").replaceChildren(loadBars(f, texts, focus, 1 + curves.worst));
-    const here =
+    const current =
       f.setting.kind === "slots" ? {offset: f.setting.offset, fold: values.block ? state.fold : "cyclic"} : null;
-    $("curves").replaceChildren(offsetCurves(f, texts, curves, this.root, here));
+    $("curves").replaceChildren(offsetCurves(f, texts, curves, this.root, current));
     const {pe, cells} = drawCloseUp($("close-up"), f, this.size, focus),
-               close = `${cells} × ${cells} pixels in the middle of the image, those of PE ${pe} in white`;
-    const owns = focus === null ?
+               closeUp = `${cells} × ${cells} pixels in the middle of the image, the pixels of PE ${pe} in white`;
+    const ownerText = focus === null ?
       "" :
       `PE ${focus} owns ${grouped(f.sizes[focus])} pixels; its load is ${grouped(f.loads[focus])} cycles, ` +
         `${f.mean > 0 ? fixed(f.loads[focus] / f.mean, 2) : 0} of the mean.`;
     $("view-text").textContent = VIEW_TEXTS[state.view](this.maxCost);
-    $("pointed").textContent = this.hovered === null ? owns : `${this.pointed} ${owns}`;
+    $("pointed").textContent = this.hovered === null ? ownerText : `${this.pointed} ${ownerText}`;
     $("picture").setAttribute(
-      "aria-label", `Image, coloured by ${state.view}. ${setting} on ${f.setting.pes} PEs. ${owns}`);
-    $("close-up").setAttribute("aria-label", `${close}. Shortest vector: ${texts.vector}.`);
-    $("close-up-text").textContent = `The close-up shows ${close}. ` +
+      "aria-label", `Image, coloured by ${state.view}. ${setting} on ${f.setting.pes} PEs. ${ownerText}`);
+    $("close-up").setAttribute("aria-label", `${closeUp}. Shortest vector: ${texts.vector}.`);
+    $("close-up-text").textContent = `The close-up shows ${closeUp}. ` +
       (f.vector ? `The arrow is the shortest vector of its lattice: ${texts.vector}.` :
                   "Its pixels are not a lattice.");
     $("block-key").hidden = !values.block;
@@ -202,8 +203,8 @@ const explorer = {
       `Circle: minimum, ${fixed(best.u, 3)} at p = ${best.offset}${values.block ? `, fold ${best.fold}` : ""}.` :
                                                                                     "";
     if (!best) return;
-    const own = (state.fold === "block" && values.block) || values.cyclic;  // u of the selected fold
-    $("best").dataset.offset = own.indexOf(own.reduce((a, u) => Math.min(a, u)));
+    const curve = (state.fold === "block" && values.block) || values.cyclic;  // u of each offset, for the selected fold
+    $("best").dataset.offset = curve.indexOf(curve.reduce((a, u) => Math.min(a, u)));
     $("best").textContent = `best p = ${$("best").dataset.offset}`;
   },
 };

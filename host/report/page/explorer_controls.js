@@ -1,7 +1,7 @@
 // Connects the explorer's controls and pointer events with its state.
 "use strict";
 
-// Controls and the members of the state that they edit: [name, index].
+// [control]: the member of the state that it edits, as [name] or, for an element of an array, [name, index].
 const CONTROLS = {
   mapping: ["mapping"],
   offset: ["offset"],
@@ -48,12 +48,12 @@ function fillControls(page) {
 }
 
 function listen(page) {
-  for (const [id, [name, which]] of Object.entries(CONTROLS))
+  for (const [id, [name, index]] of Object.entries(CONTROLS))
     $(id).addEventListener("input", ({target: {type, value}}) => {
       if (id === "pe" && value === "") return page.pick(null);
       if (type === "number" && (value === "" || !$(id).checkValidity())) return;
-      const taken = id === "mapping" ? value : Number(value);
-      page.state[name] = which === undefined ? taken : page.state[name].with(which, taken);
+      const newValue = id === "mapping" ? value : Number(value);
+      page.state[name] = index === undefined ? newValue : page.state[name].with(index, newValue);
       page.show();
     });
   $("no-pe").addEventListener("click", () => page.pick(null));
@@ -61,34 +61,39 @@ function listen(page) {
     radio.addEventListener("change", () => page.choose(radio.name, radio.value));
   for (const button of document.querySelectorAll("[data-offset], #root, #best"))
     button.addEventListener("click", () => page.choose("offset", Number(button.dataset.offset)));
-  for (const field of document.querySelectorAll("input[type=number]"))  // replaces invalid values
+  // Replaces an invalid number by the value of the state.
+  for (const field of document.querySelectorAll("input[type=number]"))
     field.addEventListener("change", () => sync(page, null));
   $("form").addEventListener("submit", (event) => event.preventDefault());
   addEventListener("hashchange", () => page.followLink());
 }
 
-// Pointer events on image, bars and curves.
+// Handles pointer events on image, bars and curves.
 function listenToPointer(page) {
-  const share = (id, {clientX, clientY}) => {
+  // Returns [x, y] of the pointer, relative to the element's width and height.
+  const relativePosition = (id, {clientX, clientY}) => {
     const {left, top, width, height} = $(id).getBoundingClientRect();
     return [(clientX - left) / width, (clientY - top) / height];
   };
-  const inside = (value, end) => Math.min(Math.max(Math.floor(value), 0), end - 1);
-  const along = (id, event) => (share(id, event)[0] * WIDE - LEFT) / (RIGHT - LEFT);
-  const over = (id, owner) => {
+  const clampedIndex = (value, end) => Math.min(Math.max(Math.floor(value), 0), end - 1);
+  const positionOnAxis = (id, event) => (relativePosition(id, event)[0] * WIDE - LEFT) / (RIGHT - LEFT);  // 0..1
+  // owner(event): returns [PE, text] for the pointer's position.
+  const listenForOwner = (id, owner) => {
     $(id).addEventListener("pointermove", (event) => page.hover(...owner(event)));
     $(id).addEventListener("pointerleave", () => page.hover(null));
     $(id).addEventListener("click", (event) => page.pick(owner(event)[0]));
   };
-  over("picture", (event) => {
-    const [x, y] = share("picture", event), {width, height} = page.size;
-    const row = inside(y * height, height), column = inside(x * width, width), at = row * width + column;
+  listenForOwner("picture", (event) => {
+    const [x, y] = relativePosition("picture", event), {width, height} = page.size;
+    const row = clampedIndex(y * height, height), column = clampedIndex(x * width, width), at = row * width + column;
     return [page.figures.owners[at], `Row ${row}, column ${column}: ${grouped(page.costs[at])} cycles.`];
   });
-  over("bars", (event) => [inside(along("bars", event) * page.figures.setting.pes, page.figures.setting.pes), ""]);
+  listenForOwner(
+    "bars",
+    (event) => [clampedIndex(positionOnAxis("bars", event) * page.figures.setting.pes, page.figures.setting.pes), ""]);
   const drag = (event) => {
     page.state.mapping = "cyclic";
-    page.choose("offset", inside(along("curves", event) * (page.size.width - 1) + 0.5, page.size.width));
+    page.choose("offset", clampedIndex(positionOnAxis("curves", event) * (page.size.width - 1) + 0.5, page.size.width));
   };
   $("curves").addEventListener("pointerdown", (event) => {
     $("curves").setPointerCapture(event.pointerId);
@@ -100,9 +105,9 @@ function listenToPointer(page) {
 // Updates all controls from the state, except the field in which the user is typing (`active`).
 function sync(page, active) {
   const {state, size: {width}} = page, pes = settingOf(state).pes;
-  for (const [id, [name, which]] of Object.entries(CONTROLS))
+  for (const [id, [name, index]] of Object.entries(CONTROLS))
     if ($(id) !== active || active.type !== "number")
-      $(id).value = (which === undefined ? state[name] : state[name][which]) ?? "";
+      $(id).value = (index === undefined ? state[name] : state[name][index]) ?? "";
   $("pe").max = pes - 1;
   for (const radio of document.querySelectorAll("[name=view], [name=fold]"))
     radio.checked = radio.value === state[radio.name];

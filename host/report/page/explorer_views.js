@@ -1,7 +1,8 @@
-// Views of the explorer: image, close-up, bars of loads, and curves, drawn from the figures of model.js. The views do
+// Draws the views of the explorer (image, close-up, bars of loads, curves) from the figures of model.js. The views do
 // not depend on the controls.
 "use strict";
 
+// Palettes: RGBA words of `count` colours in LEVELS lightness levels, [colour][level].
 const HUES = 360, LEVELS = 64;
 const colours = (count, colour) => Uint32Array.from(
   {length: count * LEVELS},
@@ -19,12 +20,14 @@ const VIEW_TEXTS = {
   picture: () => "The rendered image.",
 };
 
-// `levels`: lightness of each pixel, 0..63. `focus`: null, or a PE whose pixels are drawn white and all others dimmed.
+// Draws the image in the colours of `view`. `levels`: lightness of each pixel, 0..63. `focus`: null, or a PE whose
+// pixels are drawn white, whereas the pixels of the other PEs are dimmed.
 function drawPicture(canvas, f, {levels, costs, maxCost, photo}, view, focus) {
   const {owners, loads, mean, setting: {pes}} = f, shown = new Uint32Array(photo.data.buffer.slice(0));
-  const level = (pe) => view === "owners" ? Math.floor(hueOf(pe, pes)) :
-                                            Math.round(64 * (1 + (mean > 0 ? Math.min(loads[pe] / mean - 1, 1) : 0)));
-  const row = Int32Array.from({length: pes}, (_, pe) => LEVELS * level(pe)),
+  const colourOf = (pe) => view === "owners" ?
+    Math.floor(hueOf(pe, pes)) :
+    Math.round(64 * (1 + (mean > 0 ? Math.min(loads[pe] / mean - 1, 1) : 0)));
+  const row = Int32Array.from({length: pes}, (_, pe) => LEVELS * colourOf(pe)),
         palette = view === "owners" ? OWNERS : LOADS;
   const third = (word, shift) => (word >>> shift & 255) / 3 << shift;
   for (let i = 0; i < shown.length; ++i) {
@@ -39,41 +42,44 @@ function drawPicture(canvas, f, {levels, costs, maxCost, photo}, view, focus) {
     new ImageData(new Uint8ClampedArray(shown.buffer), photo.width, photo.height), 0, 0);
 }
 
-// Loads relative to the mean, each in its PE's colour. `top`: minimum for the upper end of the axis.
+// Returns a chart with the load of each PE relative to the mean, in the PE's colour. `top`: minimum for the upper end
+// of the axis.
 function loadBars(f, texts, focus, top) {
   const {mean, setting: {pes}} = f;
   const description = `Loads of ${pes} PEs: from ${texts.idlest} to ${texts.busiest}, mean ${texts.mean}.`;
-  return bars(
-    description, ["PE", "load / mean"], Array.from(f.loads, (load) => mean > 0 ? load / mean : 0), 1, {
-      top: Math.max(top, 1.2),
-      colour: (from, count) => focus >= from && focus < from + count && focus !== null ?
-        "var(--ink)" :
-        bright(from, pes, 0.69, focus === null ? 1 : 0.45)
-    });
+  return bars(description, ["PE", "load / mean"], Array.from(f.loads, (load) => mean > 0 ? load / mean : 0), 1, {
+    top: Math.max(top, 1.2),
+    colour: (first, count) => focus >= first && focus < first + count && focus !== null ?
+      "var(--ink)" :
+      peColour(first, pes, 0.69, focus === null ? 1 : 0.45)
+  });
 }
 
-// Load imbalance u over the offset, for the offsets computed so far. `here`: the current offset and fold, or null.
-function offsetCurves(f, texts, {values, known, best}, root, here) {
+// Returns a chart with the imbalance u of each offset computed so far. `current`: the current offset and fold, or null.
+function offsetCurves(f, texts, {values, known, best}, root, current) {
   const side = values.cyclic.length, last = Math.max(side - 1, 1), folds = Object.entries(values);
   const max = folds.reduce(
     (top, [, us]) => us.subarray(0, known).reduce((a, u) => Math.max(a, u), top), Math.max(f.imbalance, 1e-3));
   const {x, y, grid} = plane(linear("offset p", last, 5, true), linear("u", 1.06 * max, 4));
   const curve = ([fold, us]) => line(
-    `curve ${fold}${here && here.fold !== fold ? " dim" : ""}`,
+    `curve ${fold}${current && current.fold !== fold ? " dim" : ""}`,
     ...Array.from(us.subarray(0, known), (u, p) => [x(p), y(u)]));
   const minimum =
     best ? `minimum ${fixed(best.u, 3)} at p = ${best.offset}, fold ${best.fold}` : "not all computed yet";
   return chart(`u of the offsets 0 to ${side - 1}, current ${texts.u}; ${minimum}.`, [
     grid, root < side ? [line("root", [x(root), TOP], [x(root), BOTTOM])] : [], known > 0 ? folds.map(curve) : [],
     best ? [dot(x(best.offset), y(best.u), 4, "ring")] : [],
-    here ?
-      [line("mark", [x(here.offset), TOP], [x(here.offset), BOTTOM]), dot(x(here.offset), y(f.imbalance), 5, "here")] :
+    current ?
+      [
+        line("mark", [x(current.offset), TOP], [x(current.offset), BOTTOM]),
+        dot(x(current.offset), y(f.imbalance), 5, "here")
+      ] :
       [line("mark", [LEFT, y(f.imbalance)], [RIGHT, y(f.imbalance)])]
   ]);
 }
 
 // Draws the enlarged centre of the image: the owner of each pixel, marks on the pixels of one PE, and the shortest
-// vector between them.
+// vector between pixels of this PE. Returns the PE and the number of pixels along a side.
 function drawCloseUp(canvas, f, {width: across, height: down}, focus) {
   const context = canvas.getContext("2d"), {owners, vector, setting: {pes}} = f,
         reach = vector ? Math.ceil(Math.hypot(...vector)) : 12;
@@ -81,29 +87,29 @@ function drawCloseUp(canvas, f, {width: across, height: down}, focus) {
         middle = Math.floor(cells / 2);
   const row0 = Math.floor((down - cells) / 2), column0 = Math.floor((across - cells) / 2);
   const ownerAt = (row, column) => owners[(row0 + row) * across + column0 + column],
-        own = focus ?? ownerAt(middle, middle);
-  let from = null;  // the pixel of that PE nearest to the centre
+        shownPe = focus ?? ownerAt(middle, middle);
+  let nearest = null;  // the pixel of shownPe that is nearest to the centre
   for (let row = 0; row < cells; ++row)
     for (let column = 0; column < cells; ++column) {
-      const pe = ownerAt(row, column), away = Math.hypot(row - middle, column - middle);
-      context.fillStyle = bright(pe, pes, pe === own ? 0.8 : 0.5 + 0.06 * (pe & 1));
+      const pe = ownerAt(row, column), distance = Math.hypot(row - middle, column - middle);
+      context.fillStyle = peColour(pe, pes, pe === shownPe ? 0.8 : 0.5 + 0.06 * (pe & 1));
       context.fillRect(column * cell, row * cell, cell + 0.5, cell + 0.5);
-      if (pe !== own) continue;
+      if (pe !== shownPe) continue;
       context.fillStyle = "#ffffff";
       context.fillRect((column + 0.12) * cell, (row + 0.12) * cell, 0.76 * cell, 0.76 * cell);
-      if (from === null || away < from.away) from = {row, column, away};
+      if (nearest === null || distance < nearest.distance) nearest = {row, column, distance};
     }
-  if (vector && from)
-    drawArrow(context, (from.column + 0.5) * cell, (from.row + 0.5) * cell, vector[1] * cell, vector[0] * cell);
-  return {pe: own, cells};
+  if (vector && nearest)
+    drawArrow(context, (nearest.column + 0.5) * cell, (nearest.row + 0.5) * cell, vector[1] * cell, vector[0] * cell);
+  return {pe: shownPe, cells};
 }
 
 function drawArrow(context, x, y, dx, dy) {
   const length = Math.hypot(dx, dy), tip = Math.min(13, length / 2), [ux, uy] = [dx / length, dy / length];
   context.lineCap = context.lineJoin = "round";
-  for (const [colour, wide] of [["#000000", 7], ["#ffd84d", 3.5]]) {
+  for (const [colour, width] of [["#000000", 7], ["#ffd84d", 3.5]]) {
     context.strokeStyle = colour;
-    context.lineWidth = wide;
+    context.lineWidth = width;
     context.beginPath();
     context.moveTo(x, y);
     context.lineTo(x + dx, y + dy);

@@ -1,19 +1,21 @@
-// Computes owners, loads and figures of a setting. The results equal raya's in every digit (kernels/shared/mapping.h,
-// host/ring/route.cpp, host/model/); tests/tools/test_explore.py compares them. JavaScript's numbers are exact for
-// integers below 2^53; products of 32-bit integers use Math.imul. This file does not depend on the page.
+// Computes owners, loads and other figures of a setting. The results equal raya's in every digit
+// (kernels/shared/mapping.h, host/ring/route.cpp, host/model/); tests/tools/test_explore.py compares them. JavaScript's
+// numbers are exact for integers below 2^53; products of 32-bit integers use Math.imul. This file does not depend on
+// the page.
 //
-// A setting is {kind, offset, fold, pes, a, b, seed}. kind: "slots", "rows", "blocks", "grid", "tiles" or "random". a,
-// b: rows and columns of a grid, or width and height of a tile in pixels.
+// A setting is {kind, offset, fold, pes, a, b, seed}. kind: "slots", "rows", "blocks", "grid", "tiles" or "random". a
+// and b: numbers of rows and columns of a grid, or width and height of a tile in pixels.
 "use strict";
 
 // --- Owners of pixels
 
 // Returns floor(n / d) of integers, n < 2^53. The result is exact: a quotient that is not an integer is at least 1 / d
-// below the next integer, which is more than the rounding error of a double.
+// below the next integer, and the rounding error of a double is smaller.
 const floorRatio = (n, d) => Math.floor(n / d);
+// Returns the number of integers first, first + step, ... below `end`.
 const stepsBelow = (first, step, end) => first < end ? floorRatio(end - first - 1, step) + 1 : 0;
 
-// Returns the function (row, slot) -> PE of a mapping with slots.
+// Returns the function that maps (row, slot) to a PE, for a mapping with slots.
 function slotOwner({fold, pes}, {width, height}) {
   if (fold === "cyclic")
     return pes <= width ? (row, slot) => slot % pes :
@@ -25,7 +27,7 @@ function slotOwner({fold, pes}, {width, height}) {
   };
 }
 
-// The finaliser of MurmurHash3 (A. Appleby, public domain).
+// Returns x after the finaliser of MurmurHash3 (A. Appleby, public domain).
 function mixed(x) {
   x = Math.imul(x ^ x >>> 16, 0x85ebca6b);
   x = Math.imul(x ^ x >>> 13, 0xc2b2ae35);
@@ -49,7 +51,7 @@ function scrambler(count, seed) {
   };
 }
 
-// Returns the function (row, column) -> PE of any other mapping.
+// Returns the function that maps (row, column) to a PE, for a mapping without slots.
 function plainOwner({kind, pes, a, b, seed}, {width, height}) {
   if (kind === "rows") return (row) => row % pes;
   if (kind === "blocks") return (row) => floorRatio(row * pes, height);
@@ -82,7 +84,7 @@ function loadsOf(owners, costs, pes) {
   return loads;
 }
 
-// Same formulas as in host/model/time_model.cpp, in the same order of operations.
+// Uses the formulas of host/model/time_model.cpp, in the same order of operations.
 function balanceOf(loads) {
   const pes = loads.length;
   let sum = 0, busiest = 0, idlest = 0;
@@ -104,15 +106,15 @@ function balanceOf(loads) {
   };
 }
 
-// Computes u of the offsets from `first` on, until time `deadline`, and writes them to curves.cyclic and curves.block,
-// if these exist. Returns the next offset.
+// Computes the imbalance u of the offsets from `first` on until time `deadline`, and writes the values to the curves
+// that exist: curves.cyclic, curves.block. Returns the first offset that is not computed.
 function addToCurves(curves, costs, size, pes, first, deadline) {
   const {width, height} = size, folds = Object.keys(curves);
   const owner = folds.map((fold) => slotOwner({fold, pes}, size));
   const loads = new Float64Array(pes), slots = new Float64Array(width);
   let offset = first;
   for (; offset < width && performance.now() < deadline; ++offset) {
-    // If P <= W, every PE has whole slots, so the loads for both folds are sums of the slots' loads.
+    // If P <= W, every PE owns whole slots, so the PEs' loads are sums of the slots' loads for both folds.
     if (pes <= width) {
       slots.fill(0);
       for (let row = 0, begin = 0, at = 0; row < height; ++row, at += width) {
@@ -139,21 +141,22 @@ function addToCurves(curves, costs, size, pes, first, deadline) {
 
 // --- Neighbours
 
-// For the left, right, upper and lower neighbour: found[d] = 1 if, for some pixel, the PE of that neighbour is i + d
-// modulo P, where i is the pixel's PE.
+// Returns an array for each of the left, right, upper and lower neighbour. Element d is 1 if there is a pixel such that
+// the pixel's owner is PE i and the neighbour's owner is PE (i + d) mod P.
 function distancesOf(owners, {width, height}, pes) {
   const [left, right, above, below] = [0, 1, 2, 3].map(() => new Uint8Array(pes));
-  const away = (from, to) => from >= to ? from - to : from + pes - to;
+  const distance = (pe, origin) => pe >= origin ? pe - origin : pe + pes - origin;
   for (let row = 0, at = 0; row < height; ++row)
     for (let column = 0; column < width; ++column, ++at) {
-      const own = owners[at];
-      if (column > 0) left[away(owners[at - 1], own)] = right[away(own, owners[at - 1])] = 1;
-      if (row > 0) above[away(owners[at - width], own)] = below[away(own, owners[at - width])] = 1;
+      const owner = owners[at];
+      if (column > 0) left[distance(owners[at - 1], owner)] = right[distance(owner, owners[at - 1])] = 1;
+      if (row > 0) above[distance(owners[at - width], owner)] = below[distance(owner, owners[at - width])] = 1;
     }
   return [left, right, above, below];
 }
 
-// Minimum number of rotations (circular shifts) that cover all distances: some in one direction, the rest in the other.
+// Returns the minimum number of rotations (circular shifts) that cover all distances: some distances in one direction,
+// the others in the opposite direction. found: result of distancesOf() for one neighbour.
 function rotationsOf(found) {
   const pes = found.length, distances = [];
   for (let d = 0; d < pes; ++d)
@@ -165,15 +168,16 @@ function rotationsOf(found) {
   return minimum;
 }
 
-// Communication for the 3 x 3 filter: rotations of the ring, or transfers or broadcasts over the bus.
+// Returns the numbers of rotations of the ring, transfers over the bus, and broadcasts over the bus that the 3 x 3
+// filter needs; each of the three suffices.
 function movesOf(owners, size, pes) {
   const moves = {rotations: 0, transfers: 0, broadcasts: 0};
   for (const found of distancesOf(owners, size, pes)) {
-    let distant = 0;
-    for (let d = 1; d < pes; ++d) distant += found[d];
+    let otherPes = 0;  // number of other PEs from which a PE needs pixels
+    for (let d = 1; d < pes; ++d) otherPes += found[d];
     moves.rotations += rotationsOf(found);
-    moves.transfers += distant * pes;
-    moves.broadcasts += distant > 0 ? pes : 0;
+    moves.transfers += otherPes * pes;
+    moves.broadcasts += otherPes > 0 ? pes : 0;
   }
   return moves;
 }
@@ -191,7 +195,7 @@ function shortestVector(offset, side) {
   return shortest;
 }
 
-// Returns null if the pixels of a PE do not form a lattice.
+// Returns the shortest vector between pixels of a PE; null if they do not form a lattice.
 function vectorOf({kind, fold, offset, pes, a, b}, {width}) {
   if (kind === "slots" && (fold === "cyclic" ? width % pes === 0 : width === pes))
     return shortestVector(offset % pes, pes);
@@ -206,12 +210,12 @@ function figuresOf(setting, size, costs, rates) {
   const owners = ownersOf(setting, size), loads = loadsOf(owners, costs, setting.pes),
         sizes = new Int32Array(setting.pes);
   for (const pe of owners) ++sizes[pe];
-  const share = sizes.reduce((max, pixels) => Math.max(max, pixels), 0);
+  const maxShare = sizes.reduce((max, pixels) => Math.max(max, pixels), 0);
   const balance = balanceOf(loads), moves = movesOf(owners, size, setting.pes);
   const figures =
-    {setting, owners, loads, sizes, share, ...balance, ...moves, vector: vectorOf(setting, size), time: null};
+    {setting, owners, loads, sizes, maxShare, ...balance, ...moves, vector: vectorOf(setting, size), time: null};
   if (rates) {  // host/model/time_model.cpp
-    const words = moves.rotations * setting.pes * 3 * share;
+    const words = moves.rotations * setting.pes * 3 * maxShare;
     figures.time = {
       compute: 1e-6 * rates.cycle_ns * balance.max,
       rotations: moves.rotations * rates.rotation_sync_ms + 1e3 * words / rates.link_words_per_s / setting.pes
@@ -222,19 +226,19 @@ function figuresOf(setting, size, costs, rates) {
 
 // --- As text
 
-// Formats with `digits` decimals as raya does: ties are rounded to even, whereas toFixed() rounds them up. 100 decimals
-// represent doubles of typical magnitude exactly.
+// Formats `value` with `digits` decimals as raya does: ties are rounded to even, whereas toFixed() rounds ties up. 100
+// decimals represent doubles of typical magnitude exactly.
 function fixed(value, digits) {
-  const all = value.toFixed(100), point = all.indexOf("."), cut = point + 1 + digits;
-  if (!/^50*$/.test(all.slice(cut))) return value.toFixed(digits);
-  const down = all.slice(0, digits ? cut : point);
-  return Number(down.at(-1)) % 2 === 0 ? down : value.toFixed(digits);
+  const exact = value.toFixed(100), point = exact.indexOf("."), cut = point + 1 + digits;
+  if (!/^50*$/.test(exact.slice(cut))) return value.toFixed(digits);
+  const truncated = exact.slice(0, digits ? cut : point);
+  return Number(truncated.at(-1)) % 2 === 0 ? truncated : value.toFixed(digits);
 }
 
 // Groups thousands with narrow no-break spaces.
 const grouped = (number) => String(number).replace(/\B(?=(\d{3})+(\.|$))(?<!\.\d*)/g, "\u202f");
 
-// host/model/unit_text.cpp
+// Formats a time as time_text() in host/model/unit_text.cpp does.
 function timeText(ms) {
   const units = [[1e4, 1, "ms"], [6e5, 1e3, "s"], [3.6e7, 6e4, "min"], [Infinity, 3.6e6, "h"]];
   const [, unit, name] = units.find(([below]) => ms < below);
@@ -257,7 +261,7 @@ function textsOf(f) {
     mean: `${grouped(fixed(f.mean, 1))} cycles`,
     idlest: `${grouped(f.loads[f.idlest])} cycles (PE ${f.idlest})`,
     vector: vectorText(f.vector),
-    rotations: `${grouped(f.rotations)} rotations of ${grouped(3 * f.share)} words`,
+    rotations: `${grouped(f.rotations)} rotations of ${grouped(3 * f.maxShare)} words`,
     bus: `${grouped(f.transfers)} transfers or ${grouped(f.broadcasts)} broadcasts`,
     time: f.time ? `${timeText(f.time.compute)} to trace, ${timeText(f.time.rotations)} to rotate` :
                    "unknown for this machine",

@@ -8,7 +8,8 @@ const rowName = (row) =>
   `${str(row, "kernel")}, ${str(row, "format")}, ${num(row, "lanes")} lanes, group ${num(row, "group")}`;
 const rowCells = (row) => [str(row, "kernel"), str(row, "format"), count(row, "lanes"), count(row, "group")];
 
-// The first elements of compared.rows are the rows of this run, in the order of the report (compare_bench()).
+// Returns the section of the rates. compared.rows begins with the rows of this run, in the order of the report
+// (compare_bench()).
 function rates(r, rows) {
   const compared = has(r, "compared") ? list(r, "compared.rows", "object") : [];
   const description = `Rays per second, medians of the samples${compared.length ? "; lines: the baseline" : ""}.`;
@@ -39,11 +40,12 @@ function rates(r, rows) {
 function comparison(r) {
   if (!has(r, "compared"))
     return [paragraph("No baseline; ", code("raya bench --compare"), " compares a run with one.")];
-  const c = member(r, "compared", "object"), heads = ["best Mrays/s", "was", "change", "median", "was", "change"];
+  const c = member(r, "compared", "object"), rateHeader = ["best Mrays/s", "was", "change", "median", "was", "change"];
   const kindOf = (text) => /^(OTHER IMAGE|SLOWER$)/.test(text) ? "no" :
     ["faster", "as before"].includes(text)                     ? "yes" :
                                                                  "open";
-  const side = (row, key) => {
+  // Returns the cells with a rate of both runs and its change. key: "best" or "median".
+  const rateCells = (row, key) => {
     const [now, was] =
       ["mrays_per_s", "mrays_per_s_was"].map((name) => has(row, name) ? num(row, `${name}.${key}`) : null);
     const change = 100 * (now / was - 1);
@@ -59,16 +61,16 @@ function comparison(r) {
       `${num(c, "other_images")} with another image.`),
     list(c, "remarks", "text").map(message),
     table(
-      "Comparison with the baseline", ["kernel", "format", "lanes", "group", ...heads, "verdict"],
+      "Comparison with the baseline", ["kernel", "format", "lanes", "group", ...rateHeader, "verdict"],
       list(c, "rows", "object")
         .map(
           (row) =>
-            [...rowCells(row), ...side(row, "best"), ...side(row, "median"),
+            [...rowCells(row), ...rateCells(row, "best"), ...rateCells(row, "median"),
              verdict(kindOf(str(row, "verdict")), row.verdict)]))
   ];
 }
 
-// One chart for each number format, because each peak is measured for one format.
+// Returns a chart for each number format, because a peak is measured for one format.
 function rooflines(rows) {
   const formats = new Map(), shown = [];
   for (const row of rows) {
@@ -77,14 +79,15 @@ function rooflines(rows) {
     const format = str(row, "peak.format");
     formats.set(format, [...formats.get(format) ?? [], row]);
   }
-  for (const [format, own] of formats)
+  for (const [format, formatRows] of formats)
     shown.push(...part(
       `In ${format}`,
       ...rooflineOf(
-        member(own.at(-1), "peak", "object"), own.map((row) => [rowName(row), member(row, "roofline", "object")])),
-      own.length > 1 &&
+        member(formatRows.at(-1), "peak", "object"),
+        formatRows.map((row) => [rowName(row), member(row, "roofline", "object")])),
+      formatRows.length > 1 &&
         note(
-          "Shares refer to the peak measured with the row's own lanes; chart and text show the peak of the last row.")));
+          "Percentages refer to the peak measured with the row's own lanes; chart and text show the peak of the last row.")));
   return shown.length ?
     shown :
     [paragraph(
@@ -97,7 +100,7 @@ function showBench(r) {
   const best = rows.reduce((a, b) => num(b, "mrays_per_s.best") > num(a, "mrays_per_s.best") ? b : a);
   head(
     "raya bench", `${str(rows[0], "scene")} on ${str(r, "device.name")}`,
-    paragraph(`${str(rows[0], "size")} pixels, ${str(rows[0], "array")}, ${count(rows[0], "rays")} rays a picture.`),
+    paragraph(`${str(rows[0], "size")} pixels, ${str(rows[0], "array")}, ${count(rows[0], "rays")} rays an image.`),
     tiles([
       ["best rate", `${rate(num(best, "mrays_per_s.best"))} Mrays/s`], ["by", rowName(best)],
       ["rows", String(rows.length)]
@@ -152,15 +155,14 @@ function deviceChecks(device) {
 
 function showVerify(r) {
   const devices = list(r, "devices", "object");
-  const right = (device) => num(device, "failed") > 0 ? verdict("no", "failed") :
-    num(device, "passed") === 0                       ? verdict("open", "was not checked") :
-                                                        verdict("yes", "passed every check that ran");
+  const deviceVerdict = (device) => num(device, "failed") > 0 ? verdict("no", "failed") :
+    num(device, "passed") === 0                               ? verdict("open", "was not checked") :
+                                                                verdict("yes", "passed every check that ran");
   head(
     "raya verify", devices.length === 1 ? str(devices[0], "name") : `${devices.length} devices`,
-    devices.map((device) => paragraph(`${str(device, "name")} `, right(device), ".")),
+    devices.map((device) => paragraph(`${str(device, "name")} `, deviceVerdict(device), ".")),
     note(`Depth: ${
-      str(
-        r, "depth")}. Each layer relies on those before it, so the first failure is nearest to the cause.`));
+      str(r, "depth")}. Each layer relies on the layers before it, so the first failure is nearest to the cause.`));
   devices.forEach((device, i) => section(`device-${i + 1}`, device.name, () => deviceChecks(device)));
 }
 
@@ -196,11 +198,11 @@ function goalRows(r) {
 
 function stageRows(r, steps) {
   const rows = list(r, "stages", "object").map((stage, i) => {
-    const own = steps.filter((step) => num(step, "stage") === i + 1), kinds = own.map(stepKind),
-          of = (kind) => String(kinds.filter((k) => k === kind).length);
+    const stageSteps = steps.filter((step) => num(step, "stage") === i + 1), kinds = stageSteps.map(stepKind),
+          countOf = (kind) => String(kinds.filter((k) => k === kind).length);
     return [
-      String(i + 1), str(stage, "name") + (stage.done ? "" : " (not done)"), of("yes"), of("no"), of("open"),
-      grouped(sum(own.map((step) => num(step, "seconds"))))
+      String(i + 1), str(stage, "name") + (stage.done ? "" : " (not done)"), countOf("yes"), countOf("no"),
+      countOf("open"), grouped(sum(stageSteps.map((step) => num(step, "seconds"))))
     ];
   });
   return [table("Stages", ["stage", "what", "right", "wrong", "not here", "s"], rows)];
@@ -210,14 +212,14 @@ const stepText = (step) =>
   str(step, "command") && make("pre", {tabindex: 0}, `$ ${step.command}\n${str(step, "output")}`);
 
 function showGpuDay(r) {
-  const steps = list(r, "steps", "object"), of = (kind) => steps.filter((step) => stepKind(step) === kind),
-        wrong = of("no");
+  const steps = list(r, "steps", "object"), stepsOf = (kind) => steps.filter((step) => stepKind(step) === kind),
+        wrong = stepsOf("no");
   head(
     "raya gpu_day", str(r, "device") || "no device",
     paragraph(`${str(r, "raya")}, ${str(r, "date")}, ${str(r, "system")}.`),
     r.small === true && message("Small images: the rates are not meaningful."), tiles([
-      ["steps right", String(of("yes").length)], ["wrong", String(wrong.length)],
-      ["not here", String(of("open").length)]
+      ["steps right", String(stepsOf("yes").length)], ["wrong", String(wrong.length)],
+      ["not here", String(stepsOf("open").length)]
     ]));
   section(
     "wrong", "Wrong",

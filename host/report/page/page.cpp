@@ -10,14 +10,16 @@ namespace {
 
 const std::string& asset(const std::string& name) { return embedded_files().at("host/report/page/" + name); }
 
-// Escapes <, > and &, so that no string looks like a tag or an entity. JSON has these characters only within strings.
+// Escapes <, > and &, so that the browser finds no tag or entity in a string. JSON has these characters only in
+// strings.
 std::string escape_tags(std::string json) {
     for (const auto& [sign, escape] : {std::pair{"<", "\\u003c"}, {">", "\\u003e"}, {"&", "\\u0026"}})
         json = replaced(std::move(json), sign, escape);
     return json;
 }
 
-// Replaces every {{NAME}} in `text` by the asset NAME or the report. Inserted text is not searched again.
+// Replaces every {{NAME}} in `text` by the asset NAME, and {{report}} by the report. Inserted text is not searched
+// again.
 std::string fill_template(const std::string& text, const Json& report) {
     std::string page;
     std::size_t from = 0;

@@ -1,7 +1,8 @@
-// Displays the report embedded in the page. If that fails, shows the error above the JSON.
+// Displays the report that is embedded in the page. If an error occurs, shows its message above the JSON.
 "use strict";
 
-const SHOWN = {
+// [kind of report]: function that displays it.
+const VIEWERS = {
   "raya render": showRender,
   "raya bench": showBench,
   "raya verify": showVerify,
@@ -11,8 +12,8 @@ const SHOWN = {
 
 async function show() {
   const report = JSON.parse($("report").textContent), kind = str(report, "kind");
-  if (!Object.hasOwn(SHOWN, kind)) throw new Error(`unknown kind ${kind}`);
-  await SHOWN[kind](report);
+  if (!Object.hasOwn(VIEWERS, kind)) throw new Error(`unknown kind ${kind}`);
+  await VIEWERS[kind](report);
 }
 
 const ready = show().then(

@@ -1,10 +1,11 @@
-// Building blocks of pages: access to members of a report, HTML elements, tables. Texts from a report are written only
-// to text nodes and inert attributes, never to HTML.
+// Building blocks of pages: access to members of a report, HTML elements, tables. Text from a report is never parsed as
+// HTML: it is written only to text nodes and inert attributes.
 "use strict";
 
 const $ = (id) => document.getElementById(id);
 
-// --- Members of a report, by paths such as "load.mean". Throws an Error for a missing member or a wrong type.
+// --- Members of a report, by paths such as "load.mean". All functions except find() and has() throw an Error if the
+// member is missing or has a wrong type.
 
 const TYPES = {
   number: (value) => typeof value === "number",
@@ -38,15 +39,15 @@ const list = (object, path, type) => member(object, path, "list").map((value, i)
 
 // --- Elements
 
-// `children`: elements, texts, and arrays of these; null and false are skipped.
+// Returns an element. `children`: elements, texts, arrays of elements and texts; null and false are skipped.
 function make(tag, attributes = {}, ...children) {
-  const made = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  made.append(...children.flat(Infinity).filter((child) => child !== null && child !== false));
-  return made;
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children.flat(Infinity).filter((child) => child !== null && child !== false));
+  return element;
 }
 
-// Formats text: `code` in backticks, +- as ±.
+// Returns the text as nodes: text in backticks as code, +- as ±.
 const prose = (text) => text.replaceAll("+-", "±").split("`").map(
   (part, i, parts) => i % 2 && i < parts.length - 1 ? make("code", {}, part) :
     i % 2                                           ? "`" + part :
@@ -58,20 +59,20 @@ const message = (text) => make("p", {class: "message"}, prose(text));
 const code = (text) => make("code", {}, text);
 const part = (title, ...children) => children.flat().length ? [make("h3", {}, prose(title)), ...children] : [];
 
-// rows: [name, text or element]; rows whose text is "" are skipped.
+// Return a list of names and values. rows: [name, text or element]; rows whose text is "" are skipped.
 const definitions = (rows, attributes = {}) => make(
   "dl", attributes,
-  rows.filter(([, what]) => what !== "").map(([name, what]) => [make("dt", {}, name), make("dd", {}, what)]));
+  rows.filter(([, value]) => value !== "").map(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
 const tiles = (rows) => make(
   "dl", {class: "chief"},
-  rows.filter(([, what]) => what !== "").map(([name,
-                                               what]) => make("div", {}, make("dt", {}, name), make("dd", {}, what))));
+  rows.filter(([, value]) => value !== "")
+    .map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value))));
 
 // kind: "yes", "no" or "open".
 const verdict = (kind, text) => make("span", {class: `verdict ${kind}`}, text);
 
-// --- Tables. Cells: text, numbers as text, or elements. Columns of numbers are right-aligned and sortable by value;
-// long tables are collapsed.
+// --- Tables. A cell is a text, a number as text, or an element. Columns of numbers are right-aligned and sorted by
+// value. Tables with more than OPEN_ROWS rows are collapsed.
 
 const OPEN_ROWS = 24, MAX_ROWS = 400;
 const NUMBER = /^(-|[-+]?(inf|[\d.,\u202f]+(e[-+]?\d+)?)( (%|ms|s|min|h))?)?$/;
@@ -96,6 +97,7 @@ function wideTable(label, header, rows) {
     make("table", {"aria-label": label}, make("thead", {}, make("tr", {}, heads)), body));
 }
 
+// `rest`: text of the note below a table with more than MAX_ROWS rows.
 function table(label, header, rows, rest = "All rows are in the report.") {
   if (rows.length === 0) return [];
   const whole = wideTable(label, header, rows.slice(0, MAX_ROWS));
@@ -104,7 +106,8 @@ function table(label, header, rows, rest = "All rows are in the report.") {
   return [make("details", {}, make("summary", {}, `${rows.length} rows`), whole, cut)];
 }
 
-// Sorts by value, with cells without a number last. A second click reverses the order.
+// Sorts the rows by a column; in a column of numbers, cells without a number come last. If the rows are already sorted
+// in ascending order, sorts them in descending order.
 function sortBy(head, column, body) {
   const sign = head.getAttribute("aria-sort") === "ascending" ? -1 : 1, numeric = head.className === "n";
   const key = (row) => {
@@ -116,7 +119,7 @@ function sortBy(head, column, body) {
   const keyed = [...body.rows].map((row) => [key(row), row]);
   keyed.sort(([a], [b]) => a === b ? 0 : sign * (numeric ? a - b : a.localeCompare(b)));
   body.append(...keyed.map(([, row]) => row));
-  for (const other of head.parentElement.cells) other.removeAttribute("aria-sort");
+  for (const cell of head.parentElement.cells) cell.removeAttribute("aria-sort");
   head.setAttribute("aria-sort", sign > 0 ? "ascending" : "descending");
 }
 
@@ -140,7 +143,7 @@ function section(id, title, build) {
   nav.firstChild.append(make("li", {}, make("a", {href: `#${id}`}, title)));
 }
 
-// Builds the head of the page. If build() throws, shows the error instead; the sections follow in any case.
+// Builds the head of the page. If build() throws, shows the error instead.
 function heading(build) {
   try {
     build();

@@ -1,7 +1,7 @@
 // The page of a report of `raya render`.
 "use strict";
 
-const percent = (share, digits = 1) => `${fixed(100 * share, digits)} %`;
+const percent = (fraction, digits = 1) => `${fixed(100 * fraction, digits)} %`;
 const sum = (values) => values.reduce((a, b) => a + b, 0);
 const titled = (name) => name.replaceAll("_", " ");
 const kilobytes = (bytes) => bytes < 1024 ? `${bytes} bytes` : `${fixed(bytes / 1024, 1)} KB`;
@@ -14,7 +14,7 @@ function rateText(rays) {
   return `${fixed(rays / unit, 1)} ${name}`;
 }
 
-// An image embedded in the report.
+// Returns an element with an image that is embedded in the report.
 function picture(r, path, description) {
   const png = str(r, path);
   if (!/^iVBORw0KGgo[\w+/]*=*$/.test(png)) throw new Error(`${path} is not a PNG file in base64`);
@@ -26,20 +26,20 @@ function picture(r, path, description) {
 function renderHead(r) {
   const torus = has(r, "torus"), machine = member(r, "machine", "object"), seconds = num(r, "measured.render_s");
   const rays = sum(["primary", "reflected", "refracted", "shadow"].map((kind) => num(r, `rays.${kind}`)));
-  const where = torus ? `${num(machine, "pes")} nodes, ${str(machine, "topology")}` :
-                        `${num(machine, "pes")} PEs, ${str(machine, "mapping")} mapping` +
+  const machineText = torus ? `${num(machine, "pes")} nodes, ${str(machine, "topology")}` :
+                              `${num(machine, "pes")} PEs, ${str(machine, "mapping")} mapping` +
       (has(machine, "offset") ? `, offset ${num(machine, "offset")}, fold ${str(machine, "fold")}` : "");
-  const whole = torus ? "modelled_ms.stepwise" : "modelled_ms.total";
+  const modelledPath = torus ? "modelled_ms.stepwise" : "modelled_ms.total";
   head(
     "raya render", str(r, "scene"),
     paragraph(
-      `${num(r, "image.width")} × ${num(r, "image.height")} pixels on ${str(machine, "name")} (${where}), ` +
+      `${num(r, "image.width")} × ${num(r, "image.height")} pixels on ${str(machine, "name")} (${machineText}), ` +
       `${str(machine, "format")}, ${num(machine, "bounces")} bounces.`),
     tiles([
       ["imbalance u", fixed(num(r, "load.imbalance"), 3)],
       ["speed-up", `${fixed(num(r, "load.speedup"), 1)} of ${num(machine, "pes")}`],
       ["efficiency", percent(num(r, "load.efficiency"))], ["rays", grouped(rays)],
-      [torus ? "modelled, step by step" : "modelled time", has(r, whole) ? timeText(num(r, whole)) : ""],
+      [torus ? "modelled, step by step" : "modelled time", has(r, modelledPath) ? timeText(num(r, modelledPath)) : ""],
       ["measured", timeText(1e3 * seconds)], ["measured rate", rateText(rays / seconds)]
     ]),
     list(r, "warnings", "text").map(message));
@@ -47,32 +47,33 @@ function renderHead(r) {
 
 // --- Image, and maps of loads and owners
 
+// Returns the range of the loads as text.
 const range = (r) => !(num(r, "load.mean") > 0) ?
   "all 0" :
   `from ${percent(1 - num(r, "load.min") / num(r, "load.mean"))} below to ${
     percent(num(r, "load.max") / num(r, "load.mean") - 1)} above the mean`;
 
-// Two maps: loads, with at most 256 x 256 cells, each the mean of its pixels; and the owners of the pixels in the upper
-// left corner.
+// Returns two maps. The map of loads has at most 256 x 256 cells; the value of a cell is the mean over its pixels of
+// the load of the pixel's owner. The map of owners shows the pixels in the upper left corner.
 function ownerMaps(r, size) {
   const {width, height} = size, machine = member(r, "machine", "object"), setting = settingOf(stateOf(machine, size));
   const loads = list(r, "load.per_pe", "number"), owners = ownersOf(setting, size), colour = diverging(loads);
   const shrink = Math.max(1, Math.max(width, height) / 256), w = Math.max(1, Math.round(width / shrink)),
         h = Math.max(1, Math.round(height / shrink));
   if (loads.length !== setting.pes) throw new Error("load.per_pe does not have machine.pes values");
-  const mean = (row, column) => {
+  const cellColour = (row, column) => {
     const [top, bottom, left, right] =
       [row * height / h, (row + 1) * height / h, column * width / w, (column + 1) * width / w].map(Math.floor);
-    let all = 0;
+    let total = 0;
     for (let y = top; y < bottom; ++y)
-      for (let x = left; x < right; ++x) all += loads[owners[y * width + x]];
-    return colour(all / ((bottom - top) * (right - left)));
+      for (let x = left; x < right; ++x) total += loads[owners[y * width + x]];
+    return colour(total / ((bottom - top) * (right - left)));
   };
   const side = [Math.min(width, 48), Math.min(height, 48)], mapping = mappingText(stateOf(machine, size));
   const hues = Uint32Array.from({length: setting.pes}, (_, pe) => wordOf(rgbOf(0.72, 0.14, hueOf(pe, setting.pes))));
   return [
     caption(
-      pixelMap(w, h, `Map of the image: each pixel coloured by the load of its PE, ${range(r)}`, mean),
+      pixelMap(w, h, `Map of the image: each pixel coloured by the load of its PE, ${range(r)}`, cellColour),
       `Each pixel by the load of its PE, ${range(r)}. ${RED_AND_BLUE}`),
     caption(
       pixelMap(
@@ -83,20 +84,22 @@ function ownerMaps(r, size) {
   ];
 }
 
-// Returns the number of node (i, j, k), as kernels/shared/torus.h does. On a 2-D torus, the slabs of equal k are placed
-// next to each other.
+// Returns the function that maps (i, j, k) to the number of the node, as kernels/shared/torus.h does. On a 2-D torus
+// (`flat`), the slabs of nodes with equal k are next to each other.
 function nodeNumbers([I, J, K], flat) {
   let slabs = 1;
-  const apart = (c) => Math.abs(I * c - J * (K / c));
+  const sideDifference = (c) => Math.abs(I * c - J * (K / c));
   for (let c = 2; c <= K; ++c)
-    if (K % c === 0 && apart(c) < apart(slabs)) slabs = c;
+    if (K % c === 0 && sideDifference(c) < sideDifference(slabs)) slabs = c;
   return flat ? (i, j, k) => i + I * (k % slabs) + I * slabs * (j + J * floorRatio(k, slabs)) :
                 (i, j, k) => i + I * (j + J * k);
 }
 
-// One cell for each node. Slices of equal z are arranged in rows; within a slice x points to the right, y down.
+// Returns a map with a cell for each node. A slice has the nodes of equal z; x points to the right, y down. The slices
+// are arranged in rows.
 function nodeMap(r, values, description) {
-  const nodes = list(r, "torus.nodes", "number"), [I, J, K] = nodes, slices = Math.ceil(Math.sqrt(K));  // per row
+  const nodes = list(r, "torus.nodes", "number"), [I, J, K] = nodes,
+        slices = Math.ceil(Math.sqrt(K));  // slices per row
   if (nodes.length !== 3 || I * J * K !== values.length)
     throw new Error("a list does not have one value for each node");
   const number = nodeNumbers(nodes, str(r, "torus.links") === "torus2d"), colour = diverging(values);
@@ -120,7 +123,7 @@ function pictures(r) {
   const size = {width: whole(r, "image.width"), height: whole(r, "image.height")}, shown = [];
   const pixels = `${size.width} × ${size.height} pixels`, small = num(r, "image.preview.width");
   shown.push(caption(
-    picture(r, "image.preview.png", `The rendered picture of ${str(r, "scene")}, ${pixels}`),
+    picture(r, "image.preview.png", `The rendered image of ${str(r, "scene")}, ${pixels}`),
     `${str(r, "image.file")}, ${pixels}${
       small < size.width ? `; shown with ${small} × ${num(r, "image.preview.height")}` : ""}.`));
   if (has(r, "torus")) shown.push(...nodeMaps(r));
@@ -203,7 +206,7 @@ const counts = (r) => [make(
 const deviceRows = (r) => ["name", "platform", "version", "driver"].map(
   (key) => [key === "name" ? "device" : key, str(r, `device.${key}`)]);
 
-function making(r) {
+function deviceAndBuild(r) {
   const used = kilobytes(num(r, "machine.pe_memory_used_bytes")),
         seconds = (object, path) => fixed(num(object, path), 3);
   return [
@@ -246,5 +249,5 @@ function showRender(r) {
   section("labels", "Times by label", () => labels(r));
   section("roof", "Roofline", () => roofline(r));
   section("counts", "Counts", () => counts(r));
-  section("made", "Device and build", () => making(r));
+  section("made", "Device and build", () => deviceAndBuild(r));
 }

@@ -1,7 +1,7 @@
 // Modelled and measured times of a render, and rooflines.
 "use strict";
 
-// Rows: part, member of modelled_ms, meaning, and a pattern for the labels of the corresponding device commands.
+// Each row: name of the part, member of modelled_ms, meaning, pattern for the labels of the corresponding commands.
 const RING_PARTS = [
   ["objects", "objects", "the scene over the bus to all PEs", /^bus\.broadcast/],
   ["compute", "compute", "tracing, and anti-aliasing", /^(trace|supersample|filter\.)/],
@@ -23,11 +23,12 @@ function model(r) {
   const commands = list(r, "measured.commands", "object"), rows = [],
         ms = (key) => msText(num(r, `modelled_ms.${key}`));
   for (const [name, key, what, labels] of torus ? TORUS_PARTS : RING_PARTS) {
-    const own = commands.filter((command) => labels.test(str(command, "label")));
-    if (name.startsWith("of it") && num(r, `modelled_ms.${key}`) === 0 && own.length === 0) continue;
+    const partCommands = commands.filter((command) => labels.test(str(command, "label")));
+    if (name.startsWith("of it") && num(r, `modelled_ms.${key}`) === 0 && partCommands.length === 0) continue;
     rows.push([
-      name, what, ms(key), own.length ? msText(1e-6 * sum(own.map((command) => num(command, "total_ns")))) : "-",
-      [...new Set(own.map((command) => command.label))].join(", ")
+      name, what, ms(key),
+      partCommands.length ? msText(1e-6 * sum(partCommands.map((command) => num(command, "total_ns")))) : "-",
+      [...new Set(partCommands.map((command) => command.label))].join(", ")
     ]);
   }
   const measured = [msText(1e3 * num(r, "measured.render_s")), "the whole render on the host's clock"];
@@ -76,7 +77,7 @@ function labels(r) {
   ];
 }
 
-// Returns a chart and a table of rows [name, row], with the device's peak.
+// Returns a roofline chart and a table. rows: [name, row of the report].
 function rooflineOf(peak, rows) {
   const format = str(peak, "format"), points = [], giga = (path, digits = 2) => fixed(1e-9 * num(peak, path), digits);
   const cells = rows.map(([name, row]) => {
@@ -113,7 +114,7 @@ function rooflineOf(peak, rows) {
       "minimum that the kernel has to move."),
     num(peak, "scatter") > 0.15 &&
       message(`Three measurements of the peak differ by ${
-        percent(peak.scatter, 0)}: other programs used the device, and shares of the peak are unreliable.`)
+        percent(peak.scatter, 0)}: other programs used the device, and percentages of the peak are unreliable.`)
   ];
 }
 

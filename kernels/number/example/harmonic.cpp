@@ -1,8 +1,8 @@
 // Example of an OpenCL program that uses the number layer. It sums the harmonic series, which diverges, until rounding
 // stops the sum from growing.
-//   harmonic OPTIONS     in the folder of harmonic.cl; the options are for the kernel compiler and name the folder that
-//                        holds number/: -I ../.., or $(pkg-config --cflags raya-number) if raya is installed
-// Needs OpenCL only:   c++ -std=c++17 harmonic.cpp -lOpenCL
+//   harmonic OPTIONS     runs in the folder of harmonic.cl. OPTIONS are for the kernel compiler and name the folder
+//                        that holds number/: -I ../.., or $(pkg-config --cflags raya-number) if raya is installed
+// It needs only OpenCL:   c++ -std=c++17 harmonic.cpp -lOpenCL
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
@@ -23,11 +23,11 @@ void check(cl_int error, const char* what) {
 cl_device_id first_device() {
     cl_platform_id platforms[16];
     cl_uint count = 0;
-    check(clGetPlatformIDs(16, platforms, &count), "looking for platforms");
+    check(clGetPlatformIDs(16, platforms, &count), "finding platforms");
     cl_device_id device = nullptr;
     for (cl_uint i = 0; i < count && i < 16 && device == nullptr; ++i)
-        clGetDeviceIDs(platforms[i], CL_DEVICE_TYPE_ALL, 1, &device, nullptr);  // a platform may have none
-    if (device == nullptr) check(CL_DEVICE_NOT_FOUND, "looking for a device");
+        clGetDeviceIDs(platforms[i], CL_DEVICE_TYPE_ALL, 1, &device, nullptr);  // a platform may have no device
+    if (device == nullptr) check(CL_DEVICE_NOT_FOUND, "finding a device");
     return device;
 }
 
@@ -45,7 +45,7 @@ std::string build_options(cl_device_id device, const std::string& given, int exp
 cl_kernel build(cl_context context, cl_device_id device, const std::string& options) {
     std::ifstream file("harmonic.cl");
     const std::string source{std::istreambuf_iterator<char>(file), {}};
-    if (source.empty()) check(CL_INVALID_VALUE, "reading harmonic.cl, which lies in another folder,");
+    if (source.empty()) check(CL_INVALID_VALUE, "reading harmonic.cl in the current folder");
     const char* text = source.c_str();
     cl_int error = CL_SUCCESS;
     cl_program program = clCreateProgramWithSource(context, 1, &text, nullptr, &error);

@@ -1,14 +1,14 @@
 """From 16 PEs to one for each pixel
 
-Up to how many PEs do static mappings scale, and is a two-dimensional mapping necessary beyond a PE for each column?
+Up to how many PEs do static mappings scale, and is a two-dimensional mapping necessary for more PEs than columns?
 
 - Source: Kohata & Ito 1993, conclusions.
-- {scene} at {size} x {size} on {fewest} to {most} PEs of the SPA, doubling; first pass.
+- {scene} at {size} x {size} on {fewest} to {most} PEs of the SPA, in powers of two, without supersampling.
 - If there are more PEs than columns, several PEs share a slot: they take its rows in turn (cyclic fold) or in runs (block fold).
-- p = sqrt(P) or W / sqrt(P), for an image of W columns: sqrt(P) up to a PE for each column, W / sqrt(P) beyond, where the rows of a PE are P / W
-  apart and a smaller offset gives the same square spacing. All offsets are rounded.
-- Upper bound: all cycles / max(mean load, largest pixel). A mapping "keeps up" if it has at least {close} % of the 2-D mapping's
-  efficiency.
+- The offset "p = sqrt(P) or W / sqrt(P)", for an image of W columns, is sqrt(P) if P <= W. If P > W, the rows of a PE are P / W apart, and
+  p = W / sqrt(P) shifts its pixel by sqrt(P) columns from one of its rows to the next. All offsets are rounded.
+- Upper bound of the speed-up: all cycles / max(mean load, highest cost of a pixel). A mapping "keeps up" if it has at least
+  {close} % of the 2-D mapping's efficiency.
 - Output: scale.csv and scale-views.csv have a row for each number of PEs P and a column with the efficiency (mean load / largest load) of each
   mapping; scale-half.csv has the largest P with an efficiency of at least 50 %.
 """
@@ -21,8 +21,8 @@ from raya.lab.mappings import squarest_grid
 HALF_EFFICIENCY, KEEPS_UP, VIEWS = 0.5, 0.9, 8  # KEEPS_UP: our limit, minimum fraction of the 2-D mapping's efficiency
 GRID = "2-D, A x B PEs"
 FIXED, ROOT, ADAPTED = "p = 16", "p = sqrt(P)", "p = sqrt(P) or W / sqrt(P)"
-# Offsets, rounded to integers. If P > W, consecutive rows of a PE are P / W rows apart. With p = W / sqrt(P), a PE's next pixel is
-# sqrt(W W / P) pixels to the side.
+# Offsets, rounded to integers. If P > W, consecutive rows of a PE are P / W rows apart. With p = W / sqrt(P), the PE's pixel in its next
+# row is (P / W) p = sqrt(P) columns to the right.
 OFFSETS = {FIXED: lambda w, p: 16, ROOT: lambda w, p: round(p**0.5), ADAPTED: lambda w, p: round(min(p**0.5, w / p**0.5)),
            "column split": lambda w, p: 0}
 PLAIN = [*OFFSETS, GRID, "random"]  # mappings with the cyclic fold, and those without a fold
@@ -63,20 +63,20 @@ def scale(lab, scenes):
     means = means_of(of_views)
     return Page({"scene": scene.name, "size": side, "pes": rows["P"].tolist(), "offset": 16 % side, "seed": 1,
                  "views": len(of_views)},
-                [f"Numbers of PEs up to which the efficiency is at least 50 %: {'; '.join(texts)}; for any distribution of whole "
-                 f"pixels: {halves.iloc[0, 1]}.",
+                [f"Numbers of PEs up to which the efficiency is at least 50 %: {'; '.join(texts)}; upper limit of all mappings that give "
+                 f"each pixel to one PE: {halves.iloc[0, 1]}.",
                  finding_of_2d(rows[between]), finding_of_resonance(rows[between], side),
-                 f"The largest pixel costs {largest:.1f} times the mean one, so no distribution of whole pixels has a speed-up of more "
-                 f"than {side * side / largest:.0f}. A PE for each pixel reaches it with every mapping, at an efficiency of "
+                 f"The most expensive pixel costs {largest:.1f} times the mean, so no mapping that gives each pixel to one PE has a speed-up of "
+                 f"more than {side * side / largest:.0f}. With a PE for each pixel every mapping has this speed-up, at an efficiency of "
                  f"{1 / largest:.3f}."],
                 comparisons_of(rows, side, side * side / largest),
                 [claim_of_2d(rows["P"][between], of_views)] if len(of_views) > 1 else [],
                 [Table("scale-half", "Numbers of PEs up to which the efficiency is at least 50 %", halves),
                  Table("scale", "Efficiency for each number of PEs", rows),
-                 Table("scale-views", "Efficiency for each number of PEs, mean of the pictures", means, on_page=False)],
+                 Table("scale-views", "Efficiency for each number of PEs, mean of the views", means, on_page=False)],
                 plots_of(rows, means, len(of_views)),
                 ["Kohata & Ito stop at a PE for each column. This study extends the arrays to a PE for each pixel, and shows the "
-                 "upper bound of any distribution of whole pixels."],
+                 "upper bound of all mappings that give each pixel to one PE."],
                 placeholders={"fewest": rows["P"].min(), "most": rows["P"].max(), "close": f"{100 * KEEPS_UP:.0f}"},
                 compared_with=papers.SPA)
 
@@ -101,13 +101,13 @@ def finding_of_2d(between):
             for name in (FIXED, ROOT, ADAPTED, "column split", "random")}
     best = max((FIXED, ROOT, ADAPTED), key=lambda name: len(kept[name]))
     if len(kept[best]) == len(between):
-        need = f"So 2-D is not necessary: a mapping \"or the like\" is enough, {best}, with shared rows."
+        need = f"So 2-D is not necessary: the cyclic mapping with {best}, whose slots several PEs share, is enough."
     elif not kept[best]:
         need = "So 2-D is necessary, as Kohata & Ito say."
     else:
         need = f"So 2-D is not always necessary: {best} is enough for P = {', '.join(map(str, kept[best]))}."
     counts = "; ".join(f"{name}: {len(pes)}" for name, pes in kept.items())
-    return (f"For more PEs than pixels a side Kohata & Ito ask for 2-D \"or the like\". Of {len(between)} such arrays, the number on "
+    return (f"For more PEs than the image has columns Kohata & Ito ask for 2-D \"or the like\". Of {len(between)} such arrays, the number on "
             f"which a mapping keeps up with 2-D is: {counts}. {need}")
 
 
@@ -118,14 +118,14 @@ def finding_of_resonance(between, side):
             for name in (FIXED, ROOT, ADAPTED)}
     texts = [f"{name} for P = {', '.join(pes)}" for name, pes in lost.items() if pes]
     if not texts:
-        return "No offset here has the load of the column split where PEs share the rows of a slot."
+        return "Where PEs share the rows of a slot, the load with each of these offsets differs from that of the column split."
     return ("Where PEs share the rows of a slot, an offset can cancel out: if the shift after P / W rows is a multiple of W, the load "
             f"is that of the column split. This happens with {'; '.join(texts)}.")
 
 
 def claim_of_2d(between, of_views):
-    """Verdict on the claim that a 2-D mapping is necessary, for arrays with more PEs than columns: reproduced if a cyclic mapping is about as
-    fast as 2-D on none of them, not reproduced if one is on all of them."""
+    """Verdict on the claim that a 2-D mapping is necessary, for arrays with more PEs than columns: reproduced if no cyclic mapping keeps up
+    with 2-D on any of them; not reproduced if one cyclic mapping keeps up on all of them."""
     over = {name: [estimate([v[name][i] / v[GRID][i] for v in of_views]) for i in between.index]
             for name in (FIXED, ROOT, ADAPTED)}
     none = all(e.high < KEEPS_UP for estimates in over.values() for e in estimates)
@@ -134,18 +134,18 @@ def claim_of_2d(between, of_views):
     worst = min(range(len(between)), key=lambda i: over[best][i].mean)
     return Claim(papers.SPA, "conclusions", "More PEs than pixels a side need 2-D or the like.",
                  verdict(none, lows[best] >= KEEPS_UP),
-                 f"Over {len(of_views)} pictures, on {len(between)} arrays with more PEs than columns, the best of the "
-                 f"cyclic mappings is {best}, with shared rows. It has at least {over[best][worst].text(2)} of the 2-D "
+                 f"Over {len(of_views)} views, on {len(between)} arrays with more PEs than columns, the best of the "
+                 f"cyclic mappings is {best}. It has at least {over[best][worst].text(2)} of the 2-D "
                  f"mapping's efficiency (on {between.iloc[worst]} PEs); {KEEPS_UP} or more counts as keeping up.")
 
 
 def comparisons_of(rows, side, most):
     row = rows[rows["P"] * 2 > side].iloc[0]
     return [Comparison(f"efficiency on {row['P']:.0f} PEs, {name}", "", None, row[name]) for name in PLAIN] + [
-        Comparison("upper bound of the speed-up", "", None, most, "all cycles / those of the largest pixel")]
+        Comparison("upper bound of the speed-up", "", None, most, "all cycles / those of the most expensive pixel")]
 
 
-def plots_of(rows, means, pictures):
+def plots_of(rows, means, views):
     def lines(names, times=1):
         return [Series(name, rows["P"], rows[name] * times) for name in names]
 
@@ -156,6 +156,6 @@ def plots_of(rows, means, pictures):
                  "x"),
             Plot("scale-speedup", "Speed-up against the number of PEs, cyclic fold", "PEs", "speed-up",
                  lines(["upper bound", *PLAIN], rows["P"]), "xy"),
-            Plot("scale-views", f"Efficiency against the number of PEs, mean of {pictures} pictures", "PEs",
+            Plot("scale-views", f"Efficiency against the number of PEs, mean of {views} views", "PEs",
                  "efficiency", [Series(name, means["P"], means[name], half_widths=means[f"{name}, +-"])
                                 for name in PLAIN], "x")]

@@ -12,7 +12,7 @@ Are static strategies inadequate from 128 PEs on, and static plus dynamic ones n
 - A request costs its PE {request_cycles} budget cycles: one word to the root and two words back at 6 Mword/s, each with the 0.18 ms that
   a rotation takes to synchronise all PEs. This is the maximum for the request of one PE; "free requests" shows the minimum. The SPA had
   no dynamic distribution. Requests do not wait for each other.
-- Lower bound of the makespan, the time at which the last PE has finished: the larger of the mean load and the largest pixel.
+- Lower bound of the makespan, the time at which the last PE has finished: the larger of the mean load and the highest cost of a pixel.
 - A strategy is near the optimum if its makespan is at most 1.1 times the lower bound. A claim is reproduced if it holds in all cases (scene
   and number of PEs), for three factors of the clock from 1 to 8; it is not reproduced if it holds in none.
 - Output: static-vs-dynamic.csv has a row for each scene, strategy and P: makespan (budget cycles), efficiency, makespan / lower bound,

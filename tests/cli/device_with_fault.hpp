@@ -14,7 +14,7 @@ inline constexpr bool kSanitized = false;
 #endif
 
 /// Returns the options of a run with this injected fault: a value of RAYA_FAULT (cl_faults.cpp).
-inline RunOptions failing_device(const std::string& fault) {
+inline RunOptions device_with_fault(const std::string& fault) {
     return {.variables = {{"LD_PRELOAD", RAYA_CL_FAULTS},
                           {"RAYA_FAULT", fault},
                           {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0:handle_segv=0"}}};

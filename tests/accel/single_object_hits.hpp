@@ -1,4 +1,4 @@
-// Finds the hits of single objects of a scene by rays that are aimed at them.
+// Finds hits of rays that are aimed at single objects of a scene: each ray is tested only against its object.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -25,17 +25,17 @@ struct FoundHit {
     Vec3 point() const { return ray.origin + t * ray.direction; }
 };
 
-/// Rays, and the objects that they are aimed at: sixteen rays for each entry of `objects`.
+/// Rays, and the objects that they are aimed at. Rays 16 i to 16 i + 15 are aimed at objects[i].
 struct AimedRays {
     std::vector<std::uint32_t> objects;  // object numbers in the job
     std::vector<reference::Ray> rays;
 };
 
-/// Returns 16 * `turns` rays aimed at each finite object.
-inline AimedRays aim_at_all(SplitMix& random, const Scene& scene, const RayBounds& bounds, int turns) {
+/// Returns 16 * `rounds` rays aimed at each finite object.
+inline AimedRays aim_at_all(SplitMix& random, const Scene& scene, const RayBounds& bounds, int rounds) {
     AimedRays aimed;
     const std::vector<int> numbers = object_numbers(scene);
-    for (int turn = 0; turn < turns; ++turn)
+    for (int round = 0; round < rounds; ++round)
         for (std::uint32_t object = 0; object < numbers.size(); ++object) {
             const auto number = static_cast<std::size_t>(numbers[object]);
             if (number >= scene.spheres.size() && number < scene.spheres.size() + scene.planes.size()) continue;
@@ -46,13 +46,14 @@ inline AimedRays aim_at_all(SplitMix& random, const Scene& scene, const RayBound
     return aimed;
 }
 
-inline std::vector<FoundHit> hits_of_one(KernelRunner& runner, const PackedJob& job, const AimedRays& aimed) {
+/// Returns the hits of the rays with the objects that they are aimed at.
+inline std::vector<FoundHit> single_object_hits(KernelRunner& runner, const PackedJob& job, const AimedRays& aimed) {
     const auto job_buffer = runner.filled("job", job.words());
     const auto rays = runner.filled("rays", ray_words(aimed.rays));
     const auto objects = runner.filled("objects", aimed.objects);
     auto distances = runner.constant<float>("distances", aimed.rays.size(), 0);
     runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, const Buffer<std::uint32_t>&, Buffer<float>&>(
-        "hits_of_one", aimed.rays.size(), job_buffer, rays, objects, distances);
+        "single_object_hits", aimed.rays.size(), job_buffer, rays, objects, distances);
     const std::vector<float> t = runner.read(distances);
     std::vector<FoundHit> hits;
     for (std::size_t i = 0; i < t.size(); ++i)

@@ -1,0 +1,71 @@
+// Distribution of the torus nodes over ranks, and the status words of nodes.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "kernels/shared/torus.h"
+#include "kernels/shared/traffic.h"
+
+namespace raya {
+
+/// Returns [node]: rank of the node, 0..ranks - 1; rank 0 has the root. Each rank gets a cuboid of nodes. Recursive
+/// bisection cuts each cuboid across its longest side, between two layers of nodes, so that the numbers of nodes of
+/// both parts are as nearly proportional to their numbers of ranks as possible. Throws UserError for more ranks than
+/// nodes.
+std::vector<std::uint32_t> ranks_of_nodes(const raya_torus& torus, std::uint32_t ranks);
+
+/// Distribution of the nodes, and the nodes of one rank (`this rank`). A slot is the index of a node within its rank.
+/// First come the inner nodes, whose links all end in the same rank, then the border nodes, both in ascending order.
+/// With one rank all nodes are inner.
+class NodeDistribution {
+  public:
+    explicit NodeDistribution(const raya_torus& torus, std::uint32_t ranks = 1, std::uint32_t rank = 0);
+
+    const raya_torus& torus() const { return torus_; }
+    std::uint32_t rank() const { return rank_; }
+    /// Number of nodes of this rank, and number of its inner nodes.
+    std::uint32_t nodes() const { return static_cast<std::uint32_t>(own_nodes().size()); }
+    std::uint32_t inner() const { return inner_; }
+    std::uint32_t max_nodes_of_rank() const;
+
+    /// Return the nodes of a rank, and of this rank, indexed by slot.
+    const std::vector<std::uint32_t>& nodes_of(std::uint32_t rank) const { return nodes_of_[rank]; }
+    const std::vector<std::uint32_t>& own_nodes() const { return nodes_of_[rank_]; }
+    std::uint32_t rank_of(std::uint32_t node) const { return rank_of_[node]; }
+    bool has(std::uint32_t node) const { return rank_of_[node] == rank_; }
+    std::uint32_t slot_of(std::uint32_t node) const { return slot_of_[node]; }
+
+    /// Number of inboxes that this rank has for each link direction. First come the inboxes of links that start at
+    /// nodes of this rank, indexed by slot; then those of links from other ranks. All directions have the same number:
+    /// the maximum that a direction needs.
+    std::uint32_t inboxes() const { return inboxes_; }
+
+    /// Returns the index of the inbox for packets that `sender` sends over its link `link`. The sender or the node at
+    /// the end of the link must be in this rank.
+    std::uint32_t inbox_from(std::uint32_t sender, std::uint32_t link) const;
+
+  private:
+    bool is_inner(std::uint32_t node) const;
+
+    raya_torus torus_;
+    std::uint32_t rank_, inner_ = 0, inboxes_ = 0;
+    std::vector<std::uint32_t> rank_of_, slot_of_;
+    std::vector<std::vector<std::uint32_t>> nodes_of_;
+    // [link]: nodes of other ranks whose link in that direction ends in this rank, ascending
+    std::vector<std::vector<std::uint32_t>> remote_senders_;
+};
+
+/// Host copy of the nodes' status words: [node][RAYA_STATUS_WORDS].
+class NodeStatus {
+  public:
+    explicit NodeStatus(std::uint32_t nodes) : words(std::size_t{nodes} * RAYA_STATUS_WORDS) {}
+    explicit NodeStatus(std::vector<std::uint32_t> status_words) : words(std::move(status_words)) {}
+    std::uint32_t at(std::uint32_t node, std::uint32_t word) const {
+        return words[std::size_t{node} * RAYA_STATUS_WORDS + word];
+    }
+    std::vector<std::uint32_t> words;
+};
+
+}  // namespace raya
