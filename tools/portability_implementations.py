@@ -18,16 +18,16 @@ class Implementation:
         self.name, self.prefix, self.slow, self.unavailable, self.reports_faults = name, list(prefix), slow, unavailable, reports_faults
         self.variables, self.needs_device, self.budget = dict(variables or {}), needs_device, budget
 
-    def run(self, command, scratch, limit, more=None):
-        """Runs a command. Returns (exit code, None after `limit` seconds; stdout and stderr; stdout; text of the faults that the implementation
-        reported)."""
+    def run(self, command, scratch, limit, variables=None):
+        """Runs a command with additional environment variables. Returns (exit code, None after `limit` seconds; stdout and stderr; stdout; text of the
+        faults that the implementation reported)."""
         # Ignores OpenCL variables in the caller's environment, such as a CI job's choice of an implementation.
         prefixes = ("RAYA_", "POCL_", "OCL_ICD_", "OCLGRIND_", "RUSTICL_", "CL_CONFIG_")
         inherited = {k: v for k, v in os.environ.items() if not k.startswith(prefixes)}
         caches = {"POCL_CACHE_DIR": str(scratch), "MESA_SHADER_CACHE_DIR": str(scratch)}
-        variables = {**inherited, **caches, **self.variables, **(more or {})}
+        environment = {**inherited, **caches, **self.variables, **(variables or {})}
         try:
-            done = subprocess.run(self.prefix + command, env=variables, capture_output=True, text=True, timeout=limit,
+            done = subprocess.run(self.prefix + command, env=environment, capture_output=True, text=True, timeout=limit,
                                   errors="replace", stdin=subprocess.DEVNULL)
         except subprocess.TimeoutExpired as timeout_error:
             return None, f"not done after {limit} s", "", self.reported_faults((timeout_error.stderr or b"").decode(errors="replace"))

@@ -50,7 +50,7 @@ def unpack(wheel, folder):
 
 
 def llvm_14_substitute(cpuinfo):
-    """Returns LLVM 14's name of a CPU with the same features, for a CPU that LLVM 14 does not know; None for a CPU that LLVM 14 knows.
+    """Returns LLVM 14's name of a CPU with the same features, if LLVM 14 does not know this CPU; otherwise None.
 
     LLVM 14 calls AMD CPUs after family 25 "generic", a name that its own compiler rejects. It takes Zen 4 for Zen 3, which is family 25 too
     but has no AVX-512, and aborts on vectors of 16 floats ("Cannot emit physreg copy instruction")."""

@@ -14,7 +14,8 @@ constexpr std::uint32_t kMedianDepth = 24;
 // Twice the centre of an item's box along an axis.
 float doubled_centre(const BvhItem& item, std::size_t axis) { return item.box.low[axis] + item.box.high[axis]; }
 
-// Returns the number of leaves that `items` items need, which is their cost in the surface area heuristic.
+// Returns the number of leaves that `items` items need. The surface area heuristic multiplies the area of the items'
+// box by this number.
 float leaf_count(std::size_t items) { return static_cast<float>((items + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH); }
 
 // Items that will become one child of a node, and their bounding box.
@@ -73,21 +74,21 @@ struct Cut {
     std::size_t axis = 0, last_bin = 0;
 };
 
-// Replaces `best` by the cheapest cut along `axis` if that is cheaper.
+// Replaces `best` by the cheapest cut along `axis` if that cut is cheaper than `best`.
 void find_cut(Cut& best, std::size_t axis, const Bins& bins) {
     std::array<float, kBins> cost_above{};  // cost_above[b]: cost of all bins above bin b
     Bin sum;
     for (std::size_t b = kBins - 1; b > 0; --b) {
         extend(sum.box, bins[b].box);
         sum.items += bins[b].items;
-        cost_above[b - 1] = area(sum.box) * leaf_count(sum.items);
+        cost_above[b - 1] = half_area(sum.box) * leaf_count(sum.items);
     }
     const std::size_t total_items = sum.items + bins[0].items;
     sum = {};
     for (std::size_t b = 0; b + 1 < kBins; ++b) {
         extend(sum.box, bins[b].box);
         sum.items += bins[b].items;
-        const float cost = area(sum.box) * leaf_count(sum.items) + cost_above[b];
+        const float cost = half_area(sum.box) * leaf_count(sum.items) + cost_above[b];
         if (sum.items > 0 && sum.items < total_items && cost < best.cost) best = {cost, axis, b};
     }
 }
@@ -128,6 +129,7 @@ Parts cut_at(const Part& part, const Cut& plane, const Bins& bins, const Scale& 
     return parts;
 }
 
+// Splits a part: by kind if it has few items of several kinds, otherwise at the cheapest cut.
 Parts cut(const Part& part, std::uint32_t depth) {
     if (part.items.size() <= RAYA_BVH_WIDTH && !part.is_of_one_kind()) return cut_by_kind(part);
     if (depth >= kMedianDepth) return even_halves(part);
@@ -165,7 +167,7 @@ class BvhBuilder {
         while (parts.size() < RAYA_BVH_WIDTH) {
             Part* largest = nullptr;
             for (Part& p : parts)
-                if (!p.is_leaf() && (!largest || area(p.box) > area(largest->box))) largest = &p;
+                if (!p.is_leaf() && (!largest || half_area(p.box) > half_area(largest->box))) largest = &p;
             if (!largest) break;
             const Parts pieces = cut(*largest, depth);
             *largest = pieces[0];
@@ -198,7 +200,7 @@ void extend(Bounds& box, const Bounds& added) {
     }
 }
 
-float area(const Bounds& box) {
+float half_area(const Bounds& box) {
     if (box.low[0] > box.high[0]) return 0;
     const float x = box.high[0] - box.low[0], y = box.high[1] - box.low[1], z = box.high[2] - box.low[2];
     return x * y + y * z + z * x;

@@ -24,13 +24,13 @@ constexpr Bounds kEmptyBounds = {{kInfinity, kInfinity, kInfinity}, {-kInfinity,
 /// Extends `box` so that it contains `added`.
 void extend(Bounds& box, const Bounds& added);
 /// Returns half the surface area of a box; 0 for kEmptyBounds.
-float area(const Bounds& box);
+float half_area(const Bounds& box);
 
 /// An object in a BVH.
 struct BvhItem {
     Bounds box;
     std::uint32_t number;  // object number
-    // RAYA_LINK_SPHERES, _FACES, _POLYGON, _CONES or _OBJECT; all items of a leaf have the same kind.
+    // Kind of leaf: RAYA_LINK_SPHERES, _FACES, _POLYGON, _CONES or _OBJECT. All items of a leaf have the same kind.
     std::uint32_t kind;
 };
 
@@ -60,10 +60,10 @@ std::uint32_t max_leaf_items(std::uint32_t kind);
 /// Builds a BVH. The result depends only on the items, not on the machine.
 Bvh build_bvh(std::vector<BvhItem> items);
 
-/// Builds a BVH over the finite objects of a job, appends it to the job's words in the layout of kernels/shared/bvh.h,
-/// and sets accel_at in the job's header. The box of an object contains every point at which a kernel can compute a hit
-/// of the object (hit_regions.hpp), with a margin for rounding errors of the traversal. Throws UserError if the BVH has
-/// more rows than its links can address.
+/// Builds a BVH over the finite objects of a packed scene (job), appends it to the job's words in the layout of
+/// kernels/shared/bvh.h, and sets accel_at in the job's header. The box of an object contains every point at which a
+/// kernel can compute a hit of the object (hit_regions.hpp), with a margin for rounding errors of the traversal. Throws
+/// UserError if the BVH has more 64-byte rows than a child reference of a node can address.
 AccelSummary append_bvh(PackedJob& job, const NumberFormat& format);
 
 /// Returns true if rendering this scene with a BVH is expected to be faster than testing every ray against all objects.

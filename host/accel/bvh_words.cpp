@@ -44,7 +44,7 @@ Bounds bounds_of(const Box& box, double reach) {
 double reach_for(const PackedJob& job, const NumberFormat& format) {
     constexpr double kMin = 2, kMax = 1024, kFractionOfBox = 1.0 / 64;
     const HitRegions regions(job, format, kMin);
-    if (!regions.known() || regions.size() == 0 || job.header().objects.planes == 0) return kMin;
+    if (!regions.all_bounded() || regions.size() == 0 || job.header().objects.planes == 0) return kMin;
     double sides = 0;
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const Vec3 size = regions.region(i).box.size();
@@ -53,7 +53,7 @@ double reach_for(const PackedJob& job, const NumberFormat& format) {
     const double mean_side = sides / static_cast<double>(regions.size());
     double reach = kMin;
     while (reach < kMax && regions.slack(2 * reach) <= kFractionOfBox * mean_side &&
-           HitRegions(job, format, 2 * reach).known())
+           HitRegions(job, format, 2 * reach).all_bounded())
         reach *= 2;
     return reach;
 }
@@ -66,11 +66,12 @@ const std::uint32_t* polygon_words(const PackedJob& job, std::uint32_t number) {
 
 // Returns the kind of leaf (RAYA_LINK_*) in which an object is stored.
 std::uint32_t kind_of(const PackedJob& job, const NumberFormat& format, std::uint32_t number) {
-    constexpr std::uint32_t kManyCorners = 16;
+    // In a reduced format, polygons with more corners are stored in leaves for one polygon.
+    constexpr std::uint32_t kMaxObjectCorners = 16;
     const raya_objects& objects = job.header().objects;
     const bool is_polygon = number >= objects.spheres && number < objects.spheres + objects.planes + objects.polygons;
     const std::uint32_t corners = is_polygon ? polygon_words(job, number)[RAYA_POLYGON_CORNERS] : 0;
-    if (!format.is_fp32()) return corners > kManyCorners ? RAYA_LINK_POLYGON : RAYA_LINK_OBJECT;
+    if (!format.is_fp32()) return corners > kMaxObjectCorners ? RAYA_LINK_POLYGON : RAYA_LINK_OBJECT;
     if (is_polygon) return corners <= RAYA_BVH_MAX_CORNERS ? RAYA_LINK_FACES : RAYA_LINK_POLYGON;
     return number < objects.spheres ? RAYA_LINK_SPHERES : RAYA_LINK_CONES;
 }
@@ -102,7 +103,7 @@ class BvhWriter {
     std::uint64_t leaves() const { return leaves_; }
 
   private:
-    std::uint32_t take_rows(std::uint32_t rows) {
+    std::uint32_t append_rows(std::uint32_t rows) {
         const auto row = static_cast<std::uint32_t>(words_.size() / kWidth);
         words_.resize(words_.size() + std::size_t{rows} * kWidth);
         return row;
@@ -111,7 +112,7 @@ class BvhWriter {
     std::uint32_t& word(std::uint32_t row, std::uint32_t column) { return words_[std::size_t{row} * kWidth + column]; }
 
     std::uint32_t put_node(const BvhNode& node) {
-        const std::uint32_t row = take_rows(RAYA_BVH_NODE);
+        const std::uint32_t row = append_rows(RAYA_BVH_NODE);
         for (std::uint32_t column = 0; column < kWidth; ++column) {
             const bool used = column < node.count;
             for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -141,7 +142,7 @@ class BvhWriter {
     }
 
     std::uint32_t put_spheres(std::span<const BvhItem> items) {
-        const std::uint32_t row = take_rows(RAYA_BVH_SPHERES);
+        const std::uint32_t row = append_rows(RAYA_BVH_SPHERES);
         for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
             const std::size_t sphere_at = job_.header().objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
             put_column(row, column, job_.words().data() + sphere_at, RAYA_BVH_NUMBERS);
@@ -154,7 +155,7 @@ class BvhWriter {
         const bool triangles = std::all_of(items.begin(), items.end(), [&](const BvhItem& item) {
             return polygon_words(job_, item.number)[RAYA_POLYGON_CORNERS] < RAYA_BVH_MAX_CORNERS;
         });
-        const std::uint32_t row = take_rows(triangles ? RAYA_BVH_TRIANGLES : RAYA_BVH_FACES);
+        const std::uint32_t row = append_rows(triangles ? RAYA_BVH_TRIANGLES : RAYA_BVH_FACES);
         for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
             const std::uint32_t* polygon = polygon_words(job_, number);
             const std::uint32_t last = polygon[RAYA_POLYGON_CORNERS] - 1;
@@ -171,7 +172,7 @@ class BvhWriter {
     std::uint32_t put_outline(std::uint32_t number) {
         const std::uint32_t* polygon = polygon_words(job_, number);
         const std::uint32_t corners = polygon[RAYA_POLYGON_CORNERS], rows = raya_outline_rows(corners);
-        const std::uint32_t row = take_rows(1 + 3 * rows);
+        const std::uint32_t row = append_rows(1 + 3 * rows);
         word(row, RAYA_BVH_OUTLINE_NUMBER) = number;
         word(row, RAYA_BVH_OUTLINE_CORNERS) = corners;
         for (std::uint32_t w = 0; w < 4; ++w) word(row, RAYA_BVH_OUTLINE_PLANE + w) = polygon[RAYA_PLANE_NORMAL + w];
@@ -190,7 +191,7 @@ class BvhWriter {
     }
 
     std::uint32_t put_cones(std::span<const BvhItem> items) {
-        const std::uint32_t row = take_rows(RAYA_BVH_CONES);
+        const std::uint32_t row = append_rows(RAYA_BVH_CONES);
         const raya_objects& objects = job_.header().objects;
         const std::uint32_t first_cone = objects.spheres + objects.planes + objects.polygons;
         for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
@@ -234,7 +235,7 @@ constexpr float kLargeArea = 1.0F / 8;
 void separate_large_items(BvhItems& objects) {
     Bounds whole = kEmptyBounds;
     for (const BvhItem& item : objects.items) extend(whole, item.box);
-    const auto is_large = [&](const BvhItem& item) { return area(item.box) > kLargeArea * area(whole); };
+    const auto is_large = [&](const BvhItem& item) { return half_area(item.box) > kLargeArea * half_area(whole); };
     const auto large = static_cast<std::size_t>(std::count_if(objects.items.begin(), objects.items.end(), is_large));
     if (large > kMaxSeparate) return;
     for (const BvhItem& item : objects.items)
@@ -245,7 +246,7 @@ void separate_large_items(BvhItems& objects) {
 BvhItems bvh_items(const PackedJob& job, const NumberFormat& format) {
     BvhItems objects;
     const HitRegions regions(job, format, reach_for(job, format));
-    if (!regions.known()) return objects;
+    if (!regions.all_bounded()) return objects;
     objects.reach = regions.reach();
     objects.items.reserve(regions.size());
     for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -260,7 +261,7 @@ BvhItems bvh_items(const PackedJob& job, const NumberFormat& format) {
 }  // namespace
 
 bool bvh_pays(const Scene& scene, const NumberFormat& format) {
-    constexpr double kMinCost = 160;  // cost of testing a ray against all objects, in sphere tests
+    constexpr double kMinCost = 160;  // minimum cost of testing a ray against all objects, in sphere tests
     double corners = 0;
     for (const Polygon& polygon : scene.polygons) corners += static_cast<double>(polygon.vertices.size());
     const auto spheres = static_cast<double>(scene.spheres.size()), cones = static_cast<double>(scene.cones.size());

@@ -59,7 +59,7 @@ std::uint32_t put_list(GridLists& lists, const std::vector<std::uint32_t>& words
     const auto end_of_spheres = std::lower_bound(list.begin(), list.end(), objects.spheres);
     const auto spheres = static_cast<std::size_t>(end_of_spheres - list.begin());
     const auto spheres_in_word = [&](std::size_t i) { return std::min<std::size_t>(spheres - i, RAYA_MAX_ROWS); };
-    const auto word_at = [&](std::size_t i, std::size_t row) {  // word of the list from its object i on
+    const auto word_at = [&](std::size_t i, std::size_t row) {  // voxel word of the part of `list` from object i on
         return voxel_word(row, spheres_in_word(i), i + spheres_in_word(i) < list.size());
     };
     const std::uint32_t word = word_at(0, lists.numbers.size());
@@ -88,7 +88,7 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
     std::vector<std::uint32_t> large;
     for (;;) {
         const HitRegions regions(job, format, kMinReach, large);
-        if (!regions.known()) return {};
+        if (!regions.all_bounded()) return {};
         std::vector<double> lengths;
         Box whole;
         for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -110,7 +110,8 @@ Partition accel_partition(const PackedJob& job, const NumberFormat& format, cons
     const std::vector<std::uint32_t> separate = large_objects(job, format);
     const HitRegions regions(job, format, kMinReach, separate);
     // If the hit regions are unbounded, every list has all objects, so one voxel is enough.
-    const double voxels = regions.known() ? std::max(1.0, kVoxelsPerObject * static_cast<double>(regions.size())) : 1;
+    const double voxels =
+        regions.all_bounded() ? std::max(1.0, kVoxelsPerObject * static_cast<double>(regions.size())) : 1;
     return partition(job, format, divisions_for(job, format, static_cast<std::uint64_t>(voxels), separate), separate);
 }
 

@@ -4,12 +4,13 @@
 //
 //   u  relative rounding error of one operation      f  flush-to-zero threshold: smaller results become 0
 //   s  maximum of | |D|^2 - 1 |, D: the direction     n  maximum distance from a ray's origin O to the object
-//   a' computed value of a                           "a = b up to e" means |a - b| <= e
+//   w  square root of the discriminant               a' computed value of a
+//   "a = b up to e" means |a - b| <= e
 //
 // The region of an object contains the exact point X = O + t'D for every computed hit distance t'.
 //
 // Sphere (centre C, radius r), c = C - O. b' has an error of 4un, l' = c' - b'D has an error of 6un, and a
-// discriminant >= 0 implies |l'|^2 <= r^2 (1 + 3u) + 3f. X - C = -l' +- root' D up to u (2n + r), and
+// discriminant >= 0 implies |l'|^2 <= r^2 (1 + 3u) + 3f. X - C = -l' +- w' D up to u (2n + r), and
 // l'.D = b (1 - |D|^2) up to 6un. Hence |X - C|^2 = r^2 up to 2r (s + 6u) n + r^2 (s + 5u) + 3f.
 //
 // Polygon in the plane N.x = d. The sheared coordinates of a corner (kernels/geometry/polygon.clh) have an error of 4un
@@ -25,8 +26,8 @@
 // across it; these errors shift X. All later quantities have at most the size S = |start| + |t|. Errors of the
 // coefficients of the quadratic are equivalent to an error of its value Q(t) = |side + t dside|^2 - (r0 + k z)^2, of at
 // most e = 32u (S^2 + (r0 + |k| S)^2) in total. Flushing changes the discriminant by d <= 2f, and therefore Q by d / a
-// at the root q / a and by d c / q^2 at the root c / q, where q = -(b +- root). As the discriminant is > 0,
-// |q| >= root >= sqrt(f), so Q changes by at most 2 sqrt(f) S. Hence the distance of X from the axis is at most
+// at the zero t = q / a and by d c / q^2 at the zero t = c / q, where q = -(b +- w). As the discriminant is > 0,
+// |q| >= w >= sqrt(f), so Q changes by at most 2 sqrt(f) S. Hence the distance of X from the axis is at most
 // sqrt((r0 + k z)^2 + e), with 0 <= z <= h up to 8uS. This bounds S in turn, because start and D are perpendicular up
 // to (s + 6u) n. For a steep cone in a format with few fraction bits, no finite S satisfies the bound.
 #include "host/accel/hit_regions.hpp"
@@ -99,8 +100,8 @@ HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double 
     square_limit_ = std::ldexp(1.0, quarter - 1);
     extent_ = job.header().extent;
     reach_ = reach * extent_;
-    known_ = format.fraction_bits >= kMinFractionBits && reach_ <= square_limit_ && cones_known();
-    if (!known_) reach_ = far_;
+    all_bounded_ = format.fraction_bits >= kMinFractionBits && reach_ <= square_limit_ && cones_bounded();
+    if (!all_bounded_) reach_ = far_;
 }
 
 double HitRegions::slack(double reach) const {
@@ -157,8 +158,8 @@ HitRegion HitRegions::polygon(std::size_t at) const {
 // The error e of Q(t) (see the top of this file), for a cone with S = `size`.
 double HitRegions::cone_error(std::size_t at, double size) const {
     const double radius = real(at + RAYA_CONE_RADIUS), slope = std::abs(real(at + RAYA_CONE_SLOPE));
-    const double square = size * size, wide = radius + slope * size;
-    return 32 * unit_ * (square + wide * wide) + 4 * std::sqrt(smallest_) * size +
+    const double square = size * size, max_radius = radius + slope * size;
+    return 32 * unit_ * (square + max_radius * max_radius) + 4 * std::sqrt(smallest_) * size +
            16 * smallest_ * (1 + square) * (1 + slope * slope);
 }
 
@@ -178,13 +179,13 @@ double HitRegions::cone_size(std::size_t at) const {
     return HitRegion::kUnbounded;
 }
 
-bool HitRegions::cones_known() const {
+bool HitRegions::cones_bounded() const {
     for (std::size_t i = 0; i < objects_.cones; ++i) {
         const std::size_t at = objects_.cones_at + i * RAYA_CONE_WORDS;
-        const double steep = 1 + std::abs(real(at + RAYA_CONE_SLOPE));
+        const double slope_factor = 1 + std::abs(real(at + RAYA_CONE_SLOPE));
         // No square in the kernel may saturate.
         const double largest =
-            (max_distance(vector(at + RAYA_CONE_BASE)) * steep + real(at + RAYA_CONE_RADIUS)) * steep;
+            (max_distance(vector(at + RAYA_CONE_BASE)) * slope_factor + real(at + RAYA_CONE_RADIUS)) * slope_factor;
         if (largest > square_limit_ || cone_size(at) == HitRegion::kUnbounded) return false;
     }
     return true;

@@ -15,14 +15,15 @@ namespace raya {
 
 using Box = Imath::Box3d;
 
-/// The intersection of a box, a spherical shell, a slab between two planes and a capsule around a segment.
+/// The intersection of a box, a spherical shell, a slab and a capsule around a segment. The slab consists of the points
+/// p with |dot(normal, p) - plane_distance| <= half_thickness.
 struct HitRegion {
     static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
     Box box;
     Vec3 centre{0};                                          // centre of the shell; start of the segment
     double outer_radius = kUnbounded, inner_radius = 0;      // of the shell
-    Vec3 normal{0};                                          // of the slab: the points p with
-    double plane_distance = 0, half_thickness = kUnbounded;  // |dot(normal, p) - plane_distance| <= half_thickness
+    Vec3 normal{0};                                          // of the slab
+    double plane_distance = 0, half_thickness = kUnbounded;  // of the slab
     Vec3 segment{0};                                         // vector from the segment's start to its end
     double capsule_radius = kUnbounded;
 
@@ -41,7 +42,7 @@ class HitRegions {
 
     /// Returns true if every object has a bounded region. Otherwise a hit may be anywhere within far() of its ray's
     /// origin.
-    bool known() const { return known_; }
+    bool all_bounded() const { return all_bounded_; }
     /// Maximum magnitude of the coordinates of ray origins. The regions are valid for rays from such origins whose
     /// direction has length 1 up to rounding (rays for which is_wide() in kernels/grid/traversal.clh is false).
     double reach() const { return reach_; }
@@ -55,7 +56,7 @@ class HitRegions {
     std::size_t size() const { return numbers_.size(); }
     /// Object number of region i.
     std::uint32_t number(std::size_t i) const { return numbers_[i]; }
-    /// Region i. Requires known().
+    /// Region i. Requires all_bounded().
     HitRegion region(std::size_t i) const;
 
   private:
@@ -69,14 +70,14 @@ class HitRegions {
     HitRegion cone(std::size_t at) const;
     double cone_error(std::size_t at, double size) const;
     double cone_size(std::size_t at) const;
-    bool cones_known() const;
+    bool cones_bounded() const;
 
     const std::vector<std::uint32_t>* words_;
     raya_objects objects_{};
     std::vector<std::uint32_t> numbers_;
     double unit_, smallest_, stretch_;            // u, f and s of hit_regions.cpp
     double extent_, reach_, far_, square_limit_;  // squares of numbers up to square_limit_ do not overflow
-    bool known_;
+    bool all_bounded_;
 };
 
 }  // namespace raya

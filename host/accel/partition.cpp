@@ -33,7 +33,7 @@ double traversal_error(const Box& box, double reach) { return 16 * 0x1p-24 * (re
 Box box_around(const HitRegions& regions) {
     Box box;
     if (regions.size() == 0) return Box(Vec3(-0.5), Vec3(0.5));
-    if (!regions.known()) return Box(Vec3(-4 * regions.far()), Vec3(4 * regions.far()));
+    if (!regions.all_bounded()) return Box(Vec3(-4 * regions.far()), Vec3(4 * regions.far()));
     for (std::size_t i = 0; i < regions.size(); ++i) box.extendBy(regions.region(i).box);
     const Vec3 margin(2 * traversal_error(box, regions.reach()));
     return Box(box.min - margin, box.max + margin);
@@ -114,10 +114,10 @@ void fill_lists(Partition& p, const HitRegions& regions, const Voxels& voxels, c
     }
     for (std::size_t v = 1; v < p.starts.size(); ++v) p.starts[v] += p.starts[v - 1];
     p.objects.resize(entries);
-    std::vector<std::uint32_t> ends(p.starts.begin(), p.starts.end() - 1);
+    std::vector<std::uint32_t> next_entries(p.starts.begin(), p.starts.end() - 1);  // of each voxel's list
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const std::uint32_t number = regions.number(i);
-        voxels.visit(regions.region(i), [&](std::uint32_t voxel) { p.objects[ends[voxel]++] = number; });
+        voxels.visit(regions.region(i), [&](std::uint32_t voxel) { p.objects[next_entries[voxel]++] = number; });
     }
 }
 
@@ -147,14 +147,14 @@ double reach_for(const PackedJob& job, const NumberFormat& format, const Divisio
                  const std::vector<std::uint32_t>& separate) {
     constexpr double kMin = 2, kMax = 1024, kFractionOfVoxel = 1.0 / 16;
     const HitRegions regions(job, format, kMin, separate);
-    if (!regions.known() || job.header().objects.planes == 0) return kMin;
+    if (!regions.all_bounded() || job.header().objects.planes == 0) return kMin;
     const Box box = box_around(regions);
     double side = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
         side = std::min(side, (box.max[axis] - box.min[axis]) / divisions[static_cast<std::size_t>(axis)]);
     double reach = kMin;
     while (reach < kMax && regions.slack(2 * reach) <= kFractionOfVoxel * side &&
-           HitRegions(job, format, 2 * reach, separate).known())
+           HitRegions(job, format, 2 * reach, separate).all_bounded())
         reach *= 2;
     return reach;
 }
@@ -170,8 +170,9 @@ class RegionSizes {
         }
     }
     double objects() const { return sums_[0]; }
-    /// Returns the estimated number of entries: a box with sides e overlaps about (e_x / c_x + 1) (e_y / c_y + 1) (e_z
-    /// / c_z + 1) voxels with sides c. sums_ has the coefficients of the expanded product.
+    /// Returns the estimated number of entries. A box with sides e overlaps about
+    ///   (e_x / c_x + 1) (e_y / c_y + 1) (e_z / c_z + 1)
+    /// voxels with sides c. sums_ has the coefficients of the expanded product.
     double entries(const Box& box, const Divisions& d) const {
         double sum = 0;
         for (std::size_t axes = 0; axes < sums_.size(); ++axes)
@@ -221,8 +222,8 @@ Partition partition(const PackedJob& job, const NumberFormat& format, const Divi
     p.grid = grid_over(box, divisions, regions.reach());
     p.starts.assign(std::size_t{raya_voxels(p.grid)} + 1, 0);
     p.separate = separate;
-    p.distinct = regions.size();
-    if (regions.known())
+    p.listed_objects = regions.size();
+    if (regions.all_bounded())
         fill_lists(p, regions, Voxels(p.grid, traversal_error(box, regions.reach())), divisions);
     else
         list_all_objects(p, regions, divisions);
@@ -232,7 +233,7 @@ Partition partition(const PackedJob& job, const NumberFormat& format, const Divi
 Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::uint64_t voxels,
                         const std::vector<std::uint32_t>& separate) {
     const HitRegions regions(job, format, 2, separate);
-    if (!regions.known()) return {1, 1, 1};
+    if (!regions.all_bounded()) return {1, 1, 1};
     const Box box = box_around(regions);
     const RegionSizes sizes(regions);
     auto wanted_voxels = static_cast<double>(std::clamp<std::uint64_t>(voxels, 1, kMaxPartitionVoxels));

@@ -27,9 +27,9 @@ struct Partition {
     std::vector<std::uint32_t> starts;    // [voxels + 1]: voxel v lists objects[starts[v] .. starts[v + 1] - 1]
     std::vector<std::uint32_t> objects;   // concatenated lists, each ascending
     std::vector<std::uint32_t> separate;  // numbers of the separate objects, ascending
-    std::uint64_t distinct = 0;           // number of objects in the lists: the finite objects except `separate`
+    std::uint64_t listed_objects = 0;     // number of objects in the lists: the finite objects except `separate`
     /// Number of list entries beyond one for each object.
-    std::uint64_t copies() const { return objects.size() - distinct; }
+    std::uint64_t copies() const { return objects.size() - listed_objects; }
 };
 
 /// Divides the bounding box of all finite objects except the separate ones (`separate`: object numbers, ascending) into
@@ -40,8 +40,8 @@ struct Partition {
 /// a ray whose origin O has coordinates up to `grid.reach` in magnitude and whose direction D has length 1 up to
 /// rounding, so that is_wide() in kernels/grid/traversal.clh is false. If a kernel with that format computes a hit of
 /// an object at distance t, then the voxel in which the traversal is at distance t lists the object, in spite of the
-/// traversal's rounding errors. If the hit regions are unbounded (HitRegions::known() is false: Y < 10, squares of
-/// lengths that overflow the format, or cones too steep for it), every object is in every list, the box contains all
+/// traversal's rounding errors. If the hit regions are unbounded (HitRegions::all_bounded() is false: Y < 10, squares
+/// of lengths that overflow the format, or cones too steep for it), every object is in every list, the box contains all
 /// points within RAYA_FAR, and the reach is RAYA_FAR.
 ///
 /// Throws UserError if a division is 0 or there are more than kMaxPartitionVoxels voxels, and TooManyEntries if the
@@ -57,8 +57,8 @@ Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::u
 
 /// Returns the partition of `--accel grid`. If the option gives the divisions, the partition covers all finite objects.
 /// Otherwise large_objects() are listed separately, and the box of the other objects is divided into kVoxelsPerObject
-/// voxels per object. Without this, the ground or the walls of a room would enlarge the box so much that all other
-/// objects would lie in few voxels.
+/// voxels per object. Without the separate list, the ground or the walls of a room would enlarge the box so much that
+/// all other objects would lie in few voxels.
 Partition accel_partition(const PackedJob& job, const NumberFormat& format, const Accel& accel);
 
 /// Returns the numbers of the large objects, ascending. In each pass, an object is large if its longest side exceeds

@@ -49,7 +49,7 @@ class ChildProcess {
     std::string unread_text_;  // text from the pipe that read() has not returned yet
 };
 
-/// "signal 11 (SIGSEGV)" or "exit code 1" for a waitpid() status.
+/// Returns a text for a waitpid() status: "signal 11 (SIGSEGV)" or "exit code 1".
 std::string ending_text(int status);
 
 /// The task of a child process, parsed from its command line.
@@ -66,7 +66,7 @@ struct WorkerRequest {
 std::optional<WorkerRequest> worker_request(int argc, const char* const* argv);
 
 /// In the child: writes `object` as one line into `pipe`, the descriptor in WorkerRequest. Writes nothing if the parent
-/// has closed its end.
+/// has closed its end of the pipe.
 void send_line(int pipe, const Json& object);
 
 }  // namespace raya

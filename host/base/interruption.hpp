@@ -21,8 +21,8 @@ void protect_handler(int signal, bool on = true);
 void suppress_interrupt_message();
 
 /// Registers an unfinished file: while this object exists, an interruption deletes the file. The destructor does not
-/// delete it. At most 16 files are registered at a time; the constructor ignores further files, and paths of PATH_MAX
-/// bytes or more.
+/// delete the file. At most 16 files are registered at a time; the constructor ignores further files, and paths of
+/// PATH_MAX bytes or more.
 class FileInProgress {
   public:
     explicit FileInProgress(const std::filesystem::path& path);

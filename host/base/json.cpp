@@ -165,7 +165,7 @@ void Json::refuse(const std::string& reason) const {
 Json& Json::operator[](std::string_view key) {
     if (is_null()) *this = object();
     Tree* const members = tree(true);
-    if (members == nullptr) refuse(" is not an object");
+    if (members == nullptr) refuse(" is not a JSON object");
     const auto at = static_cast<std::size_t>(std::ranges::find(members->keys, key) - members->keys.begin());
     if (at == members->keys.size()) {
         members->keys.emplace_back(key);
@@ -225,9 +225,9 @@ const std::vector<Json>& Json::elements() const {
 }
 
 std::vector<std::string> Json::strings() const {
-    std::vector<std::string> all;
-    for (const Json& element : elements()) all.push_back(element.text());
-    return all;
+    std::vector<std::string> texts;
+    for (const Json& element : elements()) texts.push_back(element.text());
+    return texts;
 }
 
 std::string Json::dump(int indent) const {

@@ -83,13 +83,13 @@ class Json {
     /// Returns the last element of an array, which must not be empty.
     Json& back();
 
-    /// Returns the member `key`; a null pointer if it is missing or this value is not an object.
+    /// Returns the member `key`; a null pointer if the member is missing or this value is not an object.
     const Json* find(std::string_view key) const;
-    /// Returns the member `key`. Throws JsonError if it is missing.
+    /// Returns the member `key`. Throws JsonError if the member is missing.
     const Json& at(std::string_view key) const;
 
-    /// Return the value as the given type. Throw JsonError if the value has another type; integer() also throws it if
-    /// the value is not an integer in 0..`max`.
+    /// Return the value as the function's type. Throw JsonError if the value has another type. integer() also throws
+    /// JsonError if the value is not an integer in 0..`max`.
     const std::string& text() const;
     double number() const;
     std::uint64_t integer(std::uint64_t max = UINT64_MAX) const;

@@ -10,20 +10,21 @@ namespace raya {
 /// commands to the terminal. Call it for output to stdout; print_log() and show_status() call it themselves.
 std::string printable(std::string_view text);
 
-/// Clears the status line and prints `text`, which consists of whole lines, on stderr.
+/// Erases the status line and prints `text`, which consists of whole lines, on stderr.
 void print_log(std::string_view text);
 
 /// Replaces the status line on stderr, which must be a terminal, by `line`. print_log(), clear_status() or the next
 /// call erases the line.
 void show_status(std::string_view line);
+/// Erases the status line.
 void clear_status();
 
 // Levels of verbosity, and the messages that raya prints at each.
 inline constexpr int kErrorsOnly = -2;       // errors
 inline constexpr int kQuiet = -1;            // errors, warnings
 inline constexpr int kDefaultVerbosity = 0;  // errors, warnings, progress, summary
-inline constexpr int kVerbose = 1;           // as default, and the steps of the host
-inline constexpr int kDetailed = 2;          // as verbose, and kernel builds and times of device commands
+inline constexpr int kVerbose = 1;           // also the steps of the host, with their times
+inline constexpr int kDetailed = 2;          // also kernel builds, and times of device commands
 
 /// Sets the level, clamped to kErrorsOnly..kDetailed.
 void set_verbosity(int level);

@@ -24,17 +24,18 @@ std::string user_name(uid_t user) {
     return entry != nullptr ? entry->pw_name : std::to_string(user);
 }
 
+/// Returns true if a user other than `owner` and root is a member of the group.
 bool has_other_members(gid_t group, uid_t owner) {
     const std::string name = user_name(owner);
     const ::group* const entry = ::getgrgid(group);
     for (char** member = entry != nullptr ? entry->gr_mem : nullptr; member != nullptr && *member != nullptr; ++member)
         if (*member != name) return true;
-    bool found = false;
+    bool has_other = false;
     ::setpwent();
     while (const passwd* const user = ::getpwent())
-        found = found || (user->pw_gid == group && user->pw_uid != owner && user->pw_uid != 0);
+        has_other = has_other || (user->pw_gid == group && user->pw_uid != owner && user->pw_uid != 0);
     ::endpwent();
-    return found;
+    return has_other;
 }
 
 std::string unsafe_entry_reason(const fs::path& path, const std::vector<uid_t>& owners, Sticky sticky) {
@@ -69,9 +70,9 @@ ProgramFile program_file() {
     std::error_code failure;
     const fs::path self = substitute_file.empty() ? "/proc/self/exe" : substitute_file;
     const fs::path folder = (substitute_file.empty() ? fs::read_symlink(self, failure) : substitute_file).parent_path();
-    struct stat is {};
-    if (failure || ::stat(self.c_str(), &is) != 0) throw ModuleError(fmt::format("cannot read {}", self.string()));
-    return {folder, is.st_uid};
+    struct stat status {};
+    if (failure || ::stat(self.c_str(), &status) != 0) throw ModuleError(fmt::format("cannot read {}", self.string()));
+    return {folder, status.st_uid};
 }
 
 /// Returns the path of the module file `name`. Throws ModuleError if there is no such file, and UserError if another

@@ -10,13 +10,13 @@
 
 namespace raya {
 
-std::string progress_line(const std::string& stage, const std::optional<StageProgress>& done, double seconds) {
+std::string progress_line(const std::string& stage, const std::optional<StageProgress>& progress, double seconds) {
     constexpr int kWidth = 40;              // characters of the bar
     constexpr double kMinFraction = 0.001;  // minimum completed fraction for an estimate of the remaining time
-    const double fraction = done ? done->fraction : 0;
+    const double fraction = progress ? progress->fraction : 0;
     if (fraction < kMinFraction) return fmt::format("{} ... {:.0f} s", stage, seconds);
     const int filled = static_cast<int>(fraction * kWidth);
-    const double remaining_s = done->seconds / fraction - seconds;
+    const double remaining_s = progress->seconds / fraction - seconds;
     return fmt::format(
         "[{}{}] {:3.0f} %  {}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
         std::min(99.0, std::floor(100 * fraction)),
@@ -64,13 +64,13 @@ void ProgressBar::stage(const std::string& name) {
     const std::lock_guard lock(mutex_);
     stage_name_ = name;
     stage_began_ = Clock::now();
-    done_.reset();
+    progress_.reset();
 }
 
 void ProgressBar::update(double fraction) {
     const std::lock_guard lock(mutex_);
     fraction = std::clamp(fraction, 0.0, 1.0);
-    if (!done_ || fraction > done_->fraction) done_ = {fraction, stage_seconds()};
+    if (!progress_ || fraction > progress_->fraction) progress_ = {fraction, stage_seconds()};
 }
 
 double ProgressBar::stage_seconds() const { return seconds_since(stage_began_); }
@@ -79,7 +79,7 @@ void ProgressBar::draw_until_ended() {
     using namespace std::chrono_literals;
     std::unique_lock lock(mutex_);
     for (auto pause = 700ms; !end_.wait_for(lock, pause, [this] { return ended_; }); pause = 200ms)
-        show_status(progress_line(stage_name_, done_, stage_seconds()));
+        show_status(progress_line(stage_name_, progress_, stage_seconds()));
     clear_status();
 }
 

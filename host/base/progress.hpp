@@ -20,8 +20,8 @@ struct StageProgress {
 };
 
 /// Returns the progress line of a stage, which began `seconds` ago. The line contains a bar and an estimate of the
-/// remaining time if `done` is known and its fraction is at least 0.1 %.
-std::string progress_line(const std::string& stage, const std::optional<StageProgress>& done, double seconds);
+/// remaining time if `progress` is known and its fraction is at least 0.1 %.
+std::string progress_line(const std::string& stage, const std::optional<StageProgress>& progress, double seconds);
 
 /// Starts a thread that prints messages about the compilation of kernels on stderr, unless --quiet is given. After 1 s,
 /// which is longer than loading cached kernels takes, it prints that kernels are being compiled for the device;
@@ -58,7 +58,7 @@ class ProgressBar {
     bool ended_ = false;
     std::string stage_name_;
     Clock::time_point stage_began_ = Clock::now();
-    std::optional<StageProgress> done_;
+    std::optional<StageProgress> progress_;
     std::thread drawer_;
 };
 

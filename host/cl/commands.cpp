@@ -133,27 +133,27 @@ void Session::check_blocks(const std::string& label, const std::string& buffer, 
 
 void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes) {
     const std::size_t groups = record.groups, group_size = record.group_size;
-    const std::string what = fmt::format("'{}': launching kernel '{}' ({} groups of {} work-items)", record.label,
-                                         record.target_name, groups, group_size);
-    if (groups == 0 || group_size == 0) throw std::invalid_argument(what + ": no work-items");
+    const std::string operation = fmt::format("'{}': launching kernel '{}' ({} groups of {} work-items)", record.label,
+                                              record.target_name, groups, group_size);
+    if (groups == 0 || group_size == 0) throw std::invalid_argument(operation + ": no work-items");
     if (local_bytes > info_.local_memory_bytes) {
         throw DeviceError(
             fmt::format("{}: needs {} bytes of local memory, {} has {} per work-group; remedy: a smaller scene, or "
                         "another device",
-                        what, local_bytes, info_.name, info_.local_memory_bytes));
+                        operation, local_bytes, info_.name, info_.local_memory_bytes));
     }
     const std::size_t max_size =
-        guarded(what, [&] { return kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_); });
+        guarded(operation, [&] { return kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_); });
     if (group_size > max_size) {
         throw DeviceError(
             fmt::format("{}: {} allows groups of 1..{} for this kernel; remedy: --group {}, or fewer lanes (--lanes)",
-                        what, info_.name, max_size, max_size));
+                        operation, info_.name, max_size, max_size));
     }
     const bool records_build = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
     const std::string name = records_build ? fmt::format("{}, groups of {}", record.target_name, group_size) : "";
     if (records_build) finish();
     const Clock::time_point start = Clock::now();
-    submit(what, std::move(record), [&](cl::Event* event) {
+    submit(operation, std::move(record), [&](cl::Event* event) {
         queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                      nullptr, event);
     });

@@ -32,10 +32,10 @@ enum class Transfers { kAutomatic, kDirect, kStaged };
 
 /// A context and an in-order queue: commands run one after another, in the order in which they were enqueued.
 ///
-/// All offsets and counts are in elements. A range beyond a buffer's end throws std::out_of_range, an empty launch or
-/// buffer std::invalid_argument: both are errors in the host program. If a call of the driver fails, DeviceError is
-/// thrown with call, label, buffers or kernel, error name and remedy. A transfer of no elements does nothing and is not
-/// recorded.
+/// All offsets and counts are in elements. A range beyond a buffer's end throws std::out_of_range. A launch without
+/// work-items or a buffer without elements throws std::invalid_argument. Both exceptions mean an error in the host
+/// program. If a call of the driver fails, a DeviceError is thrown; its message contains the call, the label, the
+/// buffers or the kernel, the error's name and a remedy. A transfer of no elements does nothing and is not recorded.
 class Session {
   public:
     explicit Session(const cl::Device& device, Timing timing = Timing::kOn,
@@ -49,8 +49,8 @@ class Session {
     /// Total bytes of all buffers allocated so far, including those that were freed.
     std::uint64_t bytes_taken() const { return bytes_taken_; }
 
-    /// Allocates `count` > 0 elements; `name` is for messages. Throws DeviceError if the elements exceed the device's
-    /// maximum buffer size, or if the allocation fails.
+    /// Allocates `count` > 0 elements; `name` is for messages. Throws DeviceError if the buffer would exceed the
+    /// device's maximum buffer size, or if the allocation fails.
     template <class T>
     Buffer<T> buffer(const std::string& name, std::size_t count) const {
         return Buffer<T>(allocate(name, count, sizeof(T)), name, count);
@@ -84,21 +84,21 @@ class Session {
                       kernel.handle(), local_bytes);
     }
 
-    /// Host to device: writes `from` into `to` from element `offset` on. The caller may change `from` afterwards,
-    /// because the call either waits or copies the bytes into staging memory.
+    /// Host to device: writes `source` into `target` from element `offset` on. The caller may change `source`
+    /// afterwards, because the call either waits or copies the bytes into staging memory.
     template <class T>
-    void write(const std::string& label, Buffer<T>& to, std::span<const std::type_identity_t<T>> from,
+    void write(const std::string& label, Buffer<T>& target, std::span<const std::type_identity_t<T>> source,
                std::size_t offset = 0) {
-        check_range(label, to.name(), to.size(), offset, from.size());
-        write_bytes(label, to.memory(), to.name(), offset * sizeof(T), from.size_bytes(), from.data());
+        check_range(label, target.name(), target.size(), offset, source.size());
+        write_bytes(label, target.memory(), target.name(), offset * sizeof(T), source.size_bytes(), source.data());
     }
 
-    /// Device to host: reads `to.size()` elements of `from` from element `offset` on. Waits.
+    /// Device to host: reads `target.size()` elements of `source` from element `offset` on. Waits.
     template <class T>
-    void read(const std::string& label, const Buffer<T>& from, std::span<std::type_identity_t<T>> to,
+    void read(const std::string& label, const Buffer<T>& source, std::span<std::type_identity_t<T>> target,
               std::size_t offset = 0) {
-        check_range(label, from.name(), from.size(), offset, to.size());
-        read_bytes(label, from.memory(), from.name(), offset * sizeof(T), to.size_bytes(), to.data());
+        check_range(label, source.name(), source.size(), offset, target.size());
+        read_bytes(label, source.memory(), source.name(), offset * sizeof(T), target.size_bytes(), target.data());
     }
 
     /// Allocates host memory for asynchronous reads of `count` > 0 elements. Throws DeviceError on failure.
@@ -107,15 +107,16 @@ class Session {
         return {host_memory(name, count * sizeof(T)), count};
     }
 
-    /// Device to host: reads `count` elements of `from`, starting at element `offset`, into `to`, starting at element
-    /// `to_offset`. Does not wait; the elements are valid after wait(). Reads complete in the order of the calls.
+    /// Device to host: reads `count` elements of `source`, starting at element `offset`, into `target`, starting at
+    /// element `target_offset`. Does not wait; the elements are valid after wait(). Reads complete in the order of the
+    /// calls.
     template <class T>
-    void read(const std::string& label, const Buffer<T>& from, std::size_t offset, Readback<T>& to,
-              std::size_t to_offset, std::size_t count) {
-        check_range(label, from.name(), from.size(), offset, count);
-        check_range(label, "readback of " + from.name(), to.size(), to_offset, count);
-        read_async(label, from.memory(), from.name(), offset * sizeof(T), count * sizeof(T), to.memory(),
-                   to_offset * sizeof(T));
+    void read(const std::string& label, const Buffer<T>& source, std::size_t offset, Readback<T>& target,
+              std::size_t target_offset, std::size_t count) {
+        check_range(label, source.name(), source.size(), offset, count);
+        check_range(label, "readback of " + source.name(), target.size(), target_offset, count);
+        read_async(label, source.memory(), source.name(), offset * sizeof(T), count * sizeof(T), target.memory(),
+                   target_offset * sizeof(T));
     }
 
     /// Waits for all reads into `readback`. Throws DeviceError, with the label, if a read failed.
@@ -126,12 +127,12 @@ class Session {
 
     /// Device to device: copies `count` elements. Within one buffer the two ranges must not overlap. Does not wait.
     template <class T>
-    void copy(const std::string& label, const Buffer<T>& from, std::size_t from_offset, Buffer<T>& to,
-              std::size_t to_offset, std::size_t count) {
-        check_range(label, from.name(), from.size(), from_offset, count);
-        check_range(label, to.name(), to.size(), to_offset, count);
-        copy_bytes(label, {from.memory(), from.name(), from_offset * sizeof(T)},
-                   {to.memory(), to.name(), to_offset * sizeof(T)}, count * sizeof(T));
+    void copy(const std::string& label, const Buffer<T>& source, std::size_t source_offset, Buffer<T>& target,
+              std::size_t target_offset, std::size_t count) {
+        check_range(label, source.name(), source.size(), source_offset, count);
+        check_range(label, target.name(), target.size(), target_offset, count);
+        copy_bytes(label, {source.memory(), source.name(), source_offset * sizeof(T)},
+                   {target.memory(), target.name(), target_offset * sizeof(T)}, count * sizeof(T));
     }
 
     /// Equidistant blocks of a buffer: the first block starts at element `first`, and each further block `pitch`
@@ -142,27 +143,27 @@ class Session {
 
     /// Device to device, between different buffers: copies `count` elements of each of `blocks` blocks. Does not wait.
     template <class T>
-    void copy_blocks(const std::string& label, const Buffer<T>& from, Blocks from_blocks, Buffer<T>& to,
-                     Blocks to_blocks, std::size_t count, std::size_t blocks) {
-        check_blocks(label, from.name(), from.size(), from_blocks, count, blocks);
-        check_blocks(label, to.name(), to.size(), to_blocks, count, blocks);
-        copy_rows(label, {from.memory(), from.name(), (from_blocks.first + from_blocks.offset) * sizeof(T)},
-                  from_blocks.pitch * sizeof(T),
-                  {to.memory(), to.name(), (to_blocks.first + to_blocks.offset) * sizeof(T)},
-                  to_blocks.pitch * sizeof(T), count * sizeof(T), blocks);
+    void copy_blocks(const std::string& label, const Buffer<T>& source, Blocks source_blocks, Buffer<T>& target,
+                     Blocks target_blocks, std::size_t count, std::size_t blocks) {
+        check_blocks(label, source.name(), source.size(), source_blocks, count, blocks);
+        check_blocks(label, target.name(), target.size(), target_blocks, count, blocks);
+        copy_rows(label, {source.memory(), source.name(), (source_blocks.first + source_blocks.offset) * sizeof(T)},
+                  source_blocks.pitch * sizeof(T),
+                  {target.memory(), target.name(), (target_blocks.first + target_blocks.offset) * sizeof(T)},
+                  target_blocks.pitch * sizeof(T), count * sizeof(T), blocks);
     }
 
-    /// Sets every element of `to` to `value`. Does not wait.
+    /// Sets every element of `target` to `value`. Does not wait.
     template <class T>
-    void fill(const std::string& label, Buffer<T>& to, const std::type_identity_t<T>& value) {
+    void fill(const std::string& label, Buffer<T>& target, const std::type_identity_t<T>& value) {
         static_assert(sizeof(T) <= 128 && (sizeof(T) & (sizeof(T) - 1)) == 0,
                       "OpenCL fills with 1, 2, 4, ... 128 bytes");
-        fill_bytes(label, to.memory(), to.name(), to.bytes(), &value, sizeof(T));
+        fill_bytes(label, target.memory(), target.name(), target.bytes(), &value, sizeof(T));
     }
 
-    /// For traces: from now on, span() and build() add entries to `spans`, which must outlive the session, and the
-    /// profile contains the arguments of the next `launches` kernel launches, with their names if the program is built
-    /// after this call.
+    /// For traces: from now on, span() and build() add entries to `spans`, which must outlive the session. The profile
+    /// will contain the arguments of the next `launches` kernel launches, and the arguments' names if the program is
+    /// built after this call.
     void observe(SpanLog& spans, std::size_t launches) {
         spans_ = &spans;
         recorded_launches_ = launches;
@@ -215,27 +216,28 @@ class Session {
     cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const;
     std::unique_ptr<HostMemory> host_memory(const std::string& name, std::size_t bytes) const;
     void launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes);
-    void write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
-                     std::size_t bytes, const void* from);
-    void read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
-                    std::size_t bytes, void* to);
-    void read_async(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
-                    std::size_t bytes, HostMemory& to, std::size_t to_offset);
+    void write_bytes(const std::string& label, const cl::Buffer& target, const std::string& name, std::size_t offset,
+                     std::size_t bytes, const void* source);
+    void read_bytes(const std::string& label, const cl::Buffer& source, const std::string& name, std::size_t offset,
+                    std::size_t bytes, void* target);
+    void read_async(const std::string& label, const cl::Buffer& source, const std::string& name, std::size_t offset,
+                    std::size_t bytes, HostMemory& target, std::size_t target_offset);
     static void wait_for(const std::string& label, HostMemory& memory);
-    void write_staged(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
-                      std::size_t bytes, const std::byte* from);
-    void read_staged(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
-                     std::size_t bytes, std::byte* to);
-    void copy_bytes(const std::string& label, const CopyEnd& from, const CopyEnd& to, std::size_t bytes);
+    void write_staged(const std::string& label, const cl::Buffer& target, const std::string& name, std::size_t offset,
+                      std::size_t bytes, const std::byte* source);
+    void read_staged(const std::string& label, const cl::Buffer& source, const std::string& name, std::size_t offset,
+                     std::size_t bytes, std::byte* target);
+    void copy_bytes(const std::string& label, const CopyEnd& source, const CopyEnd& target, std::size_t bytes);
     /// Copies `rows` rows of `bytes` bytes. Pitches are in bytes too.
-    void copy_rows(const std::string& label, const CopyEnd& from, std::size_t from_pitch, const CopyEnd& to,
-                   std::size_t to_pitch, std::size_t bytes, std::size_t rows);
-    void fill_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t bytes,
+    void copy_rows(const std::string& label, const CopyEnd& source, std::size_t source_pitch, const CopyEnd& target,
+                   std::size_t target_pitch, std::size_t bytes, std::size_t rows);
+    void fill_bytes(const std::string& label, const cl::Buffer& target, const std::string& name, std::size_t bytes,
                     const void* value, std::size_t value_bytes);
 
-    /// Enqueues one command by `enqueue(cl::Event*)` and records it; `what` is for error messages.
+    /// Enqueues one command by `enqueue(cl::Event*)` and records it. `operation`: description of the command for error
+    /// messages.
     template <class Enqueue>
-    void submit(const std::string& what, CommandRecord record, Enqueue&& enqueue);
+    void submit(const std::string& operation, CommandRecord record, Enqueue&& enqueue);
     CommandRecord finished(const PendingCommand& pending) const;
 
     // Number of pending commands at which a session waits for the device and reads the commands' times. Until then
@@ -262,10 +264,10 @@ class Session {
 };
 
 template <class Enqueue>
-void Session::submit(const std::string& what, CommandRecord record, Enqueue&& enqueue) {
+void Session::submit(const std::string& operation, CommandRecord record, Enqueue&& enqueue) {
     if (pending_.size() >= kMaxPendingCommands) finish();
     cl::Event event;
-    guarded(what, [&] { enqueue(&event); });
+    guarded(operation, [&] { enqueue(&event); });
     pending_.push_back({std::move(record), std::move(event)});
 }
 

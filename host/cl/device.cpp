@@ -72,7 +72,7 @@ std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t or
     throw DeviceError("no available OpenCL device has a compiler; see clinfo; devices:" + device_list(devices));
 }
 
-/// Returns entry `ordinal` modulo the number of entries of a comma-separated list.
+/// Returns the entry of a comma-separated list whose index is `ordinal` modulo the number of entries.
 std::string list_entry(const std::string& list, std::size_t ordinal) {
     const auto entries = static_cast<std::size_t>(1 + std::count(list.begin(), list.end(), ','));
     std::size_t begin = 0;
@@ -81,7 +81,8 @@ std::string list_entry(const std::string& list, std::size_t ordinal) {
 }
 
 /// Interprets `wanted` as a device number, else as a type, else as part of a platform, name, version or driver. Returns
-/// the index of the first device that matches (for a type: the first usable one), or devices.size() if none matches.
+/// the index of the first device that matches (for a type: of the first usable device), or devices.size() if no device
+/// matches.
 std::size_t named_index(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
     const std::optional<std::size_t> number = parsed_number(wanted);
     if (number && *number < devices.size()) return *number;
@@ -186,15 +187,15 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
     return found;
 }
 
-cl::Device choose_device(const std::string& name_part, std::size_t ordinal) {
+cl::Device choose_device(const std::string& wanted, std::size_t ordinal) {
     const std::vector<cl::Device> devices = all_devices();
     if (devices.empty())
         if (const std::string problem = driver_cache_problem(); !problem.empty()) throw DeviceError(problem);
     std::vector<DeviceInfo> infos;
     for (const cl::Device& device : devices) infos.push_back(device_info(device));
     const char* fallback = std::getenv("RAYA_DEVICE");
-    const std::string wanted = name_part.empty() && fallback != nullptr ? fallback : name_part;
-    const std::size_t index = device_index(wanted, infos, ordinal);
+    const std::string selector = wanted.empty() && fallback != nullptr ? fallback : wanted;
+    const std::size_t index = device_index(selector, infos, ordinal);
     log_message(kVerbose, fmt::format("device {}: {} ({}, {}, driver {})", index, infos[index].name,
                                       infos[index].platform, infos[index].version, infos[index].driver));
     return devices[index];

@@ -19,17 +19,17 @@ DeviceInfo device_info(const cl::Device& device);
 /// Returns the index into `devices` of the device that `wanted` selects. `ordinal` is a number for round-robin
 /// selection, such as the index of an MPI rank on its host. A device is usable if it is available and has a compiler.
 /// Values of `wanted`:
-/// - empty: usable GPU number `ordinal` modulo the number of usable GPUs; without a usable GPU the same for CPUs, and
-///   without a usable CPU the same for other devices;
+/// - empty: among the usable GPUs, the device with index `ordinal` modulo their number. If no GPU is usable, the
+///   function chooses among the usable CPUs, and if no CPU is usable, among the other usable devices;
 /// - "0", "1", ...: the index in `devices`, as `raya devices` prints it, if it is less than the number of devices;
 /// - "gpu", "cpu", "other": the first usable device of that type;
 /// - any other text: the first device whose platform, name, version or driver contains the text, ignoring case;
-/// - a comma-separated list of the above: entry `ordinal` modulo the number of entries.
+/// - a comma-separated list of such values: the entry with index `ordinal` modulo the number of entries applies.
 /// Throws DeviceError if there is no device, if none matches, or if the selected device is not usable.
 std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices, std::size_t ordinal = 0);
 
-/// Returns the device in all_devices() that device_index() selects for `name_part` and `ordinal`. If `name_part` is
+/// Returns the device in all_devices() that device_index() selects for `wanted` and `ordinal`. If `wanted` is
 /// empty, the environment variable RAYA_DEVICE replaces it. Throws DeviceError as device_index() and all_devices() do.
-cl::Device choose_device(const std::string& name_part, std::size_t ordinal = 0);
+cl::Device choose_device(const std::string& wanted, std::size_t ordinal = 0);
 
 }  // namespace raya

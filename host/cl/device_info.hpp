@@ -16,13 +16,14 @@ struct DeviceInfo {
     std::uint64_t global_memory_bytes = 0;
     bool separate_memory = false;            // global memory is separate from the host's memory
     std::uint64_t max_allocation_bytes = 0;  // maximum size of one buffer
-    std::size_t max_group_size = 0;          // work-items of a work-group
+    std::size_t max_group_size = 0;          // maximum number of work-items of a work-group
     // Number of loop iterations of a work-item, summed over its loops, after which the device ends the loops without an
     // error; 0: no known limit.
     std::uint32_t max_loop_iterations = 0;
     std::uint32_t native_float_width = 0, preferred_float_width = 0;
     bool correctly_rounded_divide_sqrt = false;  // supports -cl-fp32-correctly-rounded-divide-sqrt
-    bool fused_multiply_add = false;             // CL_FP_FMA; the macro FP_FAST_FMAF shows the kernels if it is fast
+    bool fused_multiply_add = false;             // CL_FP_FMA; kernels find FP_FAST_FMAF defined if it is fast
+    // Properties of fp32: CL_FP_DENORM, CL_FP_ROUND_TO_NEAREST, CL_FP_INF_NAN.
     bool denormals = false, round_to_nearest = false, inf_nan = false;
     bool profiling = false;
     bool available = false, compiler_available = false;

@@ -38,10 +38,10 @@ static_assert(std::atomic<const char*>::is_always_lock_free);
 std::array<char, 300> crash_prefix{};  // "rank 1 on node7: ", or empty
 unsigned int crash_delay_us = 0;
 
-// Bytes of a thread's stack: more than the largest stack frame measured for a work-group, 88 MB (1,024 work-items of 16
-// lanes with a grid and 31 bounces).
+// Size of a thread's stack in bytes: more than the largest stack frame measured for a work-group, 88 MB (1,024
+// work-items of 16 lanes with a grid and 31 bounces).
 constexpr std::size_t kStackBytes = std::size_t{128} << 20;
-// Stack of signal handlers. LLVM would replace a smaller stack by its own.
+// Stack on which signal handlers run. LLVM would replace a smaller stack by its own.
 using AlternateStack = std::array<std::byte, 80 << 10>;
 
 constexpr std::array<int, 5> kCrashSignals = {SIGABRT, SIGSEGV, SIGBUS, SIGILL, SIGFPE};
@@ -54,13 +54,13 @@ void write_message(const char* text) {
 extern "C" void report_driver_crash(int signal) {
     static std::atomic<pid_t> crashed{0};
     const pid_t thread = ::gettid();
-    pid_t first = 0;
-    if (!crashed.compare_exchange_strong(first, thread) && first != thread)
+    pid_t first_thread = 0;
+    if (!crashed.compare_exchange_strong(first_thread, thread) && first_thread != thread)
         for (;;) ::pause();  // another thread crashed first: it ends the process
     remove_files_in_progress();
     const char* operation = current_operation.load();
     if (operation == nullptr && thread != ::getpid()) operation = "running a kernel";  // other threads are the driver's
-    if (operation == nullptr || first != 0) {
+    if (operation == nullptr || first_thread != 0) {
         std::signal(signal, SIG_DFL);
         ::raise(signal);
         return;
@@ -100,10 +100,10 @@ void set_handler(int signal, void (*old_handler)(int), void (*new_handler)(int))
     ::sigaction(signal, &action, nullptr);
 }
 
-/// Returns the size, in bytes, of the stack and of the guard of a new thread. It is kStackBytes, or less if RLIMIT_AS
-/// limits the address space. Then the stacks and guards of one thread per core take an eighth of the limit, but each
+/// Returns the size, in bytes, of the stack and of the guard of a new thread: kStackBytes, or less if RLIMIT_AS limits
+/// the address space. In that case the stacks and guards of one thread per core take an eighth of the limit, but each
 /// takes at least kStackBytes / 16.
-std::size_t thread_stack() {
+std::size_t thread_stack_bytes() {
     rlimit memory{RLIM_INFINITY, RLIM_INFINITY};
     ::getrlimit(RLIMIT_AS, &memory);
     const rlim_t cores = std::max(1u, std::thread::hardware_concurrency());
@@ -114,8 +114,8 @@ using ThreadStart = std::pair<void* (*)(void*), void*>;  // a thread's routine a
 
 void* run_thread(void* start) {
     const auto [routine, argument] = *std::unique_ptr<ThreadStart>(static_cast<ThreadStart*>(start));
-    AlternateStack memory;
-    const stack_t alternate{memory.data(), 0, memory.size()};
+    AlternateStack signal_stack;
+    const stack_t alternate{signal_stack.data(), 0, signal_stack.size()};
     stack_t previous{};
     ::sigaltstack(&alternate, &previous);
     void* const result = routine(argument);
@@ -149,23 +149,26 @@ std::string unsafe_reason(fs::path folder) {
 /// Creates a folder that only this user may access. Returns true if the folder then belongs to this user and has these
 /// permissions; another user may have created it before.
 bool make_private_folder(const fs::path& folder) {
-    struct stat is {};
+    struct stat status {};
     ::mkdir(folder.c_str(), S_IRWXU);
-    return ::lstat(folder.c_str(), &is) == 0 && S_ISDIR(is.st_mode) && is.st_uid == ::geteuid() &&
-           (is.st_mode & ACCESSPERMS) == S_IRWXU;
+    return ::lstat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == ::geteuid() &&
+           (status.st_mode & ACCESSPERMS) == S_IRWXU;
 }
 
+/// Creates a folder among the temporary files that only this user may access, and returns its path. `reason`: why
+/// PoCL's default folder is not safe, for the message of the DeviceError that is thrown if no such folder can be
+/// created.
 fs::path private_cache_folder(const std::string& reason) {
     std::error_code error;
     fs::path temporary = fs::canonical(fs::temp_directory_path(error), error);
     if (error) temporary = "/tmp";
     const std::string base_path = temporary / fmt::format("raya-pocl-cache-{}", ::geteuid());
     if (unsafe_path_reason(temporary, {::geteuid()}, Sticky::kAllowed).empty())
-        for (const char* end : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
-            if (make_private_folder(base_path + end)) return base_path + end;
+        for (const char* suffix : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
+            if (make_private_folder(base_path + suffix)) return base_path + suffix;
     throw DeviceError(
-        fmt::format("no safe folder for PoCL's kernels: {}; neither '{}' nor one of '{}-1' to '-9' belongs to this "
-                    "user alone; name another folder in POCL_CACHE_DIR",
+        fmt::format("no safe folder for PoCL's kernel cache: {}; '{}' and '{}-1' to '-9' do not belong to this user "
+                    "alone; name another folder in POCL_CACHE_DIR",
                     reason, base_path, base_path));
 }
 
@@ -180,13 +183,14 @@ extern "C" __attribute__((visibility("default"))) int pthread_create(pthread_t* 
     static auto* const next = reinterpret_cast<decltype(&::pthread_create)>(::dlsym(RTLD_NEXT, "pthread_create"));
     if (attributes != nullptr || !enlarges_stacks) return next(thread, attributes, routine, argument);
     auto start = std::make_unique<ThreadStart>(routine, argument);
-    pthread_attr_t large;
-    ::pthread_attr_init(&large);
-    ::pthread_attr_setstacksize(&large, thread_stack());
-    ::pthread_attr_setguardsize(&large, thread_stack());
-    int error = next(thread, &large, run_thread, start.get());
-    if (error != 0) error = next(thread, nullptr, run_thread, start.get());  // too little address space for `large`
-    ::pthread_attr_destroy(&large);
+    pthread_attr_t large_stack;
+    ::pthread_attr_init(&large_stack);
+    ::pthread_attr_setstacksize(&large_stack, thread_stack_bytes());
+    ::pthread_attr_setguardsize(&large_stack, thread_stack_bytes());
+    int error = next(thread, &large_stack, run_thread, start.get());
+    if (error != 0)
+        error = next(thread, nullptr, run_thread, start.get());  // too little address space for `large_stack`
+    ::pthread_attr_destroy(&large_stack);
     if (error == 0) start.release();
     return error;
 }
@@ -206,12 +210,12 @@ void install_crash_handlers() {
         set_handler(signal, SIG_DFL, report_driver_crash);
         if (signal != SIGFPE) protect_handler(signal);  // PoCL's SIGFPE handler continues after a division by 0
     }
-    static AlternateStack memory;
-    const stack_t alternate{memory.data(), 0, memory.size()};
+    static AlternateStack signal_stack;
+    const stack_t alternate{signal_stack.data(), 0, signal_stack.size()};
     ::sigaltstack(&alternate, nullptr);
     rlimit stack{};  // limit of this thread's stack, on which PoCL's basic device runs kernels
     ::getrlimit(RLIMIT_STACK, &stack);
-    stack.rlim_cur = std::min<rlim_t>(stack.rlim_max, thread_stack());
+    stack.rlim_cur = std::min<rlim_t>(stack.rlim_max, thread_stack_bytes());
     ::setrlimit(RLIMIT_STACK, &stack);
     enlarges_stacks = true;
 }

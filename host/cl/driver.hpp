@@ -20,13 +20,13 @@ class DriverCall {
 /// Installs handlers of crash signals and of exit(). If a driver then aborts, crashes (also by a stack overflow) or
 /// calls exit() in any thread, raya prints the operation and remedies on stderr, deletes files in progress and exits
 /// with the code of a DeviceError. A crash outside of drivers ends the program by its signal. A signal that has another
-/// handler, such as a sanitizer's, keeps it. Threads created later with default attributes get stacks that suffice for
-/// the largest work-groups.
+/// handler, such as a sanitizer's, keeps that handler. Threads created later with default attributes get stacks that
+/// suffice for the largest work-groups.
 void install_crash_handlers();
 
-/// For a rank of an MPI job: sets the prefix of its crash messages ("rank 1 on node7: ") and a delay in seconds before
-/// it prints one. The first rank that prints ends the other ranks. With different delays, only one rank prints if all
-/// crash.
+/// For a rank of an MPI job: sets the prefix of its crash messages ("rank 1 on node7: ") and the time in seconds that
+/// the rank waits before it prints such a message. The first rank that prints ends the other ranks. If each rank has
+/// another delay and all ranks crash, only one rank prints.
 void set_crash_prefix(const std::string& prefix, double delay_s);
 
 /// Removes the crash handlers, so that crashes end the program by their signal and the parent process sees the signal.
@@ -34,8 +34,8 @@ void restore_crash_signals();
 
 /// Sets POCL_CACHE_DIR, unless it is set, to a folder that only this user and root may write: PoCL's default folder if
 /// it is safe, else, with a warning, a folder among the temporary files. The folder matters because PoCL executes
-/// the binaries in it, and offers no device if it cannot write to it. Call this before any OpenCL function. Throws
-/// DeviceError if there is no safe folder.
+/// the binaries in it, and offers no device if it cannot write to the folder. Call this before any OpenCL function.
+/// Throws DeviceError if there is no safe folder.
 void set_driver_cache_folder();
 
 /// Checks if PoCL can store kernels in the folder POCL_CACHE_DIR, by writing and deleting a file in it. Returns the

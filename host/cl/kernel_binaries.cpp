@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 namespace {
 
 bool binaries_are_off() {
-    const char* const set = std::getenv("RAYA_BINARIES");
-    const std::string value = set == nullptr ? "" : set;
+    const char* const variable = std::getenv("RAYA_BINARIES");
+    const std::string value = variable == nullptr ? "" : variable;
     if (!value.empty() && value != "off")
         throw UserError(fmt::format("RAYA_BINARIES={}: must be off, or not set", value));
     return value == "off";

@@ -18,8 +18,8 @@ using KernelBinary = std::vector<unsigned char>;
 std::filesystem::path kernel_binary_file(const cl::Device& device, const std::string& source,
                                          const std::string& options);
 
-/// Reads the file. Returns nothing if it cannot be read, if users other than root, this user and the owner
-/// of raya's executable may change it, or if the environment variable RAYA_BINARIES is "off". Throws UserError if
+/// Reads a binary file. Returns nothing if the file cannot be read, if users other than root, this user and the owner
+/// of raya's executable may change the file, or if the environment variable RAYA_BINARIES is "off". Throws UserError if
 /// RAYA_BINARIES is neither "off" nor empty.
 std::optional<KernelBinary> read_kernel_binary(const std::filesystem::path& file);
 

@@ -31,9 +31,10 @@ struct KernelOptions {
     bool exact_divide = true;  // use the device's division and square root if correctly rounded; false: refine them
     bool exact_fma = true;     // use the device's fused multiply-add; false: emulate it
     bool words_local = true;   // work-groups copy the job's words (scene and settings) into local memory
-    std::uint32_t accel = RAYA_ACCEL_NONE;  // acceleration structure of the job
-    std::uint32_t stack = 0;                // RAYA_BVH_STACK: depth of the traversal stack
+    std::uint32_t accel = RAYA_ACCEL_NONE;  // accelerator of the job
+    std::uint32_t stack = 0;                // RAYA_BVH_STACK: number of entries of the traversal stack
     bool filter = false;  // filter spheres and polygons in fp32 before the exact test, see filters_are_valid()
+    // The scene has polygons, polygons with vertex normals (patches), cones.
     bool polygons = true, patches = true, cones = true;
     bool costs = false;  // torus nodes record the cost of each packet
     KernelTuning tuning{};
@@ -48,14 +49,15 @@ struct KernelChoice {
     std::uint32_t lanes = 0;       // V: 1, 4, 8 or 16; 0: chosen from the device
     std::uint32_t group_size = 0;  // L: 1..1024 work-items; 0: chosen from the device
     bool filter = true;            // use the fp32 filters if filters_are_valid(); they do not change the hits
-    // If one of the next two members is false, the kernels do not use that feature, so that the code that replaces it
-    // can be tested on any device.
-    bool local_words = true;       // the job's words in local memory if they fit
-    bool exact_arithmetic = true;  // the device's division, square root and fused multiply-add if correctly rounded
+    // Each of the next two members, if false, selects replacement code in the kernels, which can thus be tested on any
+    // device.
+    bool local_words = true;       // keep the job's words in local memory if they fit; false: in global memory
+    bool exact_arithmetic = true;  // use the device's division, square root and fused multiply-add if they are
+                                   // correctly rounded; false: refine or emulate them
     KernelSources sources{};
     KernelTuning tuning{};
     LinkMove link_move = LinkMove::kAutomatic;
-    std::string origin{};       // for reports: source of lanes, group size and tuning, see chosen() in tuned.hpp
+    std::string origin{};  // for reports: source of lanes, group size and tuning, see chosen_kernels() in tuned.hpp
     std::string link_origin{};  // for reports: source of link_move
 };
 

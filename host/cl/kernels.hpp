@@ -60,9 +60,10 @@ class Kernels {
 /// change that shortens the loops.
 inline DeviceError truncated_loops_error(const std::string& label, const std::string& device,
                                          const std::string& remedy) {
-    return DeviceError("'" + label + "': " + device +
-                       " has ended loops early without an error, so the image would be wrong; remedy: " + remedy +
-                       ", or another device");
+    return DeviceError(
+        "'" + label + "': " + device +
+        " stopped this kernel's loops before their end and reported no error; the image would be wrong; remedy: " +
+        remedy + ", or another device");
 }
 
 /// Guards launches on devices that end a kernel's loops early (kernels/shared/loop_canary.clh). After a launch whose

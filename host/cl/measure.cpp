@@ -18,8 +18,8 @@ std::size_t work_items(const DeviceInfo& device, std::uint32_t group) {
     return std::size_t{device.compute_units} * (device.type == "cpu" ? 2 * group : 2048);
 }
 
-constexpr int kSamples = 2;                                      // samples of each rate in a measurement
-constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kRoot = 4;  // indices of kOperations
+constexpr int kSamples = 2;  // number of samples of each rate in a measurement
+constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kSquareRoot = 4;  // indices of kOperations
 
 // Returns the size in bytes of each of the two buffers of a copy. Together they take at most an eighth of the device's
 // memory.
@@ -56,7 +56,7 @@ class PeakRates {
         peak.fp32_per_s =
             widest_fp32_rates_ ? widest_fp32_rates_->measure(kMultiplyAdd, kSamples) : peak.multiply_per_s;
         peak.divide_per_s = render_rates_.measure(kDivide, kSamples);
-        peak.root_per_s = render_rates_.measure(kRoot, kSamples);
+        peak.sqrt_per_s = render_rates_.measure(kSquareRoot, kSamples);
         peak.copy_bytes = copied_bytes(session_.device());
         peak.copy_bytes_per_s = copy_bytes_per_s(session_, peak.copy_bytes);
         return peak;
@@ -98,12 +98,12 @@ void OperationRates::find_rounds(std::size_t kind) {
 double OperationRates::measure(std::size_t kind, int samples) {
     if (rounds_[kind] == 0) find_rounds(kind);
     const double operations = static_cast<double>(items_ * lanes_) * RAYA_CHAINS * rounds_[kind];
-    double best = 0;
+    double highest_rate = 0;
     for (int i = 0; i < samples; ++i) {
         const double elapsed_s = launch_seconds(kind);
-        if (elapsed_s > 0) best = std::max(best, operations / elapsed_s);
+        if (elapsed_s > 0) highest_rate = std::max(highest_rate, operations / elapsed_s);
     }
-    return best;
+    return highest_rate;
 }
 
 DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes) {
@@ -118,7 +118,7 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
             lowest_fp32 = std::min(lowest_fp32, peak.fp32_per_s);
             for (double DevicePeak::*rate :
                  {&DevicePeak::fp32_per_s, &DevicePeak::multiply_per_s, &DevicePeak::divide_per_s,
-                  &DevicePeak::root_per_s, &DevicePeak::copy_bytes_per_s})
+                  &DevicePeak::sqrt_per_s, &DevicePeak::copy_bytes_per_s})
                 best.*rate = std::max(best.*rate, peak.*rate);
             best.copy_bytes = peak.copy_bytes;
         }
@@ -130,10 +130,10 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
 
 ClockOffset clock_offset_of(std::uint64_t before, std::uint64_t queued, std::uint64_t after) {
     if (before <= queued && queued <= after) return {};
-    const std::uint64_t half = (after - before) / 2;
+    const std::uint64_t half_ns = (after - before) / 2;
     return {.same_clock = false,
-            .offset_ns = static_cast<std::int64_t>(before + half) - static_cast<std::int64_t>(queued),
-            .uncertainty_ns = half + (after - before) % 2};
+            .offset_ns = static_cast<std::int64_t>(before + half_ns) - static_cast<std::int64_t>(queued),
+            .uncertainty_ns = half_ns + (after - before) % 2};
 }
 
 ClockOffset measure_clock_offset(Session& session) {

@@ -14,14 +14,15 @@ namespace raya {
 
 inline constexpr std::array<const char*, 5> kOperations = {"add", "multiply", "mul-acc", "divide", "sqrt"};
 
-/// Measures the rate of each operation of kOperations in one number format: all compute units run chains of operations,
-/// each of which depends on the previous one. Builds the kernel once. Clears the session's profile. Throws DeviceError.
+/// Measures the rate of each operation of kOperations in one number format. All compute units run chains of operations;
+/// in a chain, each operation depends on the previous one. Builds the kernel once. Clears the session's profile. Throws
+/// DeviceError.
 class OperationRates {
   public:
     OperationRates(Session& session, const NumberFormat& format, std::uint32_t lanes);
 
     /// Returns the number of operations kOperations[kind] per second: the maximum of `samples` launches of at least 10
-    /// ms each. 0 if the device does not time its commands.
+    /// ms each. Returns 0 if the device does not time its commands.
     double measure(std::size_t kind, int samples);
 
   private:

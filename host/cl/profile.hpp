@@ -32,7 +32,7 @@ struct LabelSummary {
     std::uint64_t total_ns = 0, min_ns = 0;
     double mean_ns = 0;
     std::uint64_t max_ns = 0;
-    std::uint64_t submit_ns = 0, start_ns = 0;  // total delay from queued to submitted; from submitted to started
+    std::uint64_t submit_ns = 0, start_ns = 0;  // total delays from queued to submitted, and from submitted to started
     std::uint64_t bytes = 0;                    // total; as CommandRecord::bytes
 };
 
@@ -114,8 +114,8 @@ struct DevicePeak {
     double fp32_per_s = 0;                    // multiply-adds with the default lanes, each counted as one operation
     std::string format;                       // number format of the render
     double multiply_per_s = 0;                // multiply-adds in that format, with the lanes of the render
-    double divide_per_s = 0, root_per_s = 0;  // likewise
-    double copy_bytes_per_s = 0;              // bytes read plus bytes written by a copy from buffer to buffer
+    double divide_per_s = 0, sqrt_per_s = 0;  // divisions and square roots, likewise
+    double copy_bytes_per_s = 0;              // number of bytes that a copy from buffer to buffer reads and writes
     std::uint64_t copy_bytes = 0;             // size of each of the two buffers
     double scatter = 0;                       // (best - worst) / best of three measurements of fp32_per_s
 };

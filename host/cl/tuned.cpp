@@ -39,7 +39,7 @@ ScopedTunedSource::ScopedTunedSource(TunedSource source) : previous_source_(std:
 }
 ScopedTunedSource::~ScopedTunedSource() { current_source() = std::move(previous_source_); }
 
-KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key) {
+KernelChoice chosen_kernels(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key) {
     const bool user_set_link_move = kernels.link_move != LinkMove::kAutomatic;
     kernels.link_origin = user_set_link_move ? "options" : "";
     if (kernels.lanes == 0 && kernels.group_size == 0) {

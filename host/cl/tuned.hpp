@@ -44,7 +44,8 @@ inline constexpr std::array<std::pair<const char*, std::uint32_t TunedValues::*>
 /// Returns the default values for a device that was not tuned.
 TunedValues default_values(const DeviceInfo& device, const TuningKey& key);
 
-/// Returns `kernels` with these values. A link_move of `kernels` other than kAutomatic stays. Throws UserError if
+/// Returns `kernels` with these values. If kernels.link_move is not kAutomatic, it stays
+/// unchanged. Throws UserError if
 /// link_exchange is out of range.
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values);
 
@@ -69,10 +70,10 @@ class ScopedTunedSource {
     TunedSource previous_source_;
 };
 
-/// Returns `kernels` with lanes, group size and tuning chosen. If the user has set lanes or group size, the one that
-/// the user has not set is the default, and `origin` is "options". Otherwise the values and `origin` are those of the
-/// tuned source; without tuned values they are the defaults, and `origin` is "defaults". `link_origin` is "options" if
-/// the user has set the link move, `origin` if the tuned values set it, and empty if it stays kAutomatic.
-KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key);
+/// Returns `kernels` with lanes, group size and tuning chosen. If the user has set lanes or group size, a value that
+/// the user has not set gets its default, and `origin` is "options". Otherwise, if the tuned source has values, these
+/// and their origin apply. Without tuned values the defaults apply, and `origin` is "defaults". `link_origin` is
+/// "options" if the user has set the link move, `origin` if the tuned values set it, and empty if it stays kAutomatic.
+KernelChoice chosen_kernels(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key);
 
 }  // namespace raya

@@ -1,5 +1,5 @@
-// raya bench: measures rays per second by kernel, lanes and format on a device. Checks the image of each row before it
-// times the row.
+// raya bench: measures rays per second by kernel, lanes and format on a device. Checks the images of all rows before
+// the first row is timed.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -36,15 +36,15 @@ struct BenchCommand {
     RenderOptions render;
     std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
     std::vector<std::string> variants;
-    std::uint32_t samples = 7;  // time samples of each row
-    std::string report, page, baseline;
+    std::uint32_t samples = 7;           // number of time samples of each row
+    std::string report, page, baseline;  // files of --report, --page and --compare
     double tolerance_percent = 10;
     bool denormals = false, build = false;
-    std::optional<double> limit_s;  // seconds to compile a kernel
+    std::optional<double> limit_s;  // maximum seconds to compile a kernel
 };
 
-// Checks the values of --tolerance, --page and --compare, before the measurements, which take long. Returns the report
-// of --compare; empty without this option.
+// Checks the values of --tolerance, --page and --compare. Called before the measurements, because they take long.
+// Returns the report of --compare; without --compare, an empty report.
 BenchReport read_baseline(const BenchCommand& command) {
     if (!(command.tolerance_percent >= 0 && command.tolerance_percent <= 100))
         throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance_percent));
@@ -58,8 +58,8 @@ void check_comparable(const BenchCommand& command, const BenchReport& baseline, 
     const BenchMeasurement &old_row = baseline.rows.front(), &new_row = measured.rows.front();
     throw UserError(fmt::format(
         "{}: contains no row of this run: its first row is {}, {}, {}, {}, {} lanes, group {}; the first row of this "
-        "run is {}, {}, {}, {}, {} lanes, group {}; remedy: the same scene and options, or a new baseline (raya bench "
-        "--report)",
+        "run is {}, {}, {}, {}, {} lanes, group {}; remedy: use the scene and options of the baseline, or write a new "
+        "baseline (raya bench --report)",
         command.baseline, old_row.scene, old_row.size, old_row.array, old_row.format, old_row.lanes, old_row.group_size,
         new_row.scene, new_row.size, new_row.array, new_row.format, new_row.lanes, new_row.group_size));
 }
@@ -102,8 +102,8 @@ void write_and_check_builds(const BenchCommand& command, const BenchReport& repo
                                            build.build_s + build.launch_s, *command.limit_s)};
 }
 
-// Prepares the rows of one format: a render of each of --variants or, without this option, the trace kernel with each
-// number of lanes.
+// Prepares the rows of one format. With --variants, a row is a render of a variant. Without --variants, a row is the
+// trace kernel with one of the numbers of lanes.
 std::vector<BenchRow> rows_of(const BenchCommand& command, Session& session, const Scene& scene,
                               const RingSettings& settings, const NumberFormat& format) {
     std::vector<BenchRow> rows;
@@ -133,14 +133,14 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
     return rows;
 }
 
-// If all variants are the torus, refuses the options of ring machines, because they would have no effect.
+// If the torus is the only variant, refuses the options of ring machines, because they would have no effect.
 void refuse_unused_options(const CLI::App& parsed, const BenchCommand& command) {
     if (std::ranges::count(command.variants, "torus") < std::max(1L, std::ssize(command.variants))) return;
     for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
         if (parsed.count(option) > 0)
             throw UserError(
-                fmt::format("{} with --variants torus: the torus has 4x4x4 nodes without a memory limit; leave out {}, "
-                            "or add the variant none",
+                fmt::format("{} with --variants torus: no effect, because the torus has 4x4x4 nodes without a memory "
+                            "limit; leave out {}, or add the variant none",
                             option, option));
 }
 
@@ -268,8 +268,8 @@ void add_bench_command(CLI::App& program) {
     CLI::Option* build =
         command
             ->add_flag("--build", options->build,
-                       "Only compile from source, and measure for each kernel and format of the variants the seconds "
-                       "of the build and of the first launch, and the size of the binary")
+                       "Measure only compilation: compile each kernel of the variants in each format from source, "
+                       "and measure the seconds of the build, the seconds of the first launch, and the binary's size")
             ->excludes(denormals);
     add_value(*command, "--limit", options->limit_s,
               "With --build: maximum seconds to compile a kernel; exit code 4 if a kernel takes longer")
@@ -285,7 +285,7 @@ void add_bench_command(CLI::App& program) {
     add_file(
         *command, FileUse::kWritten, "--page", options->page, "FILE.html",
         "Write rates, comparison and roofline as an HTML page; raya page makes the same page from a report. Measures "
-        "the device's peak for each format and number of lanes, which takes some seconds each")
+        "the device's peak for each format and number of lanes, which takes some seconds for each pair")
         ->excludes(build);
     CLI::Option* compare =
         add_file(*command, FileUse::kRead, "--compare", options->baseline, "FILE.json",
@@ -294,7 +294,7 @@ void add_bench_command(CLI::App& program) {
             ->excludes(build);
     add_value(*command, "--tolerance", options->tolerance_percent,
               "With --compare: tolerance in percent, 0..100; a row is slower if both its best and its median rate fall "
-              "by more")
+              "by more than the tolerance")
         ->type_name("PERCENT")
         ->capture_default_str()
         ->needs(compare);

@@ -16,11 +16,11 @@ std::string seconds_text(double s) { return fmt::format("{:.2f}", s); }
 std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingSettings settings,
                                      const std::vector<NumberFormat>& formats,
                                      const std::vector<std::string>& variants) {
-    // Drivers cache kernels by source and options, so an option that no earlier build had bypasses the cache.
+    // Drivers cache kernels by source and options. No earlier build has this option, so the driver compiles anew.
     const std::string unique_option = fmt::format("-DRAYA_BUILT={}", Clock::now().time_since_epoch().count());
     settings.kernels.sources.more_options.push_back(unique_option);
-    std::vector<KernelBuild> recorded;
-    session.record_builds(&recorded);
+    std::vector<KernelBuild> recorded_builds;
+    session.record_builds(&recorded_builds);
     std::vector<BenchBuild> builds;
     for (const NumberFormat& format : formats) {
         for (const std::string& variant : variants) {
@@ -31,7 +31,7 @@ std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingS
                     variant_settings.antialias.method = method;
                     lanes = render_row(session, scene, variant_settings, format, variant).result.lanes;
                 }
-            for (KernelBuild& build : recorded) {
+            for (KernelBuild& build : recorded_builds) {
                 std::string& options = build.options;
                 if (const auto position = options.find(unique_option); position != options.npos)
                     options.erase(position > 0 ? position - 1 : position,
@@ -45,7 +45,7 @@ std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingS
                                   .binary_bytes = build.binary_bytes(),
                                   .build_options = options});
             }
-            recorded.clear();
+            recorded_builds.clear();
         }
     }
     session.record_builds(nullptr);
@@ -63,7 +63,8 @@ void print_builds(const std::vector<BenchBuild>& builds) {
         build_s += build.build_s;
         launch_s += build.launch_s;
     }
-    fmt::print("{}first launch: includes compilation that the driver defers until then\n", text_table(table));
+    fmt::print("{}first launch: includes the compilation that the driver defers until the first launch\n",
+               text_table(table));
     fmt::print("total: {} s of builds, {} s of first launches\n", seconds_text(build_s), seconds_text(launch_s));
 }
 

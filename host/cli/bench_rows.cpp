@@ -44,8 +44,9 @@ BenchMeasurement make_measurement(const std::string& kernel, const Scene& scene,
             .hash = {}};
 }
 
-// Renders one image and returns a row with the image's counts. `seconds(result)`: returns the measured time of an
-// image. `work`: returns the operations and bytes of the row's kernel.
+// Renders one image and returns a row with the image's event counts. `events(result)`: returns the event counts of an
+// image. `seconds(result)`: returns the measured time of an image. `work(settings, result)`: returns the operations and
+// bytes of the row's kernel; null if the row measures several kernels.
 template <class Renderer, class Seconds>
 BenchRow row_of(BenchMeasurement measurement, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
                 const EventCounts& (*events)(const decltype(renderer->render())&), Seconds seconds,
@@ -165,8 +166,8 @@ void print_rows(const std::vector<BenchRow>& rows) {
     }
     fmt::print("{}", text_table(table));
     fmt::print(
-        "speed-up: median time of the first row with the same format over the row's; slow-down: the row's median time "
-        "over that of the first row with the same kernel and lanes;\n"
+        "speed-up: median time of the first row with the same format, divided by the row's median time; slow-down: the "
+        "row's median time, divided by that of the first row with the same kernel and lanes;\n"
         "pixels: first digits of the image's hash, checked to be equal in all rows of a format\n");
 }
 
@@ -184,8 +185,8 @@ void print_operations(Session& session, const std::vector<NumberFormat>& formats
             table.back().push_back(
                 fmt::format("{:.2f} ({:.1f} x)", rates[i] * 1e-9, rates[i] > 0 ? first_rates[i] / rates[i] : 0));
     }
-    fmt::print("\noperations of the number layer, best of {}; in brackets the time relative to {}\n{}", samples,
-               format_name(formats.front()), text_table(table));
+    fmt::print("\noperations of the number layer, best of {}; in brackets the time relative to {}\n{}",
+               counted(static_cast<std::uint64_t>(samples), "sample"), format_name(formats.front()), text_table(table));
 }
 
 void print_tuned(const std::vector<BenchRow>& rows) {

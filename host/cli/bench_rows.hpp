@@ -17,12 +17,12 @@ namespace raya {
 struct BenchRow {
     NumberFormat format;
     BenchMeasurement result{};          // take_samples() adds the times
-    EventCounts events{};               // counts of the first image
+    EventCounts events{};               // event counts of an image
     double build_s = 0;                 // seconds of the kernel builds
     std::string tuned{};                // source of the lanes and group size (host/cl/tuned.hpp)
     bool flushed = false;               // built with -cl-denorms-are-zero, which may change the image
     std::function<double()> image_s{};  // renders the image again; returns its seconds
-    std::optional<KernelWork> work{};   // of an image; empty unless the row measures a single kernel
+    std::optional<KernelWork> work{};   // operations and bytes of an image; empty unless the row times a single kernel
 };
 
 /// Prepares a row that measures the trace kernel's time on the device.
@@ -35,18 +35,19 @@ BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, 
 BenchRow render_row(Session& session, const Scene& scene, const RingSettings& settings, const NumberFormat& format,
                     const std::string& variant);
 
-/// Throws DeviceError if rows of the same format differ in image or number of rays, or rows of the same format and
-/// kernel in event counts. Skips rows that flush denormal numbers.
+/// Throws DeviceError if rows of the same format differ in image or number of rays, or if rows of the same format and
+/// kernel differ in event counts. Skips rows that flush denormal numbers.
 void check_rows(const std::vector<BenchRow>& rows);
 
-/// Takes `samples` time samples of each row. A sample is the mean time of as many images as take 20 ms. The rows
-/// alternate, so that other programs disturb all of them equally.
+/// Takes `samples` time samples of each row. For a sample, the row renders images until they have taken 20 ms; the
+/// sample is their mean time. The rows alternate, so that other programs disturb all rows equally.
 void take_samples(std::vector<BenchRow>& rows, std::uint32_t samples);
 
 /// Prints the rays per second, times, speed-up and slow-down of each row.
 void print_rows(const std::vector<BenchRow>& rows);
 
-/// Measures and prints, for each format, how many operations of the number layer run per second. Throws DeviceError.
+/// Measures and prints, for each format, the operations of the number layer per second: the best of `samples` samples.
+/// Throws DeviceError.
 void print_operations(Session& session, const std::vector<NumberFormat>& formats, std::uint32_t lanes, int samples);
 
 /// Prints the names of the files of tuned values (raya tune) that the rows used.

@@ -33,15 +33,15 @@ double parse_angle(const std::string& text) {
     return angle;
 }
 
-// Parses the parameters of one camera. `words`: alternating names and values.
-ViewOptions parse_camera(std::istringstream& words) {
+// Parses the parameters of one camera. `tokens`: alternating names and values.
+ViewOptions parse_camera(std::istringstream& tokens) {
     std::map<std::string, std::string> values = {{"from", ""}, {"at", ""}, {"up", ""}, {"angle", ""}};
-    for (std::string name, value; words >> name;) {
+    for (std::string name, value; tokens >> name;) {
         const auto entry = values.find(name);
         if (entry == values.end())
             throw UserError(
                 fmt::format("{}: must be from, at, up or angle, each followed by its value", in_quotes(name)));
-        if (!(words >> value)) throw UserError(fmt::format("{} has no value", name));
+        if (!(tokens >> value)) throw UserError(fmt::format("{} has no value", name));
         if (!entry->second.empty()) throw UserError(fmt::format("'{}' is given twice", name));
         entry->second = value;
     }
@@ -58,11 +58,11 @@ std::vector<View> read_camera_path(const std::string& file, const View& view) {
     std::size_t line_number = 0;
     for (std::string line; std::getline(lines, line);) {
         ++line_number;
-        std::istringstream words(line.substr(0, line.find('#')));
-        if ((words >> std::ws).eof()) continue;
+        std::istringstream tokens(line.substr(0, line.find('#')));
+        if ((tokens >> std::ws).eof()) continue;
         try {
             cameras.push_back(view);
-            change_viewpoint(parse_camera(words), cameras.back());
+            change_viewpoint(parse_camera(tokens), cameras.back());
         } catch (const UserError& why) {
             throw UserError(fmt::format("{}, line {}: {}", input_name(file), line_number, why.what()));
         }

@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxIntervalS = 86'400;
-constexpr double kMaxSaveFraction = 0.05;          // maximum fraction of the render's time that saving takes
-constexpr double kMinBandS = 0.05, kMaxBandS = 2;  // seconds of a band of pixels
+constexpr double kMaxSaveFraction = 0.05;          // maximum fraction of the render's time for saving
+constexpr double kMinBandS = 0.05, kMaxBandS = 2;  // bounds on a band's target duration, seconds
 
 bool is_checkpoint(const std::string& file) {
     std::string first_bytes(kStateMagic.size(), '\0');
@@ -73,7 +73,7 @@ CheckpointFile::CheckpointFile(const CheckpointOptions& options) : options_(opti
     callbacks_.band_s = std::clamp(options.every_s / 4, kMinBandS, kMaxBandS);
     callbacks_.due = [this] { return due(); };
     callbacks_.save = [this](const RingState& state, const StateSettings& settings) { save(state, settings); };
-    callbacks_.resume = [this](const StateSettings& settings, const RingState& shape) { return load(settings, shape); };
+    callbacks_.resume = [this](const StateSettings& settings, const RingState& sized) { return load(settings, sized); };
 }
 
 bool CheckpointFile::due() const {
@@ -88,10 +88,10 @@ void CheckpointFile::save(const RingState& state, const StateSettings& settings)
     last_save_s_ = std::chrono::duration<double>(last_save_ - start).count();
 }
 
-std::optional<RingState> CheckpointFile::load(const StateSettings& settings, const RingState& shape) const {
+std::optional<RingState> CheckpointFile::load(const StateSettings& settings, const RingState& sized) const {
     if (!options_.resume || !fs::exists(options_.file)) return {};
     try {
-        const RingState state = read_state(read_file(options_.file), settings, shape);
+        const RingState state = read_state(read_file(options_.file), settings, sized);
         if (!is_quiet())
             print_log(fmt::format("raya: {}: continuing at {:.1f} %, after {:.1f} s\n", options_.file,
                                   100 * state.fraction, state.seconds));

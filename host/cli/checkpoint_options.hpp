@@ -20,8 +20,8 @@ struct CheckpointOptions {
 
 void add_checkpoint_options(CLI::App& command, CheckpointOptions& options);
 
-/// Throws UserError for incompatible options, for an existing file that is not a checkpoint and, without --resume, for
-/// an existing checkpoint, because it may contain hours of work and the render would overwrite it.
+/// Throws UserError for incompatible options and for an existing file that is not a checkpoint. Without --resume, also
+/// throws UserError for an existing checkpoint, because the render would overwrite hours of work.
 void check_checkpoint_options(const CLI::App& command, const CheckpointOptions& options);
 
 /// Saves and loads the checkpoints of a render.
@@ -29,21 +29,21 @@ class CheckpointFile {
   public:
     explicit CheckpointFile(const CheckpointOptions& options);
 
-    /// Returns the functions by which the renderer saves and loads checkpoints; null without --checkpoint.
+    /// Returns the callbacks with which the renderer saves and loads checkpoints; null without --checkpoint.
     const RingCheckpointing* checkpointing() const { return options_.file.empty() ? nullptr : &callbacks_; }
 
     /// Removes the checkpoint. Call remove() after all outputs of the render are written.
     void remove() const;
 
   private:
-    bool due() const;
+    bool due() const;  // returns true if the next checkpoint is due
     void save(const RingState& state, const StateSettings& settings);
-    std::optional<RingState> load(const StateSettings& settings, const RingState& shape) const;
+    std::optional<RingState> load(const StateSettings& settings, const RingState& sized) const;
 
     const CheckpointOptions& options_;
     RingCheckpointing callbacks_;
-    Clock::time_point last_save_ = Clock::now();
-    double last_save_s_ = 0;  // seconds that the last save took
+    Clock::time_point last_save_ = Clock::now();  // end of the last save; before the first save, the start
+    double last_save_s_ = 0;                      // duration of the last save, seconds
 };
 
 }  // namespace raya

@@ -16,8 +16,8 @@ bool is_keyword(const std::string& text) {
            });
 }
 
-// Splits "none|bvh|grid[:AxBxC]" into none, bvh, grid. Returns an empty vector if a part is not a keyword or
-// if there is only one part.
+// Splits a text at `separator`: "none|bvh|grid[:AxBxC]" into none, bvh, grid. Returns an empty vector if a part is not
+// a keyword or if there is only one part.
 std::vector<std::string> choices_in(const std::string& text, char separator) {
     std::vector<std::string> choices;
     for (std::size_t begin = 0; begin <= text.size();) {
@@ -37,7 +37,7 @@ bool starts_with_one_of(const std::string& text, const std::vector<std::string>&
 
 constexpr std::size_t kIndent = 2;              // blanks before names below a heading
 constexpr std::size_t kDescriptionIndent = 6;   // blanks before descriptions below the names
-constexpr std::size_t kMaxNameColumn = 24;      // longer names have a separate line
+constexpr std::size_t kMaxNameColumn = 24;      // the description of a longer name begins on the next line
 constexpr std::size_t kMinTwoColumnWidth = 60;  // minimum line width for descriptions next to the names
 
 struct Entry {
@@ -181,7 +181,7 @@ class HelpPage {
     }
 
     std::size_t width_;
-    std::size_t max_name_size_ = 0;
+    std::size_t max_name_size_ = 0;  // width of the column of names
 };
 
 }  // namespace

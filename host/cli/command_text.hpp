@@ -47,13 +47,13 @@ struct CommandText {
 
 /// How shells complete an option's value.
 struct ValueCompletion {
-    enum class Kind { kOther, kChoice, kList, kFile, kFolder } kind = Kind::kOther;
-    std::vector<std::string> choices{};  // kChoice: one of them; kList: several, comma-separated
-    std::string extension{};             // kFile: ".json"; empty: any
+    enum class Kind { kOther, kChoice, kList, kFile, kFolder } kind = Kind::kOther;  // kOther: no candidates
+    std::vector<std::string> choices{};  // kChoice: the value is one of them; kList: several of them, comma-separated
+    std::string extension{};             // kFile: extension of the file, ".json"; empty: any
 };
 
-/// Returns how shells complete the option's value: from its choices or, if it has none, from its placeholder.
-/// "ring|bus" is a choice, "none,grid" a list; FILE.json, SCENE.nff and IMAGE are files, DIR is a folder.
+/// Returns how shells complete the option's value. Uses the option's choices or, if there are none, the placeholder of
+/// its value: "ring|bus" is a choice, "none,grid" a list; FILE.json, SCENE.nff and IMAGE are files, DIR is a folder.
 ValueCompletion value_completion(const OptionText& option);
 
 /// Returns the option's help and default; if the help is empty, the placeholder of its value.

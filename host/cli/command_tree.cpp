@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kDefaultWidth = 80, kMinWidth = 40, kMaxWidth = 120, kMaxColumns = 10'000;  // characters
 
-/// Returns the number in the environment variable COLUMNS; 0 if COLUMNS is not a number up to kMaxColumns.
+/// Returns the value of the environment variable COLUMNS; 0 if this value is not a number up to kMaxColumns.
 std::size_t columns_variable() {
     const char* const columns = std::getenv("COLUMNS");
     if (columns == nullptr) return 0;
@@ -97,9 +97,10 @@ CommandText command_text_of(const CLI::App& command) {
     text.name = command.get_name();
     text.summary = command.get_description();
     const auto* const formatter = dynamic_cast<const HelpFormatter*>(command.get_formatter().get());
-    const HelpFormatter::Texts stored = formatter == nullptr ? HelpFormatter::Texts{} : formatter->texts_of(command);
-    text.examples = stored.examples;
-    text.short_help = stored.short_help;
+    const HelpFormatter::Texts stored_texts =
+        formatter == nullptr ? HelpFormatter::Texts{} : formatter->texts_of(command);
+    text.examples = stored_texts.examples;
+    text.short_help = stored_texts.short_help;
     text.footer = command.get_footer();
     for (const CLI::Option* option : command.get_options()) {
         if (option->get_group().empty()) continue;

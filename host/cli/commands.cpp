@@ -122,14 +122,14 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
 int flush_stdout(Ranks& ranks, int code) {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-    if (stdout_is_reserved()) return code;  // text goes to stderr, where lost text is not an error
+    if (stdout_is_reserved()) return code;  // the text has gone to stderr, where lost text is not an error
     const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
     ranks.fail(fmt::format("cannot write to stdout{}; redirect it to a file system with free space", reason),
                kExitUserError);
     return code == kExitOk ? kExitUserError : code;
 }
 
-// Lets only rank 0 report a signal. Called before the start of MPI, which takes long enough for a signal to arrive.
+// Lets only rank 0 report a signal. Called before MPI starts, because a signal may arrive during this start.
 void silence_signals_of_other_ranks() {
     const std::optional<Launch> launch = find_launch();
     if (launch && launch->rank != 0) suppress_interrupt_message();

@@ -18,10 +18,10 @@ struct CheckFailure {
 };
 
 /// Parses the command line, runs the command and returns the exit code: 0 success, 1 internal error, 2 bad option or
-/// input, 3 device or driver failure, 4 failed check. Prints errors on stderr. `build`: build text for --version.
+/// input, 3 device or driver failure, 4 failed check. Prints errors on stderr. `build`: a text that --version prints.
 int run_program(int argc, char** argv, const std::string& build);
 
-/// Makes the parser of all commands; `ranks` must outlive it.
+/// Makes the parser of all commands. `ranks` must outlive the parser.
 std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build);
 
 void add_render_command(CLI::App& program, Ranks& ranks);

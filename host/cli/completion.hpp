@@ -21,7 +21,7 @@ std::string fish_completion(const CommandText& program);
 /// Returns the text in single quotes, for bash and zsh: it's becomes 'it'\''s'.
 std::string shell_quoted(const std::string& text);
 
-/// Returns the clauses of a shell's `case` statement that selects a body by command path. Paths with equal bodies share
+/// Returns the clauses of a shell's `case` statement: one body for each command path. Paths with equal bodies share
 /// one clause: "'raya generate balls'|'raya generate gears')".
 std::string shell_cases(const std::vector<std::pair<std::string, std::string>>& paths_and_bodies);
 

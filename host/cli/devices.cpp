@@ -35,7 +35,7 @@ void list_devices() {
     fmt::print(
         "\nlanes, group: the defaults of --lanes and --group. --device and RAYA_DEVICE take a number, a type, or "
         "part of a name or version.\nRAYA_BUILD_OPTIONS is added to every kernel's build options and listed in the "
-        "report, e.g. -cl-opt-disable to check for a compiler error.\n");
+        "report, e.g. -cl-opt-disable, to find out whether the compiler's optimiser causes a wrong result.\n");
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ void add_devices_command(CLI::App& program) {
     CLI::App* command =
         program.add_subcommand("devices", "List every OpenCL device of every platform, with its main properties");
     add_examples(*command, {{"raya devices", "List the devices with their numbers"},
-                            {"RAYA_DEVICE=cpu raya devices -v", "The same, with a log of the steps"}});
+                            {"raya devices >devices.txt", "Write the list to a file"}});
     command->callback(list_devices);
 }
 

@@ -51,7 +51,7 @@ RingSettings settings_of(const ExploreCommand& command, const Scene& scene) {
     return settings;
 }
 
-// Returns the scene's file name without its folder, because users send pages to others.
+// Returns the scene's file name without its folder. The folder is private, and users send pages to others.
 std::string scene_name(const ExploreCommand& command) {
     return std::filesystem::path(input_name(command.render.scene)).filename().string();
 }
@@ -85,12 +85,12 @@ Json rates_of(const Machine& machine) {
 
 Json machine_json(const RingSettings& settings) {
     const raya_mapping& m = settings.mapping;
-    const bool slots = raya_has_slots(m);
+    const bool has_slots = raya_has_slots(m);
     return {{"name", settings.machine.name},
             {"pes", m.pes},
-            {"mapping", slots ? "cyclic" : mapping_text(m)},
-            {"offset", slots ? Json(m.parameter) : Json()},
-            {"fold", slots ? Json(m.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic") : Json()},
+            {"mapping", has_slots ? "cyclic" : mapping_text(m)},
+            {"offset", has_slots ? Json(m.parameter) : Json()},
+            {"fold", has_slots ? Json(m.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic") : Json()},
             {"format", format_name(settings.format)},
             {"bounces", settings.bounces},
             {"accel", accel_text(settings.accel)},
@@ -114,7 +114,7 @@ Json exploration(const ExploreCommand& command, const RingSettings& settings, co
 
 // Refuses an image that is too large for a page. Called before the render.
 void check_pixels(const ImageSize& size) {
-    constexpr std::uint64_t kMaxPixels = 2'000'000;  // pages of the scenes in scenes/ have about one byte per pixel
+    constexpr std::uint64_t kMaxPixels = 2'000'000;  // about 2 MB of page, twice the maximum of check_bytes()
     if (std::uint64_t{size.width} * size.height <= kMaxPixels) return;
     throw UserError(fmt::format("--size {}x{}: too many pixels for a page, maximum {}; remedy: a smaller --size",
                                 size.width, size.height, kMaxPixels));
@@ -124,8 +124,7 @@ void check_cycles(const std::string& scene, const CostImage& cost) {
     if (total_cycles(cost) < kExactCycles) return;
     throw UserError(
         fmt::format("{}: the pixels take {} cycles in total, more than the page's script can add exactly; remedy: a "
-                    "smaller --size, fewer "
-                    "--bounces, or --accel bvh",
+                    "smaller --size, fewer --bounces, or --accel bvh",
                     scene, total_cycles(cost)));
 }
 
@@ -164,7 +163,7 @@ void explore(const ExploreCommand& command) {
     bar.reset();
     if (is_quiet()) return;
     const Load load = static_load(result.cost(), settings.mapping);
-    fmt::print("{}: {} x {} pixels, opens with {} on {}: u = {:.3f}, speed-up {:.1f}\n",
+    fmt::print("{}: {} x {} pixels; the page opens with {} on {}: u = {:.3f}, speed-up {:.1f}\n",
                printable(input_name(command.render.scene)), settings.mapping.width, settings.mapping.height,
                mapping_text(settings.mapping), counted(settings.mapping.pes, "PE"), load.imbalance, load.speedup);
     fmt::print("page    {} ({:.0f} KB); open it in a browser; it needs no network\n",

@@ -38,21 +38,21 @@ class FileCheck {
         output_names_.push_back(output.file);
         const std::string identity = identity_of(output);
         if (identity.empty()) return;
-        refuse_input(output, identity);
+        refuse_if_input(output, identity);
         const auto [known, is_new] = outputs_.emplace(identity, output);
-        if (!is_new) refuse_output(output, known->second);
+        if (!is_new) refuse_equal_outputs(output, known->second);
     }
 
-    // Refuses an output folder that contains an input of the command, because the command might overwrite this file.
-    // Scenes may be in the folder.
+    // Refuses an output folder that contains an input of the command, because the command might overwrite the input.
+    // Ignores scenes, because no command writes scenes to an output folder.
     void check_output_folder(const NamedFile& folder) const {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder.file, error))
             if (entry.path().extension() != ".nff")
-                refuse_input({folder.option, entry.path().string()}, file_identity(entry.path()));
+                refuse_if_input({folder.option, entry.path().string()}, file_identity(entry.path()));
     }
 
-    /// Call check_all_writable() after adding all files, because it redirects stdout.
+    /// Call check_all_writable() after all files are added, because check_all_writable() redirects stdout.
     void check_all_writable() const {
         for (const std::string& file : output_names_) check_writable(file);
     }
@@ -65,14 +65,14 @@ class FileCheck {
         return stdout_file.empty() ? output.file : stdout_file;
     }
 
-    void refuse_input(const NamedFile& output, const std::string& identity) const {
+    void refuse_if_input(const NamedFile& output, const std::string& identity) const {
         const auto input = inputs_.find(identity);
         if (input == inputs_.end() || identity.empty()) return;
         throw UserError(fmt::format("{} {}: would overwrite the input {} {}; name another file", output.option,
                                     output.file, input->second.option, input->second.file));
     }
 
-    [[noreturn]] static void refuse_output(const NamedFile& output, const NamedFile& earlier_output) {
+    [[noreturn]] static void refuse_equal_outputs(const NamedFile& output, const NamedFile& earlier_output) {
         if (is_standard_stream(output.file) && is_standard_stream(earlier_output.file))
             throw UserError(
                 fmt::format("{} - and {} -: only one file can go to stdout; name files for the other options",

@@ -26,8 +26,8 @@ struct NamedFile {
     std::string option, file;
 };
 
-/// Throws UserError if an output is the same file as an input or another output, also through links, or if
-/// an output is not writable. Checks the files of the command's options and `more_outputs`. The parser calls
+/// Throws UserError if an output is the same file as an input or another output, also through links. Throws UserError
+/// if an output is not writable. Checks the files of the command's options and `more_outputs`. The parser calls
 /// check_files() before the callback of every command. A command that derives further output names from an option calls
 /// check_files() again with these names before it writes.
 void check_files(const CLI::App& command, const std::vector<NamedFile>& more_outputs = {});

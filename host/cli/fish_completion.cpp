@@ -13,7 +13,7 @@ std::string fish_quoted(const std::string& text) {
     return quoted_text + "'";
 }
 
-// Returns the argument of fish's -a for the option's value: candidates, or a command in parentheses that lists them.
+// Returns the argument -a of `complete` for the option's value: candidates, or a command in parentheses.
 std::string fish_offer_of(const OptionText& option) {
     const ValueCompletion value = value_completion(option);
     switch (value.kind) {

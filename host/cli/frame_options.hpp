@@ -39,8 +39,9 @@ void add_frame_options(CLI::App& command, FrameOptions& options);
 /// UserError for other texts.
 FrameRange parse_frames(const std::string& text);
 
-/// Returns the frames to render with their cameras: `view` turned about its centre point (--turn), or changed by a
-/// camera path. Throws UserError for incompatible options or an invalid camera.
+/// Returns the frames to render with their cameras. With --turn, a camera is `view` with a turned eye; with
+/// --camera-path, it is `view` with the parameters of a line of the file. Throws UserError for incompatible options or
+/// an invalid camera.
 std::vector<Frame> frames_of(const FrameOptions& options, const View& view);
 
 /// Inserts the frame's number before the extension: "turn.png" for frame 7 becomes "turn-0007.png". Returns "" for "".

@@ -62,9 +62,9 @@ class FolderLock {
   public:
     explicit FolderLock(const fs::path& file)
         : folder_(::open(fs::absolute(file).parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-        int locked = 0;
-        while ((locked = ::flock(folder_, LOCK_EX)) != 0 && errno == EINTR) continue;
-        if (locked != 0) check_lock_error(file);
+        int lock_result = 0;
+        while ((lock_result = ::flock(folder_, LOCK_EX)) != 0 && errno == EINTR) continue;
+        if (lock_result != 0) check_lock_error(file);
     }
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
@@ -88,7 +88,8 @@ FrameRecord::FrameRecord(fs::path file) : file_(std::move(file)) { read(); }
 
 void FrameRecord::read() {
     if (!fs::exists(file_)) return;
-    const JsonSource source{file_.string(), "move this file, or change -o: raya writes the record of the frames to it"};
+    const JsonSource source{file_.string(),
+                            "move this file, or change -o: raya needs this name for the record of the frames"};
     std::map<std::uint32_t, FrameEntry> entries = read_json(json_text(file_, source), source, entries_of);
     for (const std::uint32_t number : added_) entries.insert_or_assign(number, entries_.at(number));
     entries_ = std::move(entries);

@@ -34,7 +34,7 @@ class FrameRecord {
                            const std::vector<std::string>& files) const;
 
     /// Adds or replaces the entry of a frame whose `files` have been written, and fills in entry.files. Writes the
-    /// record if 20 times the duration of the last write has passed, so that writes take at most 5 % of the time.
+    /// record if the last write ended at least 20 times its own duration ago: writes take at most 5 % of the time.
     const FrameEntry& add(FrameEntry entry, const std::vector<std::string>& files);
 
     /// Merges the frames that this object added with the frames that other processes have written to the file, and
@@ -48,8 +48,8 @@ class FrameRecord {
     std::filesystem::path file_;
     std::map<std::uint32_t, FrameEntry> entries_;  // by frame number
     std::set<std::uint32_t> added_;                // numbers of the frames that this object added
-    Clock::time_point last_write_{};
-    Clock::duration write_duration_{};  // duration of the last write
+    Clock::time_point last_write_{};               // end of the last write
+    Clock::duration write_duration_{};             // duration of the last write
 };
 
 /// Returns the path of the record for `image`: "turn-frames.json" for "turn.png".

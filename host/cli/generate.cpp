@@ -20,7 +20,7 @@ namespace {
 struct GenerateOptions {
     std::string output;
     int level = 4, sphere_count = 0;
-    std::uint32_t cylinders = 12, wheels = 4;  // along an edge of the cube
+    std::uint32_t cylinders = 12, wheels = 4;  // numbers along an edge of the cube
     std::string voxels = "4x4x4";
     std::uint64_t seed = 1;
 };
@@ -125,7 +125,7 @@ void add_generate_command(CLI::App& program) {
     CLI::App* centre = add_generator(
         *command, *options, "centre", "The main scene: glass and mirror spheres clustered at the centre",
         {{"raya generate centre -o centre.nff", "The scene in scenes/centre.nff"},
-         {"raya generate centre -o - | raya info -", "Print its objects and the machines that hold them"}});
+         {"raya generate centre -o - | raya info -", "Print the scene's objects and the machines that can hold them"}});
     centre->callback([options] { write_scene(*options, [&] { return generate_centre(); }); });
 }
 

@@ -40,8 +40,8 @@ void print_help(const CLI::App& program, const std::vector<std::string>& names) 
 
 void add_help_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("help", "Print the help of a command, or of raya itself");
-    add_examples(*command, {{"raya help render", "The same as raya render --help"},
-                            {"raya help generate balls", "The help of one generator"}});
+    add_examples(*command, {{"raya help render", "Print the help of render, as raya render --help does"},
+                            {"raya help generate balls", "Print the help of one generator"}});
     const auto names = std::make_shared<std::vector<std::string>>();
     add_value(*command, "COMMAND", *names, "The command, such as generate balls; default: raya itself")
         ->type_name("COMMAND");

@@ -45,9 +45,9 @@ void add_options(CLI::App& command, InfoCommand& options) {
         ->description("Only this machine, as in raya render; default: all machines");
 }
 
-// Returns the memory needs of all machines, or only of --machine. If a machine does not support the options, its entry
-// contains the reason. Throws UserError if this machine is that of --machine, or if no ring machine supports the
-// options.
+// Returns the memory needs on the machine of --machine. Throws UserError if this machine does not support the options.
+// Without --machine, returns the memory needs on all machines; the entry of a machine that does not support the options
+// contains the reason. Throws UserError if no ring machine supports the options.
 std::vector<MachineNeeds> needs_of_machines(const CLI::App& parsed, const InfoCommand& command, SceneNeeds& needs) {
     if (parsed.count("--machine") > 0) {
         refuse_options_of_other_machines(parsed, machine_named(command.render.machine));
@@ -96,7 +96,7 @@ std::vector<ShortHelp> info_short_help() {
             {"--mapping", options, "Pixels to PEs: cyclic, column, rows, blocks, ..."},
             {"--size", options, "Size in pixels, 1..16384 a side; default: the scene's"},
             {"--format", options, "Number format: fp32, spa22 (e6m15) or eXmY[t]"},
-            {"--accel", options, "Acceleration structure; default: all of them"},
+            {"--accel", options, "Acceleration structure; default: all three"},
             {"--antialias", options, "3 x 3 filter or adaptive supersampling"},
             {"--nodes", options, "Nodes of the torus along x, y and z"},
             {"--voxels", options, "Voxels of the torus; default: one for each node"},

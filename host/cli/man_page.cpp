@@ -111,10 +111,10 @@ std::string examples(const CommandText& command) {
     return text;
 }
 
-// Returns the command without the options that its page already lists for the parent command.
-CommandText without_options(CommandText command, const std::vector<OptionText>& listed) {
+// Returns the command without `listed_options`, which the page already lists for the parent command.
+CommandText without_options(CommandText command, const std::vector<OptionText>& listed_options) {
     std::erase_if(command.options, [&](const OptionText& o) {
-        return std::any_of(listed.begin(), listed.end(),
+        return std::any_of(listed_options.begin(), listed_options.end(),
                            [&](const OptionText& option) { return option.names == o.names; });
     });
     return command;

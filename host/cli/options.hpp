@@ -1,4 +1,4 @@
-// Options of a command. An option's value is checked for the type of the variable that stores it.
+// Options of a command. An option's value must be legal for the type of the variable that stores the value.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <charconv>

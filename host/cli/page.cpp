@@ -57,14 +57,14 @@ void check_kind(const Json& report) {
     throw JsonError("valid JSON, but not a report of raya render, bench, verify or gpu_day");
 }
 
-JsonSource source_of(const std::string& name) {
+JsonSource report_source(const std::string& name) {
     return {name, "give a report that this version of raya render, bench or verify wrote with --report FILE.json"};
 }
 
 void make_page(const PageCommand& command) {
     check_page_name("-o", command.page);
     const std::string name = input_name(command.report);
-    const std::string page = page_of_report(json_text(command.report, source_of(name), Pipes::kRead), name);
+    const std::string page = page_of_report(json_text(command.report, report_source(name), Pipes::kRead), name);
     write_whole_file(command.page, page);
     if (!is_quiet())
         fmt::print("page    {} ({:.0f} KB); open it in a browser; it needs no network\n", printable(command.page),
@@ -79,7 +79,7 @@ void check_page_name(const std::string& option, const std::string& file) {
 }
 
 std::string page_of_report(const std::string& text, const std::string& name) {
-    return read_json(text, source_of(name), [](const Json& report) {
+    return read_json(text, report_source(name), [](const Json& report) {
         check_kind(report);
         return report_page(without_folders(report));
     });
@@ -95,7 +95,7 @@ void add_page_command(CLI::App& program) {
     add_examples(*command,
                  {{"raya render scenes/planes.nff --report planes.json -o planes.png && raya page planes.json -o "
                    "planes.html",
-                   "Make a page from the report of a render; render --page does both at once"},
+                   "Make a page from the report of a render; render --page writes the page without this step"},
                   {"raya verify --brief --only number --report verify.json && raya page verify.json -o verify.html",
                    "Make a page of the checks of this device"}});
     const auto options = std::make_shared<PageCommand>();

@@ -10,11 +10,11 @@ namespace raya {
 void check_page_name(const std::string& option, const std::string& file);
 
 /// Returns the HTML page of a report of render, bench or verify. `text`: the report; `name`: its file, for messages.
-/// Throws UserError if `text` is not such a report. The page lists the members that the report is missing.
+/// Throws UserError if `text` is not such a report. The page lists members that are missing in the report.
 std::string page_of_report(const std::string& text, const std::string& name);
 
 struct ReportFiles {
-    std::string report, page;  // names; empty: not requested
+    std::string report, page;  // file names; empty: not requested
 };
 
 /// Writes the requested files. `raya page` makes the same page from the report's file.

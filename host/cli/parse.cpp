@@ -11,7 +11,7 @@
 namespace raya {
 
 std::vector<std::uint32_t> parse_sizes(const std::string& text) {
-    constexpr std::uint32_t kMaxSize = 1'000'000;  // the product of three fits in 64 bits
+    constexpr std::uint32_t kMaxSize = 1'000'000;  // the product of three sizes fits in 64 bits
     std::vector<std::uint32_t> sizes;
     const char* position = text.data();
     const char* const end = position + text.size();

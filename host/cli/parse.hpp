@@ -22,11 +22,11 @@ namespace raya {
 std::vector<std::uint32_t> parse_sizes(const std::string& text);
 
 /// Parses an image size: "512" (square) or "512x256". Throws UserError with the legal values. image_size()
-/// checks the maximum.
+/// checks that no side exceeds kMaxSide.
 ImageSize parse_image_size(const std::string& text);
 
-/// Parses three numbers, along x, y and z: "4x4x4". Throws UserError with the option and the text `legal`: "1..256
-/// each".
+/// Parses three numbers, along x, y and z: "4x4x4". Throws UserError with the option's name and `legal`, a text on the
+/// legal values: "1..256 each".
 std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
                                                const std::string& legal);
 
@@ -49,7 +49,7 @@ Sampling parse_sampling(const std::string& text);
 /// --links: "torus3d", "torus2d".
 Links parse_links(const std::string& text);
 
-/// Adds --device; see choose_device().
+/// Adds --device, a selector for choose_device().
 void add_device_option(CLI::App& command, std::string& device);
 
 }  // namespace raya

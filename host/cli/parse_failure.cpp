@@ -14,7 +14,7 @@
 namespace raya {
 namespace {
 
-/// Returns the innermost selected command. Appends its path, without the program's name, to `name`.
+/// Returns the innermost selected command. Appends its path without the program's name, " generate balls", to `name`.
 const CLI::App& selected_command(const CLI::App& program, std::string& name) {
     const CLI::App* command = &program;
     while (!command->get_subcommands().empty()) {
@@ -31,7 +31,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-/// The first argument that belongs to no option or command.
+/// An argument that belongs to no option or command.
 struct UnparsedArgument {
     std::string text;
     bool after_separator = false;  // after "--"
@@ -96,10 +96,10 @@ std::string failure_text(const CLI::App& program, const CLI::ParseError& error,
                        failure_reason(command, unparsed, error), name);
 }
 
-/// If `argument` is an option whose value is the next argument, returns the option, otherwise null. Refuses forms that
-/// CLI11 misreads: CLI11 reads the value of a flag as a number, parses "-q=x" as -q and "-=x", and uses the next
-/// argument as the value of "--size=".
-const CLI::Option* check_option(const CLI::App& command, const std::string& argument) {
+/// Returns the option in `argument` if the next argument is its value, otherwise null. Throws UserError for forms that
+/// CLI11 misreads: "--quiet=x" (CLI11 reads x as a number), "-q=x" (as -q and "-=x") and "--size=" (CLI11 uses the next
+/// argument as the value).
+const CLI::Option* option_awaiting_value(const CLI::App& command, const std::string& argument) {
     const bool is_long = argument.starts_with("--");
     const std::size_t equals = std::min(argument.find('='), argument.size());
     for (std::size_t i = 1, end = 0; end < argument.size(); ++i) {
@@ -133,7 +133,7 @@ void check_argument_values(const CLI::App& program, const std::vector<std::strin
         after_separator = after_separator || (valued_option == nullptr && argument == "--");
         const bool may_be_option_or_command = valued_option == nullptr && !after_separator;
         valued_option =
-            may_be_option_or_command && argument.starts_with("-") ? check_option(*command, argument) : nullptr;
+            may_be_option_or_command && argument.starts_with("-") ? option_awaiting_value(*command, argument) : nullptr;
         const auto next =
             command->get_subcommands([&](const CLI::App* subcommand) { return subcommand->get_name() == argument; });
         if (may_be_option_or_command && !next.empty()) command = next.front();
@@ -150,7 +150,8 @@ std::string with_suggestion(const CLI::App& program, std::string text) {
         const std::string value = text.substr(start.size(), end - start.size());
         // The choices are stored in validators, which CLI11 returns only for a non-const option.
         const ValueCompletion offered = value_completion(option_text(*const_cast<CLI::Option*>(option)));
-        if (!value.starts_with(nearest_name(value, offered.choices)))  // the value "grid:4" is not misspelt
+        if (!value.starts_with(
+                nearest_name(value, offered.choices)))  // "grid:4" starts with the choice grid, which is not misspelt
             text.insert(end, did_you_mean(value, offered.choices));
         break;
     }

@@ -20,14 +20,14 @@ bool read_number(std::string_view field, Number& number) {
     return error == std::errc{} && end == field.data() + field.size();
 }
 
-// Parses an integer from `min` to `max`; empty for other texts.
+// Returns the integer in `text`; empty if `text` is not an integer in min..max.
 std::optional<std::uint32_t> parse_number(std::string_view text, std::uint32_t min, std::uint32_t max) {
     std::uint32_t number = 0;
     if (!read_number(text, number) || number < min || number > max) return {};
     return number;
 }
 
-// Parses "4x8", with both numbers in 1..kMaxSide, into a raya_pair(); empty for other texts.
+// Returns raya_pair(4, 8) for "4x8"; empty if `text` is not two numbers in 1..kMaxSide.
 std::optional<std::uint32_t> parse_pair(std::string_view text) {
     const std::size_t cross = text.find('x');
     if (cross == std::string_view::npos) return {};
@@ -40,7 +40,8 @@ std::optional<std::uint32_t> parse_pair(std::string_view text) {
 constexpr std::uint32_t kDefaultSeed = 1;
 constexpr std::uint32_t kMaxSeed = std::numeric_limits<std::uint32_t>::max();
 
-// Parses the text after the colon into the mapping's parameter. Throws UserError with the legal form.
+// Returns the mapping's parameter. `text`: the part of mapping.text after the colon. Throws UserError with the legal
+// form.
 std::uint32_t parse_parameter(const MappingText& mapping, std::string_view text) {
     std::optional<std::uint32_t> parameter;
     std::string legal = mapping.name() + ", without a parameter";
@@ -90,7 +91,7 @@ const std::vector<std::string>& mapping_forms() {
 MappingText parse_mapping(const std::string& text) {
     struct KnownMapping {
         const char* name;
-        MappingRule rule;  // the rule if there is no parameter
+        MappingRule rule;  // rule of the mapping without a parameter
         bool needs_parameter = false, takes_offset_option = false;
     };
     static const KnownMapping names[] = {{"cyclic", cyclic_mapping(0), false, true},

@@ -12,22 +12,22 @@ namespace raya {
 /// A static mapping of pixels to PEs, as given on the command line:
 ///
 ///     cyclic, cyclic:p   the cyclic mapping with offset p; "cyclic" alone: p from --offset or the machine
-///     column             the cyclic mapping with offset 0, Kohata & Ito's column split
+///     column             the cyclic mapping with offset 0: whole columns, Kohata & Ito's column split
 ///     rows               scan lines round robin
 ///     blocks             contiguous blocks of scan lines
-///     grid:AxB           A rows of B PEs; each PE has every A-th line, and of it every B-th pixel
+///     grid:AxB           A rows of B PEs; each PE has every B-th pixel of every A-th line
 ///     tiles:WxH          tiles of W x H pixels round robin; W and H divide the image's sides
-///     random:seed        pixels at random, equally many for each PE; "random" alone: seed 1
+///     random:seed        random pixels, the same number for each PE; "random" alone: seed 1
 struct MappingText {
     std::string text;                 // as given on the command line
-    MappingRule rule{};               // a mapping with slots has the cyclic fold, unless --fold is given
-    bool takes_offset_option = true;  // "cyclic" without p: --offset applies
+    MappingRule rule{};               // has the cyclic fold; ring_settings() applies --fold
+    bool takes_offset_option = true;  // true for "cyclic" without p: --offset sets p
 
     /// Returns the part of `text` before the colon.
     std::string name() const { return text.substr(0, text.find(':')); }
 };
 
-/// Returns the forms listed above, for messages.
+/// Returns the forms of mappings listed above, for messages.
 const std::vector<std::string>& mapping_forms();
 
 /// Parses a static mapping. Throws UserError with the option and its legal forms.

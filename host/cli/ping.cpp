@@ -21,8 +21,9 @@ void run_ping(Ranks& ranks) {
 }  // namespace
 
 void add_ping_command(CLI::App& program, Ranks& ranks) {
-    CLI::App* command = program.add_subcommand(
-        "ping", "Under mpirun: measure messages of 1 B to 4 MB between ranks and print times, alpha and beta as JSON");
+    CLI::App* command = program.add_subcommand("ping",
+                                               "Under mpirun: measure messages of 1 B to 4 MB between ranks and print, "
+                                               "as JSON, times, latency alpha and time beta per byte");
     add_examples(*command, {{"mpirun -n 2 raya ping", "Measure between two ranks of this machine"},
                             {"mpirun -n 2 --host one,other raya ping >network.json",
                              "Measure between two machines; raya study ranks --network takes alpha and beta"}});

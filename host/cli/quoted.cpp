@@ -8,11 +8,11 @@
 
 namespace raya {
 
-std::string quoted(const std::string& word) {
-    const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
+std::string quoted(const std::string& argument) {
+    const bool plain = !argument.empty() && std::ranges::all_of(argument, [](unsigned char c) {
         return std::isalnum(c) || std::string_view("_-./:=+,%@").find(char(c)) != std::string_view::npos;
     });
-    return plain ? word : '\'' + replaced(word, "'", "'\\''") + '\'';
+    return plain ? argument : '\'' + replaced(argument, "'", "'\\''") + '\'';
 }
 
 }  // namespace raya

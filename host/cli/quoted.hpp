@@ -4,7 +4,7 @@
 
 namespace raya {
 
-/// Returns the word in single quotes, or unchanged if no shell interprets any of its characters.
-std::string quoted(const std::string& word);
+/// Returns the argument in single quotes, or unchanged if no shell interprets any of its characters.
+std::string quoted(const std::string& argument);
 
 }  // namespace raya

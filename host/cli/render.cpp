@@ -71,7 +71,7 @@ std::optional<Render> render_image(const RenderCommand& command, RenderRun& run)
     return torus ? render_on_torus(command, run) : render_on_ring(command, run);
 }
 
-void describe_render(CLI::App& command, RenderCommand& options) {
+void add_render_command_options(CLI::App& command, RenderCommand& options) {
     OptionGroup group(command, kFiles);
     add_file(command, FileUse::kWritten, "-o,--output", options.image, "IMAGE",
              "Image to write: .png, .tif, .ppm or .jpg (8-bit; JPEG with quality 95, lossy), .exr or .pfm (linear); -: "
@@ -110,7 +110,7 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
     add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
              "Scene in NFF, the format of the SPD programs; -: stdin")
         ->required();
-    describe_render(*command, *options);
+    add_render_command_options(*command, *options);
     command->get_option("--output")->required();
     const OptionGroup kernels(*command, kKernels);
     command->add_flag("--cache-kernels", options->cache_kernels,

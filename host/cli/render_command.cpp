@@ -50,7 +50,7 @@ void check_output_files(const CLI::App& parsed, const RenderCommand& command) {
         throw UserError("--mask requires supersampling: add --antialias supersample");
 }
 
-SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks) {
+SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks) {
     SceneInput input;
     if (ranks.is_first()) {
         input = recorder.spans().during("read scene", [&] { return read_scene(options.scene, options.strict); });
@@ -69,7 +69,7 @@ SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ran
 void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Device& device, const NumberFormat& format,
                  const std::vector<KernelWork>& works, Warnings& warnings) {
     report.measured.builds = recorder.builds();
-    if (!report.ranks.empty()) {  // the commands are those of rank 0, `works` are the work of all ranks
+    if (!report.ranks.empty()) {  // rates need one device's work: `works` is of all ranks, the commands are rank 0's
         report.measured.roofline.emplace().unavailable = "the roofline is for a single device; start a single rank";
         return;
     }
@@ -77,7 +77,7 @@ void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Devic
         const DevicePeak peak =
             recorder.spans().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
         report.measured.roofline = roofline(peak, works, report.measured.commands);
-        constexpr double kMaxScatter = 0.15;  // relative to the best sample
+        constexpr double kMaxScatter = 0.15;  // (best - worst) / best sample
         if (peak.scatter > kMaxScatter)
             warnings.add(
                 fmt::format("three measurements of the device's peak scatter by {:.0f} %: another program uses the "

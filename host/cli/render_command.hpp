@@ -33,13 +33,14 @@ struct RenderCommand {
     CheckpointOptions checkpoint;
     TraceOptions trace;
     bool profile = false, cache_kernels = false;
-    bool summary = true;                              // print the report's summary
-    bool prints_profile = true;                       // print the table of --profile
-    ProgressCallback progress{};                      // empty: progress bar on a terminal
-    PixelSubset pixels{};                             // torus: pixels for which primary rays are traced
-    bool record_costs = false, keep_packets = false;  // store costs or packets in Render
+    bool summary = true;          // print the report's summary
+    bool prints_profile = true;   // print the table of --profile
+    ProgressCallback progress{};  // empty: progress bar on a terminal
+    PixelSubset pixels{};         // torus: pixels for which primary rays are traced
+    bool record_costs = false;    // ring: store the cost of each pixel in Render::ring
+    bool keep_packets = false;    // torus: store packets, cycles and link_words in Render
 
-    /// Returns the options whose files get frame numbers with --frames, and their values (empty: not given).
+    /// Returns the options whose files get frame numbers with --frames, and the file names (empty: not given).
     std::vector<std::pair<const char*, std::string>> files() const {
         return {{"--output", image}, {"--cost", cost}, {"--mask", mask}, {"--report", report}};
     }
@@ -62,10 +63,10 @@ struct Render {
     std::optional<TorusResult> torus{};
     std::vector<PacketRecord> packets{};  // with RenderCommand::keep_packets
     std::optional<TorusSettings> torus_settings{};
-    std::uint32_t lights = 0;                           // number of the scene's lights
-    std::optional<History> history{};                   // for the torus with --async
-    std::vector<std::uint64_t> cycles{}, link_words{};  // with keep_packets: [superstep][node],
-                                                        // [superstep][node][RAYA_LINKS]
+    std::uint32_t lights = 0;                 // number of the scene's lights
+    std::optional<History> history{};         // of the torus, with --async or --replay
+    std::vector<std::uint64_t> cycles{};      // with keep_packets: [superstep][node]: modelled cycles
+    std::vector<std::uint64_t> link_words{};  // with keep_packets: [superstep][node][RAYA_LINKS]: number of words sent
 
     const Image& image() const { return ring ? ring->image : torus->image; }
 };
@@ -79,33 +80,34 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
 std::optional<Render> render_image(const RenderCommand& command, RenderRun& run);
 
 /// Adds all options of `raya render` except SCENE.
-void describe_render(CLI::App& command, RenderCommand& options);
+void add_render_command_options(CLI::App& command, RenderCommand& options);
 
 /// Throws UserError if options are incompatible or a file is not writable.
 void check_render(const CLI::App& parsed, const RenderCommand& command);
 
-/// Throws UserError for outputs that --frames does not support: stdout, and files for a single image only.
+/// Throws UserError for outputs that --frames does not support: stdout, and options for a single image, such as --page.
 void check_frames(const RenderCommand& command);
 
 /// Renders the frames, except those whose settings and files are the same as in the record (frame_record.hpp). Writes
 /// the frames' files and the record, and prints a line for each frame. `parsed`: the command's parser, which knows the
-/// options that were given. Throws UserError.
+/// options that were given. Throws UserError for invalid frames and unwritable files.
 void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderRun& run);
 
 /// Rank 0 reads the scene and applies the view options. Other ranks get the scene's name and resolution, without
 /// objects. With several ranks and a ring machine, sets `options.accel` on all ranks to rank 0's choice.
-SceneInput read_scene_once(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks);
+SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks);
 
 /// Throws UserError for an output file's unsupported name, and for options that do not apply to the output files.
 void check_output_files(const CLI::App& parsed, const RenderCommand& command);
 
-/// Returns the tone mapping of the command's image if the image has 8-bit codes; empty for linear images.
+/// Returns the tone mapping of the command's image if the image has 8-bit codes; empty for linear
+/// images, and if no image is written.
 std::optional<ImageCodes> codes_of(const RenderCommand& command);
 
-/// Adds a small copy of the image, with the same tone mapping, for the report's page.
+/// Adds a small copy of the image, with the tone mapping of the command's image, for the report's page.
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image);
 
-/// Returns a report with the members that all machines have: scene, view, image, device, measured times.
+/// Returns a report with the members that reports of all machines have: scene, view, image, device, measured times.
 template <class Result>
 RenderReport begin_report(const RenderCommand& command, const SceneInput& input, const DeviceInfo& device,
                           const Result& result) {

@@ -43,8 +43,8 @@ void check_frame_files(const CLI::App& parsed, const RenderCommand& command, con
     check_files(parsed, outputs);
 }
 
-// Returns a text with everything that determines the frames, except their cameras and size: program, options, scene
-// with lights.
+// Returns a text with all that the pixels of the frames depend on, except the camera and the image size: version of
+// raya, options, build options, and the scene with its lights.
 std::string settings_of(const CLI::App& parsed, const Scene& scene) {
     static const std::set<std::string> irrelevant_options = {"SCENE",    "--output", "--cost",   "--mask",
                                                              "--report", "--turn",   "--frames", "--camera-path",

@@ -26,7 +26,7 @@ std::vector<std::string> mapping_names() {
     return names;
 }
 
-// Sets the shell completion of values that the placeholder does not list.
+// Sets the shell completion of options whose placeholder in the help, such as NAME, does not list the values.
 void offer_render_choices(CLI::App& command) {
     std::vector<std::string> ring_names;
     for (const Machine& machine : machines())
@@ -43,9 +43,11 @@ void add_antialias_options(CLI::App& command, RenderOptions& o) {
               "differ from a neighbour. PEs exchange border pixels as --exchange sets")
         ->type_name("none|filter|supersample")
         ->capture_default_str();
-    add_value(command, "--exchange", o.exchange,
-              "How PEs get their neighbours' pixels: ring: all blocks move to the next PE at once; bus: from PE to "
-              "PE, one transfer at a time; bus-broadcast: each PE in turn to all PEs. All three give the same image")
+    add_value(
+        command, "--exchange", o.exchange,
+        "How PEs get their neighbours' pixels: ring: all PEs send a block to the next PE at once; bus: one PE at a "
+        "time sends to one other PE; bus-broadcast: one PE at a time sends to all PEs. All three give the same "
+        "image")
         ->type_name("ring|bus|bus-broadcast")
         ->default_str("ring");
     add_value(command, "--threshold", o.threshold,
@@ -53,7 +55,8 @@ void add_antialias_options(CLI::App& command, RenderOptions& o) {
               "default: 0.125")
         ->type_name("T");
     add_value(command, "--points", o.points,
-              "Positions of the four samples: half a pixel left, right, above and below, or towards the corners")
+              "Positions of the four samples: axes: half a pixel left, right, above and below; diagonals: half a pixel "
+              "away on both axes")
         ->type_name("axes|diagonals")
         ->default_str("axes");
 }
@@ -75,26 +78,29 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
     if (antialiasing) add_antialias_options(command, o);
     add_view_options(command, o.view);
     group.next(kMachine);
-    add_value(command, "--machine", o.machine,
-              "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
-              "cap (256 PEs), pixel-machine (64), links (256): the arrays of these machines with PEs of spa, no memory "
-              "limit, to compare loads")
+    add_value(
+        command, "--machine", o.machine,
+        "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
+        "cap (256 PEs), pixel-machine (64), links (256): the published arrays of these names, but with spa's PEs and "
+        "no memory limit; for comparing loads")
         ->type_name("NAME")
         ->capture_default_str();
     add_value(command, "--pes", o.pes,
               "Number P of processing elements, 1..W*H; default: the machine's, or A*B of a grid")
         ->type_name("P");
     add_value(command, "--offset", o.offset,
-              "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W), 0 on machines whose "
-              "default mapping is not cyclic")
+              "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W) on spa and grande, 0 on "
+              "the other machines")
         ->type_name("p");
-    add_value(command, "--mapping", o.mapping,
-              "Assignment of pixels to PEs: cyclic (slots of a sheared image, --offset), cyclic:p, column (the column "
-              "split, offset 0), rows (scan lines round robin), blocks (contiguous scan lines), grid:AxB (A rows of B "
-              "PEs: every A-th line, every B-th pixel of it), tiles:WxH (tiles of W x H pixels round robin), "
-              "random:seed (default seed 1); dynamic:CHUNK[,OVERHEAD]: PEs request chunks of pixels at run time; "
-              "hybrid:CHUNK[,OVERHEAD[,SHARE]]: the same after the static assignment of a fraction SHARE (0.5) of the "
-              "pixels; the loads of dynamic and hybrid are simulated; default: the machine's, cyclic on spa")
+    add_value(
+        command, "--mapping", o.mapping,
+        "Assignment of pixels to PEs: cyclic (slots of a sheared image, --offset), cyclic:p, column (cyclic with "
+        "offset 0: whole columns), rows (scan lines round robin), blocks (contiguous scan lines), grid:AxB (A rows "
+        "of B PEs; a PE has every B-th pixel of every A-th line), tiles:WxH (tiles of W x H pixels round robin), "
+        "random:seed (default seed 1); dynamic:CHUNK[,OVERHEAD]: PEs request CHUNK pixels at a time, each request "
+        "costs OVERHEAD cycles; hybrid:CHUNK[,OVERHEAD[,SHARE]]: PEs request pixels after rendering a fraction "
+        "SHARE (0.5) of their cyclic pixels; the loads of dynamic and hybrid are simulated; default: the machine's, "
+        "cyclic on spa")
         ->type_name("NAME");
     add_value(command, "--fold", o.fold, "PE of slot c if P is not W: cyclic (c mod P) or block (c P div W)")
         ->type_name("cyclic|block")
@@ -103,8 +109,8 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
         command, "--accel", o.accel,
         "Acceleration structure in each PE's memory, which does not change the hits: none: every ray is tested against "
         "all objects; bvh: faster from a few hundred objects on; grid: a uniform grid of A x B x C voxels along x, y, "
-        "z, by default a few for each object; default: none; on grande bvh if it is faster, from about 100 spheres or "
-        "30 polygons on")
+        "z, by default a few voxels per object; default: none; on grande bvh if it is faster, from about 100 spheres "
+        "or 30 polygons on")
         ->type_name("none|bvh|grid[:AxBxC]");
     add_value(command, "--pe-memory", o.pe_memory,
               "Memory in bytes of a PE, or of a torus node with all its buffers; default: the machine's, 32768 on spa, "
@@ -148,8 +154,8 @@ Antialias antialias_settings(const RenderOptions& o) {
     return antialias;
 }
 
-// --offset and --fold apply only to mappings with slots. Refuses them for other mappings, and --offset for a mapping
-// whose parameter is a different offset.
+// --offset and --fold apply only to mappings with slots. Throws UserError if one of them is given for another mapping,
+// if --offset contradicts the mapping's own offset (--mapping cyclic:8 --offset 16), or if --offset is out of range.
 void check_slot_options(const RenderOptions& o, const MappingText& mapping, const ImageSize& image) {
     const bool has_slots = mapping.rule.has_slots();
     if (!has_slots && o.offset)
@@ -168,16 +174,17 @@ void check_slot_options(const RenderOptions& o, const MappingText& mapping, cons
             fmt::format("--offset {}: must be 0..{}, less than the image's width", *o.offset, image.width - 1));
 }
 
-// Returns --mapping, or the machine's mapping without this option. For dynamic and hybrid mappings, returns the
-// cyclic mapping, by which the device distributes the pixels when it traces them, and which assigns the static pixels
-// of hybrid mappings.
+// Returns --mapping or, if it is not given, the machine's mapping. A dynamic or hybrid mapping is only simulated. For
+// it this function returns the cyclic mapping: the device traces with it, and it is the static part of a hybrid
+// mapping.
 MappingText requested_mapping(const RenderOptions& o, const Machine& machine) {
     if (!o.mapping.empty()) return parse_mapping(is_dynamic(o.mapping) ? "cyclic" : o.mapping);
     if (machine.mapping.has_slots()) return parse_mapping("cyclic");
     return {mapping_text(machine.mapping), machine.mapping, false};
 }
 
-// Returns the rule of the mapping. The offset of "cyclic" alone is --offset, or the machine's offset modulo the width.
+// Returns the mapping's rule with offset and fold. For "cyclic" without p, the offset is --offset or, if it is not
+// given, the machine's offset modulo the image's width.
 MappingRule rule_of(const MappingText& mapping, const RenderOptions& o, const Machine& machine, std::uint32_t width) {
     if (!mapping.rule.has_slots()) return mapping.rule;
     const std::uint32_t default_offset = machine.mapping.has_slots() ? machine.mapping.parameter % width : 0;
@@ -186,7 +193,7 @@ MappingRule rule_of(const MappingText& mapping, const RenderOptions& o, const Ma
     return cyclic_mapping(offset, o.fold.empty() ? Fold::kCyclic : parse_fold(o.fold));
 }
 
-// Sets the mapping, and the plan of a dynamic or hybrid mapping.
+// Sets settings.mapping, and settings.dynamic if the mapping is dynamic or hybrid.
 void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize& image) {
     const Machine& machine = settings.machine;
     if (o.mapping.empty())
@@ -199,11 +206,12 @@ void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize
     settings.mapping = make_mapping(rule_of(mapping, o, machine, image.width), image, pes);
 }
 
-// Returns --accel, or the machine's default without this option. With few objects a BVH costs more time than it saves.
+// Returns --accel or, if it is not given, the machine's accelerator. Returns no accelerator if the machine's is a BVH
+// and the scene has so few objects that a BVH costs more time than it saves.
 Accel accel_of(const RenderOptions& o, const RingSettings& settings, const Scene& scene) {
     if (!o.accel.empty()) return parse_accel(o.accel);
-    const bool default_pays = settings.machine.accel.kind != AccelKind::kBvh || bvh_pays(scene, settings.format);
-    return default_pays ? settings.machine.accel : Accel{};
+    const bool use_default = settings.machine.accel.kind != AccelKind::kBvh || bvh_pays(scene, settings.format);
+    return use_default ? settings.machine.accel : Accel{};
 }
 
 }  // namespace

@@ -26,16 +26,19 @@ struct RenderOptions {
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };
 
-/// Adds the options. `antialiasing`: adds the options of anti-aliasing too.
+/// Adds the options of RenderOptions except the scene; those of anti-aliasing only if `antialiasing` is true.
 void add_render_options(CLI::App& command, RenderOptions& options, bool antialiasing = true);
 
-// Values of options that every machine has. The functions throw UserError with the option's name.
+// Each of these functions returns the value of an option or, if it is not given, its default. The functions throw
+// UserError, with the option's name, for an invalid value.
 
-/// Returns --size, with width and height in 1..16384; without it the scene's resolution.
+/// Returns --size, by default the scene's resolution. Width and height are 1..16384 pixels.
 ImageSize image_size(const RenderOptions& options, const Scene& scene);
+/// Returns --format, by default the machine's format.
 NumberFormat format_of(const RenderOptions& options, const Machine& machine);
+/// Returns --lanes and --group (0: not given) and --kernel-dir.
 KernelChoice kernel_choice(const RenderOptions& options);
-/// Returns the bytes of a PE's memory: --pe-memory, or the machine's memory without this option. Empty: no limit.
+/// Returns --pe-memory, the memory of a PE in bytes, by default the machine's. Empty: no limit.
 std::optional<std::uint64_t> pe_memory_of(const RenderOptions& options, const Machine& machine);
 
 /// Returns the settings of the ring renderer. Throws UserError for an option out of range, or a machine that is not a

@@ -33,8 +33,8 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
         ->capture_default_str();
     add_value(
         command, "--trace-pes", trace.pes,
-        "Number of PEs or nodes of the modelled machine that get a track: the busiest (a quarter of N), the idlest (a "
-        "quarter), and others at even distances (the rest); 0 omits the modelled machine")
+        "Number N of PEs or nodes of the modelled machine that get a track: the N/4 busiest, the N/4 idlest, and N/2 "
+        "evenly spaced ones; 0 omits the modelled machine")
         ->type_name("N")
         ->capture_default_str();
 }
@@ -46,8 +46,8 @@ void check_trace(const CLI::App& command, const TraceOptions& trace) {
         return;
     }
     if (trace.events == 0) throw UserError("--trace-events 0: must be 1 or more");
-    const bool named = trace.file.ends_with(".json") || trace.file.ends_with(".json.gz");
-    if (!named && !trace.file.starts_with("/dev/") && !is_standard_stream(trace.file))
+    const bool has_json_name = trace.file.ends_with(".json") || trace.file.ends_with(".json.gz");
+    if (!has_json_name && !trace.file.starts_with("/dev/") && !is_standard_stream(trace.file))
         throw UserError(
             fmt::format("--trace {}: choose a name that ends in .json, or in .json.gz for compression", trace.file));
 }
@@ -61,11 +61,12 @@ void RenderRecorder::observe(Session& session, Ranks& ranks) {
     if (traces() && ranks.has_several()) compare_clocks(ranks);
 }
 
-// Measures the offsets of the ranks' clocks. Sets the beginning of the trace to the earliest beginning on all ranks.
+// Measures the offsets of the ranks' clocks. Sets the beginning of the trace to the earliest beginning on any rank.
 void RenderRecorder::compare_clocks(Ranks& ranks) {
     has_several_ranks_ = true;
     rank_clock_ = rank_clock(ranks, host_clock_ns);
-    const auto offset = static_cast<std::uint64_t>(rank_clock_.offset_ns);  // additions wrap modulo 2^64
+    const auto offset =
+        static_cast<std::uint64_t>(rank_clock_.offset_ns);  // may be negative: additions wrap modulo 2^64
     const std::vector<std::uint64_t> begins = ranks.all_gather(begin_ns_ + offset);
     begin_ns_ = *std::min_element(begins.begin(), begins.end()) - offset;
     for (const RankClock& c : ranks.all_gather(rank_clock_))
@@ -75,7 +76,7 @@ void RenderRecorder::compare_clocks(Ranks& ranks) {
 void RenderRecorder::gather(Session& session, Ranks& ranks) {
     if (!traces() || !ranks.has_several()) return;
     TraceFile this_rank(trace_.events / ranks.count());
-    if (!ranks.is_first()) add_measured(this_rank, session, ranks.rank());
+    if (!ranks.is_first()) add_measured_events(this_rank, session, ranks.rank());
     const TraceFile::Part part = this_rank.part();
     const std::vector<std::string> names = ranks.gather(part.names), event_texts = ranks.gather(part.text);
     const std::vector<std::uint64_t> events = ranks.all_gather(part.events), left_out = ranks.all_gather(part.left_out);
@@ -83,7 +84,7 @@ void RenderRecorder::gather(Session& session, Ranks& ranks) {
         parts_of_other_ranks_.push_back({names[rank], event_texts[rank], events[rank], left_out[rank]});
 }
 
-void RenderRecorder::add_measured(TraceFile& file, Session& session, std::uint32_t rank) {
+void RenderRecorder::add_measured_events(TraceFile& file, Session& session, std::uint32_t rank) {
     add_host_spans(file, spans_.spans(), begin_ns_, {rank, has_several_ranks_});
     add_device_commands(file, session.device().name, session.profile(), device_clock_offset_, begin_ns_,
                         {rank, has_several_ranks_});
@@ -102,7 +103,7 @@ void RenderRecorder::write(Session& session, const std::function<void(TraceFile&
     TraceFile file(trace_.events / (1 + parts_of_other_ranks_.size()));
     file.metadata()["program"] = name_and_version();
     if (has_several_ranks_) file.metadata()["rank_clocks"] = all_rank_clocks_;
-    add_measured(file, session, 0);
+    add_measured_events(file, session, 0);
     add_machine(file);
     for (const TraceFile::Part& part : parts_of_other_ranks_) file.add(part);
     write_whole_file(trace_.file, file.finish(trace_.file.ends_with(".gz")));

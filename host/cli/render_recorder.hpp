@@ -27,8 +27,8 @@ struct TraceOptions {
 /// Adds --trace, --trace-events and --trace-pes.
 void add_trace_options(CLI::App& command, TraceOptions& trace);
 
-/// Throws UserError if the file's name does not end in .json or .json.gz, or if the other trace options are
-/// given without --trace.
+/// Throws UserError if the file's name does not end in .json or .json.gz, if --trace-events is 0, or if the other
+/// trace options are given without --trace.
 void check_trace(const CLI::App& command, const TraceOptions& trace);
 
 class RenderRecorder {
@@ -37,6 +37,7 @@ class RenderRecorder {
     /// owner adds by spans().
     RenderRecorder(const TraceOptions& trace, bool profile);
 
+    /// Returns true if a trace is requested.
     bool traces() const { return !trace_.file.empty(); }
     SpanLog& spans() { return spans_; }
 
@@ -56,7 +57,7 @@ class RenderRecorder {
 
   private:
     void compare_clocks(Ranks& ranks);
-    void add_measured(TraceFile& file, Session& session, std::uint32_t rank);
+    void add_measured_events(TraceFile& file, Session& session, std::uint32_t rank);
 
     const TraceOptions& trace_;
     bool profile_;
@@ -65,7 +66,7 @@ class RenderRecorder {
     ClockOffset device_clock_offset_;  // offset of the device's clock to the host's
     RankClock rank_clock_;             // offset of this rank's clock to rank 0's
     bool has_several_ranks_ = false;
-    std::vector<TraceFile::Part> parts_of_other_ranks_;  // on rank 0: their events
+    std::vector<TraceFile::Part> parts_of_other_ranks_;  // on rank 0: events of the other ranks
     Json all_rank_clocks_ = Json::array();               // offset and uncertainty of each rank's clock
 };
 

@@ -28,7 +28,7 @@ std::optional<Antialiasing> antialiasing(const RingSettings& settings, const Rin
     return report;
 }
 
-std::optional<ModelledTime> modelled(const RingSettings& settings, const RingResult& result) {
+std::optional<ModelledTime> ring_time(const RingSettings& settings, const RingResult& result) {
     std::vector<Load> loads;
     for (const Phase& phase : result.phases) loads.push_back(phase.load);
     return modelled_time(settings.machine, loads, result.communication, 1,
@@ -52,8 +52,8 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
     if (settings.dynamic) {
         report.machine.mapping = dynamic_text(*settings.dynamic);
     } else if (raya_has_slots(settings.mapping)) {
-        const bool column = command.render.mapping == "column";
-        report.machine.mapping = column ? "column" : "cyclic";
+        const bool is_column = command.render.mapping == "column";
+        report.machine.mapping = is_column ? "column" : "cyclic";
         report.machine.fold = settings.mapping.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic";
         report.machine.offset = settings.mapping.parameter;
     }
@@ -64,7 +64,7 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
     report.antialias = antialiasing(settings, result);
     report.accel = result.accel;
     report.communication = result.communication;
-    report.modelled = modelled(settings, result);
+    report.modelled = ring_time(settings, result);
     return report;
 }
 

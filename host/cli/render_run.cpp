@@ -41,7 +41,7 @@ RenderRun::RenderRun(const RenderCommand& command, Ranks& all_ranks)
       recorder(command.trace, command.roofline()),
       progress(all_ranks.is_first(), "reading the scene"),
       options(command.render),
-      input(read_scene_once(recorder, options, all_ranks)),
+      input(read_scene_on_rank_0(recorder, options, all_ranks)),
       timing_(command.timing()),
       image_files_{command.image, command.cost, command.mask} {}
 

@@ -20,7 +20,7 @@ struct RenderCommand;
 /// The progress bar of a command that renders one image or a sequence.
 class RenderProgress {
   public:
-    RenderProgress(bool wanted, const std::string& label) : bar_(std::in_place, wanted, label) {}
+    RenderProgress(bool shows_bar, const std::string& label) : bar_(std::in_place, shows_bar, label) {}
     /// Calls `callback` with the progress instead of showing a bar.
     explicit RenderProgress(ProgressCallback callback) : callback_(std::move(callback)) {}
 
@@ -29,6 +29,7 @@ class RenderProgress {
 
     /// Starts a sequence: from now on the bar shows how many of `count` images are finished.
     void begin_images(std::size_t count);
+    /// Counts the current image as finished.
     void next_image();
 
     /// Returns the callback that shows the progress of the current image; empty if the progress is not shown.
@@ -41,7 +42,7 @@ class RenderProgress {
   private:
     std::optional<ProgressBar> bar_;
     ProgressCallback callback_;
-    std::size_t sequence_size_ = 0;  // images; 0: a single image
+    std::size_t sequence_size_ = 0;  // number of images; 0: not a sequence
     std::size_t finished_images_ = 0;
 };
 
@@ -62,12 +63,12 @@ class RenderRun {
     Ranks& ranks;
     RenderRecorder recorder;
     RenderProgress progress;
-    RenderOptions options;  // with the default of --accel that rank 0 chose for the scene
+    RenderOptions options;  // `accel`: with several ranks, rank 0's choice for the scene
     SceneInput input;       // input.scene.view: the view of the current image
 
   private:
     Timing timing_;
-    std::vector<std::string> image_files_;  // whose encoders session() loads
+    std::vector<std::string> image_files_;  // session() loads the encoders of these files
     std::unique_ptr<ScopedTunedSource> tuned_;
     cl::Device device_;
     std::optional<Session> opened_session_;

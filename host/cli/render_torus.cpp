@@ -28,7 +28,7 @@ struct TorusOutputs {
     }
 
     std::optional<PacketTrace> packets;
-    bool keep_packets = false;
+    bool keep_packets = false;  // record `records`, `cycles` and `link_words`
     std::vector<PacketRecord> records;
     std::vector<std::uint64_t> cycles, link_words;  // [superstep][node], [superstep][node][RAYA_LINKS]
     std::optional<TorusTrace> trace;
@@ -56,12 +56,13 @@ TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progre
     return renderer.render(progress.callback(), observers);
 }
 
-// Renders the image. After a deadlock, searches for a sufficient queue length and throws an exception with this length.
+// Renders the image. After a deadlock, searches for a sufficient queue length and throws TorusDeadlock with this
+// length.
 TorusResult render_or_find_queue(TorusRenderer& renderer, RenderProgress& progress, TorusOutputs& outputs) {
     try {
         return render_with_progress(renderer, progress, outputs);
     } catch (const TorusDeadlock& deadlock) {
-        progress.stage("searching a sufficient queue length");
+        progress.stage("searching for a sufficient queue length");
         const QueueSearchResult search = find_longer_queue(deadlock.figures.queue, renderer.queue_trial());
         throw TorusDeadlock(deadlock.figures, queue_remedy(search));
     }
@@ -109,7 +110,7 @@ void write_images(const RenderCommand& command, const TorusResult& result, const
     if (outputs.packets) write_whole_file(command.torus.packets, outputs.packets->finish());
 }
 
-void refuse_history_of_ranks(const TorusSettings& settings, const Ranks& ranks) {
+void refuse_history_with_ranks(const TorusSettings& settings, const Ranks& ranks) {
     if (settings.history && ranks.has_several())
         throw UserError("--async and --replay record every packet in one process; start raya without mpirun");
 }
@@ -154,7 +155,7 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     const Scene& scene = input.scene;
     TorusSettings settings = torus_settings(run.options, command.torus, scene);
     settings.pixels = command.pixels;
-    refuse_history_of_ranks(settings, ranks);
+    refuse_history_with_ranks(settings, ranks);
     Session& session = run.session();
     TorusRenderer renderer(session, scene, settings, ranks);
     if (ranks.is_first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);

@@ -34,8 +34,8 @@ struct SceneInput {
     Warnings warnings;
 };
 
-/// Reads a scene from a file or stdin ("-"). Warns of skipped and changed contents. Throws the UserErrors of
-/// read_nff().
+/// Reads a scene from a file or stdin ("-"). Warns of skipped and changed contents. Throws UserError as read_nff()
+/// does.
 SceneInput read_scene(const std::string& file, bool strict);
 
 /// Warns of options in the environment variable RAYA_BUILD_OPTIONS that may change pixels and counts.

@@ -1,4 +1,4 @@
-// The memory that machines need for a scene. Uses the preparation steps of a render, which need no device.
+// Computes the memory that machines need for a scene, with those steps of a render that need no device.
 #pragma once
 #include <map>
 #include <optional>
@@ -22,7 +22,7 @@ class SceneNeeds {
     /// fit is not an error; the result contains the missing bytes.
     MachineNeeds needs_of(const std::string& machine);
 
-    /// Returns the formats of the machines for which needs_of() was called.
+    /// Returns how the scene fits the number formats of the machines for which needs_of() was called.
     std::vector<FormatFit> formats() const { return formats_; }
 
   private:

@@ -69,7 +69,7 @@ std::string studies_text() {
 
 void check_study(const StudyCommand& command) {
     const std::vector<std::string> names = study_names();
-    const auto is_study = [&](const std::string& word) { return std::ranges::find(names, word) != names.end(); };
+    const auto is_study = [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); };
     if (!is_study(command.study) && !command.study.ends_with(".py"))
         throw UserError(
             fmt::format("no study {}{}; raya help study lists the studies; your own study is a file FILE.py",
@@ -85,13 +85,13 @@ void check_study(const StudyCommand& command) {
     if (command.size && (*command.size < kMinStudySide || *command.size > kMaxStudySide))
         throw UserError(
             fmt::format("--size {}: must be {}..{} pixels a side", *command.size, kMinStudySide, kMaxStudySide));
-    const std::vector<double>& n = command.network;
+    const std::vector<double>& times = command.network;
     const auto is_time = [](double time) { return time >= 0 && time <= 1e9; };
-    if (!n.empty() && (n.size() != 2 || !std::ranges::all_of(n, is_time)))
+    if (!times.empty() && (times.size() != 2 || !std::ranges::all_of(times, is_time)))
         throw UserError(
             fmt::format("--network {}: must be two numbers, 0..10^9: microseconds per message, nanoseconds per byte",
-                        fmt::join(n, ",")));
-    if (!n.empty() && command.study != "ranks" && command.study != "all")
+                        fmt::join(times, ",")));
+    if (!times.empty() && command.study != "ranks" && command.study != "all")
         throw UserError(
             fmt::format("--network applies to study ranks only, not to study {}; leave it out", command.study));
     if (command.folder == "-") throw UserError("-o -: a study writes several files, not stdout; name a folder");
@@ -107,7 +107,7 @@ Json settings_of(const StudyCommand& command) {
     return settings;
 }
 
-void describe_study(CLI::App& command, StudyCommand& options) {
+void add_study_options(CLI::App& command, StudyCommand& options) {
     OptionGroup group(command, kFiles);
     CLI::Option* const study =
         add_file(command, FileUse::kRead, "STUDY", options.study, "STUDY|all|FILE.py",
@@ -116,13 +116,13 @@ void describe_study(CLI::App& command, StudyCommand& options) {
     add_file(
         command, FileUse::kRead, "SCENE", options.scenes, "SCENE.nff",
         "Scenes in NFF, at most one of them - for stdin; with `all`, studies of a single scene take the first scene; "
-        "default: the study's own");
+        "default: the study's own scenes");
     add_file(command, FileUse::kWrittenFolder, "-o,--output", options.folder, "DIR",
              "Folder for index.html, Markdown, CSV, JSON and plots; created if missing")
         ->required();
     group.next(kImageGroup);
     add_value(command, "--size", options.size,
-              "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
+              "Image size in pixels a side, 17..4096; default: the study's size, 256 in most studies")
         ->type_name("N");
     group.next(kMachine);
     add_value(command, "--network", options.network,
@@ -136,7 +136,8 @@ void describe_study(CLI::App& command, StudyCommand& options) {
     add_tuned_option(command, options.no_tuned);
 }
 
-// Returns the folder of the Python module, in the build folder or in an installation under a prefix.
+// Returns the folder of the Python module, in the build folder or in an installation under a prefix; empty if
+// there is none.
 fs::path package_folder(const fs::path& program) {
     std::error_code error;
     for (const fs::path& folder :
@@ -186,7 +187,7 @@ void add_study_command(CLI::App& program, const std::function<void(const std::st
                             {"raya study all -o studies", "Run all studies and write one document"}});
     command->footer(studies_text() + command->get_footer());
     const auto options = std::make_shared<StudyCommand>();
-    describe_study(*command, *options);
+    add_study_options(*command, *options);
     command->callback([options, run] {
         check_study(*options);
         const std::string settings = settings_of(*options).dump();

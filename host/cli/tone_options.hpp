@@ -21,8 +21,8 @@ struct ToneOptions {
 /// Adds --exposure, --gamma and --tone.
 void add_tone_options(CLI::App& command, ToneOptions& tone);
 
-/// Returns the tone mapping for the image `file`. Throws UserError for a value out of range, and for options
-/// with a linear format.
+/// Returns the tone mapping for the image `file`. Throws UserError for a value out of range, and if an
+/// option is given for a linear format.
 Tone tone_of(const ToneOptions& options, const std::string& file);
 
 }  // namespace raya

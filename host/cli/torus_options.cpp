@@ -34,7 +34,9 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "total; more voxels than nodes are assigned cyclically, fewer voxels leave nodes empty; default: one "
         "for each node",
         "AxBxC");
-    add("--links", t.links, "Links of a node: six, or four as on a T805, with the slabs of nodes side by side",
+    add("--links", t.links,
+        "Links of a node: torus3d: six; torus2d: four, as on a T805, in a 2-D torus with the slabs of nodes side by "
+        "side",
         "torus3d|torus2d")
         ->default_str("torus3d");
     add("--inject", t.inject,
@@ -43,13 +45,14 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "root|all")
         ->default_str("all");
     add("--returns", t.returns,
-        "Contents of a return packet in the model: terms: a single term of a ray (ambient light, a light, or the "
-        "background); rays: all terms of a ray, in 6 words after the ray's shadow rays, as in Yoshitani & Yamazaki",
+        "Modelled contents of a return packet: terms: one contribution of a ray (ambient term, light from one light, "
+        "or background); rays: all contributions of a ray, in 6 words sent after the ray's shadow rays, as in "
+        "Yoshitani & Yamazaki",
         "terms|rays")
         ->default_str("terms");
     add("--packet-words", t.packet_words,
-        "Modelled size of a ray packet in 32-bit words, at its creation and on links; the renderer itself moves 16, "
-        "Yoshitani & Yamazaki use 22 and more; 16..4096",
+        "Modelled size of a ray packet in 32-bit words, 16..4096, for the time of its creation and transfers; the "
+        "renderer itself transfers 16 words, Yoshitani & Yamazaki use 22 and more",
         "N")
         ->default_str("16");
     add("--queue", t.queue,
@@ -73,8 +76,8 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
             "simgrid"),
         {"simgrid"});
     command.add_flag("--async", t.async,
-                     "Also simulate the machine without supersteps, whose nodes compute while links transfer: one "
-                     "modelled time next to the two bounds");
+                     "Also simulate the machine without supersteps, whose nodes compute while links transfer: adds a "
+                     "modelled time to the lower bound and the time with supersteps");
 }
 
 namespace {

@@ -78,19 +78,19 @@ const char* status_text(TrialStatus status) {
     }
 }
 
-void print_dropped(const Tuning& tuning) {
+void print_dropped_trials(const Tuning& tuning) {
     for (const Trial& trial : tuning.trials)
         if (trial.status != TrialStatus::kCorrect && trial.status != TrialStatus::kUnfinished)
             fmt::print("dropped: {}: {}: {}: {}\n", tuning.workload.name(),
                        change_text(tuning.space, trial.values, trial.values), status_text(trial.status), trial.error);
 }
 
-void print_exhaustive(const Tuning& tuning) {
+void print_exhaustive_search(const Tuning& tuning) {
     if (tuning.exhaustive_best)
-        fmt::print("all {} candidates: {}: the best is {}; the tuned values take {:.3f} of its time\n",
-                   tuning.exhaustive_tried + 1, tuning.workload.name(),
-                   change_text(tuning.space, *tuning.exhaustive_best, *tuning.exhaustive_best),
-                   tuning.exhaustive_ratio);
+        fmt::print(
+            "exhaustive search of {} candidates: {}: the best is {}; the tuned values take {:.3f} times its time\n",
+            tuning.exhaustive_tried + 1, tuning.workload.name(),
+            change_text(tuning.space, *tuning.exhaustive_best, *tuning.exhaustive_best), tuning.exhaustive_ratio);
 }
 
 void print_tunings(const std::vector<Tuning>& tunings) {
@@ -102,13 +102,13 @@ void print_tunings(const std::vector<Tuning>& tunings) {
                          change_text(t.space, t.space.defaults, t.best) + (t.complete ? "" : " (time limit)")});
     fmt::print("{}", text_table(table));
     fmt::print(
-        "speed-up: time of a render with the defaults over the time with the best values, median of 9 pairs of renders "
+        "speed-up: time of a render with the defaults / time with the best values, median of 9 pairs of renders "
         "after the search;\ntried: candidates that were rendered and compared with the image of the defaults; own: the "
         "kernels' own default\n");
     if (std::any_of(tunings.begin(), tunings.end(), [](const Tuning& t) { return !t.complete; }))
-        fmt::print("time limit: --seconds allows a longer search\n");
-    for (const Tuning& tuning : tunings) print_dropped(tuning);
-    for (const Tuning& tuning : tunings) print_exhaustive(tuning);
+        fmt::print("time limit: the limit ended the search; a larger --seconds allows a longer search\n");
+    for (const Tuning& tuning : tunings) print_dropped_trials(tuning);
+    for (const Tuning& tuning : tunings) print_exhaustive_search(tuning);
 }
 
 TunedEntry entry_of(const Tuning& tuning, const std::string& scene) {
@@ -157,7 +157,7 @@ void add_rendered_options(CLI::App& command, TuneCommand& options) {
     OptionGroup group(command, "Workload");
     add_file(command, FileUse::kRead, "SCENE", render.scene, "SCENE.nff",
              "Scene in NFF to render with candidates for lanes, group and other values that change only the time; "
-             "default: 30 spheres and a plane, with an accelerator SPD's balls of 7,381 spheres");
+             "default: 30 spheres and a plane, with an accelerator: SPD's balls, 7,381 spheres");
     add_strict_option(command, render.strict);
     add_value(command, "--variants", options.variants,
               "Kernels to tune, comma-separated: none, grid, bvh: the ring machine with that --accel; torus: 4x4x4 "
@@ -172,7 +172,7 @@ void add_rendered_options(CLI::App& command, TuneCommand& options) {
         ->allow_extra_args(false)
         ->type_name("NAME,...");
     add_value(command, "--size", options.image.size,
-              "Image size in pixels, 1..16384 a side; default: 512, with an accelerator and on the torus 256")
+              "Image size in pixels, 1..16384 a side; default: 512; with an accelerator and on the torus: 256")
         ->type_name("N|WxH");
     add_value(command, "--pes", render.pes, "Number P of processing elements of the ring, 1..W*H")
         ->type_name("P")
@@ -205,7 +205,7 @@ void add_search_options(CLI::App& command, TuneCommand& options) {
 
 void add_tune_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
-        "tune", "Search this device's fastest launch values and store them for render, bench and study");
+        "tune", "Search for this device's fastest launch values and store them for render, bench and study");
     add_examples(*command, {{"raya tune", "Search for a minute and store the best values for this device and driver"},
                             {"raya tune scenes/centre.nff --variants bvh --size 128 --seconds 20 --report t4.json",
                              "Tune the BVH for one scene, with a report of all trials"}});

@@ -15,7 +15,7 @@ struct VerbosityFlags {
     int quiet = 0, verbose = 0;
     bool is_first_rank = true;
 
-    void set() const {
+    void apply() const {
         if (quiet > 0 && verbose > 0) throw UserError("--quiet and --verbose: give one of them");
         set_verbosity(is_first_rank || quiet > 0 ? verbose - quiet : 0);
     }
@@ -29,14 +29,14 @@ void add_to(CLI::App& command, const std::shared_ptr<VerbosityFlags>& flags) {
         "-q,--quiet",
         [flags](std::int64_t count) {
             flags->quiet += static_cast<int>(count);
-            flags->set();
+            flags->apply();
         },
         "Print no summary and no progress; twice: no warnings either");
     command.add_flag_function(
         "-v,--verbose",
         [flags](std::int64_t count) {
             flags->verbose += static_cast<int>(count);
-            flags->set();
+            flags->apply();
         },
         "Log the host's steps and their seconds on stderr; twice: also kernels' build options and logs, and the "
         "device's times by label");

@@ -39,11 +39,11 @@ std::string closing_text(const std::vector<Check>& checks, double seconds) {
                        count_of(checks, Outcome::kSkip), seconds);
 }
 
-// Verifies the device number `index` of those that --device selects, and prints each check. Sets `devices` to the
+// Verifies device number `index` of those that --device selects, and prints each check. Sets `device_count` to the
 // number of selected devices.
 DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
-                           std::size_t& devices) {
-    const bool quiet = is_quiet(), shows = shows_progress();
+                           std::size_t& device_count) {
+    const bool quiet = is_quiet(), shows_status = shows_progress();
     const auto print = [&](const std::string& line) {
         clear_status();
         fmt::print("{}", line);
@@ -51,22 +51,22 @@ DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, cons
     };
     const SupervisorSink sink{
         .device =
-            [&](const DeviceChecks& device, const std::vector<std::string>& left_out) {
+            [&](const DeviceChecks& device, const std::vector<std::string>& unusable_devices) {
                 if (quiet) return;
                 if (index == 0)
-                    for (const std::string& line : left_out) print(line + "\n");
+                    for (const std::string& line : unusable_devices) print(line + "\n");
                 print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
             },
         .running =
             [&](const std::string& layer, const std::string& name, double seconds) {
-                if (shows) show_status(fmt::format("running {} {} ... {:.0f} s", layer, name, seconds));
+                if (shows_status) show_status(fmt::format("running {} {} ... {:.0f} s", layer, name, seconds));
             },
         .finished =
             [&](const Check& check) {
                 if (!quiet || check.verdict.outcome == Outcome::kFail) print(check_lines(check));
             }};
-    DeviceChecks result = supervise(command.device, index, settings, sink, devices);
-    if (!quiet || devices == 1 || !result.all_passed())
+    DeviceChecks result = supervise(command.device, index, settings, sink, device_count);
+    if (!quiet || device_count == 1 || !result.all_passed())
         print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
     return result;
 }
@@ -93,7 +93,7 @@ Json report_of(const std::vector<DeviceChecks>& device_checks, Depth depth) {
             {"devices", devices}};
 }
 
-void print_overall(const std::vector<DeviceChecks>& device_checks) {
+void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
     std::vector<Check> checks;
     double seconds = 0;
     for (const DeviceChecks& device : device_checks) {
@@ -112,11 +112,11 @@ void run_verify(const VerifyCommand& command) {
         .depth = command.depth(), .sources = {command.kernel_dir}, .only = command.only, .lanes = command.lanes};
     std::vector<DeviceChecks> device_checks;
     bool all_passed = true;
-    for (std::size_t devices = 1; device_checks.size() < devices;) {
-        device_checks.push_back(verify_device(command, device_checks.size(), settings, devices));
+    for (std::size_t device_count = 1; device_checks.size() < device_count;) {
+        device_checks.push_back(verify_device(command, device_checks.size(), settings, device_count));
         all_passed = all_passed && device_checks.back().all_passed();
     }
-    if (device_checks.size() > 1) print_overall(device_checks);
+    if (device_checks.size() > 1) print_device_totals(device_checks);
     write_report_and_page({command.report, command.page}, report_of(device_checks, command.depth()));
     if (!all_passed) throw CheckFailure{};
 }
@@ -134,18 +134,19 @@ void add_verify_command(CLI::App& program) {
     command->add_flag("--quick", options->quick,
                       "The device's default lanes, common formats, a dozen images: the default");
     command->add_flag("--brief", options->brief,
-                      "Few kernels with few rays: for simulators, and compilers that take a minute for a kernel");
+                      "Few kernels with few rays: for simulators, and for compilers that take a minute for a kernel");
     command->add_flag(
         "--full", options->full,
         "All formats, lanes and group sizes: about five minutes with PoCL on an idle CPU, longer if the compiler is "
         "slow on wide vectors");
-    add_value(*command, "--lanes", options->lanes,
-              "Only this number of lanes, for compilers that are slow on wide vectors; default: the device's default, "
-              "with --full all")
+    add_value(
+        *command, "--lanes", options->lanes,
+        "Check only this number of lanes, for compilers that are slow on wide vectors; default: the device's default, "
+        "with --full all")
         ->check(CLI::IsMember({1, 4, 8, 16}))
         ->type_name("V");
     add_value(*command, "--only", options->only,
-              "Only checks whose printed \"LAYER NAME\" contains this text: number, \"image glass\", spa22, ...")
+              "Run only checks whose printed \"LAYER NAME\" contains this text: number, \"image glass\", spa22, ...")
         ->type_name("TEXT");
     add_device_option(*command, options->device);
     command->get_option("--device")

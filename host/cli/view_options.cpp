@@ -28,8 +28,8 @@ std::vector<double> numbers_of(std::string_view text) {
         const std::string_view field = text.substr(0, text.find(','));
         double number = 0;
         const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
-        const bool whole = error == std::errc{} && end == field.data() + field.size();
-        if (!whole || !(std::abs(number) <= kMaxSceneLength)) return {};
+        const bool is_whole_field = error == std::errc{} && end == field.data() + field.size();
+        if (!is_whole_field || !(std::abs(number) <= kMaxSceneLength)) return {};
         numbers.push_back(number);
         if (field.size() == text.size()) return numbers;
         text.remove_prefix(field.size() + 1);

@@ -8,7 +8,7 @@ namespace raya {
 namespace {
 
 // Escapes the characters that _arguments interprets.
-std::string zsh_plain(const std::string& text) {
+std::string zsh_escaped(const std::string& text) {
     std::string escaped;
     for (const char c : text) {
         if (c == '[' || c == ']' || c == ':' || c == '\\') escaped += '\\';
@@ -18,14 +18,14 @@ std::string zsh_plain(const std::string& text) {
 }
 
 // Returns the message and action of an _arguments spec, ":NAME:(a b)", for an option's value or a positional argument.
-std::string zsh_offer_of(const OptionText& option) {
+std::string zsh_value_spec(const OptionText& option) {
     const ValueCompletion value = value_completion(option);
-    const std::string name = ':' + zsh_plain(option.value) + ':';
+    const std::string name = ':' + zsh_escaped(option.value) + ':';
     switch (value.kind) {
         case ValueCompletion::Kind::kChoice:
             return fmt::format("{}({})", name, fmt::join(value.choices, " "));
         case ValueCompletion::Kind::kList:
-            return fmt::format("{}_values -s , {} {}", name, shell_quoted(zsh_plain(option.value)),
+            return fmt::format("{}_values -s , {} {}", name, shell_quoted(zsh_escaped(option.value)),
                                fmt::join(value.choices, " "));
         case ValueCompletion::Kind::kFile:
             return fmt::format("{}_files -g \"*{}(-.)\"", name, value.extension);
@@ -43,8 +43,8 @@ std::string arguments_of(const OptionText& option) {
     for (const std::string& name : option.names) {
         const std::string exclusions = option.repeated ? "*" : fmt::format("({})", fmt::join(option.names, " "));
         const std::string value_mark = option.is_flag() ? "" : name.starts_with("--") ? "=" : "+";
-        const std::string spec = exclusions + name + value_mark + '[' + zsh_plain(brief(option.help)) + ']';
-        text += " \\\n            " + shell_quoted(option.is_flag() ? spec : spec + zsh_offer_of(option));
+        const std::string spec = exclusions + name + value_mark + '[' + zsh_escaped(brief(option.help)) + ']';
+        text += " \\\n            " + shell_quoted(option.is_flag() ? spec : spec + zsh_value_spec(option));
     }
     return text;
 }
@@ -53,11 +53,11 @@ std::string zsh_body_of(const CommandText& command) {
     std::string text = "        _arguments -S";
     for (const OptionText& option : command.options) text += arguments_of(option);
     for (const OptionText& argument : command.arguments)
-        text += " \\\n            " + shell_quoted((argument.repeated ? "*" : "") + zsh_offer_of(argument));
+        text += " \\\n            " + shell_quoted((argument.repeated ? "*" : "") + zsh_value_spec(argument));
     if (command.commands.empty()) return text + '\n';
     text = "        local -a commands=(";
     for (const CommandText& subcommand : command.commands)
-        text += "\n            " + shell_quoted(zsh_plain(subcommand.name) + ':' + brief(subcommand.summary));
+        text += "\n            " + shell_quoted(zsh_escaped(subcommand.name) + ':' + brief(subcommand.summary));
     text += ")\n        if [[ $PREFIX == -* ]]; then\n    _arguments -S";
     for (const OptionText& option : command.options) text += arguments_of(option);
     return text + "\n        else\n            _describe command commands\n        fi\n";

@@ -100,7 +100,7 @@ std::string encode_codes(const fs::path& path, const char* format, const Pixels&
 template <class AppendRow>
 void write_rows(const fs::path& path, const Pixels& pixels, const std::string& header, const AppendRow& append_row) {
     std::string piece;
-    int row = -1;
+    int row = -1;  // row of the next piece; -1: the header
     write_whole_file(path, [&]() -> std::string_view {
         piece.clear();
         if (row < 0) piece = header;

@@ -30,8 +30,8 @@ void append_chunk(std::string& file, const char* name, std::string_view data) {
                           crc32(0, static_cast<const Bytef*>(bytes), static_cast<uInt>(checked.size()))));
 }
 
-// Paeth's predictor (filter type 4): returns that of the bytes to the left, above, and above to the left (`corner`)
-// which is nearest to left + above - corner.
+// Paeth's predictor (filter type 4): returns the neighbouring byte that is nearest to left + above - corner. `corner`:
+// the byte above `left`.
 std::uint8_t prediction(int left, int above, int corner) {
     const int p = left + above - corner;
     const int a = std::abs(p - left), b = std::abs(p - above), c = std::abs(p - corner);

@@ -30,9 +30,9 @@ const CodeBorders& srgb_borders();
 /// NaN, 255 above 1.
 std::uint8_t code_between(const CodeBorders& borders, double linear);
 
-/// Returns the nearest code on the sRGB curve. The code is the same on every machine, because it follows from
-/// comparisons with the 255 borders. The relative distance of every float from every border is more than 10^-11, but
-/// the relative error of the C library's pow() is only about 10^-16.
+/// Returns the nearest code on the sRGB curve. The code follows from comparisons with the 255 borders, which are
+/// computed with the C library's pow(). The code is the same on every machine, because the relative error of pow() is
+/// only about 10^-16, and the relative distance of every float from every border is more than 10^-11.
 std::uint8_t srgb_code(float linear);
 
 /// Returns the linear value of a code on the sRGB curve.
@@ -48,7 +48,7 @@ enum class ToneCurve {
 struct Tone {
     double exposure = 0;  // stops
     ToneCurve curve = ToneCurve::kClip;
-    std::optional<double> gamma{};  // codes are v^(1/gamma); empty: the sRGB curve
+    std::optional<double> gamma{};  // the transfer curve is v^(1/gamma); empty: the sRGB curve
     bool operator==(const Tone&) const = default;
 };
 

@@ -3,16 +3,16 @@
 namespace raya {
 namespace {
 
-// Cost of a ray in addition to its intersection tests. Branches: call of the search for the nearest hit, and return.
-// Moves: counter and pointer for each of the two object lists of the paper's machine, spheres and planes.
+// Cost of a ray in addition to its intersection tests. Branches: call of the search for the nearest hit, and return
+// from it. Moves: a counter and a pointer for each of the two object lists of the paper's machine, spheres and planes.
 constexpr std::uint32_t kRayBranches = 2, kRayMoves = 4;
 
-// Cost of a hit on a sphere in addition to the sphere test, which ends with the sign of the discriminant, and to the
-// square root s. b - s, b + s: 2; comparison with the nearest hit so far: 1. Branches: 0 < t, nearer.
+// Cost of a hit on a sphere. It does not include the sphere test, which ends with the sign of the discriminant, and the
+// square root s. Operations: b - s, b + s: 2; comparison with the nearest hit so far: 1. Branches: 0 < t, nearer.
 constexpr std::uint32_t kSphereHitOperations = 3, kSphereHitBranches = 2;
 
 // The comment before each budget lists the terms of the event's formulas (names as in kernels/README.md), each with its
-// number of multiply-accumulates, then the moves with their numbers, and the conditions of the branches.
+// number of multiply-accumulates. Then it lists the moves, each with its number, and the conditions of the branches.
 constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
     // corner + j step: 3, + x step: 3, normalise: 3 + 3. Moves: conversion of j and x to numbers 2, origin 3, sum 3,
     // weight 1, store of the finished pixel 3. Branches: next pixel.
@@ -53,8 +53,9 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .multiply_accumulates = kSphereHitOperations,
      .roots = 1,
      .branches = kSphereHitBranches,
-     .work = "root of the sphere that occludes the light. Excluded: spheres hit beyond the light; too high if a plane "
-             "occludes it"},
+     .work =
+         "square root for the sphere that occludes the light. Excluded: spheres hit beyond the light; too high if a "
+         "plane occludes it"},
     // C - O: 3, b = c.D: 3, l = c - b D: 3, r^2 - l.l: 3. Branches: miss.
     {.event = RAYA_SPHERE_TESTS,
      .multiply_accumulates = 3 + 3 + 3 + 3,
@@ -77,14 +78,14 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
              "two divisions per ray, once for all its polygons"},
     // X - base: 3, to the nearest point: 3 + 3, z: 3, dz: 3, side: 3, dside: 3, radius: 1, dradius: 1, a: 1 + 3,
     // b: 1 + 3, c: 1 + 3, discriminant: 2. A third of the tests continues with (q, z and t twice, comparisons with 0, h
-    // and the nearest hit: 9) / 3, and with a root and two divisions, charged as one division to every test. Branches:
-    // miss; in a third of the tests three more.
+    // and the nearest hit: 9) / 3. These tests also need a square root and two divisions, which the budget charges as
+    // one division to every test. Branches: miss; in a third of the tests three more.
     {.event = RAYA_CONE_TESTS,
      .multiply_accumulates = 3 + 3 + 3 + 3 + 3 + 3 + 3 + 1 + 1 + 4 + 4 + 4 + 2 + 9 / 3,
      .divisions = 1,
      .branches = 1 + 3 / 3,
-     .work = "up to the sign of the discriminant; three tests in ten (scenes/cones.nff) continue to a root and two "
-             "divisions, charged as one division to every test. The 40 operations hide the loads of its 10 words"},
+     .work = "up to the sign of the discriminant; three tests in ten (scenes/cones.nff) continue to a square root and "
+             "two divisions, charged as one division to every test. The 40 operations hide the loads of its 10 words"},
     // Sphere: kSphereHitOperations. P: 3, P - C: 3, normalise: 3 + 3, N.D: 3, orient: 3, margin: 3 comparisons + 1,
     // P+: 3, N.D of the oriented normal: 3, times -2: 1, R: 3, Kd C: 3, w A: 1, ambient: 3, kr: 1. Moves: t and number
     // of the nearest hit. Branches: any hit, sphere, cone, leaving, T > 0, kr > 0, level, pending ray.
@@ -94,8 +95,8 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .roots = 1 + 1,
      .moves = 2,
      .branches = kSphereHitBranches + 8,
-     .work = "root of the sphere, point, normal, margin, mirror direction, tint and ambient term for a sphere; a plane "
-             "needs no root and no normalisation, a cone 7 operations more. Excluded: spheres hit farther away, a "
+     .work = "square root, point, normal, margin, mirror direction, tint and ambient term for a sphere; a plane needs "
+             "no square root and no normalisation, a cone 7 operations more. Excluded: spheres hit farther away, a "
              "patch's normal, and a checker's two divisions"},
     // N.L: 3, times tint: 3, R.L: 3, times I: 3, added to the sum: 3. Branches: Ks > 0, R.L > 0.
     {.event = RAYA_LIT,
@@ -111,7 +112,7 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .moves = 2 + 1 + 2,
      .branches = 1,
      .work = "x^n as 2^(n log2 x); both series have fp32's length, 16 bits would need one term less in each"},
-    // 1 / D: three divisions; entry to and exit from the box: 6 planes of 2, and 4 comparisons; first voxel: 3 times
+    // 1 / D: three divisions; entry to and exit from the box: 6 planes x 2, and 4 comparisons; first voxel: 3 times
     // (O + t D, minus corner, times 1 / cell, integer part: 4); its far sides: 3 times (plane: 1, minus O: 1, times
     // 1 / D: 1). Moves: voxel numbers and signs of D. Branches: misses the box, sign of each component.
     {.event = RAYA_WALKS,
@@ -126,7 +127,7 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .multiply_accumulates = 2 + 1 + 1 + 1 + 1 + 1,
      .moves = 2,
      .branches = 2 + 1 + 1,
-     .work = "the next voxel (Amanatides & Woo 1987, but recomputing the plane's position instead of adding)"},
+     .work = "the next voxel (Amanatides & Woo 1987, but recomputing the plane's position instead of adding to it)"},
     // Direction of a primary ray: 12, as for RAYA_PRIMARY; its first voxel: 37, as for RAYA_WALKS. Moves: j and x 2,
     // origin 3, sum 3, first voxel 6. Branches: next pixel, first voxel 4, owner of the voxel.
     {.event = RAYA_DISCARDED,
@@ -170,14 +171,14 @@ Operations operations_of(const EventCounts& events) {
 
 // Each colour component of a pixel takes four additions and one multiplication by 1/9. The two buses load both operands
 // of an operation in parallel with arithmetic. But the result must be stored before the next operands are loaded, so
-// each operation takes one move. Branches: for each side of the pixel, neighbour exists.
+// each operation takes one move. Branches: one for each side of the pixel, whether a neighbour exists.
 std::uint64_t filter_cycles(std::uint64_t pixels) {
     constexpr Budget kPixel = {.multiply_accumulates = 3 * (4 + 1), .moves = 3 * (4 + 1), .branches = 4};
     return pixels * cycles_of(kPixel);
 }
 
 // For each side of a pixel and colour component: clamp of both values to 0..1: 4, difference: 1, comparison with the
-// threshold: 1. Branches for each side: neighbour exists, and one per component. Moves: store of the mark.
+// threshold: 1. Branches for each side: whether a neighbour exists, and one per component. Moves: store of the mark.
 std::uint64_t compare_cycles(std::uint64_t pixels) {
     constexpr Budget kPixel = {.multiply_accumulates = 4 * 3 * (4 + 1 + 1), .moves = 1, .branches = 4 * (1 + 3)};
     return pixels * cycles_of(kPixel);

@@ -4,7 +4,7 @@
 //
 // Assumptions, each with its source: [P] printed in Kohata & Ito 1993, [?] assumed here.
 //   - One multiply-accumulate, addition, multiplication or comparison takes one cycle [P: 20 MFLOPS at 100 ns]. Its
-//     result can be used in the next cycle, and a negation is a multiply-subtract [?].
+//     result can be used in the next cycle. A negation is a multiply-subtract [?].
 //   - Two data buses transfer two words per cycle in parallel with the arithmetic, because one multiply-accumulate per
 //     cycle requires two operands per cycle. A move costs a cycle only if no arithmetic runs in parallel with it. The
 //     budgets contain only such moves [?].
@@ -13,11 +13,11 @@
 //   - Division a / b: seed y = 1 / b from a table of 256 words indexed by the upper 8 bits of the significand, error
 //     < 2^-8; one Newton step, e = 1 - b y, y + e y, squares the error to < 2^-16, half a unit of a 16-bit significand;
 //     then a y [?].
-//   - Root of x: seed y = 1 / root from 256 words indexed by the lowest bit of the exponent and 7 bits of the
-//     significand, error < 2^-8; one Newton step y (3/2 - (x/2) y y), error < 1.5 * 2^-16; then x y [?].
-// The memory sizes in the report do not include the 512 words of the seed tables.
-// The kernels round divisions and roots correctly; a DSP would not correct the last bit. The model also ignores that an
-// assembly programmer would normalise a vector by the reciprocal square root and save the division.
+//   - Square root of x: seed y = 1 / sqrt(x) from a table of 256 words indexed by the lowest bit of the exponent and 7
+//     bits of the significand, error < 2^-8; one Newton step y (3/2 - (x/2) y y), error < 1.5 * 2^-16; then x y [?].
+// The memory sizes in the report do not include the 512 words of the two seed tables.
+// The kernels round divisions and square roots correctly; a DSP would not correct the last bit. The model also ignores
+// that an assembly programmer would normalise a vector by the reciprocal square root and save the division.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -31,7 +31,7 @@ inline constexpr std::uint32_t kDivisionCycles = kSeedCycles + 2 + 1;  // seed, 
 inline constexpr std::uint32_t kRootCycles = kSeedCycles + 1 + 3 + 1;  // seed, x/2, Newton step, x y
 inline constexpr std::uint32_t kBranchCycles = 3;
 
-/// Numbers of operations that one event of a kind costs.
+/// Numbers of operations that one event costs; `roots`: number of square roots.
 struct Budget {
     int event = 0;                           // RAYA_* of kernels/shared/events.h
     std::uint32_t multiply_accumulates = 0;  // additions, multiplications, comparisons and multiply-accumulates
@@ -47,7 +47,7 @@ const std::array<Budget, RAYA_EVENTS>& budgets();
 /// Returns the cycles of one event with this budget.
 std::uint32_t cycles_of(const Budget& budget);
 
-/// Total numbers of operations of many events.
+/// Total numbers of operations of many events (members as in Budget).
 struct Operations {
     std::uint64_t multiply_accumulates = 0, divisions = 0, roots = 0, moves = 0, branches = 0;
 };

@@ -22,16 +22,16 @@ Machine spa() {
         .topology = "ring+bus",                          // [P]
         .pes = 256,                                      // [P] DSPs
         .pe_memory_bytes = 32 * 1024,                    // [P]
-        .bounces = 8,                                    // [P] up to 8 reflections and refractions
+        .bounces = 8,                                    // [P] at most 8 reflections and refractions
         .format = {6, 15, false},                        // [P] 22 bits; [?] their division into exponent and fraction
-        .mapping = cyclic_mapping(16),                   // [P] the best offset
+        .mapping = cyclic_mapping(16),                   // [P] the offset with the smallest imbalance
         .cycle_ns = 100,                                 // [P] 20 MFLOPS
         .link_words_per_s = 6e6,                         // [P] DMA
         .rotation_sync_ms = 10. / 32 - 1e3 * 768 / 6e6,  // [D] Tables 3 and 4: 32 more rotations of 768 words, 10 ms
         .host_words_per_s = 196'608 / 0.140};            // [D] Table 2: 256 x 256 pixels of 3 words in 140 ms
 }
 
-// Returns an array with a mapping that the paper compares with the SPA. Its PEs are those of the SPA without a memory
+// Returns an array with a mapping that the paper compares with the SPA's. Its PEs are those of the SPA without a memory
 // limit, so that loads can be compared. It has no modelled times, because the rates of the real PEs and links are
 // unknown.
 Machine array_of_spa_pes(const std::string& name, const std::string& title, const std::string& topology,
@@ -66,7 +66,7 @@ Machine grande() {
     return machine;
 }
 
-// [P] The machine with one DSP of Table 2; its host is that of the SPA.
+// [P] The machine with one DSP in the paper's Table 2; its host is that of the SPA.
 Machine spa1() {
     Machine machine = spa();
     machine.name = "spa1";

@@ -35,21 +35,23 @@ std::string accel_text(const Accel& accel);
 /// Size of an acceleration structure, for reports.
 struct AccelSummary {
     AccelKind kind = AccelKind::kNone;
-    std::uint64_t words = 0;   // number of 32-bit words of the structure in the job
-    Divisions divisions{};     // of a grid
-    std::uint64_t copies = 0;  // of a grid: number of entries in the voxels' lists minus number of objects in the lists
+    std::uint64_t words = 0;  // number of 32-bit words of the structure in the job
+    Divisions divisions{};    // of a grid
+    std::uint64_t copies =
+        0;  // of a grid: number of entries in the voxels' lists minus number of distinct objects in them
     std::uint32_t separate = 0;  // number of separate objects (docs/glossary.md)
     std::uint64_t nodes = 0;     // number of nodes of a BVH
     std::uint64_t leaves = 0;    // number of leaves of a BVH
-    std::uint32_t depth = 0;     // number of nodes on the longest path from the root of a BVH
+    std::uint32_t depth = 0;     // number of nodes on the longest path from the root node of a BVH to a leaf
 };
 
-/// The scene or image does not fit into a PE's memory.
+/// Thrown if the scene or image does not fit into a PE's memory.
 struct DoesNotFit : UserError {
     DoesNotFit(const std::string& message, std::uint64_t needed, std::uint64_t memory)
         : UserError(message), needed_bytes(needed), memory_bytes(memory) {}
 
-    std::uint64_t needed_bytes, memory_bytes;  // memory that the fullest PE requires; memory of a PE
+    std::uint64_t needed_bytes;  // memory that the fullest PE requires
+    std::uint64_t memory_bytes;  // memory that a PE has
 };
 
 /// The number of events of each kind (RAYA_* of kernels/shared/events.h).

@@ -21,9 +21,12 @@ struct ImageSize {
 /// Assignment of slots to PEs if the number of slots differs from the number of PEs (kernels/shared/mapping.h).
 enum class Fold : std::uint32_t { kCyclic = RAYA_FOLD_CYCLIC, kBlock = RAYA_FOLD_BLOCK };
 
-/// The functions below create mapping rules.
+/// A mapping rule, created by one of the functions below.
 struct MappingRule {
-    std::uint32_t kind = RAYA_FOLD_CYCLIC, parameter = 0;  // members of raya_mapping
+    /// RAYA_ROWS, RAYA_BLOCKS, RAYA_GRID, RAYA_TILES or RAYA_RANDOM; for mappings with slots it is their fold
+    /// (RAYA_FOLD_CYCLIC or RAYA_FOLD_BLOCK).
+    std::uint32_t kind = RAYA_FOLD_CYCLIC;
+    std::uint32_t parameter = 0;  // argument of the function: offset, seed or two lengths; 0 if it has none
 
     bool has_slots() const { return kind <= RAYA_FOLD_BLOCK; }
     /// Returns the number of PEs that a grid_mapping() requires; empty for other rules, which map to any number of PEs.
@@ -49,8 +52,7 @@ inline MappingRule blocks_mapping() { return {RAYA_BLOCKS, 0}; }
 inline MappingRule grid_mapping(std::uint32_t down, std::uint32_t across) {
     return {RAYA_GRID, raya_pair(down, across)};
 }
-/// Tiles of `width` x `height` pixels are assigned to the PEs cyclically. `width` and `height`
-/// must be less than 2^16.
+/// Tiles of `width` x `height` pixels are assigned to the PEs cyclically. `width` and `height` must be less than 2^16.
 inline MappingRule tiles_mapping(std::uint32_t width, std::uint32_t height) {
     return {RAYA_TILES, raya_pair(width, height)};
 }
@@ -64,7 +66,8 @@ inline constexpr std::uint64_t kMaxOverhead = 1'000'000'000;     // cycles; kMax
 struct DynamicPlan {
     std::uint32_t chunk = 1;     // number of pixels per request, 1..kMaxChunk
     std::uint64_t overhead = 0;  // cycles that a request costs the PE, 0..kMaxOverhead
-    double static_fraction = 0;  // fraction of its statically mapped pixels that a PE renders before requests, 0..1
+    /// Fraction, 0..1, of a PE's pixels under the static mapping that it renders before its first request.
+    double static_fraction = 0;
 
     bool operator==(const DynamicPlan&) const = default;
 };

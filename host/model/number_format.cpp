@@ -33,13 +33,13 @@ int read_field(const std::string& text, std::size_t& position, char letter) {
 
 constexpr int kDoubleFractionBits = 52, kDoubleBias = 1023;
 
-// 2^exponent, which must be in the range of normal doubles.
+// Returns 2^exponent, which must be in the range of normal doubles.
 double power_of_two(int exponent) {
     return std::bit_cast<double>(static_cast<std::uint64_t>(kDoubleBias + exponent) << kDoubleFractionBits);
 }
 
-// Rounds to `bits` fraction bits, ties to even, or truncates. A carry out of the fraction gives the next power of two,
-// or infinity. The result for denormal doubles does not matter: they are below the range of every format.
+// Rounds to `bits` fraction bits, ties to even; truncates if `truncates`. A carry out of the fraction gives the next
+// power of two, or infinity. The result for denormal doubles does not matter: they are below the range of every format.
 double with_fraction_bits(double value, int bits, bool truncates) {
     const int dropped = kDoubleFractionBits - bits;
     auto pattern = std::bit_cast<std::uint64_t>(value);

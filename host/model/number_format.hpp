@@ -25,7 +25,7 @@ std::string format_name(const NumberFormat& format);
 /// Returns the smallest positive normal number. Results with a smaller magnitude may be flushed to zero.
 double smallest_number(const NumberFormat& format);
 
-/// Returns the maximum distance of a hit (RAYA_FAR in kernels/number/). Its square does not overflow.
+/// Returns the maximum distance of a hit (RAYA_FAR in kernels/number/). The square of this distance does not overflow.
 double farthest_hit(const NumberFormat& format);
 
 /// Converts `value` to the format: rounds once, saturates at the largest number, and flushes magnitudes below

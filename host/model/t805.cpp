@@ -7,14 +7,14 @@
 namespace raya {
 namespace {
 
-// Each comment lists the terms of the sums below it, in the same order. model/budget.cpp explains the terms.
+// Each comment lists the terms of the sums below it, in the order of the sums. model/budget.cpp explains the terms.
 constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     // corner + j step, + x step, normalise: |d|^2, times 1 / |d|
     {.event = RAYA_PRIMARY, .additions = 3 + 3 + 2, .multiplications = 3 + 3 + 3 + 3, .creates = CreatedPacket::kRay},
     {.event = RAYA_PRIMARY_HITS},
     // weight
     {.event = RAYA_REFLECTED, .multiplications = 1, .creates = CreatedPacket::kRay},
-    // cos, 1 - cos^2, e^2, g, e cos - root, times N, + e D, normalise, weight, P-
+    // cos, 1 - cos^2, e^2, g, e cos - square root, times N, + e D, normalise, weight, P-
     {.event = RAYA_REFRACTED,
      .additions = 2 + 1 + 0 + 1 + 1 + 0 + 3 + 2 + 0 + 3,
      .multiplications = 3 + 1 + 1 + 1 + 1 + 3 + 3 + (3 + 3) + 1 + 3,
@@ -30,8 +30,8 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     {.event = RAYA_SPHERE_TESTS, .additions = 3 + 2 + 3 + 3, .multiplications = 0 + 3 + 3 + 3},
     // n.D, d - n.O, comparison of t with the nearest hit so far
     {.event = RAYA_PLANE_TESTS, .additions = 2 + 3 + 1, .multiplications = 3 + 3},
-    // four corners minus O, sheared, compared with 0; for two edges two products and a comparison; box and plane in a
-    // twentieth of the tests
+    // four corners minus O, sheared, compared with 0; for each of two edges, two products and a comparison; box and
+    // plane in a twentieth of the tests
     {.event = RAYA_POLYGON_TESTS,
      .additions = 4 * (3 + 2 + 1) + 2 * 1 + (12 + 24 + 2 + 3 + 6) / 20,
      .multiplications = 4 * 2 + 2 * 2 + (3 + 3 + 3) / 20},
@@ -40,8 +40,9 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     {.event = RAYA_CONE_TESTS,
      .additions = 3 + (2 + 3) + 2 + 2 + 3 + 3 + 1 + 0 + 3 + 3 + 3 + 1 + (1 + 2 + 2 + 4) / 3,
      .multiplications = 0 + (3 + 3) + 3 + 3 + 3 + 3 + 1 + 1 + 4 + 4 + 4 + 2 + 1},
-    // sphere: root and t, P, P - C, normalise, N.D, orient, margin, P+, N.D, times -2, R, Kd C, w A, ambient, kr; the
-    // ambient term is sent to the root as a return packet
+    // sphere: square root and t, P, P - C, normalise, N.D, orient, margin, P+, N.D, times -2, R, Kd C, w A, ambient,
+    // kr;
+    // the node sends the ambient term to the root as a return packet
     {.event = RAYA_SHADED,
      .additions = 3 + 3 + 3 + 2 + 2 + 3 + 3 + 3 + 2 + 0 + 3 + 0 + 0 + 3 + 0,
      .multiplications = 0 + 3 + 0 + (3 + 3) + 3 + 0 + 1 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 1,
@@ -90,7 +91,7 @@ std::uint32_t PacketCharge::words_of(CreatedPacket packet) const {
         case CreatedPacket::kReturn:
             return return_words();
         case CreatedPacket::kContribution:
-            return return_a_ray ? 0 : return_words();
+            return one_return_per_ray ? 0 : return_words();
         case CreatedPacket::kNone:
             break;
     }

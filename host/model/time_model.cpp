@@ -43,7 +43,8 @@ std::optional<ModelledTime> modelled_time(const Machine& machine, std::span<cons
     time.compute_ms = milliseconds(cycles, *machine.cycle_ns, factor);
     time.filter_ms = milliseconds(smoothing.filter, *machine.cycle_ns, factor);
     time.compare_ms = milliseconds(smoothing.compare, *machine.cycle_ns, factor);
-    // In a rotation all P PEs send at the same time, each 1/P of the words. The bus carries one transfer at a time.
+    // In a rotation all P PEs send at the same time, each 1/P of the words. Transfers and broadcasts of PEs go over the
+    // bus one at a time, so their words are not divided by P.
     const auto pes = static_cast<double>(phases.front().per_pe.size());
     const std::uint64_t synchronisations =
         communication.rotations + communication.transfers + communication.pe_broadcasts;

@@ -1,5 +1,5 @@
-// Load balance and communication of the PEs, and modelled times: numbers of cycles and words, multiplied by a machine's
-// times per cycle and per word.
+// Load balance and communication of the PEs, and modelled times. A modelled time is a number of cycles or words times
+// the machine's time per cycle or per word.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace raya {
 
-/// Numbers of transfers, and numbers of words in these transfers. A word is a machine word of the modelled machine: it
-/// holds one number.
+/// Numbers of transfers of each kind, and total numbers of words in them. A word is a machine word of the modelled
+/// machine, which holds one number.
 struct Communication {
     std::uint64_t broadcasts = 0, broadcast_words = 0;        // host to all PEs
     std::uint64_t rotations = 0, rotation_words = 0;          // every PE to its neighbour
@@ -25,8 +25,8 @@ struct Load {
     std::vector<std::uint64_t> per_pe;  // [PE]: its load
     double mean = 0;
     std::uint64_t max = 0, min = 0;
-    double imbalance = 0;   // u = (max - mean) / mean (Kohata & Ito 1993, Fig. 8); 0 without load
-    double speedup = 0;     // sum / max
+    double imbalance = 0;   // u = (max - mean) / mean (Kohata & Ito 1993, Fig. 8); 0 if all loads are 0
+    double speedup = 0;     // sum / max; P if all loads are 0
     double efficiency = 0;  // speedup / P
 };
 
@@ -53,10 +53,10 @@ struct ModelledTime {
 
 /// Modelled times of a torus whose nodes compute while its links transfer (host/torus/async_machine.hpp), milliseconds.
 struct AsynchronousTime {
-    double finish_ms = 0;  // when the last task has ended and the last return is delivered
-    double processor_ms = 0,
-           links_ms = 0;          // busy times of the busiest processor, and of the busiest direction of a link
-    double port_ms = 0;           // longest time that a main task waited for space in an outgoing buffer
+    double finish_ms = 0;         // when the last task has ended and the last return is delivered
+    double processor_ms = 0;      // busy time of the busiest processor
+    double links_ms = 0;          // busy time of the busiest direction of a link
+    double port_ms = 0;           // maximum over the nodes: total time for which full ports blocked the main task
     std::uint64_t delivered = 0;  // number of delivered messages, including those from a node to itself
     std::uint64_t queue_max = 0;  // maximum number of rays that waited for a main task
 };
@@ -68,9 +68,9 @@ struct TorusTime {
     double compute_ms = 0;     // maximum over the nodes
     double messages_ms = 0;    // processor time for sending and receiving, maximum over the nodes
     double processor_ms = 0;   // computation plus sending and receiving, maximum over the nodes
-    double links_ms = 0;       // transfer time of both directions, maximum over the links
-    double overlapped_ms = 0;  // lower bound: processors and links never wait for each other
-    double stepwise_ms = 0;    // every superstep waits for its busiest node, then for its busiest link
+    double links_ms = 0;       // transfer time of both directions of a link, maximum over the links
+    double overlapped_ms = 0;  // time if processors and links never wait for each other: a lower bound
+    double stepwise_ms = 0;    // time if every superstep waits for its busiest node, then for its busiest link
     std::optional<AsynchronousTime> asynchronous{};  // times without supersteps; empty: not simulated
 };
 

@@ -114,10 +114,11 @@ py::dict schedule(const py::array& costs, const std::string& plan, const std::st
 }
 
 // Returns the number of rotations that bring each PE the neighbours of its pixels once from each of the four sides, if
-// each PE sends all its pixels in every rotation. If every slot belongs to one PE, only the pairs of slots to which
-// neighbouring pixels belong matter, and two rows of the image have the same pairs as all rows: a row has all
-// horizontal pairs (s, s + 1 mod W) except the pair of its last and its first pixel. For an offset p > 0 two successive
-// rows lack different pairs; for p = 0 all rows lack the same pair.
+// each PE sends all its pixels in every rotation. To save time, this function uses at most two rows: if every slot
+// belongs to one PE, only the pairs of slots to which neighbouring pixels belong matter, and two rows of the image have
+// the same pairs as all rows: a row has all horizontal pairs (s, s + 1 mod W) except the pair of its last and its first
+// pixel. For an offset p > 0 different pairs are missing in two successive rows; for p = 0 the same pair is missing in
+// all rows.
 std::uint64_t neighbour_rotations(raya_mapping mapping) {
     if (raya_has_slots(mapping) && mapping.pes <= mapping.width) mapping.height = std::min(mapping.height, 2u);
     std::uint64_t rotations = 0;
@@ -252,31 +253,33 @@ void add_loads(py::module_& module) {
         "owners", owners,
         "uint32 [height, width]: the PE that owns each pixel. mapping, offset, fold and pes: as the options of raya "
         "render --machine grande. Raises ValueError.");
-    add_mapping_function(
-        "rotations", rotations,
-        "Number of rotations of the ring that bring each PE the neighbours of its pixels from all four sides.");
-    add_mapping_function(
-        "exchange_rotations", exchange_rotations,
-        "Number of rotations of the filter's exchange, if every PE sends all its pixels in each rotation.");
+    add_mapping_function("rotations", rotations,
+                         "Number of rotations of the ring that bring each PE the neighbours of its pixels from all "
+                         "four sides, if every PE sends all its pixels in each rotation.");
+    add_mapping_function("exchange_rotations", exchange_rotations,
+                         "Number of rotations as rotations() returns it, but counted by the renderer's own function "
+                         "over all rows of the image.");
     add_mapping_function("largest_share", pixels_of_largest_share,
                          "Number of pixels of the PE that owns the most pixels.");
-    module.def(
-        "loads", loads, py::arg("cost"), py::arg("mapping") = "", py::arg("offset") = py::none(), py::arg("fold") = "",
-        py::arg("pes") = py::none(),
-        "uint64 [P]: the load of each PE in modelled cycles, the sum of its pixels' costs. cost: integers [H, W].");
+    module.def("loads", loads, py::arg("cost"), py::arg("mapping") = "", py::arg("offset") = py::none(),
+               py::arg("fold") = "", py::arg("pes") = py::none(),
+               "uint64 [P]: the load of each PE in modelled cycles, the sum of its pixels' costs. cost: integers "
+               "[H, W], the cost of each pixel.");
     module.def("imbalances", imbalances, py::arg("cost"), py::arg("pes"), py::arg("offsets"),
                py::arg("fold") = "cyclic",
                "float64 [n]: u = (max - mean) / mean of the loads with the cyclic mapping, for each offset.");
-    module.def("speedups", speedups, py::arg("cost"), py::arg("pes"), py::arg("offsets"), py::arg("fold") = "cyclic",
-               "float64 [n]: sum / max of the loads with the cyclic mapping, for each number of PEs pes[i] with offset "
-               "offsets[i], or offsets[0] for all.");
+    module.def(
+        "speedups", speedups, py::arg("cost"), py::arg("pes"), py::arg("offsets"), py::arg("fold") = "cyclic",
+        "float64 [n]: sum / max of the loads with the cyclic mapping, for each number of PEs pes[i] with the offset "
+        "offsets[i]. If offsets has one element, it is the offset for all.");
     module.def(
         "schedule", schedule, py::arg("cost"), py::arg("plan"), py::arg("mapping") = "", py::arg("offset") = py::none(),
         py::arg("fold") = "", py::arg("pes") = py::none(),
         "Simulates a dynamic or hybrid distribution of pixels. plan: 'dynamic:CHUNK[,OVERHEAD]' or "
-        "'hybrid:CHUNK[,OVERHEAD[,SHARE]]'; mapping, offset, fold: the mapping of "
-        "the static part of a hybrid distribution. Returns a dict: loads (uint64 [P]: finishing time of each PE in "
-        "cycles), requests (number of requests to the host), makespan (cycles), speedup (total cycles / makespan).");
+        "'hybrid:CHUNK[,OVERHEAD[,SHARE]]' with CHUNK in pixels per request, OVERHEAD in cycles per request and "
+        "SHARE the fraction of each PE's pixels that is assigned statically. mapping, offset, fold: the mapping of "
+        "the static part. Returns a dict: loads (uint64 [P]: finishing time of each PE in cycles), requests (number "
+        "of requests to the host), makespan (cycles), speedup (total cycles / makespan).");
     module.def(
         "lower_bound", [](const py::array& costs, std::uint32_t pes) { return lower_bound(cost_image_of(costs), pes); },
         py::arg("cost"), py::arg("pes"), "Lower bound in cycles of any distribution of whole pixels over P PEs.");
@@ -288,20 +291,19 @@ void add_loads(py::module_& module) {
         "offset_times", offset_times, py::arg("cost"), py::arg("pes"), py::arg("antialias") = "none",
         py::arg("supersample") = py::none(),
         "Modelled ms that the SPA takes with each offset of the cyclic mapping, without broadcast, gather and the "
-        "set-up "
-        "of exchanges. cost, supersample: modelled cycles of each pixel in the two passes, [H, W]. Returns a dict of "
-        "arrays [W]: offset, imbalance (of the first pass), trace_ms and supersample_ms (of the busiest PE), smooth_ms "
-        "(filter and comparison), ring_ms (rotations), rotations (their number).");
+        "set-up of exchanges. cost, supersample: modelled cycles of each pixel in the two passes, [H, W]. Returns a "
+        "dict of arrays [W]: offset, imbalance (of the first pass), trace_ms and supersample_ms (of the busiest "
+        "PE), smooth_ms (filter and comparison), ring_ms (rotations), rotations (their number).");
     module.def("ranks_of_pes", ranks_of_pes, py::arg("pes"), py::arg("ranks"),
                "uint32 [P]: the MPI rank of each PE of a ring.");
     module.def("ranks_of_nodes", ranks_of_torus, py::arg("nodes"), py::arg("ranks"),
                "uint32 [nodes]: the MPI rank of each node of a 3-D torus of nodes = (I, J, K).");
     module.def("link_ends", link_ends, py::arg("nodes"),
                "uint32 [nodes, 6]: the node at the other end of each link +x, -x, +y, -y, +z, -z of each node of a 3-D "
-               "torus of "
-               "nodes = (I, J, K).");
+               "torus of nodes = (I, J, K).");
     module.def("machines", all_machines,
-               "Returns all machines, as a list of dicts. A value of None: no limit, or unknown.");
+               "Returns all machines, as a list of dicts. A value of None: pes: one PE per image column; "
+               "pe_memory_bytes: no limit; a rate: unknown.");
     module.def("reference", reference_image, py::arg("scene"), py::arg("size"), py::arg("bounces") = 8,
                py::arg("threads") = 2,
                "float64 [size, size, 3]: linear red, green and blue of the image of the double-precision reference.");

@@ -16,9 +16,9 @@ namespace {
 
 // Returns the path of this shared object. raya's other modules are in the same folder, not in that of the Python
 // interpreter.
-std::filesystem::path own_file() {
+std::filesystem::path this_module_file() {
     Dl_info info{};
-    ::dladdr(reinterpret_cast<void*>(&own_file), &info);
+    ::dladdr(reinterpret_cast<void*>(&this_module_file), &info);
     return std::filesystem::canonical(info.dli_fname);
 }
 
@@ -26,7 +26,7 @@ std::filesystem::path own_file() {
 
 PYBIND11_MODULE(_engine, module) {
     using namespace raya;
-    set_program_file(own_file());
+    set_program_file(this_module_file());
     set_verbosity(kErrorsOnly);  // warnings become Python warnings instead
     auto& input_error = pybind11::register_exception<UserError>(module, "InputError", PyExc_ValueError);
     input_error.doc() = "Invalid input or options.";

@@ -50,7 +50,7 @@ py::array cost_of(const py::object& self) {
     return cost_array(*phase.recorded_cost, self);
 }
 
-// Returns a dict {name of the phase: figure(phase)}.
+// Returns a dict with figure(phase) for each phase, by the phase's name. `property`: name for messages.
 template <class Figure>
 py::dict by_phase(const py::object& self, const char* property, Figure figure) {
     py::dict figures;
@@ -124,7 +124,7 @@ void add_result(py::module_& module) {
                 const std::vector<std::uint64_t>& loads = load_of(*self.cast<Result>()).per_pe;
                 return view_of<std::uint64_t>(loads, {static_cast<py::ssize_t>(loads.size())}, self);
             },
-            "uint64 [P]: modelled cycles of each PE or node.")
+            "uint64 [P]: modelled cycles of each PE (of a ring) or node (of a torus).")
         .def_property_readonly(
             "imbalance", [](const Result& r) { return load_of(*r).imbalance; },
             "Imbalance u = (max - mean) / mean of the loads (Kohata & Ito 1993, Fig. 8).")

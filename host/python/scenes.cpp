@@ -74,10 +74,12 @@ void save(const Scene& scene, const std::filesystem::path& path) { write_whole_f
 void add_generators(py::module_& module) {
     py::module_ generators = module.def_submodule("generate", "Functions that generate scenes, as raya generate does.");
     generators.def("balls", generate_balls, py::arg("level") = 4,
-                   "SPD's sphereflake: 9^0 + ... + 9^level spheres. level: 0..6.");
-    generators.def("lattice", generate_lattice, py::arg("size") = 12,
-                   "SPD's lattice: (size + 1)^3 spheres connected by cylinders. size: 1..64.");
-    generators.def("gears", generate_gears, py::arg("size") = 4, "size^3 gear wheels. size: 1..16.");
+                   "SPD's sphereflake: 9^0 + ... + 9^level spheres. level: depth of the recursion, 0..6.");
+    generators.def(
+        "lattice", generate_lattice, py::arg("size") = 12,
+        "SPD's lattice: (size + 1)^3 spheres connected by cylinders. size: number of cells along each edge, 1..64.");
+    generators.def("gears", generate_gears, py::arg("size") = 4,
+                   "size^3 gear wheels. size: number of wheels along each edge, 1..16.");
     generators.def(
         "uniform", generate_uniform, py::arg("count"), py::arg("voxels"),
         "count spheres (1..1000000) in a cube that is divided into x * y * z voxels. Each voxel contains floor(n) or "
@@ -86,8 +88,8 @@ void add_generators(py::module_& module) {
                    "count spheres (1..1000000) with random centres in the cube [-1, 1]^3.");
     generators.def(
         "cluster", [](std::uint64_t seed) { return generate_cluster(seed); }, py::arg("seed") = 1,
-        "Seven random spheres above a floor. Averaged over many seeds, load and imbalance match Kohata & Ito's "
-        "figures.");
+        "Seven random spheres above a floor. Averaged over many seeds, load and imbalance match those that Kohata & "
+        "Ito (1993) report.");
     generators.def("centre", generate_centre, "The scene of scenes/centre.nff.");
 }
 
@@ -120,11 +122,11 @@ void add_scenes(py::module_& module) {
             py::arg("name"), "Returns the scene with another name.")
         .def("with_view", with_view,
              "Returns the scene with another camera, background or lights. Keyword arguments: the options from_, at, "
-             "up, "
-             "angle, background and light of raya render. Raises ValueError.")
+             "up, angle, background and light of raya render. Raises ValueError.")
         .def(
             "random_view", random_view, py::arg("seed"),
-            "Returns the scene seen from a random eye: at the same distance from the target, 5 to 75 degrees above it.")
+            "Returns the scene seen from a random eye: at the same distance from the target, 5 to 75 degrees above the "
+            "target.")
         .def("turned", turned_scene, py::arg("degrees"), "Returns the scene with the eye rotated around the target.")
         .def("without_lights", without_lights,
              "Returns the scene without lights, for which the kernels trace no shadow rays.")
@@ -132,12 +134,10 @@ void add_scenes(py::module_& module) {
              "Returns the scene with a random centre for each sphere. Every sphere lies in the cube [-1, 1]^3.")
         .def("moved_within", moved_within,
              "Returns the scene with each sphere moved so that it lies inside the voxel that contains its centre. The "
-             "cube "
-             "[-1, 1]^3 has 4 x 4 x 4 voxels; radii must be less than half a voxel's side.")
+             "cube [-1, 1]^3 has 4 x 4 x 4 voxels; radii must be less than half a voxel's side.")
         .def("touching_walls", touching_walls,
              "Returns the scene with six spheres moved: for each face of the cube [-1, 1]^3, the sphere nearest to the "
-             "face "
-             "moves until it touches the face.")
+             "face moves until it touches the face.")
         .def(
             "__eq__", [](const Scene& a, const Scene& b) { return a == b; }, py::is_operator())
         .def("__repr__",

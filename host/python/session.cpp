@@ -65,7 +65,7 @@ void refuse_sequences(const RenderCommand& command) {
 RenderCommand parse_options(CLI::App& program, const py::dict& options) {
     RenderCommand command;
     CLI::App* render = program.add_subcommand("render");
-    describe_render(*render, command);
+    add_render_command_options(*render, command);
     render->callback([&] {
         refuse_sequences(command);
         refuse_options_of_other_machines(*render, machine_named(command.render.machine));

@@ -97,8 +97,8 @@ const History& history_of(const Render& r) {
     return *r.history;
 }
 
-// Returns the default machine with the given parameters changed: message_cycles, word_cycles, one_way, both_ways
-// (bytes/s), buffer (messages).
+// Returns the default machine with the given parameters changed: message_cycles, word_cycles, one_way, both_ways,
+// buffer (see AsyncMachine).
 AsyncMachine async_machine(const py::kwargs& changes) {
     AsyncMachine machine;
     for (const auto& [key, value] : changes) {
@@ -172,8 +172,7 @@ void add_torus_results(py::module_& module, ResultClass& result) {
         .def_property_readonly(
             "copied_words", [](const Result& r) { return torus_of(*r, "copied_words").copied_words; },
             "Number of 32-bit words that all nodes together copy to local memory in each kernel launch; 0 if the "
-            "kernels read "
-            "the scene in global memory.")
+            "kernels read the scene in global memory.")
         .def_property_readonly("supersteps", supersteps_of,
                                "dict of arrays uint64 [S], one number per superstep: 'cycles' of the busiest node, "
                                "'link_words' sent over the busiest link, 'live': packets in flight at the end.")
@@ -186,10 +185,13 @@ void add_torus_results(py::module_& module, ResultClass& result) {
             "uint64 [S, nodes, 6]: number of words that each node sends over each link in each superstep. Empty unless "
             "rendered with packets=True.")
         .def("simulate", simulated_ms,
-             "Modelled ms of the torus without supersteps, with changed message_cycles, word_cycles, one_way, "
-             "both_ways (bytes/s, 0: no time) or buffer (messages); requires async_=True.")
+             "Modelled ms of the torus without supersteps. Keyword arguments change the machine: message_cycles and "
+             "word_cycles (cycles of the processor per message and per word), one_way and both_ways (rate of a link in "
+             "bytes/s if one direction or both directions transfer; 0: transfers take no time), buffer (number of "
+             "rays, and of returns, that an output thread holds). Raises ValueError unless rendered with async_=True.")
         .def("write_replay", write_replay, py::arg("platform"), py::arg("replay"),
-             "Writes the machine and the history for SimGrid (docs/packets.md); returns the number of messages.");
+             "Writes the machine to the file `platform` and the history of messages to the file `replay`, for SimGrid "
+             "(docs/packets.md). Takes the keyword arguments of simulate(). Returns the number of messages.");
 }
 
 }  // namespace raya

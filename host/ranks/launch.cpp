@@ -42,7 +42,8 @@ double rank_timeout_s() {
 // if another process ends before its own call of MPI_Init_thread.
 std::unique_ptr<Transport> open_transport(const Launch& launch) {
     const double limit_s = rank_timeout_s();
-    const std::string processes = launch.count ? std::to_string(*launch.count) : "several";  // not all launchers say
+    const std::string processes =
+        launch.count ? std::to_string(*launch.count) : "several";  // some launchers do not set the number
     try {
         auto* const open_mpi = reinterpret_cast<OpenMpi*>(module_function(kMpiModule, kOpenMpi));
         const std::string timeout_message = fmt::format(
@@ -71,7 +72,7 @@ void limit_pocl_threads(const Ranks& ranks) {
     ::setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 0);
 }
 
-// Returns the version of raya and a hash of the embedded files (kernels).
+// Returns text that identifies this build: the version of raya and a hash of the embedded files (kernels).
 std::string build_id() {
     std::size_t hash = 0;
     for (const auto& [path, text] : embedded_files()) hash = 31 * hash + std::hash<std::string>()(path + text);
@@ -84,7 +85,7 @@ std::optional<Launch> launch_from(const std::function<const char*(const char*)>&
     struct VariableNames {
         const char *rank, *count;
     };
-    // Open MPI; MPICH, Intel MPI and Slurm's pmi2; PMIx (Slurm and others).
+    // First entry: Open MPI. Second: MPICH, Intel MPI and Slurm's pmi2. Third: PMIx (Slurm and others).
     constexpr VariableNames kLaunchers[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
                                             {"PMI_RANK", "PMI_SIZE"},
                                             {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}};

@@ -10,28 +10,29 @@
 
 namespace raya {
 
-/// Rank and number of ranks that a launcher has set in environment variables.
+/// Rank of this process and number of ranks, which a launcher has set in environment variables.
 struct Launch {
     std::uint32_t rank = 0;
     std::optional<std::uint32_t> count;  // number of ranks; empty if the launcher does not set it
 };
 
-/// Both functions return empty if no launcher has started this process. find_launch() reads environment variables with
-/// std::getenv, launch_from() with `get_variable`.
+/// Return the environment's Launch, or empty if no launcher has started this process. find_launch() reads environment
+/// variables with std::getenv. launch_from() reads them with `get_variable`, which returns nullptr for an unset
+/// variable.
 std::optional<Launch> launch_from(const std::function<const char*(const char*)>& get_variable);
 std::optional<Launch> find_launch();
 
-/// Connects the ranks if a launcher has started more than one, else returns nullptr. Must be called before OpenCL is
-/// used, because it sets the environment variable POCL_MAX_PTHREAD_COUNT, unless the user has set it, to
-/// threads_of_rank(). Throws UserError in every process if raya was built without MPI, or with a different MPI than
-/// that of the launcher.
+/// Connects the ranks if a launcher has started more than one, else returns nullptr. Sets the environment variable
+/// POCL_MAX_PTHREAD_COUNT to threads_of_rank(), unless the user has set it. So open_ranks() must be called before
+/// OpenCL is used. Throws UserError in every process if raya was built without MPI, or with a different MPI than that
+/// of the launcher.
 std::unique_ptr<Ranks> open_ranks();
 
-/// Throws UserError if this rank runs a different version of raya than rank 0, or has different arguments.
+/// Collective: throws UserError if this rank runs a different version of raya than rank 0, or has different arguments.
 void check_same_program(Ranks& ranks, const std::vector<std::string>& arguments);
 
-/// Returns the number of threads for a rank's OpenCL CPU device: `usable_cores`, the number of cores to which the
-/// process is bound, if that is less than `host_cores`; else `host_cores` / `ranks_of_host`. At least 1.
+/// Returns the number of threads, at least 1, for a rank's OpenCL CPU device. `usable_cores`: number of cores to which
+/// the process is bound. The result is `usable_cores` if less than `host_cores`, else `host_cores` / `ranks_of_host`.
 std::uint32_t threads_of_rank(std::uint32_t usable_cores, std::uint32_t host_cores, std::uint32_t ranks_of_host);
 
 }  // namespace raya

@@ -1,6 +1,6 @@
 // MPI transport: raya_mpi.so. raya loads this module only if an MPI launcher has started raya, so that other runs do
-// not load MPI's libraries. Waits poll their requests instead of calling MPI_Wait, which has no time limit and would
-// not notice that another rank has failed.
+// not load MPI's libraries. wait() polls the requests instead of calling MPI_Wait, because MPI_Wait has no time limit
+// and would not notice that another rank has failed.
 #define OMPI_SKIP_MPICXX  // leaves out the C++ bindings, which MPI-3 has removed
 #define MPICH_SKIP_MPICXX
 #include <fmt/core.h>
@@ -26,7 +26,7 @@ namespace {
 
 // Maximum number of bytes in an MPI message. Longer messages are split, because MPI's message length is an int.
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 30;
-constexpr int kFailureTag = 1;
+constexpr int kFailureTag = 1;  // tag of messages that report a failure to rank 0
 
 void check_mpi(int result, const char* call) {
     if (result == MPI_SUCCESS) return;
@@ -121,8 +121,8 @@ class MpiTransport final : public Transport {
     }
 
     void report_failure(const std::string& text, int code) override {
-        // Time that rank 0 has to end all ranks; after this time the caller aborts them. The time increases with the
-        // rank, so that if several ranks fail and rank 0 does not react, only the lowest of them aborts.
+        // Time that rank 0 has to end all ranks; after this time the caller aborts all ranks. The time increases with
+        // the rank. So if several ranks fail and rank 0 does not react, only the lowest of the failed ranks aborts.
         const double timeout_s = 4 + failure_delay_s(rank());
         std::string message = fmt::format("{} {}", code, text);
         std::vector<MPI_Request> sent(1);
@@ -174,17 +174,16 @@ class MpiTransport final : public Transport {
     std::string timeout_text() const {
         return fmt::format(
             "rank {} on {}: has waited for the other ranks for {:g} s; remedy: look for a rank that hangs, or raise "
-            "the "
-            "limit with RAYA_RANK_TIMEOUT=SECONDS",
+            "the limit with RAYA_RANK_TIMEOUT=SECONDS",
             rank_, host_, limit_s_);
     }
 
     MPI_Request& next_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }
 
-    // Waits until all requests are complete; returns false if they are not after `limit_s` seconds. Ranks may share
-    // cores, so the wait polls without sleeping only for spin_s_ seconds and then sleeps between polls. It does not
-    // call sched_yield, because the scheduler prefers a thread that wakes up from a sleep to computing threads, but
-    // does not prefer a thread that yields.
+    // Waits until all requests are complete; returns false if they are not complete after `limit_s` seconds. Ranks may
+    // share cores, so the function polls without sleeping only for spin_s_ seconds and then sleeps between polls. It
+    // sleeps instead of calling sched_yield, because the scheduler prefers a thread that wakes up to computing threads,
+    // but does not prefer a thread that has yielded.
     bool complete_within(double limit_s, std::vector<MPI_Request>& requests) {
         constexpr auto kSleep = std::chrono::microseconds(20);
         const Clock::time_point start = Clock::now();

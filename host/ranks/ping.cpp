@@ -18,7 +18,8 @@ constexpr std::uint64_t kMessageBytes[] = {1,        64,        1 << 10, 4 << 10
                                            64 << 10, 256 << 10, 1 << 20, kMaxPingBytes};
 constexpr std::uint64_t kGatherBytes[] = {136, 1088, 8704, 69632};  // status words of 1, 8, 64 and 512 torus nodes
 
-// Short messages are repeated more often. All messages together have at most 1 GB.
+// Returns the number of repetitions of a measurement; higher for short messages. All messages together have at most
+// 1 GB.
 int repetitions_of(std::uint64_t bytes) { return bytes <= (64 << 10) ? 300 : 20; }
 
 template <class Call>
@@ -32,7 +33,8 @@ double minimum_seconds(int repetitions, Call&& call) {
     return minimum;
 }
 
-// Returns half of the minimum round-trip time; valid only in rank 0.
+// Measures messages between rank 0 and `partner`. In rank 0, returns half of the minimum round-trip time; the result is
+// not valid in other ranks.
 MessageTime message_time(Ranks& ranks, std::uint32_t partner, std::uint64_t bytes) {
     std::vector<std::byte> block(bytes);
     if (ranks.rank() != 0 && ranks.rank() != partner) return {bytes, 0};
@@ -59,9 +61,10 @@ Json json_of(const std::vector<MessageTime>& times) {
 
 }  // namespace
 
-// Minimises the sum of ((alpha + beta b) / t - 1)^2 over the messages (b bytes, t seconds), by solving the two linear
-// equations "partial derivative = 0". If the solution has a negative alpha or beta, sets that parameter to 0 and fits
-// only the other parameter.
+// Minimises the sum over the messages (b bytes, t seconds) of
+//   ((alpha + beta b) / t - 1)^2
+// by setting its derivatives with respect to alpha and beta to 0 and solving the two linear equations. If alpha or beta
+// is negative, sets that parameter to 0 and fits only the remaining one.
 Network fitted_network(std::span<const MessageTime> times) {
     double ones = 0, b = 0, bb = 0, y = 0, by = 0;  // sums of 1/t^2, b/t^2, b^2/t^2, 1/t, b/t
     for (const MessageTime& time : times) {

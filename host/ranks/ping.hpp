@@ -36,7 +36,7 @@ struct RankPlace {
     std::uint32_t cores = 0;    // number of cores of the host
 };
 
-/// `host`: name of this process's host.
+/// Returns the place of this process. `host`: name of the process's host, which the result contains.
 RankPlace place_of_this_process(const std::string& host);
 
 /// Result of ping().
@@ -45,7 +45,7 @@ struct PingReport {
     std::vector<RankPlace> ranks;       // [rank]
     std::uint32_t partner = 0;          // lowest rank on another host than rank 0; 1 if there is none
     std::vector<MessageTime> messages;  // times of messages between rank 0 and the partner
-    std::vector<MessageTime> gathers;   // times of all-gathers of `bytes` bytes per rank, as in a torus superstep
+    std::vector<MessageTime> gathers;   // times of all-gathers as in a torus superstep; bytes: of each rank
     Network network;                    // fitted to `messages`
 
     Json json() const;

@@ -41,7 +41,7 @@ std::uint64_t total_bytes(std::span<const OutgoingMessage> out) {
 
 constexpr int kClockRequests = 16;
 
-// Answers kClockRequests requests of the rank `requester` with this rank's time.
+// Receives kClockRequests requests from the rank `requester`, and answers each with this rank's time.
 void answer_clock_requests(Ranks& ranks, std::uint32_t requester, const std::function<std::uint64_t()>& now) {
     for (int i = 0; i < kClockRequests; ++i) {
         char request = 0;

@@ -71,7 +71,7 @@ class Ranks {
     std::vector<T> all_gather(const T& own_element) {
         return all_gather(std::span(&own_element, 1), std::vector<std::size_t>(count_, 1));
     }
-    /// As above; sizes[rank] is the number of elements of each rank.
+    /// Needs no message for the sizes, because the caller passes them. sizes[rank]: number of elements of the rank.
     template <Sendable T>
     std::vector<T> all_gather(std::span<const T> own_elements, std::vector<std::size_t> sizes) {
         std::size_t total_elements = 0;
@@ -118,8 +118,8 @@ class Ranks {
     /// Throws RankFailure in rank 0 if another rank has failed. To be called during long computations.
     void poll_failures() { transport_->poll_failures(); }
 
-    /// Collective: calls work() first in one rank of each host, then in the host's other ranks, which find the results
-    /// in caches on disk. Returns when all ranks have finished.
+    /// Collective: calls work() first in one rank of each host, then in the remaining ranks of the host, which find the
+    /// first rank's results in caches on disk. Returns when all ranks of all hosts have finished.
     template <std::invocable Work>
     void one_rank_per_host_first(Work&& work) {
         if (rank_on_host_ == 0) work();
@@ -130,11 +130,11 @@ class Ranks {
 
     const RankTraffic& traffic() const { return traffic_; }
 
-    /// Prints an error of this rank once, and ends all ranks with exit code `code`. With a single rank, prints the
-    /// error and returns the code.
+    /// With several ranks, prints an error of this rank, once for all ranks, and ends all ranks with exit code `code`.
+    /// With a single rank, prints the error and returns the code.
     int fail(const std::string& text, int code);
 
-    /// As above, for a failure that another rank has reported.
+    /// Prints a failure that another rank has reported, and ends all ranks with its exit code.
     int fail(const RankFailure& failure);
 
     /// Collective: closes the transport and returns the maximum of all exit codes.
@@ -166,9 +166,9 @@ struct RankClock {
     std::uint64_t uncertainty_ns = 0;
 };
 
-/// Collective: measures this rank's clock offset as NTP does (D. L. Mills 1991). Each rank in turn asks rank 0 for its
-/// time repeatedly and uses the answer with the shortest round trip. Later drift of the clocks is not corrected. `now`:
-/// returns this rank's time in nanoseconds.
+/// Collective: measures this rank's clock offset as NTP does (D. L. Mills 1991). Each rank in turn requests the time of
+/// rank 0 repeatedly and uses the answer with the shortest round trip. Later drift of the clocks is not corrected.
+/// `now`: returns this rank's time in nanoseconds.
 RankClock rank_clock(Ranks& ranks, const std::function<std::uint64_t()>& now);
 
 }  // namespace raya

@@ -18,14 +18,14 @@
 
 namespace raya {
 
-/// `tag` distinguishes messages between the same two ranks.
+/// A message to another rank. `tag` distinguishes messages between the same two ranks.
 struct OutgoingMessage {
     std::uint32_t receiver = 0;  // rank
     int tag = 0;                 // 0..32767
     std::span<const std::byte> bytes{};
 };
 
-/// `bytes` must have exactly the size of the message.
+/// A message from another rank. `bytes`: destination, which must have exactly the size of the message.
 struct IncomingMessage {
     std::uint32_t sender = 0;  // rank
     int tag = 0;
@@ -39,15 +39,15 @@ struct RankFailure : std::runtime_error {
     int code;
 };
 
-/// Time by which a failed rank delays the end of its process. It increases with the rank, so that if several ranks
-/// fail, only the lowest of them ends all ranks.
+/// Returns the time by which a failed rank delays the end of its process. The time increases with the rank, so that if
+/// several ranks fail, only the lowest of the failed ranks ends all ranks.
 inline double failure_delay_s(std::uint32_t rank) {
     constexpr double kDelayPerRank_s = 0.25, kMaxDelay_s = 3;
     return std::min(kDelayPerRank_s * rank, kMaxDelay_s);
 }
 
-/// All ranks must make the same collective calls in the same order, each from one thread. Every wait has a time limit,
-/// after which it throws RankFailure.
+/// Transfer of bytes between ranks. All ranks must make the same collective calls in the same order, each from one
+/// thread. A call that waits longer than a time limit throws RankFailure.
 class Transport {
   public:
     virtual ~Transport() = default;
@@ -60,8 +60,8 @@ class Transport {
     /// Collective: copies the bytes of rank 0 to all ranks. The size must be the same in all ranks.
     virtual void broadcast(std::span<std::byte> bytes) = 0;
 
-    /// Collective: concatenates the bytes of all ranks, in each rank. sizes[rank]: number of bytes of that rank. The
-    /// sum of `sizes` must be at most 2^31 - 1.
+    /// Collective: writes the bytes of all ranks to `all_bytes` of each rank, concatenated in the order of ranks.
+    /// sizes[rank]: number of bytes of that rank. The sum of `sizes` must be at most 2^31 - 1.
     virtual void all_gather(std::span<const std::byte> own_bytes, std::span<std::byte> all_bytes,
                             std::span<const std::size_t> sizes) = 0;
 
@@ -84,14 +84,14 @@ class Transport {
     virtual void close() = 0;
 };
 
-/// Type of the function kOpenMpi of raya_mpi.so. It starts MPI and returns the transport, which the caller owns. A wait
-/// of more than `limit_s` seconds throws RankFailure.
+/// Type of the function kOpenMpi of raya_mpi.so. The function starts MPI and returns the transport, which the caller
+/// owns. `limit_s`: time limit of each wait for other ranks.
 using OpenMpi = Transport*(double limit_s);
 
 inline constexpr const char *kMpiModule = "raya_mpi", *kOpenMpi = "raya_open_mpi";
 
-/// Time limit for calls without a time limit of their own, such as MPI_Init and MPI_Finalize. If the object is not
-/// destroyed within `limit_s` seconds, it prints `text` on stderr and ends the process with `code`.
+/// Time limit for calls that have no time limit themselves, such as MPI_Init and MPI_Finalize. If the Deadline is not
+/// destroyed within `limit_s` seconds, it prints `text` on stderr and ends the process with exit code `code`.
 class Deadline {
   public:
     Deadline(double limit_s, std::string text, int code)

@@ -7,6 +7,7 @@
 
 namespace raya {
 
+/// Result of compare_bench().
 struct BenchComparison {
     std::string text;                    // for the terminal: warnings, and a table with the rows of both runs
     int compared = 0;                    // number of rows that both runs have

@@ -30,9 +30,9 @@ struct BenchMeasurement {
     double median_rate() const { return static_cast<double>(rays) / median_s * 1e-6; }
 };
 
-/// Measurement of the driver's compiler building one program.
+/// Times and size of one program that the driver's compiler builds.
 struct BenchBuild {
-    std::string kernel, variant, format;  // kernel file, renderer variant, number format
+    std::string kernel, variant, format;  // kernel file; variant that uses the program; number format
     std::uint32_t lanes = 0;
     double build_s = 0;   // time of compilation
     double launch_s = 0;  // time of the first launch of each kernel

@@ -24,7 +24,7 @@ std::string build_line(double build_s, const std::vector<ProgramBuild>& builds) 
 
 std::string profile_table(double build_s, const std::vector<ProgramBuild>& builds,
                           const std::vector<LabelSummary>& commands) {
-    double total_ns = 0;  // of all commands
+    double total_ns = 0;  // total time of all commands
     for (const LabelSummary& c : commands) total_ns += number(c.total_ns);
     std::vector<std::vector<std::string>> rows = {{"label", "kind", "launches", "total ms", "share %", "min ms",
                                                    "mean ms", "max ms", "queue->submit ms", "submit->start ms", "MB",

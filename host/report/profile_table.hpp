@@ -15,9 +15,11 @@ namespace raya {
 std::string profile_table(double build_s, const std::vector<ProgramBuild>& builds,
                           const std::vector<LabelSummary>& commands);
 
-/// Returns the table as JSON. `waits`: include the mean times from queueing to submission and from submission to start,
-/// and the bytes transferred.
+/// Returns the table as JSON. `waits`: true to include the mean times from queueing to submission and from submission
+/// to start, and the bytes transferred.
 Json commands_json(const std::vector<LabelSummary>& commands, bool waits);
+
+/// Returns the build time of each program as JSON.
 Json builds_json(const std::vector<ProgramBuild>& builds);
 
 }  // namespace raya

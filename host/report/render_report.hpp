@@ -93,9 +93,9 @@ struct RenderReport {
     struct {
         double build_s = 0, render_s = 0;
         std::vector<LabelSummary> commands;
-        std::vector<ProgramBuild> builds{};  // only with --profile, like `roofline`
+        std::vector<ProgramBuild> builds{};  // `builds` and `roofline`: only with --profile or --page
         std::optional<Roofline> roofline{};
-        double earlier_s = 0;  // part of render_s that earlier runs spent, whose checkpoint this run resumed
+        double earlier_s = 0;  // part of render_s spent in earlier runs, from whose checkpoint this run resumed
     } measured;
 };
 

@@ -79,7 +79,8 @@ std::string memory_line(const RenderReport& r) {
                        r.torus ? torus_memory_text(*r.torus) : "");
 }
 
-// Returns a line with the messages of all ranks, and the longest time that a rank waited for others.
+// Returns a line with the number and size of the messages of all ranks, and the longest time that a rank waited for
+// other ranks.
 std::string ranks_line(const RenderReport& r) {
     if (r.ranks.empty()) return {};
     double max_waiting_s = 0;

@@ -19,7 +19,7 @@ double per_second(double count, double seconds) { return seconds > 0 ? count / s
 // number format.
 double seconds_in_format(const KernelWork& w, const DevicePeak& peak) {
     return as_double(w.operations) / peak.multiply_per_s + as_double(w.divisions) / peak.divide_per_s +
-           as_double(w.roots) / peak.root_per_s;
+           as_double(w.roots) / peak.sqrt_per_s;
 }
 
 RooflineRow row_of(const KernelWork& work, double seconds, const DevicePeak& peak) {
@@ -34,7 +34,7 @@ RooflineRow row_of(const KernelWork& work, double seconds, const DevicePeak& pea
 }
 
 bool is_known(const DevicePeak& p) {
-    return p.fp32_per_s > 0 && p.multiply_per_s > 0 && p.divide_per_s > 0 && p.root_per_s > 0 && p.copy_bytes_per_s > 0;
+    return p.fp32_per_s > 0 && p.multiply_per_s > 0 && p.divide_per_s > 0 && p.sqrt_per_s > 0 && p.copy_bytes_per_s > 0;
 }
 
 const char* bound_name(Bound bound) { return bound == Bound::kCompute ? "compute" : "bandwidth"; }
@@ -69,7 +69,7 @@ std::string peak_lines(const DevicePeak& p) {
         "counted events\n"
         "MB      the minimum that the kernel has to read and write. The roof is compute above {:.2f} op/byte, "
         "otherwise bandwidth\n",
-        1e-9 * p.fp32_per_s, p.format, 1e-9 * p.multiply_per_s, 1e-9 * p.divide_per_s, 1e-9 * p.root_per_s,
+        1e-9 * p.fp32_per_s, p.format, 1e-9 * p.multiply_per_s, 1e-9 * p.divide_per_s, 1e-9 * p.sqrt_per_s,
         1e-9 * p.copy_bytes_per_s, p.copy_bytes >> 20, p.fp32_per_s / p.copy_bytes_per_s);
 }
 
@@ -131,7 +131,7 @@ Json peak_json(const DevicePeak& p) {
             {"format", p.format},
             {"format_multiply_adds_per_s", p.multiply_per_s},
             {"format_divisions_per_s", p.divide_per_s},
-            {"format_roots_per_s", p.root_per_s},
+            {"format_roots_per_s", p.sqrt_per_s},
             {"copy_bytes_per_s", p.copy_bytes_per_s},
             {"copy_buffer_bytes", p.copy_bytes},
             {"scatter", p.scatter}};

@@ -30,6 +30,7 @@ struct KernelWork {
 /// Returns the rays and operations of these events. The caller must set `bytes`.
 KernelWork work_of(const std::string& label, const EventCounts& events);
 
+/// The lower of the two roofs.
 enum class Bound { kCompute, kBandwidth };
 
 /// One kernel's rate compared with the device's peak.
@@ -37,7 +38,7 @@ struct RooflineRow {
     KernelWork work;
     double seconds = 0;                       // total time of all launches, from start to end of each
     double intensity = 0;                     // operations per byte
-    Bound bound = Bound::kCompute;            // what limits the rate at this intensity
+    Bound bound = Bound::kCompute;            // the lower roof at this intensity
     double roof_fraction = 0;                 // achieved rate divided by the roof; 1: as fast as the device's peak
     std::optional<double> format_fraction{};  // time at the format's peak rates divided by `seconds`; empty: unknown
 };
@@ -45,7 +46,7 @@ struct RooflineRow {
 struct Roofline {
     DevicePeak peak{};
     std::vector<RooflineRow> rows{};
-    std::string unavailable{};  // reason why there is no roofline; empty: there is one
+    std::string unavailable{};  // reason why there is no roofline; empty: there is a roofline
 };
 
 /// Returns a row for each kernel of `works` that `commands` contains with a time > 0; no rows if the peak is unknown.

@@ -16,7 +16,7 @@
 
 namespace raya {
 
-/// Whether and how a scene can be represented in a number format.
+/// Representation of a scene in a number format: the scale of the lengths, or the reason for a refusal.
 struct FormatFit {
     std::string format;
     LengthScale scale;
@@ -28,9 +28,9 @@ struct AccelNeed {
     std::string accel;                // value of --accel; "voxels" on the torus
     bool is_default = false;          // `accel` is the machine's default for this scene
     std::uint64_t words = 0;          // number of 4-byte words of job and accelerator, or of the fullest node
-    AccelSummary summary;             // figures of the grid or BVH
-    std::uint64_t pe_bytes = 0;       // memory needed, including rays, pixels and buffers; the minimum if the scene
-                                      // does not fit
+    AccelSummary summary;             // size of the grid or BVH
+    std::uint64_t pe_bytes = 0;       // bytes that the render would use in a PE; if they exceed the PE's memory, the
+                                      // smallest --pe-memory with which raya renders the scene
     std::uint64_t missing_bytes = 0;  // pe_bytes minus the memory of a PE; 0: the scene fits
     std::string refusal;              // error message of a render; empty: none
 };
@@ -41,7 +41,7 @@ struct MachineNeeds {
     std::uint32_t pes = 0;
     std::optional<std::uint64_t> memory_bytes;  // memory of a PE; empty: no limit
     std::vector<AccelNeed> needs;               // one for each accelerator
-    std::string refusal;  // error message if the machine refuses the options, and `needs` is empty; empty: none
+    std::string refusal;  // error message if the machine refuses the options (`needs` is then empty), else ""
 };
 
 struct SceneReport {
@@ -64,9 +64,8 @@ std::string summary_text(const SceneReport& report);
 
 Json vector_json(const Vec3& v);
 
-/// Returns camera, background, and lights with their emitted colours. The values are those of --from, --at, --up,
-/// --angle,
-/// --background and --light that reproduce the image.
+/// Returns camera, background, and lights with their emitted colours. A render with these values as --from, --at,
+/// --up, --angle, --background and --light gives the same image.
 Json view_json(const Scene& scene);
 
 }  // namespace raya

@@ -11,7 +11,7 @@ namespace raya {
 /// MPI rank to which the trace's processes belong.
 struct TraceRank {
     std::uint32_t number = 0;
-    bool named = false;  // the names of the processes begin with the rank, because there are several ranks
+    bool named = false;  // true if there are several ranks: the names of the processes then begin with the rank
 };
 
 /// Adds one track with the host's spans. `begin`: host_clock_ns() at the start of the trace; no span starts earlier.

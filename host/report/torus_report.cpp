@@ -25,7 +25,7 @@ std::string dimensions_text(const std::array<std::uint32_t, 3>& s) { return fmt:
 
 }  // namespace
 
-const char* returns_name(const PacketCharge& packets) { return packets.return_a_ray ? "rays" : "terms"; }
+const char* returns_name(const PacketCharge& packets) { return packets.one_return_per_ray ? "rays" : "terms"; }
 
 Json torus_json(const TorusReport& t) {
     Json packets;

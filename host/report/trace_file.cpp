@@ -115,10 +115,10 @@ std::string TraceFile::finish(bool compressed) const {
     std::string_view names = names_, text = text_;
     (text.empty() ? names : text)
         .remove_suffix(text.empty() && names.empty() ? 0 : 2);  // no comma after the last event
-    const std::string first = head(), last = tail();
-    if (!compressed) return fmt::format("{}{}{}{}", first, names, text, last);
+    const std::string beginning = head(), end = tail();
+    if (!compressed) return fmt::format("{}{}{}{}", beginning, names, text, end);
     GzipText file;
-    for (const std::string_view part : {std::string_view(first), names, text, std::string_view(last)})
+    for (const std::string_view part : {std::string_view(beginning), names, text, std::string_view(end)})
         file.append(part);
     return file.finish();
 }

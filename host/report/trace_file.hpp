@@ -47,7 +47,7 @@ class TraceFile {
     void slice(TraceTrack track, const std::string& name, std::uint64_t start, std::uint64_t end,
                const Json& arguments = {});
 
-    /// Sets the values of counter `name` from time `at_ns` on: [series]: name, value.
+    /// Sets the values of counter `name` from time `at_ns` on. `values`: name and value of each series.
     void counter(std::uint32_t process, const std::string& name, std::uint64_t at_ns,
                  const std::vector<std::pair<std::string, double>>& values);
 
@@ -66,8 +66,9 @@ class TraceFile {
     Part part() const { return {names_, text_, events_, left_out_}; }
     void add(const Part& part);
 
-    std::size_t events() const { return events_; }  // number of events in the trace
-    /// Returns the number of events that exceeded the maximum.
+    /// Returns the number of events in the trace.
+    std::size_t events() const { return events_; }
+    /// Returns the number of events that were left out because they exceeded the maximum.
     std::size_t left_out() const { return left_out_; }
 
     /// Returns the contents of the file, compressed with gzip if `compressed`.

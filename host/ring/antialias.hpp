@@ -32,8 +32,8 @@ void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool d
 std::string points_name(raya_u32 points);
 
 /// Returns, for each side, the number of ring or bus moves that bring the neighbours' pixels to every PE, if each move
-/// carries a PE's whole share. The filter processes the sides one by one, as its rounded sums depend on their order;
-/// supersampling compares all sides in any order.
+/// carries a PE's whole share. The filter processes the sides one by one, as its rounded sums depend on the sides'
+/// order. Supersampling compares the sides in any order, so that one series of broadcasts serves all sides.
 MovesOfSides smoothing_moves(const Antialias& antialias, const raya_mapping& mapping);
 
 /// Returns the modelled cycles of the method's arithmetic on neighbours, for a PE that owns `pixels` pixels.

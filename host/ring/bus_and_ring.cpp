@@ -116,13 +116,13 @@ void Ring::rotate_within_rank(RingDirection direction) {
 
 void Ring::send_block(RingDirection direction) {
     const bool down = direction == RingDirection::kDown;
-    const std::uint32_t ranks = ranks_.count(), below = (ranks_.rank() + ranks - 1) % ranks,
-                        above = (ranks_.rank() + 1) % ranks;
+    const std::uint32_t ranks = ranks_.count(), rank_below = (ranks_.rank() + ranks - 1) % ranks,
+                        rank_above = (ranks_.rank() + 1) % ranks;
     outgoing_.resize(block_words_);
     incoming_.resize(block_words_);
     session_.read("ring.leave", front_, outgoing_, down ? 0 : (segment_.count - 1) * block_words_);
-    const OutgoingMessage out{down ? below : above, 0, std::as_bytes(std::span(outgoing_))};
-    const IncomingMessage in{down ? above : below, 0, std::as_writable_bytes(std::span(incoming_))};
+    const OutgoingMessage out{down ? rank_below : rank_above, 0, std::as_bytes(std::span(outgoing_))};
+    const IncomingMessage in{down ? rank_above : rank_below, 0, std::as_writable_bytes(std::span(incoming_))};
     ranks_.start({&out, 1}, {&in, 1});
 }
 

@@ -35,6 +35,7 @@ inline PeSegment own_segment(std::uint32_t pes, const Ranks& ranks) {
 }
 
 /// Part of one PE's data in a buffer with the layout [PE][rows][pitch]: the words of each row from `offset` on.
+/// `pitch` and `offset` are in words.
 struct PeWords {
     std::size_t pe = 0, pitch = 0, offset = 0, rows = 1;
 };
@@ -71,7 +72,7 @@ class Bus {
     void gather(const Buffer<float>& blocks, std::span<float> target, std::uint64_t words);
 
   private:
-    /// copy() copies between device buffers; read() and write() transfer [row][words] to and from the host.
+    /// copy() copies between device buffers. read() and write() transfer [row][words] to and from the host.
     /// `first_block_pe`: number of the first PE whose words are in `blocks`.
     void copy(const char* label, const Buffer<float>& pe_memory, const PeWords& source, Buffer<float>& blocks,
               const PeWords& target, std::size_t words, std::size_t first_block_pe);
@@ -88,7 +89,7 @@ class Bus {
 };
 
 /// One block in the memory of each PE, and the rotations that move all blocks. The device needs a second buffer,
-/// because source and destination of a copy must not overlap. A PE of the modelled machine sends and receives word by
+/// because source and target of a copy must not overlap. A PE of the modelled machine sends and receives word by
 /// word and needs only one block.
 class Ring {
   public:
@@ -115,7 +116,7 @@ class Ring {
     void rotate_within_rank(RingDirection direction);
     void send_block(RingDirection direction);
     void receive_block(RingDirection direction);
-    /// Copies `blocks` blocks. `first` and `at` are the indices of the first source and destination block.
+    /// Copies `blocks` blocks. `first` is the index of the first source block, `at` that of the first target block.
     void move(const char* label, const Buffer<float>& source, std::size_t first, Buffer<float>& target, std::size_t at,
               std::size_t blocks);
 
@@ -124,7 +125,7 @@ class Ring {
     Ranks& ranks_;
     PeSegment segment_;
     std::size_t pes_, rows_, row_words_, block_words_;
-    Buffer<float> front_, back_;              // current blocks; destination of a rotation
+    Buffer<float> front_, back_;              // current blocks; target of a rotation
     std::vector<float> outgoing_, incoming_;  // block to send to another rank; block received from another rank
 };
 

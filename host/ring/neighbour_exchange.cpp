@@ -9,14 +9,14 @@ constexpr std::size_t kColours = 3;
 
 }  // namespace
 
-NeighbourExchange::NeighbourExchange(Session& session, Communication& counted, const raya_mapping& mapping,
+NeighbourExchange::NeighbourExchange(Session& session, Communication& communication, const raya_mapping& mapping,
                                      std::uint32_t capacity, std::uint32_t band, ExchangeMethod method, Ranks& ranks)
     : pes_(mapping.pes),
       capacity_(capacity),
       band_(band),
       method_(method),
-      ring_(session, counted, mapping.pes, kColours, band, ranks),
-      bus_(session, counted, mapping.pes, ranks) {
+      ring_(session, communication, mapping.pes, kColours, band, ranks),
+      bus_(session, communication, mapping.pes, ranks) {
     for (raya_u32 side = 0; side < RAYA_SIDES; ++side) distances_[side] = neighbour_distances(mapping, side);
     if (method == ExchangeMethod::kBroadcast)
         broadcast_blocks_ = session.buffer<float>("blocks that were broadcast", std::size_t{pes_} * kColours * band);

@@ -1,5 +1,5 @@
-// Exchange of neighbours' pixels between PEs, over ring or bus. Every PE receives the blocks that contain neighbours of
-// its own pixels.
+// Exchange of neighbours' pixels between PEs, over ring or bus. Every PE receives the blocks of the
+// PEs that own neighbours of its pixels.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -27,8 +27,8 @@ struct Arrival {
 class NeighbourExchange {
   public:
     /// `capacity`: number of pixels in each PE's memory; `band`: number of pixels in a band, 1..capacity.
-    NeighbourExchange(Session& session, Communication& counted, const raya_mapping& mapping, std::uint32_t capacity,
-                      std::uint32_t band, ExchangeMethod method = ExchangeMethod::kRing,
+    NeighbourExchange(Session& session, Communication& communication, const raya_mapping& mapping,
+                      std::uint32_t capacity, std::uint32_t band, ExchangeMethod method = ExchangeMethod::kRing,
                       Ranks& ranks = Ranks::single());
 
     std::uint32_t band() const { return band_; }
@@ -53,7 +53,7 @@ class NeighbourExchange {
     std::array<std::vector<std::uint32_t>, RAYA_SIDES> distances_;
     Ring ring_;
     Bus bus_;
-    std::optional<Buffer<float>> broadcast_blocks_;  // [PE][3][band]; a PE of the machine stores only one block
+    std::optional<Buffer<float>> broadcast_blocks_;  // [PE][3][band]; a modelled PE stores only one of the blocks
 };
 
 }  // namespace raya

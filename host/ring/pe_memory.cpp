@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kWaitingRayWords = 7;  // a pending ray on the stack: origin, direction, weight
+constexpr std::uint64_t kPendingRayWords = 7;  // a pending ray on the stack: origin, direction, weight
 // State of a ray tree except the stack: ray, hit, normal, mirror direction, tint, sum, counters.
 constexpr std::uint64_t kRayTreeWords = 32;
 constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
@@ -27,7 +27,7 @@ constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
 }  // namespace
 
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
-    PeMemory memory{.job_words = demand.job_words, .tree_words = kRayTreeWords + kWaitingRayWords * demand.bounces};
+    PeMemory memory{.job_words = demand.job_words, .tree_words = kRayTreeWords + kPendingRayWords * demand.bounces};
     const bool exchanges = demand.antialias != AntialiasMethod::kNone;
     // The number that is reduced until the memory suffices.
     std::uint32_t& fitted_pixels = exchanges ? memory.band_pixels : memory.block_pixels;

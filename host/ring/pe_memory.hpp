@@ -25,18 +25,18 @@ struct PeMemory {
 
 /// Properties of a render that determine a PE's memory.
 struct PeDemand {
-    std::string scene;            // name of the scene, for messages
-    std::uint64_t job_words = 0;  // see PeMemory
-    std::uint32_t bounces = 0;
+    std::string scene;               // name of the scene, for messages
+    std::uint64_t job_words = 0;     // see PeMemory
+    std::uint32_t bounces = 0;       // maximum number of reflections and refractions after the primary ray
     std::uint32_t share_pixels = 0;  // maximum number of pixels that a PE owns
     AntialiasMethod antialias = AntialiasMethod::kNone;
 };
 
-/// Without anti-aliasing, block_pixels is the whole share if the share fits. Otherwise it is the number of pixels that
-/// fit, and the image is gathered block by block. (The paper's run on one PE, 256 x 256 pixels with 32 KB, requires
-/// this.) With anti-aliasing, each PE holds its whole share with sums or marks, and band_pixels is the number of pixels
-/// that fit, reduced so that all bands have about the same length. Throws DoesNotFit, with the required and available
-/// bytes and a remedy, if not even one pixel of the block or band fits.
+/// Plans the memory of each PE. Without anti-aliasing, block_pixels is the whole share if the share fits. Otherwise it
+/// is the number of pixels that fit, and the image is gathered block by block. (The paper's run on one PE, 256 x 256
+/// pixels with 32 KB, requires this.) With anti-aliasing, each PE holds its whole share with sums or marks, and
+/// band_pixels is the number of pixels that fit, reduced so that all bands have about the same length. Throws
+/// DoesNotFit, with the required and available bytes and a remedy, if not even one pixel of the block or band fits.
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand);
 
 }  // namespace raya

@@ -15,17 +15,18 @@ namespace raya {
 namespace {
 
 constexpr std::uint32_t kFirstBands = 64;        // the first band is 1 / kFirstBands of a share
-constexpr std::uint32_t kMinPixelsPerLane = 16;  // in the first band; with fewer pixels some lanes would be idle
+constexpr std::uint32_t kMinPixelsPerLane = 16;  // in the first band. With fewer, some lanes would be idle
 
 std::string words_hash(const std::vector<std::uint32_t>& words) {
     return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
 }
 
-// Returns the length of the next band. `band`: length of the last band, which took `seconds`. The new length is scaled
-// so that the band takes `target_s` seconds, but is between half and four times the last length.
-std::uint32_t next_band(std::uint32_t band, double seconds, double target_s) {
+// Returns the length of the next band in pixels of each PE. `last_band`: length of the last band, which took `seconds`.
+// The new length is scaled so that the band takes `target_s` seconds, but is between half and four times the last
+// length.
+std::uint32_t next_band(std::uint32_t last_band, double seconds, double target_s) {
     const double factor = std::clamp(target_s / std::max(seconds, 1e-6), 0.5, 4.0);
-    return static_cast<std::uint32_t>(std::clamp(band * factor, 1.0, 1e9));
+    return static_cast<std::uint32_t>(std::clamp(last_band * factor, 1.0, 1e9));
 }
 
 }  // namespace
@@ -103,7 +104,7 @@ void RingRenderer::save_checkpoint(std::uint32_t pass, PixelRange range, RingRes
     prepare_memory(result);  // also copies the gathered pixels into the image
     RingState s = checkpoint_state(result);
     s.pass = pass;
-    s.window = range.block;
+    s.window = range.window_start;
     s.next = range.begin;
     s.fraction = (pass + 1.0 * range.begin / share_pixels_) / static_cast<double>(counters_.size());
     checkpointing_->save(s, state_settings());

@@ -39,7 +39,7 @@ void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange 
                 const std::size_t row = std::size_t{runs[i].pixel.row} * m.width;
                 std::uint32_t column = runs[i].pixel.column;
                 for (std::uint32_t j = 0; j < pixels; ++j) {
-                    visit(first + i, k - range.block + j, row + column);
+                    visit(first + i, k - range.window_start + j, row + column);
                     column += runs[i].step;
                     if (column >= m.width) column -= m.width;
                 }
@@ -78,17 +78,17 @@ void add_events(const std::vector<EventCounts>& rank_events, EventCounts& phase_
 
 }  // namespace
 
-// Sends each rank's elements, `per_pe` per PE, to rank 0. Rank 0 calls take(segment, elements) for one rank after
-// another, including itself.
+// Sends this rank's `elements`, `per_pe` for each PE, to rank 0. Rank 0 calls take(segment, elements) for one rank
+// after another, including itself.
 template <class T, class Take>
-void RingRenderer::collect(std::vector<T>& own, std::size_t per_pe, const Take& take) {
-    if (!ranks_.is_first()) return ranks_.send(0, std::span<const T>(own));
-    take(pes_, own);
+void RingRenderer::collect(std::vector<T>& elements, std::size_t per_pe, const Take& take) {
+    if (!ranks_.is_first()) return ranks_.send(0, std::span<const T>(elements));
+    take(pes_, elements);
     for (std::uint32_t rank = 1; rank < ranks_.count(); ++rank) {
         const PeSegment pes = segment_of(settings_.mapping.pes, ranks_.count(), rank);
-        own.resize(per_pe * pes.count);
-        ranks_.receive(rank, std::span(own));
-        take(pes, own);
+        elements.resize(per_pe * pes.count);
+        ranks_.receive(rank, std::span(elements));
+        take(pes, elements);
     }
 }
 
@@ -97,33 +97,33 @@ void RingRenderer::collect(std::vector<T>& own, std::size_t per_pe, const Take& 
 void RingRenderer::prepare_memory(RingResult& result) {
     const SpanLog::Span span = session_.span("prepare memory");
     if (result.image.rgb.empty() && ranks_.is_first()) result.image = black_image(settings_.mapping);
-    place_gathered(result);
+    place_gathered_pixels(result);
     gathered_.resize(pixels_.size());
 }
 
 void RingRenderer::gather(PixelRange range, RingResult& result) {
     const SpanLog::Span span = session_.span("gather");
     const raya_mapping& m = settings_.mapping;
-    std::uint64_t owned = 0;
+    std::uint64_t gathered_pixels = 0;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
         const std::uint32_t share = raya_share_size(raya_share_of(m, pe));
-        owned += share > range.begin ? std::min(share, range.end) - range.begin : 0;
+        gathered_pixels += share > range.begin ? std::min(share, range.end) - range.begin : 0;
     }
-    bus_.gather(pixels_, gathered_, 3 * owned);
+    bus_.gather(pixels_, gathered_, 3 * gathered_pixels);
     if (ranks_.has_several())
         collect(gathered_, std::size_t{3} * window_,
-                [&](const PeSegment& pes, std::span<const float> pixels) { place(pes, range, pixels, result); });
+                [&](const PeSegment& pes, std::span<const float> pixels) { place_pixels(pes, range, pixels, result); });
     else
         gathered_range_ = range;
 }
 
-void RingRenderer::place_gathered(RingResult& result) {
-    place(pes_, gathered_range_, gathered_, result);
+void RingRenderer::place_gathered_pixels(RingResult& result) {
+    place_pixels(pes_, gathered_range_, gathered_, result);
     gathered_range_ = {};
 }
 
-void RingRenderer::place(const PeSegment& pes, PixelRange range, std::span<const float> pixels,
-                         RingResult& result) const {
+void RingRenderer::place_pixels(const PeSegment& pes, PixelRange range, std::span<const float> pixels,
+                                RingResult& result) const {
     const std::size_t window = window_;
     const float* const colours = pixels.data();
     float* const image = result.image.rgb.data();

@@ -13,9 +13,9 @@
 namespace raya {
 namespace {
 
-// Returns true if PEs should copy the job's words into local memory. Each PE then copies them in each launch, which
-// does not pay if a kernel with an accelerator reads only a few of many words. Returns false if the words do not fit,
-// or if the copying loop could exceed the device's limit of loop iterations.
+// Returns true if PEs should copy the job's words into local memory. Each PE then copies them in each launch.
+// If the kernel uses an accelerator and reads only a few of many words, the copy takes longer than it saves. Returns
+// false if the words do not fit, or if the copying loop could exceed the device's limit of loop iterations.
 bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel) {
     constexpr std::size_t kMaxCopiedBytes = 64 * 1024;
     constexpr std::size_t kMaxCopiedWords = 4096;
@@ -30,14 +30,14 @@ constexpr std::size_t kTestsPerRay = 20;  // approximate number of object tests 
 
 // Returns the maximum work of a launch, in tests and traversal steps of a lane's rays, so that the device does not
 // exceed its limit of loop iterations. A lane checks its limit only after each ray and its shadow rays, so it may
-// exceed the limit by the work `step`. The constants convert work to iterations. Measured with the images of `raya
+// exceed the limit by the work `overrun`. The constants convert work to iterations. Measured with the images of `raya
 // verify` on llvmpipe: 12 iterations per test were too few and 16 enough. A BVH step has one iteration for each of
 // sixteen boxes and a few more. kIterationsPerLaunch is for the loop that copies words.
-double max_launch_work(AccelKind accel, double step, const DeviceInfo& device) {
+double max_launch_work(AccelKind accel, double overrun, const DeviceInfo& device) {
     constexpr double kIterationsPerTest = 24, kIterationsPerStep = 96, kIterationsPerLaunch = 8192;
     if (device.max_loop_iterations == 0) return 1u << 31;
     const double iterations = accel == AccelKind::kNone ? kIterationsPerTest : kIterationsPerStep;
-    return std::max(1.0, (device.max_loop_iterations - kIterationsPerLaunch) / iterations - step);
+    return std::max(1.0, (device.max_loop_iterations - kIterationsPerLaunch) / iterations - overrun);
 }
 
 PackedJob pack_in_span(const Session& session, const Scene& scene, const RingSettings& settings,
@@ -88,8 +88,8 @@ PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::
 RingSettings checked_settings(RingSettings settings, const DeviceInfo& device) {
     check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
     settings.kernels =
-        chosen(settings.kernels, device,
-               {.accel = static_cast<std::uint32_t>(settings.accel.kind), .fp32 = settings.format.is_fp32()});
+        chosen_kernels(settings.kernels, device,
+                       {.accel = static_cast<std::uint32_t>(settings.accel.kind), .fp32 = settings.format.is_fp32()});
     check_kernel_options(
         {.lanes = settings.kernels.lanes, .group_size = settings.kernels.group_size, .bounces = settings.bounces},
         device);

@@ -18,6 +18,7 @@
 
 namespace raya {
 
+/// Settings of a render on a ring machine.
 struct RingSettings {
     Machine machine;
     std::optional<DynamicPlan> dynamic;  // dynamic distribution, whose loads are simulated from the pixels' costs
@@ -26,13 +27,14 @@ struct RingSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
-    bool record_costs = false;  // record each pixel's cost, which takes 8 bytes on the host; implied by `dynamic`
+    bool record_costs = false;  // record each pixel's cost, which takes 8 bytes of host memory; implied by `dynamic`
     Accel accel;
     KernelChoice kernels;
     // Maximum number of pixels of all PEs that the device holds at a time, 20 bytes each. With anti-aliasing the device
     // holds all pixels.
     std::uint64_t device_pixels = 1 << 22;
-    // Limit in tests and traversal steps of a lane's rays; 0: chosen so that a launch takes about one second.
+    // Maximum number of tests and traversal steps of a lane's rays in one launch; 0: chosen so that a launch takes
+    // about one second.
     std::uint32_t work_per_launch = 0;
 };
 

@@ -99,7 +99,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const RingChec
     resume(result);
     for (std::uint32_t block = 0; block < share_pixels_; block += memory_.block_pixels)
         render_block(block, result, progress);
-    place_gathered(result);
+    place_gathered_pixels(result);
     if (contrast_) collect_marks(result);
     collect_events(result);
     if (settings_.dynamic && ranks_.is_first()) simulate_schedule(result);

@@ -57,10 +57,10 @@ class RingRenderer {
     void save_checkpoint(std::uint32_t pass, PixelRange range, RingResult& result);
     void prepare_memory(RingResult& result);
     void gather(PixelRange range, RingResult& result);
-    void place_gathered(RingResult& result);
-    void place(const PeSegment& pes, PixelRange range, std::span<const float> pixels, RingResult& result) const;
+    void place_gathered_pixels(RingResult& result);
+    void place_pixels(const PeSegment& pes, PixelRange range, std::span<const float> pixels, RingResult& result) const;
     template <class T, class Take>
-    void collect(std::vector<T>& own, std::size_t per_pe, const Take& take);
+    void collect(std::vector<T>& elements, std::size_t per_pe, const Take& take);
     void collect_costs(PixelRange range, RingResult& result);
     void collect_marks(RingResult& result);
     void collect_events(RingResult& result);

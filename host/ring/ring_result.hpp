@@ -36,10 +36,10 @@ struct Phase {
 
 struct RingResult {
     Image image;
-    std::vector<Phase> phases;     // the first pass, and supersampling if selected
-    Phase all;                     // sums over the phases; has no costs if there is only one phase (see cost())
-    Image mask;                    // 1 for supersampled pixels, else 0; empty without supersampling
-    std::uint64_t recomputed = 0;  // number of supersampled pixels
+    std::vector<Phase> phases;  // the first pass, and supersampling if selected
+    Phase all;                  // sums over the phases; without recorded_cost if there is only one phase (see cost())
+    Image mask;                 // 1 for supersampled pixels, else 0; empty without supersampling
+    std::uint64_t recomputed = 0;           // number of supersampled pixels
     std::optional<std::uint64_t> requests;  // number of requests in a simulated dynamic distribution
     Communication communication;
     LengthScale scale;
@@ -79,8 +79,8 @@ std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const Rin
 /// and sums or comparisons, supersampling, gather. In the tracing phases each PE waits for the busiest one. Counters:
 /// live rays (one for each PE that traces) and the imbalance u of the phase. The times are those of modelled_time()
 /// (host/model/time_model.hpp) and end at its total. Each phase is shown as a whole, even if a PE's memory holds only a
-/// block of its share, and each side has a quarter of the arithmetic between neighbours. If the machine's rates are
-/// unknown or `pes` is 0, adds only a remark to the trace's metadata.
+/// block of its share, and each side of the neighbourhood shows a quarter of the cycles of filtering or comparing. If
+/// the machine's rates are unknown or `pes` is 0, adds only a remark to the trace's metadata.
 void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes);
 
 }  // namespace raya

@@ -26,7 +26,7 @@ class Writer {
         put_raw(&count, sizeof count);
         put_raw(values.data(), count * sizeof(T));
     }
-    void put_raw(const void* from, std::size_t bytes) { bytes_.append(static_cast<const char*>(from), bytes); }
+    void put_raw(const void* source, std::size_t bytes) { bytes_.append(static_cast<const char*>(source), bytes); }
     std::string finish() { return bytes_ + bytes_hash(bytes_); }
 
   private:
@@ -44,9 +44,9 @@ class Reader {
         if (count != values.size()) throw UserError("damaged");
         take_raw(values.data(), count * sizeof(T));
     }
-    void take_raw(void* to, std::size_t bytes) {
+    void take_raw(void* target, std::size_t bytes) {
         if (bytes > bytes_.size()) throw UserError("damaged");
-        if (bytes > 0) std::memcpy(to, bytes_.data(), bytes);
+        if (bytes > 0) std::memcpy(target, bytes_.data(), bytes);
         bytes_.remove_prefix(bytes);
     }
 
@@ -54,17 +54,17 @@ class Reader {
     std::string_view bytes_;
 };
 
-// Calls each(vector) for all vectors of a state, in the order in which the file has them.
-template <class State, class Each>
-void for_each_vector(State& state, const Each& each) {
-    each(state.image);
-    each(state.pixels);
-    each(state.marks);
-    each(state.all_costs);
+// Calls visit(vector) for all vectors of a state, in their order in the file.
+template <class State, class Visit>
+void for_each_vector(State& state, const Visit& visit) {
+    visit(state.image);
+    visit(state.pixels);
+    visit(state.marks);
+    visit(state.all_costs);
     for (auto& pass : state.passes) {
-        each(pass.cycles);
-        each(pass.events);
-        each(pass.costs);
+        visit(pass.cycles);
+        visit(pass.events);
+        visit(pass.costs);
     }
 }
 

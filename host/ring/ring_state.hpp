@@ -26,11 +26,11 @@ struct RingState {
     double fraction = 0;       // completed fraction of the render, 0..1
     double seconds = 0;        // measured time of all runs so far, seconds
     Communication communication;
-    std::vector<float> image;   // the image so far
-    std::vector<float> pixels;  // pixels on the device
-    std::vector<std::uint8_t> marks;
-    std::vector<Pass> passes;  // one for each pass
-    std::vector<std::uint64_t> all_costs;
+    std::vector<float> image;              // colours of the pixels gathered so far, [H][W][3]
+    std::vector<float> pixels;             // pixels on the device
+    std::vector<std::uint8_t> marks;       // marks on the device; empty without supersampling
+    std::vector<Pass> passes;              // [0] trace, [1] supersample
+    std::vector<std::uint64_t> all_costs;  // cost of each pixel of the image, summed over the passes, if recorded
 };
 
 /// Names and values of all settings that determine the state. read_state() compares them, so that it rejects the
@@ -44,10 +44,10 @@ inline constexpr std::string_view kStateMagic = "raya state 2\n";
 /// Returns the bytes of a checkpoint file.
 std::string state_bytes(const RingState& state, const StateSettings& settings);
 
-/// Reads a checkpoint. The vectors of `shape` must have the sizes of this render. Throws UserError, whose text does not
-/// contain the file's name, if the bytes are not a checkpoint, are damaged, or belong to a different render. In the
-/// last case the text contains the first setting that differs.
-RingState read_state(std::string_view bytes, const StateSettings& settings, RingState shape);
+/// Reads a checkpoint. The vectors of `sized_state` must have the sizes of this render; their contents are not used.
+/// Throws UserError, whose text does not contain the file's name, if the bytes are not a checkpoint, are damaged, or
+/// belong to a different render. In the last case the text contains the first setting that differs.
+RingState read_state(std::string_view bytes, const StateSettings& settings, RingState sized_state);
 
 /// Callbacks for the checkpoints of a render.
 struct RingCheckpointing {
@@ -57,8 +57,8 @@ struct RingCheckpointing {
     std::function<bool()> due;
     std::function<void(const RingState&, const StateSettings&)> save;
     /// Returns the checkpoint to resume, or empty to start from the beginning. Arguments: the renderer's settings, and
-    /// a state whose vectors have the right sizes.
-    std::function<std::optional<RingState>(const StateSettings&, const RingState& shape)> resume;
+    /// the state for read_state().
+    std::function<std::optional<RingState>(const StateSettings&, const RingState& sized_state)> resume;
 };
 
 }  // namespace raya

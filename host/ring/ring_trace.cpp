@@ -29,7 +29,7 @@ class RingTimeline {
     // the slice contains that many rotations of equal duration.
     void add_common_phase(const std::string& name, double ms, const Json& arguments, std::uint64_t rotations = 1) {
         const double begin = now_ms_;
-        phase(name, ms, arguments);
+        add_phase(name, ms, arguments);
         for (const TracedPe& p : pes_) {
             trace_.slice(track_of(p), name, nanoseconds(begin), nanoseconds(now_ms_));
             const double each_ms = ms / static_cast<double>(rotations);
@@ -41,13 +41,13 @@ class RingTimeline {
     }
 
     // Adds a phase in which each PE computes for its own number of cycles, then waits for the busiest PE.
-    void compute(const std::string& name, const Load& load) {
+    void add_compute_phase(const std::string& name, const Load& load) {
         const double begin = now_ms_;
         const auto busiest = std::max_element(load.per_pe.begin(), load.per_pe.end()) - load.per_pe.begin();
         const Json arguments = {
             {"u", load.imbalance}, {"mean_cycles", load.mean}, {"max_cycles", load.max}, {"busiest", busiest}};
         trace_.counter(kTraceMachine, "u", nanoseconds(begin), {{"u", load.imbalance}});
-        phase(name, cycle_ms_ * static_cast<double>(load.max), arguments);
+        add_phase(name, cycle_ms_ * static_cast<double>(load.max), arguments);
         const std::string wait = fmt::format("wait for PE {}", busiest);
         for (const TracedPe& p : pes_) {
             const std::uint64_t cycles = load.per_pe[p.pe];
@@ -60,28 +60,28 @@ class RingTimeline {
 
     // Adds a tracing phase with a counter of live rays. A PE of this machine traces one ray at a time, so the number of
     // live rays is the number of PEs that are tracing. The counter has at most kMaxPoints points after the first point.
-    void trace_rays(const std::string& name, const Load& load) {
+    void add_tracing_phase(const std::string& name, const Load& load) {
         constexpr std::size_t kMaxPoints = 512;
         std::vector<std::uint64_t> ends = load.per_pe;
         std::sort(ends.begin(), ends.end());
         const std::size_t step = (ends.size() + kMaxPoints - 1) / kMaxPoints;
-        count_rays(0, static_cast<double>(ends.end() - std::upper_bound(ends.begin(), ends.end(), 0u)));
+        add_live_rays(0, static_cast<double>(ends.end() - std::upper_bound(ends.begin(), ends.end(), 0u)));
         for (std::size_t i = 0; i < ends.size(); i += step) {
             const std::size_t last = std::min(i + step, ends.size()) - 1;
-            if (ends[last] > 0) count_rays(ends[last], static_cast<double>(ends.size() - 1 - last));
+            if (ends[last] > 0) add_live_rays(ends[last], static_cast<double>(ends.size() - 1 - last));
         }
-        compute(name, load);
+        add_compute_phase(name, load);
     }
 
   private:
     static TraceTrack track_of(const TracedPe& p) { return {kTraceMachine, p.pe + 2}; }
 
-    void count_rays(std::uint64_t cycles, double rays) {
+    void add_live_rays(std::uint64_t cycles, double rays) {
         trace_.counter(kTraceMachine, "live rays", nanoseconds(now_ms_ + cycle_ms_ * static_cast<double>(cycles)),
                        {{"rays", rays}});
     }
 
-    void phase(const std::string& name, double ms, const Json& arguments) {
+    void add_phase(const std::string& name, double ms, const Json& arguments) {
         trace_.slice(kPhases, name, nanoseconds(now_ms_), nanoseconds(now_ms_ + ms), arguments);
         now_ms_ += ms;
     }
@@ -122,8 +122,8 @@ void add_smoothing(RingTimeline& timeline, const RingSettings& s, const RingResu
                                       communication_ms * static_cast<double>(moves_of_sides[side]) / all_moves,
                                       {{names.moves, moves}},
                                       s.antialias.exchange == ExchangeMethod::kRing ? moves : 1);
-        timeline.compute(fmt::format("{} {}", filter ? "filter" : "compare", kSides[side]),
-                         quarter_load(s.mapping, filter ? filter_cycles : compare_cycles, side));
+        timeline.add_compute_phase(fmt::format("{} {}", filter ? "filter" : "compare", kSides[side]),
+                                   quarter_load(s.mapping, filter ? filter_cycles : compare_cycles, side));
     }
 }
 
@@ -143,10 +143,10 @@ void add_ring_machine(TraceFile& trace, const RingSettings& settings, const Ring
     }
     RingTimeline timeline(trace, settings.machine, traced_pes(result.all.load.per_pe, pes));
     timeline.add_common_phase("broadcast", time->objects_ms, {{"words", c.broadcast_words}});
-    timeline.trace_rays(result.phases[0].name, result.phases[0].load);
+    timeline.add_tracing_phase(result.phases[0].name, result.phases[0].load);
     if (settings.antialias.method != AntialiasMethod::kNone)
         add_smoothing(timeline, settings, result, time->communication_ms);
-    if (result.phases.size() > 1) timeline.trace_rays(result.phases[1].name, result.phases[1].load);
+    if (result.phases.size() > 1) timeline.add_tracing_phase(result.phases[1].name, result.phases[1].load);
     timeline.add_common_phase("gather", time->image_ms, {{"words", c.gather_words}});
     trace.metadata()["machine"] = {{"name", settings.machine.name},
                                    {"modelled_ms", time->total_ms},

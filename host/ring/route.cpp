@@ -12,10 +12,10 @@ constexpr std::array<const char*, 3> kExchangeNames = {"ring", "bus", "bus-broad
 
 std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeMethod method, raya_u32 side) {
     const std::vector<std::uint32_t> distances = neighbour_distances(mapping, side);
-    const auto distant = static_cast<std::uint64_t>(
+    const auto distant_count = static_cast<std::uint64_t>(
         std::ranges::count_if(distances, [](std::uint32_t distance) { return distance > 0; }));
-    if (method == ExchangeMethod::kBus) return distant * mapping.pes;
-    if (method == ExchangeMethod::kBroadcast) return distant > 0 ? mapping.pes : 0;
+    if (method == ExchangeMethod::kBus) return distant_count * mapping.pes;
+    if (method == ExchangeMethod::kBroadcast) return distant_count > 0 ? mapping.pes : 0;
     std::uint64_t rotations = 0;
     for (const Leg& leg : shortest_route(mapping.pes, distances)) rotations += leg.rotations();
     return rotations;
@@ -64,10 +64,10 @@ std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32
 
 std::string exchange_name(ExchangeMethod method) { return kExchangeNames.at(static_cast<std::size_t>(method)); }
 
-MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool together) {
+MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool any_order) {
     MovesOfSides moves{};
     for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
-        const bool served = method == ExchangeMethod::kBroadcast && together && sum_of(moves) > 0;
+        const bool served = method == ExchangeMethod::kBroadcast && any_order && sum_of(moves) > 0;
         if (!served) moves[side] = moves_of_side(mapping, method, side);
     }
     return moves;

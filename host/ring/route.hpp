@@ -47,9 +47,9 @@ std::string exchange_name(ExchangeMethod method);
 using MovesOfSides = std::array<std::uint64_t, RAYA_SIDES>;
 
 /// Returns the moves that bring to every PE the whole shares that contain the neighbours of its pixels on each side.
-/// `together`: the sides may be processed in any order, so that one series of broadcasts serves all sides. The series
-/// is counted for the first side that needs it.
-MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool together);
+/// `any_order`: the sides may be processed in any order, so that one series of broadcasts serves all sides. The series
+/// is counted for the first side that needs a broadcast.
+MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool any_order);
 
 /// Returns the sum over all sides.
 std::uint64_t sum_of(const MovesOfSides& moves);

@@ -165,8 +165,8 @@ double speedup(const Schedule& schedule, const CostImage& image) {
 std::uint64_t lower_bound(const CostImage& image, std::uint32_t pes) {
     check_image(image, pes);
     const std::uint64_t total = total_cycles(image);
-    const std::uint64_t even = total / pes + (total % pes != 0);
-    return std::max(even, *std::max_element(image.cycles.begin(), image.cycles.end()));
+    const std::uint64_t mean_load = total / pes + (total % pes != 0);  // rounded up
+    return std::max(mean_load, *std::max_element(image.cycles.begin(), image.cycles.end()));
 }
 
 }  // namespace raya

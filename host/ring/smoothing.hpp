@@ -11,6 +11,7 @@
 
 namespace raya {
 
+/// Arguments that all launches of RingFilter and RingContrast have in common.
 struct ExchangeSetup {
     Session& session;
     Buffer<std::uint32_t> broadcast;  // the job's words

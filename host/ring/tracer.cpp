@@ -52,7 +52,7 @@ void Tracer::warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t
 
 void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                    const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-                   const ProgressCallback& progress, const std::function<void()>& meanwhile) {
+                   const ProgressCallback& progress, const std::function<void()>& host_work) {
     const double target_s = progress ? 0.5 : 1.0;
     std::uint32_t work = progress ? work_.with_progress : work_.first;
     reset_progress(label, range.begin);
@@ -60,9 +60,9 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
         work = guard_.begin(session_, label, work, progress_, saved_trees_, pixels, counters.cycles, counters.events);
         const Clock::time_point start = Clock::now();
         launch(label, job, range, points, work, marks, pixels, counters);
-        if (first && meanwhile) {
+        if (first && host_work) {
             session_.flush();
-            meanwhile();
+            host_work();
         }
         const State state = read_state(label);
         if (state.truncated) {
@@ -101,7 +101,7 @@ void Tracer::launch(const std::string& label, const Buffer<std::uint32_t>& job, 
                     std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                     PassCounters& counters) {
     session_.launch(label, kernel_, pes_.count, options_.group_size, job, Uint<"word_count">{cl_uint(job.size())},
-                    Uint<"window_start">{range.block}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
+                    Uint<"window_start">{range.window_start}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
                     Uint<"points">{points}, Uint<"first_pe">{pes_.first}, Uint<"work">{work}, marks,
                     LocalMemory<raya_trace_progress>{1},
                     LocalMemory<std::uint32_t>{options_.words_local ? (job.size() + 3) / 4 * 4 : 4}, pixels,

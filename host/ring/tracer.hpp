@@ -20,10 +20,10 @@ struct PassCounters {
     Buffer<std::uint64_t> events;  // [PE][L][RAYA_EVENTS]; L: work-items of a PE
 };
 
-/// Pixels begin .. end - 1 of each PE's share. `block`: index in the share of the pixel at the start of the device
-/// buffers.
+/// Pixels begin .. end - 1 of each PE's share. `window_start`: index in the share of the first pixel that is in
+/// the device buffers.
 struct PixelRange {
-    std::uint32_t block = 0, begin = 0, end = 0;
+    std::uint32_t window_start = 0, begin = 0, end = 0;
 };
 
 /// Limits of the work of one lane in one launch, in tests and traversal steps of its rays: `first` for the first
@@ -56,12 +56,12 @@ class Tracer {
 
     /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; traces supersampling points only of
     /// marked pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of
-    /// work, so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Calls `meanwhile` on
+    /// work, so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Calls `host_work` on
     /// the host while the first launch runs. Throws DeviceError if the device ends loops early even in the smallest
     /// launch.
     void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-               const ProgressCallback& progress = {}, const std::function<void()>& meanwhile = {});
+               const ProgressCallback& progress = {}, const std::function<void()>& host_work = {});
 
     const KernelOptions& options() const { return options_; }
     const std::string& build_options() const { return build_options_; }

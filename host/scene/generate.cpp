@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // arguments `parts` of rounded()
+constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // values for `parts` of rounded()
 
 void check_count(const char* kind, int count) {
     if (count < 1 || count > kMaxSpheres)
@@ -37,7 +37,8 @@ void fill_box(Scene& scene, const Vec3& low_corner, const Vec3& sides, std::int6
                               static_cast<double>(cell_index / k / k)) *
                              cell;
         const double radius = max_radius * random.uniform(0.5, 0.9);
-        // Maximum shift in a cubic cell, in units of `max_radius`.
+        // In a cubic cell, the maximum distance of the centre from the cell's middle along an axis, relative to
+        // `max_radius`.
         const double max_shift = 0.98 * (1 - radius / max_radius);
         const auto random_coordinate = [&](double side) {
             return side / 2 + (side / 2 - max_radius + max_radius * max_shift) * random.uniform(-1, 1);
@@ -48,8 +49,9 @@ void fill_box(Scene& scene, const Vec3& low_corner, const Vec3& sides, std::int6
     }
 }
 
+/// A ring of equal spheres around the z axis.
 struct SphereRing {
-    int count;
+    int count;             // number of spheres
     double distance;       // distance of the centres from the z axis
     double height;         // z of the centres
     double radius;         // radius of each sphere
@@ -110,7 +112,7 @@ Scene generate_uniform(int count, std::array<int, 3> voxels) {
                             static_cast<double>(voxel / voxels[0] / voxels[1]));
         fill_box(scene, Vec3(-1) + position * sides, sides, spheres, random);
     }
-    share_surfaces(scene);
+    merge_equal_surfaces(scene);
     return scene;
 }
 
@@ -136,7 +138,7 @@ Scene generate_random(int count, std::uint64_t seed) {
         const int surface = static_cast<int>(random.next() % kSurfaces);
         scene.spheres.push_back({rounded({x, y, z}, kMillionths), rounded(radius, kMillionths), surface});
     }
-    share_surfaces(scene);
+    merge_equal_surfaces(scene);
     return scene;
 }
 
@@ -159,7 +161,7 @@ Scene generate_centre() {
     add_ring(scene, {12, 1.85, 0.4, 0.4, 0.02, 1, 4});
     add_ring(scene, {8, 1.35, 2.45, 0.28, 0.04, 0, 2});
     scene.planes.push_back({{0, 0, 1}, 0, 5});
-    share_surfaces(scene);
+    merge_equal_surfaces(scene);
     return scene;
 }
 
@@ -186,7 +188,7 @@ Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
         scene.spheres.push_back(sphere);
     }
     scene.planes.push_back({{0, 0, 1}, 0, kFloor});
-    share_surfaces(scene);
+    merge_equal_surfaces(scene);
     return scene;
 }
 
@@ -202,7 +204,7 @@ Scene scattered(const Scene& scene, std::uint64_t seed) {
 }
 
 Scene moved_within(const Scene& scene) {
-    constexpr double kVoxel = 2.0 / kObjectSides;  // side of a voxel
+    constexpr double kVoxel = 2.0 / kVoxelsPerCubeSide;  // side of a voxel
     // Upper bound of the distance by which a hit region (host/accel) exceeds its sphere.
     constexpr double kGap = kVoxel / 16;
     Scene moved = scene;
@@ -210,7 +212,7 @@ Scene moved_within(const Scene& scene) {
         for (int axis = 0; axis < 3; ++axis) {
             double& coordinate = sphere.centre[axis];
             const double voxel_low =
-                -1 + kVoxel * std::clamp(std::floor((coordinate + 1) / kVoxel), 0.0, kObjectSides - 1.0);
+                -1 + kVoxel * std::clamp(std::floor((coordinate + 1) / kVoxel), 0.0, kVoxelsPerCubeSide - 1.0);
             const double margin = std::min(sphere.radius + kGap, kVoxel / 2);
             coordinate = std::clamp(coordinate, voxel_low + margin, voxel_low + kVoxel - margin);
         }

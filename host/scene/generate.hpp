@@ -1,5 +1,5 @@
 // Scene generators. A generated scene depends only on the arguments, not on the platform, because coordinates are
-// rounded to decimal digits. Equal surfaces are stored once (share_surfaces()).
+// rounded to decimal digits. Equal surfaces are stored once (merge_equal_surfaces()).
 #pragma once
 #include <array>
 #include <cmath>
@@ -9,15 +9,15 @@
 
 namespace raya {
 
-inline constexpr int kMaxBallsLevel = 6;       // 597,871 spheres
-inline constexpr int kMaxLatticeSize = 64;     // 274,625 spheres, 811,200 cylinders
-inline constexpr int kMaxGearsSize = 16;       // 598,017 polygons
+inline constexpr int kMaxBallsLevel = 6;       // of generate_balls(): 597,871 spheres
+inline constexpr int kMaxLatticeSize = 64;     // of generate_lattice(): 274,625 spheres, 811,200 cylinders
+inline constexpr int kMaxGearsSize = 16;       // of generate_gears(): 598,017 polygons
 inline constexpr int kMaxSpheres = 1'000'000;  // of generate_uniform() and generate_random()
 inline constexpr int kMaxVoxelsPerAxis = 256;  // of generate_uniform()
 inline constexpr int kMaxVoxels = 1'048'576;   // of generate_uniform()
 
 /// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six). Rounding keeps files
-/// short. It makes them equal on all platforms although sines and cosines differ there in the last bits.
+/// short, and makes them equal on all platforms although the last bits of sines and cosines differ between platforms.
 inline double rounded(double x, double parts = 1e9) { return std::round(x * parts) / parts + 0.0; }
 inline Vec3 rounded(const Vec3& v, double parts = 1e9) {
     return {rounded(v.x, parts), rounded(v.y, parts), rounded(v.z, parts)};
@@ -36,7 +36,8 @@ Scene generate_lattice(int size);
 /// size^3 gear wheels of brass, steel, glass and enamel in the cube [-1, 1]^3 above one square polygon, and five
 /// lights. The wheels form horizontal layers. Within a layer, each wheel meshes with its neighbours. A wheel consists
 /// of two outlines of 144 vertices and 144 quadrilaterals. Size 4 has as many polygons as SPD's `gears` (E. Haines):
-/// 9,345, or 36,610 triangles; its wheels have a different shape. Throws UserError unless 1 <= size <= 16.
+/// 9,345, which consist of 36,610 triangles. SPD's wheels have a different shape. Throws UserError unless 1 <= size
+/// <= 16.
 Scene generate_gears(int size);
 
 /// `count` matt spheres in the cube [-1, 1]^3, distributed evenly over v = x * y * z voxels: every voxel contains
@@ -50,8 +51,9 @@ Scene generate_uniform(int count, std::array<int, 3> voxels);
 /// surfaces: matt, glossy and mirroring. Throws UserError unless 1 <= count <= 1,000,000.
 Scene generate_random(int count, std::uint64_t seed);
 
-/// The project's main scene, an example of the worst case for a static distribution (Kohata & Ito, IPSJ Journal 1993):
-/// expensive glass and mirror spheres in the centre of the image, above a cheap checkered plane. 256 x 256 pixels.
+/// The project's main scene, an example of the worst case for a static distribution of pixels over PEs (Kohata & Ito,
+/// IPSJ Journal 1993): expensive glass and mirror spheres in the centre of the image, above a cheap checkered plane.
+/// 256 x 256 pixels.
 Scene generate_centre();
 
 /// Parameters of generate_cluster(); lengths in scene units. The defaults were found by a search, see scenes/README.md.
@@ -65,12 +67,13 @@ struct ClusterShape {
     int spheres() const { return glass + mirrors + matt; }
 };
 
-/// A cluster of random spheres above a checkered floor, one light. A sphere that touches another sphere is drawn again,
-/// up to a maximum number of times. Averaged over many seeds, load and imbalance match Kohata & Ito's figures. 256 x
-/// 256 pixels.
+/// A cluster of random spheres above a checkered floor, with one light. A sphere that touches another sphere is drawn
+/// again, up to a maximum number of times. Averaged over many seeds, load and imbalance match Kohata & Ito's figures.
+/// 256 x 256 pixels.
 Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape = {});
 
-inline constexpr std::uint32_t kObjectSides = 4;  // voxels along each axis of the cube
+inline constexpr std::uint32_t kVoxelsPerCubeSide =
+    4;  // number of voxels along each axis of the cube in moved_within()
 
 /// Returns a copy of `scene`, which lies in the cube [-1, 1]^3, in which each sphere has a random centre, clamped so
 /// that the sphere stays inside the cube. Radii and surfaces do not change.

@@ -50,6 +50,7 @@ void add_flake(Scene& scene, int level, const Vec3& centre, double radius, const
 /// Number of teeth of a wheel. It is a multiple of four, so that wheels that mesh on one side mesh on all four sides.
 constexpr int kTeeth = 24;
 
+/// A corner of the outline of a tooth.
 struct Corner {
     double turn;    // angle from the tooth's centre line, in pitches (1 / kTeeth of a turn)
     double radius;  // as a multiple of the radius of the pitch circle
@@ -111,8 +112,8 @@ void add_wheel(Scene& scene, const Wheel& wheel) {
 constexpr double kSphereRadius = 1.0 / 4, kCylinderRadius = 1.0 / 16, kCylinderStart = 0.99 / 8;
 
 /// Returns a view from near the middle of an upper edge, diagonally down through the cube. The eye is half a lattice
-/// distance away from a column and from a layer of spheres, so the eye is outside all objects. SPD's own view
-/// is known only for size 12.
+/// distance away from a column and from a layer of spheres, so the eye is outside all objects. SPD's own view is known
+/// only for size 12.
 View view_of_lattice(int size) {
     const double x = (size / 2 + 0.5) / size, z = 1 - 0.5 / size;
     return {rounded({x, 1, z}), rounded({x, -1, z - 2}), {0.2, 1, 0}, 60, 0, 512, 512};
@@ -145,7 +146,7 @@ Scene generate_balls(int level) {
     scene.surfaces = {{{1, 0.75, 0.33}, 0.8, 0, 100000, 0, 1, {}}, {{1, 0.9, 0.7}, 0.5, 0.5, 3.0827, 0, 1, {}}};
     scene.polygons = {{{{12, 12, -0.5}, {-12, 12, -0.5}, {-12, -12, -0.5}, {12, -12, -0.5}}, {}, 0}};
     add_flake(scene, level, {0, 0, 0}, 0.5, {0, 0, 1});
-    share_surfaces(scene);
+    merge_equal_surfaces(scene);
     return scene;
 }
 
@@ -169,7 +170,7 @@ Scene generate_gears(int size) {
                 const double turn = (x + y) % 2 == 0 ? 0 : 0.5;  // pitches; 0.5: teeth face the gaps of the neighbours
                 add_wheel(scene, {centre, distance / 2, 0.4 * distance, turn, (x + 2 * y + z) % ground});
             }
-    share_surfaces(scene);
+    merge_equal_surfaces(scene);
     return scene;
 }
 
@@ -192,7 +193,7 @@ Scene generate_lattice(int size) {
     for (int x = 0; x <= size; ++x)
         for (int y = 0; y <= size; ++y)
             for (int z = 0; z <= size; ++z) add_node(scene, size, {x, y, z});
-    share_surfaces(scene);
+    merge_equal_surfaces(scene);
     return scene;
 }
 

@@ -19,7 +19,7 @@ struct LengthScale {
 
 /// Chooses the scale of a scene. Let L be LengthScale::largest, S LengthScale::smallest (equal to L if the scene
 /// has no radius, cone or checker), F the maximum distance of a hit in the number format, N the format's smallest
-/// number, and u = 2^-(Y+1) its relative rounding error. The scaled lengths should satisfy three conditions:
+/// positive number, and u = 2^-(Y+1) its relative rounding error. The scaled lengths should satisfy three conditions:
 ///   - 4 L <= F: distances within the scene are at most 2 sqrt(3) L, so every hit is found.
 ///   - S >= sqrt(N): the squares of radii are representable.
 ///   - u L >= N: the rounding error of the largest length is representable.

@@ -4,14 +4,17 @@
 //     v / from x y z / at x y z / up x y z / angle degrees / hither distance / resolution width height
 //     b r g b                               background; black by default
 //     l x y z [r g b]                       light
-//     f r g b Kd Ks Shine T ior             surface of the objects that follow; objects before the first f: white, Kd =
-//     1 s x y z radius                        sphere p n, then n times x y z               polygon pp n, then n times x
-//     y z nx ny nz     patch: polygon with a normal at each vertex c x y z radius, x y z radius          cone or
-//     cylinder from base to apex, without caps #raya plane nx ny nz d                infinite plane: points p with n.p
-//     = d #raya checker r g b r g b size        checker for the next plane, polygon or patch # anything else comment
+//     f r g b Kd Ks Shine T ior             surface of the objects that follow; by default white with Kd = 1
+//     s x y z radius                        sphere
+//     p n, then n times x y z               polygon
+//     pp n, then n times x y z nx ny nz     patch: polygon with a normal at each vertex
+//     c x y z radius, x y z radius          cone or cylinder from base to apex, without caps
+//     #raya plane nx ny nz d                infinite plane: points p with n.p = d
+//     #raya checker r g b r g b size        checker for the next plane, polygon or patch
+//     # anything else                       comment
 //
 // An entity starts on a new line. Its numbers may span several lines, except after `#raya`. All six parts of `v` are
-// required, in any order. The value of `hither` is ignored.
+// required, in any order. `hither` does not change the image.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -36,8 +39,9 @@ void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int li
 /// Returns the remark as text: "FILE:LINE: polygon without area, left out (3 in all)".
 std::string remark_text(const std::string& file, const NffRemark& remark);
 
-/// Parses NFF. The returned scene has shared surfaces (share_surfaces()) and normals of length 1; its name is `name`
-/// without folder. Throws UserError "NAME:LINE: reason" if the text is not NFF or the scene cannot be traced.
+/// Parses NFF. Equal surfaces of the returned scene are merged (merge_equal_surfaces()) and its
+/// normals have length 1. Its name is `name` without folder. Throws UserError "NAME:LINE: reason" if the text is not
+/// NFF or the scene cannot be traced.
 ///
 /// If `remarks` is not null, parse_nff() tolerates the following deviations and adds a remark for each: it leaves out
 /// objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
@@ -50,8 +54,8 @@ Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffR
 Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remarks = nullptr);
 
 /// Returns a scene as NFF text. Numbers have the minimum number of digits that round-trip, so parse_nff() of the text
-/// returns an equal scene if `scene` has shared surfaces (share_surfaces()). Throws UserError for a checker on a sphere
-/// or cone, which NFF cannot express.
+/// returns an equal scene if equal surfaces of `scene` are merged (merge_equal_surfaces()). Throws UserError for a
+/// checker on a sphere or cone, which NFF cannot express.
 std::string write_nff(const Scene& scene);
 
 }  // namespace raya

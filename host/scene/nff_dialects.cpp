@@ -57,10 +57,11 @@ bool is_sense8_keyword(std::string_view token) {
 }
 
 std::string_view foreign_format(std::string_view text) {
-    constexpr std::array kDirectives = {"#include", "#declare", "#version", "#macro", "#default", "//", "/*"};
-    constexpr std::array kBlocks = {"camera", "light_source", "global_settings", "background", "sphere", "plane",
-                                    "box",    "union",        "object",          "mesh",       "mesh2",  "sky_sphere"};
-    constexpr std::array kObj = {"mtllib", "usemtl", "o", "g", "vn", "vt"};
+    constexpr std::array kPovDirectives = {"#include", "#declare", "#version", "#macro", "#default", "//", "/*"};
+    constexpr std::array kPovBlocks = {"camera", "light_source", "global_settings", "background", "sphere",
+                                       "plane",  "box",          "union",           "object",     "mesh",
+                                       "mesh2",  "sky_sphere"};
+    constexpr std::array kObjKeywords = {"mtllib", "usemtl", "o", "g", "vn", "vt"};
     const auto is_any = [](const auto& words, std::string_view word) { return std::ranges::count(words, word) > 0; };
     while (!text.empty()) {
         const std::string_view line = text.substr(0, text.find_first_of(kLineEnds));
@@ -70,15 +71,15 @@ std::string_view foreign_format(std::string_view text) {
         if (line.starts_with("glTF")) return "a glTF";
         if (line.starts_with('{') || line.starts_with('['))
             return text.find("\"asset\"") != text.npos && text.find("\"scenes\"") != text.npos ? "a glTF" : "a JSON";
-        if (is_any(kDirectives, word) || is_any(kBlocks, word)) return "a POV-Ray";
-        if (is_any(kObj, word) || (word == "v" && reads_as_number(rest))) return "an OBJ";
+        if (is_any(kPovDirectives, word) || is_any(kPovBlocks, word)) return "a POV-Ray";
+        if (is_any(kObjKeywords, word) || (word == "v" && reads_as_number(rest))) return "an OBJ";
         if (!line.empty() && line[0] != '#') return {};
         text.remove_prefix(std::min(text.size(), line.size() + 1));
     }
     return {};
 }
 
-Header mail_header(std::string_view text) {
+MailHeader mail_header(std::string_view text) {
     const auto line_at = [&](std::size_t at) { return text.substr(at, text.find_first_of(kLineEnds, at) - at); };
     std::size_t at = std::min(text.find_first_not_of("\r\n \t\v\f"), text.size());
     if (!opens_mail(line_at(at))) return {};
@@ -87,8 +88,8 @@ Header mail_header(std::string_view text) {
         at += text.substr(at).starts_with("\r\n") ? 2 : at < text.size() ? 1 : 0;
     }
     const std::string_view header = text.substr(0, at);
-    const auto ends = [&](char c) { return std::count(header.begin(), header.end(), c); };
-    return {at, static_cast<int>(std::max(ends('\n'), ends('\r')))};
+    const auto count_of = [&](char c) { return std::count(header.begin(), header.end(), c); };
+    return {at, static_cast<int>(std::max(count_of('\n'), count_of('\r')))};
 }
 
 void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line) {

@@ -25,11 +25,11 @@ class NffWriter {
         write_head();
         for (const Sphere& s : scene_.spheres) {
             write_surface(s.surface, false);
-            line("s {} {}", text_of(s.centre), s.radius);
+            write_line("s {} {}", text_of(s.centre), s.radius);
         }
         for (const Plane& p : scene_.planes) {
             write_surface(p.surface, true);
-            line("#raya plane {} {}", text_of(p.normal), p.distance);
+            write_line("#raya plane {} {}", text_of(p.normal), p.distance);
         }
         for (const Polygon& p : scene_.polygons) {
             write_surface(p.surface, true);
@@ -37,25 +37,25 @@ class NffWriter {
         }
         for (const Cone& c : scene_.cones) {
             write_surface(c.surface, false);
-            line("c {} {}\n  {} {}", text_of(c.base), c.base_radius, text_of(c.apex), c.apex_radius);
+            write_line("c {} {}\n  {} {}", text_of(c.base), c.base_radius, text_of(c.apex), c.apex_radius);
         }
         return text_;
     }
 
   private:
     template <typename... Arguments>
-    void line(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    void write_line(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
         fmt::format_to(std::back_inserter(text_), format, std::forward<Arguments>(arguments)...);
         text_ += '\n';
     }
 
     void write_head() {
         const View& view = scene_.view;
-        line("b {}", text_of(scene_.background));
-        line("v\nfrom {}\nat {}\nup {}", text_of(view.from), text_of(view.at), text_of(view.up));
-        line("angle {}\nhither {}\nresolution {} {}", view.angle_degrees, view.hither, view.width, view.height);
+        write_line("b {}", text_of(scene_.background));
+        write_line("v\nfrom {}\nat {}\nup {}", text_of(view.from), text_of(view.at), text_of(view.up));
+        write_line("angle {}\nhither {}\nresolution {} {}", view.angle_degrees, view.hither, view.width, view.height);
         for (const Light& light : scene_.lights)
-            line("l {}{}", text_of(light.position), light.colour ? after_blank(*light.colour) : "");
+            write_line("l {}{}", text_of(light.position), light.colour ? after_blank(*light.colour) : "");
     }
 
     /// Writes an `f` if it differs from the last `f`. Always writes the surface's checker, if it has one, because
@@ -64,18 +64,18 @@ class NffWriter {
         const Surface& s = scene_.surfaces.at(static_cast<std::size_t>(index));
         const std::string fill = fmt::format("f {} {} {} {} {} {}", text_of(s.colour), s.diffuse, s.specular, s.shine,
                                              s.transmittance, s.refraction);
-        if (fill != last_fill_) line("{}", fill);
+        if (fill != last_fill_) write_line("{}", fill);
         last_fill_ = fill;
         if (!s.checker) return;
         if (!flat) throw UserError(scene_.name + ": NFF has no checkered spheres and cones; use a plane or polygon");
-        line("#raya checker {} {} {}", text_of(s.checker->even), text_of(s.checker->odd), s.checker->size);
+        write_line("#raya checker {} {} {}", text_of(s.checker->even), text_of(s.checker->odd), s.checker->size);
     }
 
     void write_polygon(const Polygon& polygon) {
         const bool patch = !polygon.normals.empty();
-        line("{} {}", patch ? "pp" : "p", polygon.vertices.size());
+        write_line("{} {}", patch ? "pp" : "p", polygon.vertices.size());
         for (std::size_t i = 0; i < polygon.vertices.size(); ++i)
-            line("{}{}", text_of(polygon.vertices[i]), patch ? after_blank(polygon.normals[i]) : "");
+            write_line("{}{}", text_of(polygon.vertices[i]), patch ? after_blank(polygon.normals[i]) : "");
     }
 
     const Scene& scene_;

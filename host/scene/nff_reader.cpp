@@ -19,7 +19,8 @@ namespace raya {
 namespace {
 
 constexpr int kMaxResolution = 16384;  // pixels
-constexpr double kMaxWeight = 100;  // of Kd, Ks and T; values above 1 are unphysical, above 100 probably typing errors
+// Maximum of Kd, Ks and T. Values above 1 are unphysical; values above 100 are probably typing errors.
+constexpr double kMaxWeight = 100;
 constexpr int kMaxVertices = 1'000'000'000;
 
 class NffReader {
@@ -40,7 +41,7 @@ class NffReader {
         if (checker_) tokens_.refuse(checker_line_, "no plane or polygon follows this '#raya checker'");
         if (!has_view_) tokens_.refuse(end, "no 'v': the file has no viewpoint");
         if (scene_.object_count() == 0) tokens_.refuse(end, "no object: the image would be empty");
-        share_surfaces(scene_);
+        merge_equal_surfaces(scene_);
         return std::move(scene_);
     }
 
@@ -88,11 +89,12 @@ class NffReader {
                                                           {"pp", &NffReader::read_patch},
                                                           {"c", &NffReader::read_cone},
                                                           {"#raya", &NffReader::read_directive}}};
-        const bool number = tokens_.number_follows();
+        const bool is_number = tokens_.number_follows();
         const std::string_view keyword = tokens_.take_keyword();
         for (const Entity& entity : kEntities)
             if (entity.keyword == keyword) return (this->*entity.read)();
-        if (number) refuse(in_quotes(keyword) + " instead of an entity: does the previous one have too many numbers?");
+        if (is_number)
+            refuse(in_quotes(keyword) + " instead of an entity: does the previous one have too many numbers?");
         if (remarks_ && tokens_.skip_unknown())
             return add_remark(*remarks_, "entity " + in_quotes(keyword) + " of another dialect, skipped",
                               tokens_.entity_line());
@@ -187,7 +189,7 @@ class NffReader {
         const int min_count = remarks_ ? 0 : 3;
         const auto count =
             static_cast<std::size_t>(tokens_.take_integer("the number of vertices", min_count, kMaxVertices));
-        const std::size_t min_characters = patch ? 12 : 6;  // per vertex: one digit and one blank for each number
+        const std::size_t min_characters = patch ? 12 : 6;  // of a vertex: a digit and a blank for each number
         if (count > tokens_.characters_left() / min_characters + 2)
             refuse(fmt::format("the file is too short for a polygon of {} vertices", count));
         for (std::size_t i = 0; i < count; ++i) {
@@ -283,7 +285,7 @@ class NffReader {
 }  // namespace
 
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks) {
-    const Header header = remarks ? mail_header(text) : Header{};
+    const MailHeader header = remarks ? mail_header(text) : MailHeader{};
     if (header.bytes > 0) add_remark(*remarks, "mail header before the scene, skipped", 1);
     return NffReader(text.substr(header.bytes), name, 1 + header.lines, remarks).read();
 }

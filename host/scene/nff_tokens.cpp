@@ -58,7 +58,7 @@ void NffTokens::refuse(int line, std::string_view reason) const {
     throw UserError(fmt::format("{}:{}: {}", name_, line, reason));
 }
 
-bool NffTokens::directive_here() const {
+bool NffTokens::is_at_directive() const {
     const std::string_view rest = text_.substr(position_);
     if (!rest.starts_with(kDirective)) return false;
     return rest.size() == kDirective.size() || is_blank(rest[kDirective.size()]);
@@ -75,7 +75,7 @@ void NffTokens::skip_blanks_and_comments() {
             at_line_start_ = true;
             comment = false;
         } else if (c == '#' && !comment) {
-            if (directive_here()) {
+            if (is_at_directive()) {
                 if (at_line_start_) return;
                 refuse(line_, "'#raya' must be the first word of its line");
             }
@@ -137,20 +137,20 @@ bool NffTokens::number_follows() const { return reads_as_number(next_.text); }
 
 double NffTokens::take_number(std::string_view what, double max) {
     const ParsedNumber number = parsed_number(next_.text);
-    const bool no_number = number.error == std::errc::invalid_argument;
-    const bool incomplete = no_number && next_.first_on_line && !one_line_;
+    const bool is_not_number = number.error == std::errc::invalid_argument;
+    const bool incomplete = is_not_number && next_.first_on_line && !one_line_;
     const NffToken token = take_part(what);
-    const auto refused = [&](std::string_view reason) {
+    const auto refuse_token = [&](std::string_view reason) {
         refuse(token.line, fmt::format("{} of {}: {} {}", what, in_quotes(entity_), in_quotes(token.text), reason));
     };
     if (incomplete)
         refuse(token.line, fmt::format("{} of line {} is incomplete: expected {}, found {}", in_quotes(entity_),
                                        entity_line_, what, in_quotes(token.text)));
-    if (no_number) refused("is not a number");
-    if (number.error == std::errc::result_out_of_range) refused("is outside the range of double precision");
-    if (!number.rest.empty()) refused("has characters after the number");
-    if (!std::isfinite(number.value)) refused("is not a finite number");
-    if (std::abs(number.value) > max) refused(fmt::format("is out of range: at most {:.0e} in magnitude", max));
+    if (is_not_number) refuse_token("is not a number");
+    if (number.error == std::errc::result_out_of_range) refuse_token("is outside the range of double precision");
+    if (!number.rest.empty()) refuse_token("has characters after the number");
+    if (!std::isfinite(number.value)) refuse_token("is not a finite number");
+    if (std::abs(number.value) > max) refuse_token(fmt::format("is out of range: at most {:.0e} in magnitude", max));
     return number.value;
 }
 

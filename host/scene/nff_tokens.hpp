@@ -38,7 +38,8 @@ class NffTokens {
     /// `#raya` must end on the same line.
     std::string_view take_keyword();
 
-    /// Takes the name after `#raya`, or the name of a part of `v`; `what` describes it in messages.
+    /// Takes the name after `#raya`, or a label inside the viewpoint entity `v`, such as `from`; `what` describes it in
+    /// messages.
     std::string_view take_name(std::string_view what);
 
     /// Takes a finite number of at most `max` in magnitude; `what` describes it in messages ("the radius").
@@ -66,18 +67,18 @@ class NffTokens {
   private:
     void advance();
     void skip_blanks_and_comments();
-    bool directive_here() const;
+    bool is_at_directive() const;
     NffToken take_part(std::string_view what);
 
     std::string_view text_;
     std::string name_;
-    std::size_t position_ = 0;
+    std::size_t position_ = 0;  // index of the first character after next_
     int line_ = 1;
     bool at_line_start_ = true;
     NffToken next_;
     std::string entity_;  // the current entity's name in messages
     int entity_line_ = 1;
-    bool one_line_ = false;
+    bool one_line_ = false;  // true if the current entity must end on the line on which it starts
 };
 
 /// Returns true if a token starts with a number; more characters may follow it.

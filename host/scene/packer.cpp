@@ -27,8 +27,8 @@ void put(JobWords& words, double value) {
 void put(JobWords& words, const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) put(words, v[axis]);
 }
-// The following functions scale: lengths and positions, squares of lengths, and reciprocal lengths. put() appends
-// dimensionless numbers, which are not scaled.
+// put() appends a dimensionless number, which is not scaled. The following functions scale their argument: put_length()
+// a length or position, put_square() the square of a length, put_per_length() a reciprocal length.
 template <class Value>
 void put_length(JobWords& words, const Value& value) {
     put(words, words.unit * value);

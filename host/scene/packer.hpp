@@ -16,6 +16,7 @@
 
 namespace raya {
 
+/// Number of words of a record.
 template <class Record>
 inline constexpr std::size_t kWordsOf = sizeof(Record) / sizeof(std::uint32_t);
 
@@ -50,7 +51,7 @@ enum class Sampling { kCentres, kCorners };
 struct JobSettings {
     ImageSize image;
     Sampling sampling = Sampling::kCentres;
-    std::uint32_t bounces = 8;
+    std::uint32_t bounces = 8;                        // maximum number of reflections and refractions on a path
     std::array<std::uint32_t, RAYA_EVENTS> cycles{};  // modelled cycles of one event of each kind
     NumberFormat format{};                            // format of every number in the job
     int length_exponent = 0;                          // lengths are multiplied by 2^length_exponent; see length_scale()

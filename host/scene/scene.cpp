@@ -11,7 +11,8 @@ namespace {
 
 double largest_coordinate(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-double shared_intensity(std::size_t lights) {
+/// Intensity of each light without a colour, and of ambient light, in a scene of n lights (SPD).
+double default_intensity(std::size_t lights) {
     const auto n = static_cast<double>(lights);
     return std::sqrt(n) / (2 * n);
 }
@@ -27,7 +28,7 @@ SurfaceKey surface_key(const Surface& s) {
 
 }  // namespace
 
-void share_surfaces(Scene& scene) {
+void merge_equal_surfaces(Scene& scene) {
     const std::vector<Surface> old_surfaces = std::exchange(scene.surfaces, {});
     std::map<SurfaceKey, int> index_of_key;
     std::vector<int> new_index(old_surfaces.size(), -1);  // new index of each old surface; -1: none so far
@@ -48,11 +49,11 @@ void share_surfaces(Scene& scene) {
 }
 
 Colour light_colour(const Scene& scene, const Light& light) {
-    return light.colour ? *light.colour : Colour(shared_intensity(scene.lights.size()));
+    return light.colour ? *light.colour : Colour(default_intensity(scene.lights.size()));
 }
 
 double ambient_intensity(const Scene& scene) {
-    return scene.lights.empty() ? 1.0 : shared_intensity(scene.lights.size());
+    return scene.lights.empty() ? 1.0 : default_intensity(scene.lights.size());
 }
 
 double scene_extent(const Scene& scene) {

@@ -12,7 +12,8 @@ namespace raya {
 using Vec3 = Imath::V3d;    // points and directions, scene units
 using Colour = Imath::V3d;  // linear red, green, blue; 1 = full intensity
 
-/// The viewpoint (`v` of NFF). The image spans `angle_degrees` from top to bottom; pixels are square.
+/// The camera (`v` of NFF): the eye at `from` looks at `at`; `up` points upwards in the image. The image spans
+/// `angle_degrees` from top to bottom. Pixels are square.
 struct View {
     Vec3 from{0, 0, 0};
     Vec3 at{0, 0, 1};
@@ -41,7 +42,7 @@ struct Checker {
 /// Colour and shading parameters of a surface (`f` of NFF).
 struct Surface {
     Colour colour{1, 1, 1};
-    double diffuse = 1;        // Kd
+    double diffuse = 1;        // Kd: weight of diffusely reflected light
     double specular = 0;       // Ks: weight of highlight and reflected ray
     double shine = 0;          // Phong exponent
     double transmittance = 0;  // T: weight of the refracted ray
@@ -74,7 +75,7 @@ struct Polygon {
     bool operator==(const Polygon&) const = default;
 };
 
-/// A cone or cylinder without caps (`c`). Both radii are >= 0, or both are <= 0; in the latter case only the inside is
+/// A cone or cylinder without caps (`c`). Both radii are >= 0, or both are <= 0. If a radius is < 0, only the inside is
 /// visible.
 struct Cone {
     Vec3 base;
@@ -86,7 +87,8 @@ struct Cone {
 };
 
 /// The contents of a scene file. Objects are numbered by kind, then by their order in the file: all spheres, then
-/// planes, polygons and cones. If a ray hits two objects at equal distance, the object with the lower number counts.
+/// planes, polygons and cones. If a ray hits two objects at equal distance, the kernels use the hit of the object with
+/// the lower number.
 struct Scene {
     std::string name;  // name of the file without folder, or a name chosen by the generator
     Colour background{0, 0, 0};
@@ -102,9 +104,9 @@ struct Scene {
     bool operator==(const Scene&) const = default;
 };
 
-/// Stores equal surfaces once and removes unused ones, so that equivalent scenes compare equal. The surfaces are in the
-/// order in which the objects, by number, first use them.
-void share_surfaces(Scene& scene);
+/// Merges equal surfaces and removes unused surfaces, so that equivalent scenes compare equal. Sorts the surfaces by
+/// the number of the first object that uses them.
+void merge_equal_surfaces(Scene& scene);
 
 /// Returns the colour of a light of this scene: Light::colour, or if it is empty, white of intensity sqrt(n) / (2 n)
 /// for n lights (SPD, E. Haines).

@@ -62,7 +62,8 @@ Scene random_view(Scene scene, std::uint64_t seed) {
     SplitMix random(seed);
     // A uniform point on a sphere has a uniform height, because the area of a zone is proportional to its height
     // (Archimedes).
-    const double height = random.uniform(std::sin(radians(kLowestView)), std::sin(radians(kHighestView)));
+    const double height =
+        random.uniform(std::sin(radians(kMinElevationDegrees)), std::sin(radians(kMaxElevationDegrees)));
     const double azimuth = random.uniform(0, 2 * std::numbers::pi), level = std::sqrt(1 - height * height);
     const Vec3 direction = up * height + (east * std::cos(azimuth) + north * std::sin(azimuth)) * level;
     view.from = view.at + Vec3(round_to_millionth(direction.x), round_to_millionth(direction.y),

@@ -13,11 +13,13 @@ namespace raya {
 /// cosines.
 View turned(View view, double degrees);
 
-inline constexpr double kLowestView = 5, kHighestView = 75;  // elevations of the eye above `at`, degrees
+inline constexpr double kMinElevationDegrees = 5,
+                        kMaxElevationDegrees = 75;  // elevations of the eye above `at`, degrees
 
 /// Returns the scene with a random eye at the same distance from `at`. The eye is uniformly distributed on the zone of
-/// the sphere around `at` between the elevations kLowestView and kHighestView above the plane perpendicular to `up`.
-/// The result depends only on the arguments, not on the platform: directions are rounded to six decimals.
+/// the sphere around `at` between the elevations kMinElevationDegrees and kMaxElevationDegrees above the plane
+/// perpendicular to `up`. The result depends only on the arguments, not on the platform: directions are rounded to six
+/// decimals.
 Scene random_view(Scene scene, std::uint64_t seed);
 
 /// Returns the axis-aligned bounding box of all spheres, polygons and cones, in scene units; the box is empty

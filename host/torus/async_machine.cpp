@@ -74,8 +74,8 @@ AsynchronousTime AsyncResult::time() const {
 AsyncResult simulate(const raya_torus& torus, const History& history, const AsyncMachine& machine) {
     if (machine.entry_slots < 1 || machine.buffer < machine.entry_slots)
         throw UserError(
-            fmt::format("ports of {} slots, {} of them free for a ray to enter a ring: the second number must be at "
-                        "least 1 and at most the first",
+            fmt::format("ports of {} slots (buffer), of which {} must be free for a ray to enter a ring (entry_slots): "
+                        "entry_slots must be at least 1 and at most buffer",
                         machine.buffer, machine.entry_slots));
     check_history(history, raya_nodes(torus));
     return AsyncSimulation(torus, history, machine).run();

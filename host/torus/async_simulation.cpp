@@ -1,5 +1,4 @@
-// The first functions implement the processors (communication task, main task), the others the links (output threads,
-// transfers, input threads).
+// Processors (communication task, main task), then links (output threads, transfers, input threads).
 #include "host/torus/async_simulation.hpp"
 
 #include <algorithm>
@@ -123,8 +122,8 @@ std::uint32_t AsyncSimulation::next_channel(std::uint32_t node, std::uint32_t me
     return node * RAYA_LINKS + link;
 }
 
-// Puts the message into the output thread of the channel. If too few slots are free, adds it to the blocked messages
-// instead and returns false.
+// Puts the message into the channel's port and returns true. If too few slots are free, adds the message to the blocked
+// messages instead and returns false.
 bool AsyncSimulation::enqueue(std::uint32_t channel_index, const BlockedMessage& blocked_message) {
     const std::uint32_t message_class = class_of(blocked_message.message);
     Channel& channel = channels_[channel_index];
@@ -137,8 +136,8 @@ bool AsyncSimulation::enqueue(std::uint32_t channel_index, const BlockedMessage&
     return true;
 }
 
-// Called when a slot of an output thread has become free: admits the first blocked message for which enough slots are
-// free. So a ray that stays in its ring can overtake a ray that waits to enter the ring.
+// Called when a slot of a port has become free. Repeatedly puts the first blocked message for which enough slots are
+// free into the port. So a ray that stays in its ring can overtake a ray that waits to enter the ring.
 void AsyncSimulation::admit_blocked(std::uint32_t channel_index, std::uint32_t message_class) {
     Channel& channel = channels_[channel_index];
     for (;;) {
@@ -163,8 +162,8 @@ void AsyncSimulation::admit_blocked(std::uint32_t channel_index, std::uint32_t m
     }
 }
 
-// Sends the first message of a class for which the input thread has a free slot. Returns have priority, because they
-// are short.
+// Sends the first message in the port for whose class the input thread has a free slot. Returns have priority over
+// rays, because returns are short.
 void AsyncSimulation::start_sending(std::uint32_t channel_index) {
     Channel& channel = channels_[channel_index];
     if (channel.sending) return;
@@ -187,7 +186,7 @@ void AsyncSimulation::begin_transfer(std::uint32_t channel_index) {
     if (channels_[channel.opposite].transferring) set_rate(channel.opposite);
 }
 
-// Sets the rate of the current transfer to the rate that is now available to the channel, and reschedules its end.
+// Sets the rate of the channel's transfer to the rate that is now available, and reschedules the end of the transfer.
 void AsyncSimulation::set_rate(std::uint32_t channel_index) {
     Channel& channel = channels_[channel_index];
     channel.words_left -= channel.rate * (now_ - channel.rate_since);

@@ -1,6 +1,6 @@
-// Discrete-event simulator of the machine that async_machine.hpp describes. async_machine.cpp contains the event loop,
-// async_simulation.cpp the processors, links and threads. Channel RAYA_LINKS * n + l is link l of node n, in the
-// direction away from the node.
+// Discrete-event simulator of the machine that async_machine.hpp describes. async_machine.cpp contains the event loop;
+// async_simulation.cpp contains the processors, links and threads. Channel RAYA_LINKS * n + l is link l of node n, in
+// the direction away from the node.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -39,21 +39,21 @@ class AsyncSimulation {
         }
     };
 
-    // A message that waits until an output thread has `slots_needed` free slots. The message is in the input thread of
-    // channel `channel`, or, if `channel` is kNone, in the node's main task.
+    // A message that waits until a port has `slots_needed` free slots. The message is in the input thread of channel
+    // `channel`. If `channel` is kNone, it is in the node's main task.
     struct BlockedMessage {
         std::uint32_t channel = kNone, message = 0, slots_needed = 1;
     };
 
     // One direction of a link: the output thread at its start, the transfer, and the input thread at its end.
     struct Channel {
-        std::uint32_t start = 0, end = 0, opposite = 0;  // node, node, channel
-        std::array<std::deque<std::uint32_t>, kClasses> out{};
-        std::array<std::vector<BlockedMessage>, kClasses> blocked{};
-        std::array<bool, kClasses> input_occupied{};  // [class]: the input thread's slot is occupied
+        std::uint32_t start = 0, end = 0, opposite = 0;               // node, node, channel
+        std::array<std::deque<std::uint32_t>, kClasses> out{};        // [class]: messages in the port
+        std::array<std::vector<BlockedMessage>, kClasses> blocked{};  // [class]: messages that wait for the port
+        std::array<bool, kClasses> input_occupied{};                  // [class]: the input thread's slot is occupied
         std::optional<std::uint32_t>
             sending{};  // message, from the start of the sender's job to the end of the transfer
-        std::uint32_t sent_class = 0, version = 0;
+        std::uint32_t sent_class = 0, version = 0;  // class of `sending`; number of set_rate() calls
         bool transferring = false;
         double words_left = 0, rate = 0, rate_since = 0, transfer_start = 0;  // words, words/ns, ns, ns
     };
@@ -75,7 +75,7 @@ class AsyncSimulation {
         double remaining = 0,
                remaining_since = 0;  // remaining computation time of `task` at time `remaining_since`, ns
         double blocked_since = 0;    // time at which the main task began to wait for a port, ns
-        std::uint32_t version = 0;
+        std::uint32_t version = 0;   // number of starts and preemptions of the computation
     };
 
     void schedule(double delay, EventKind kind, std::uint32_t location, std::uint32_t version);

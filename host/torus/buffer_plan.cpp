@@ -15,8 +15,8 @@
 namespace raya {
 namespace {
 
-// Returns the queue length to try after `tried`: twice `tried`, or the longest queue that fits a node if that is longer
-// than `tried` and shorter than twice `tried`.
+// Returns the queue length to try after `tried`. It is the longest queue that fits a node if that is longer than
+// `tried` and shorter than twice `tried`, else twice `tried`.
 std::uint32_t next_queue(std::uint32_t tried, const QueueTrial& trial) {
     const auto fits = [&](std::uint32_t queue) { return trial.node_bytes(buffers_for(queue)) <= trial.node_memory; };
     const std::uint32_t next = std::min(2 * tried, trial.max_queue);
@@ -25,13 +25,14 @@ std::uint32_t next_queue(std::uint32_t tried, const QueueTrial& trial) {
     return longest > tried ? longest : next;
 }
 
-// Maximum number of entries in the object lists of a trial. A trial with so many entries takes a fraction of a second.
+// Maximum number of entries in the voxels' lists of a trial. A trial with so many entries takes a fraction of a second.
 constexpr std::uint64_t kMaxTrialEntries = std::uint64_t{1} << 24;
 
 std::uint64_t voxels_of(const Divisions& divisions) {
     return std::uint64_t{divisions[0]} * divisions[1] * divisions[2];
 }
 
+// See make_node_trial().
 class PartitionTrial {
   public:
     PartitionTrial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels)
@@ -45,8 +46,8 @@ class PartitionTrial {
         if (voxels > kMaxPartitionVoxels || objects_everywhere_ * voxels > kMaxTrialEntries) return {};
         try {
             const Partition tried_partition = partition(job_, format_, tried.voxels);
-            const bool all_everywhere = tried_partition.objects.size() == tried_partition.distinct * voxels;
-            objects_everywhere_ = all_everywhere ? tried_partition.distinct : 0;
+            const bool all_everywhere = tried_partition.objects.size() == tried_partition.listed_objects * voxels;
+            objects_everywhere_ = all_everywhere ? tried_partition.listed_objects : 0;
             // The assignment of voxels to nodes does not depend on the links.
             tried.words = fullest_node_words(job_, tried_partition, make_torus(nodes, Links::kTorus3d));
             return tried;
@@ -60,23 +61,23 @@ class PartitionTrial {
     const NumberFormat format_;
     const Divisions voxels_;
     // Number of objects if the last trial registered every object in every voxel, else 0. A partition for a format
-    // without an error bound does this for any number of voxels. Then more nodes do not help, and the lists become
-    // long.
+    // without an error bound registers every object in every voxel, for any number of voxels. Then more nodes do not
+    // reduce the words of a node, and the lists become long.
     std::uint64_t objects_everywhere_ = 0;
 };
 
 constexpr std::uint64_t kPacketBytes = RAYA_PACKET_WORDS * sizeof(std::uint32_t);
 constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t);
 
-// Returns the longest queue in [min_queue, max_queue] that, together with `words` words, fits `memory` bytes;
-// `min_queue` must fit.
+// Returns the longest queue in [min_queue, max_queue] that fits `memory` bytes together with its mailboxes and `words`
+// words. The queue `min_queue` must fit.
 std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t min_queue,
                             std::uint32_t max_queue) {
     return largest_where(min_queue, std::uint64_t{max_queue} + 1,
                          [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; });
 }
 
-// A scene that is divided among the nodes, the buffers of a node, and the memory of a node.
+// Memory that the nodes need for a scene and their buffers, and memory that a node has.
 struct MemoryDemand {
     const std::string& scene;
     const NodeMemories& memories;
@@ -117,16 +118,18 @@ std::string node_text(const NodeMemories& memories, std::uint32_t number) {
     return fmt::format("node {} ({} with {})", number, voxels, counted(objects, "object"));
 }
 
-// Doubles the shortest side; if several sides are equally short, the first of them.
+// Doubles the first of the shortest sides.
 std::array<std::uint32_t, 3> doubled(std::array<std::uint32_t, 3> nodes) {
     *std::min_element(nodes.begin(), nodes.end()) *= 2;
     return nodes;
 }
 
-// Returns options such as "--nodes 16x16x8"; empty if the scene does not fit any machine of up to 65,536 nodes.
+// Returns options such as "--nodes 16x16x8", with which the scene fits; empty if it does not fit any machine of up to
+// 65,536 nodes.
 std::string larger_machine(const MemoryDemand& demand, const NodeTrial& trial) {
     const std::uint32_t* const present_nodes = demand.torus.nodes;
-    // A torus with sides I x J x 1 may be 2-D or 3-D. 3-D is assumed, because it needs at least as much memory.
+    // A torus with sides I x J x 1 may be 2-D or 3-D. It is taken as 3-D, because a 3-D torus needs at least as much
+    // memory.
     const Links links = demand.torus.sides[2] != present_nodes[2] ? Links::kTorus2d : Links::kTorus3d;
     std::array<std::uint32_t, 3> nodes = doubled({present_nodes[0], present_nodes[1], present_nodes[2]});
     for (std::uint64_t count = 2 * demand.nodes(); count <= kMaxNodes; count *= 2, nodes = doubled(nodes)) {

@@ -20,9 +20,9 @@ namespace raya {
 /// Returns a queue of `queue` packets, and mailboxes of a quarter as many packets, but at least 1.
 NodeBuffers buffers_for(std::uint32_t queue);
 
-/// Returns the memory of a node in bytes: `words` scene words, the queue of rays, an outbox and an inbox of rays for
-/// each of `links` links, an inbox of returns for each link, and one outbox of returns, for the link towards the root.
-/// The returns that have reached the root are not included, because they are in the host's memory.
+/// Returns the memory that a node needs, in bytes: `words` scene words, the queue of rays, an outbox and an inbox of
+/// rays for each of `links` links, an inbox of returns for each link, and one outbox of returns, for the link towards
+/// the root. The returns that have reached the root are not included, because they are in the host's memory.
 std::uint64_t node_bytes(std::uint64_t words, const NodeBuffers& buffers, std::uint32_t links);
 
 /// Returns the default capacity of a queue in packets: 8,192, or less for more than 2,048 nodes, so that all queues and
@@ -58,7 +58,7 @@ struct QueueSearchResult {
     std::uint32_t queue = 0;  // longest queue that was tried, packets
     bool completes = false;   // the machine completes an image with this queue
     bool fits = false;        // scene words and buffers of the fullest node fit its memory
-    std::uint64_t bytes = 0;  // memory that the fullest node needs
+    std::uint64_t bytes = 0;  // memory that the fullest node needs, bytes
 };
 
 /// Doubles the queue length, starting from `queue`, until the machine completes an image. Tries the longest queue that
@@ -73,14 +73,15 @@ struct NodeTrialResult {
     std::uint64_t words = 0;  // number of scene words of the fullest node
     Divisions voxels{};       // numbers of voxels along x, y, z
 };
+/// Divides the job among `nodes` nodes along x, y, z.
 using NodeTrial = std::function<std::optional<NodeTrialResult>(const std::array<std::uint32_t, 3>& nodes)>;
 
 /// Makes a trial that doubles `voxels` along each axis until every node has a voxel. The trial returns nullopt if the
 /// partition would be too large. `job` must outlive the trial.
 NodeTrial make_node_trial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels);
 
-/// The scene or the buffers do not fit the nodes. `needed`: bytes that the fullest node needs; `memory`: bytes of a
-/// node.
+/// Thrown if the scene or the buffers do not fit the nodes. `needed`: bytes that the fullest node needs; `memory`:
+/// bytes that a node has.
 struct NodesDoNotFit : DoesNotFit {
     NodesDoNotFit(const std::string& message, std::uint64_t needed, std::uint64_t memory, std::uint32_t node_count,
                   std::uint32_t fitting_nodes, std::uint32_t fullest_node)
@@ -89,17 +90,18 @@ struct NodesDoNotFit : DoesNotFit {
     std::uint32_t nodes, fitting, fullest;  // number of nodes; number of nodes that fit; number of the fullest node
 };
 
-/// Chooses the capacity of the queues: `queue` packets if > 0, otherwise as many as fit `memory_bytes` (empty: no
-/// limit) together with the words of the fullest node, at most default_queue(). Mailboxes have the size that
-/// buffers_for() returns. Throws NodesDoNotFit if words and buffers exceed `memory_bytes`. The message states how many
-/// nodes fit, the voxels, objects and bytes of the fullest node, and a remedy: more memory, a shorter queue, or, if
-/// `trial` is given, a sufficient number of nodes. The search with `trial` takes about a second. `min_queue`: maximum
-/// number of packets that the ray tree of a single primary ray needs. Throws UserError if 0 < `queue` < `min_queue`.
+/// Chooses the capacity of the queues. If `queue` > 0, it is `queue` packets. If `queue` is 0, it is as many packets as
+/// fit `memory_bytes` (empty: no limit) together with the words of the fullest node, at most default_queue().
+/// buffers_for() determines the size of the mailboxes. Throws NodesDoNotFit if words and buffers exceed `memory_bytes`.
+/// The message states how many nodes fit, the voxels, objects and bytes of the fullest node, and a remedy: more memory
+/// or a shorter queue. If `trial` is given, the remedy may be a sufficient number of nodes; the search for it takes
+/// about a second. `min_queue`: maximum number of packets that the ray tree of a single primary ray needs. Throws
+/// UserError if 0 < `queue` < `min_queue`.
 NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
                          std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue,
                          const NodeTrial& trial = {});
 
-/// Memory of a device, and maximum size of one buffer, in bytes.
+/// `total`: memory of a device; `max_buffer`: maximum size of one buffer; bytes.
 struct DeviceMemory {
     std::uint64_t total = 0, max_buffer = 0;
 };

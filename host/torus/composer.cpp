@@ -22,8 +22,8 @@ void append_contribution(std::vector<float>& colours, const raya_head& packet) {
     colours.push_back(packet.weight);
 }
 
-// Returns the number of work-groups of `group_size` work-items. A work-item gets at least about 16 pixels, or fewer if
-// its loops would otherwise exceed the device's limit of iterations.
+// Returns the number of work-groups of `group_size` work-items. A work-item gets about 16 pixels or more. It gets fewer
+// if its loops would otherwise exceed the device's limit of iterations.
 std::size_t work_groups_for(const Contributions& contributions, std::uint32_t group_size, const DeviceInfo& device) {
     constexpr std::size_t kPixelsPerItem = 16, kMaxGroups = 4096;
     const std::vector<std::uint32_t>& starts = contributions.starts;

@@ -14,14 +14,15 @@ struct Contributions {
     std::vector<std::uint32_t> starts;  // [pixels + 1]: index of each pixel's first contribution
 };
 
-/// `returns`: heads of return packets, in any order. `pixels`: number of pixels in the image. Throws std::logic_error
-/// for a pixel >= `pixels` and for two packets with the same position in a pixel's ray tree, and UserError for more
-/// than 2^32 packets.
+/// Sorts the contributions of return packets. `returns`: heads of the packets, in any order. `pixels`: number of pixels
+/// in the image. Throws std::logic_error for a pixel >= `pixels` and for two packets with the same position in a
+/// pixel's ray tree. Throws UserError for more than 2^32 packets.
 Contributions sort_contributions(const std::vector<raya_head>& returns, std::uint32_t pixels);
 
 using ComposeKernel = DescribedKernel<"torus/compose.cl", "compose", const Buffer<float>&, const Buffer<std::uint32_t>&,
                                       Uint<"pixels">, Buffer<float>&, Buffer<std::uint32_t>&>;
 
+/// Sums the contributions of each pixel on the device.
 class Composer {
   public:
     /// `kernels` must be built for one lane.

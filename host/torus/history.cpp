@@ -140,8 +140,8 @@ void HistoryRecorder::add(const NodeWork& work) {
     add_messages(work, first_task);
 }
 
-// Adds a task for each new primary ray. The node has already processed such a ray, or the ray is still in the queue
-// slot in which it was created.
+// Adds a task for each primary ray that the node has created in this superstep. The node has also processed the ray, or
+// the ray is still in the queue slot in which it was created.
 void HistoryRecorder::add_injection_tasks(const NodeWork& work) {
     std::vector<SentMessage> sent_messages;
     for (std::size_t slot = 0; slot < work.processed.size(); ++slot) {
@@ -180,8 +180,8 @@ void HistoryRecorder::add_processing_tasks(const NodeWork& work) {
     }
 }
 
-// Adds the packets that the tasks from `first_task` on created or changed. A packet with RAYA_STATE_FRESH may also be
-// an older packet that waits for a link; the task that last processed its ray then precedes `first_task`.
+// Adds the packets that the tasks from `first_task` on created or changed. These packets have RAYA_STATE_FRESH. A
+// packet of an earlier superstep that waits for a link also has it, but the last task of its ray precedes `first_task`.
 void HistoryRecorder::add_messages(const NodeWork& work, std::size_t first_task) {
     std::vector<SentMessage> sent_messages;
     for (const raya_packet& p : work.queue) {

@@ -28,9 +28,9 @@ struct RayId {
     RayId parent() const;
 };
 
-/// Numbers rays in the order of first use. There may be tens of millions of rays. The open-addressing hash table has 16
-/// bytes per slot and doubles its size at a load factor of 2/3. So it takes 24 to 48 bytes per ray, and 1.5 times as
-/// much during a growth.
+/// Numbers rays in the order of the first calls of number_of(). There may be tens of millions of rays. The
+/// open-addressing hash table has 16 bytes per slot and doubles its size at a load factor of 2/3. So it takes 24 to 48
+/// bytes per ray, and 1.5 times as much while it grows.
 class RayNumbers {
   public:
     /// Returns the number of the ray. The first call for a ray assigns the next number, from 0 on. Throws
@@ -53,8 +53,8 @@ class RayNumbers {
     std::uint64_t next_number_ = 0;
 };
 
-/// A computation of one node: the node processes one packet, which starts when the packet has arrived, or generates one
-/// primary ray.
+/// A computation of one node. Either the node processes one packet; then the task starts when the packet has arrived.
+/// Or it generates one primary ray.
 struct HistoryTask {
     static constexpr std::uint32_t kNoCause = UINT32_MAX;
 
@@ -73,18 +73,19 @@ struct HistoryMessage {
     std::uint16_t kind = 0;         // RAYA_KIND_* of kernels/shared/packet.h
 };
 
-/// Messages are in the order of the tasks that send them. The cause of a task precedes the messages of the task:
-/// tasks[t].cause < tasks[t].first_message. The tasks of a node that have no cause are in the order of execution.
+/// Tasks and messages of a render. Messages are in the order of the tasks that send them. The cause of a task precedes
+/// the messages that the task sends: tasks[t].cause < tasks[t].first_message. The tasks of a node that have no cause
+/// are in the order of execution.
 struct History {
     std::vector<HistoryTask> tasks;
     std::vector<HistoryMessage> messages;
 
-    /// Returns the messages of a task.
+    /// Returns the messages that a task sends.
     std::span<const HistoryMessage> sent_by(std::size_t task) const;
 };
 
-/// Throws std::logic_error unless tasks and messages are ordered as described at History, every ray causes one task at
-/// the ray's destination, and every return is sent to the root and causes no task.
+/// Throws std::logic_error for an invalid history. In a valid history tasks and messages have the order of History,
+/// every ray causes one task at the ray's destination, and every return is sent to the root and causes no task.
 void check_history(const History& history, std::uint32_t nodes);
 
 /// Returns [message]: index of the task that the message causes; HistoryTask::kNoCause for a return.
@@ -99,8 +100,8 @@ class HistoryRecorder {
     explicit HistoryRecorder(const raya_torus& torus, const PacketCharge& packets = {})
         : torus_(torus), packets_(packets), uncharged_cycles_(raya_nodes(torus)) {}
 
-    /// Adds the work of a node in a superstep. Throws std::logic_error for a packet that no task sent, and if 32 bits
-    /// are too few to number tasks and messages.
+    /// Adds the work of a node in a superstep. Throws std::logic_error for a packet that no task sent, and for more
+    /// than 2^32 - 2 tasks or messages.
     void add(const NodeWork& work);
 
     /// Checks the history with check_history() and returns it. Must be called once, as the last call. The sum of the

@@ -28,8 +28,8 @@ std::uint32_t max_corners(const raya_objects& objects, std::span<const std::uint
     return corners;
 }
 
-// Returns the work to generate all primary rays of a node: the number of rows, and of batches of their pixels
-// (kernels/torus/pixel_rows.clh).
+// Returns the work to generate all primary rays of a node: the number of rows plus the number of batches of their
+// pixels (kernels/torus/pixel_rows.clh).
 std::uint64_t inject_work_of(const raya_node& header, bool root_injects, std::uint64_t batch) {
     const std::uint64_t width = header.job.mapping.width, height = header.job.mapping.height;
     const auto work = [&](std::uint64_t rows, std::uint64_t columns) { return rows * (1 + divide_up(columns, batch)); };
@@ -82,7 +82,7 @@ void LaunchPlan::update(const NodeStatus& status) {
 }
 
 LaunchBudget LaunchPlan::budget(const WorkUnit& unit, std::uint64_t max_work, std::uint64_t total_work) const {
-    // Numbers of ray-object tests that take about a second: of a launch on two CPU cores, and of a node on one compute
+    // Numbers of ray-object tests that take about a second: in a launch on two CPU cores, and in a node on one compute
     // unit of a slow GPU.
     constexpr double kTestsOfLaunch = 1e9, kTestsOfNode = 1e8;
     constexpr double kFixedIterations = 4096;  // number of loop iterations that do not depend on the work
@@ -112,8 +112,8 @@ LaunchBudget LaunchPlan::inject() {
     return budget({.iterations = 32, .units_per_test = 1.0 / 8}, max_work, total_work);
 }
 
-// Upper bound of the work of a node with `packets` packets. In the worst case the packets of all lanes are in different
-// voxels. A work-item processes such packets one after another.
+// Returns an upper bound of the work of a node with `packets` packets. In the worst case the packets of all lanes are
+// in different voxels; a work-item processes such packets one after another.
 std::uint64_t LaunchPlan::trace_work(const Node& node, std::uint64_t packets) const {
     const std::uint64_t batches = divide_up(packets, lanes_);
     const std::uint64_t steps = std::min(packets, batches * std::min<std::uint64_t>(lanes_, node.voxels + 1));
@@ -130,7 +130,7 @@ LaunchBudget LaunchPlan::trace_voxel() const {
     }
     // Number of loop iterations of a ray-object test, measured on llvmpipe with the ring's kernels. A sphere test takes
     // iterations of the loops over batches, over hits and over spheres that the filter rejects. The refinement of
-    // quotients and roots takes 8 more iterations, and each corner of a polygon takes 3.
+    // quotients and square roots takes 8 more iterations, and each corner of a polygon takes 3.
     const double iterations = (rounds_correctly_ ? 24 : 32) + 3.0 * max_corners_;
     return budget({.iterations = iterations, .overrun_units = static_cast<double>(group_size_ * batch_work)}, max_work,
                   total_work);

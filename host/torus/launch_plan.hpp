@@ -1,4 +1,4 @@
-// Work budgets of kernel launches: the maximum work of a node in one launch, and a flag that a single launch suffices.
+// Work budgets of kernel launches.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -14,14 +14,14 @@ namespace raya {
 /// Budget of a launch. The host repeats the launch until no node has work left.
 struct LaunchBudget {
     std::uint32_t work = 0;      // maximum work of a node in one launch, in units that the kernel defines
-    bool single_launch = false;  // one launch is certainly enough, so the host need not read the status
+    bool single_launch = false;  // true: one launch certainly completes the work, so the host need not read the status
 
     bool operator==(const LaunchBudget&) const = default;
 };
 
 /// Limits a launch to the device's maximum number of loop iterations, and to about a second, so that Ctrl-C takes
-/// effect and the GPU's watchdog does not end the launch. For LaunchBudget::single_launch it stores the number of
-/// objects of each node and an upper bound of the number of packets in its queue.
+/// effect and the GPU's watchdog does not end the launch. To set LaunchBudget::single_launch, LaunchPlan stores the
+/// number of objects of each node and an upper bound of the number of packets in its queue.
 class LaunchPlan {
   public:
     /// `memories`: memories of this rank's nodes, indexed by slot.
@@ -46,12 +46,12 @@ class LaunchPlan {
     struct Node {
         std::uint64_t voxels = 0;       // number of voxels of the node
         std::uint64_t max_objects = 0;  // maximum number of objects in a voxel of the node
-        std::uint64_t inject_work = 0;  // work of inject in an image: number of rows and of batches of their pixels
+        std::uint64_t inject_work = 0;  // work of inject in an image: number of rows plus batches of their pixels
         std::uint64_t packets = 0;      // upper bound of the number of packets in the queue
     };
     /// A kernel's unit of work.
     struct WorkUnit {
-        double iterations;          // maximum number of loop iterations of a unit
+        double iterations;          // maximum number of loop iterations that a unit takes
         double units_per_test = 1;  // number of units that take as long as a ray-object test
         double overrun_units = 0;   // number of units by which a launch may exceed its budget to complete begun work
     };

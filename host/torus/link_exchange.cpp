@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// Fixed cost of a command: the number of bytes that could be copied in the same time, a few microseconds with PoCL.
+// Fixed cost of a command, a few microseconds with PoCL, as the number of bytes that could be copied in that time.
 constexpr std::uint64_t kCommandCostBytes = 100'000;
 
 raya_head head_at(const std::uint32_t* packet) {
@@ -72,7 +72,7 @@ void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>
     if (kernel_) launch_kernel();
 }
 
-// Counts the transfers over the links of one direction, and sets their flags in sent_flags_.
+// Counts the transfers over the links of one direction (`link`), and sets their flags in sent_flags_.
 void LinkExchange::count_transfers(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words) {
     for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
         const std::uint32_t packets = status.at(node, class_.outbox_status + link);
@@ -203,8 +203,8 @@ std::uint64_t LinkExchange::copy_cost_bytes(const CopyRange& range) const {
     return kCommandCostBytes + (range.end_slot - range.first_slot) * box_words(range.packets) * sizeof(std::uint32_t);
 }
 
-// Extends a range if the longer command takes less time than two commands. A range may include empty outboxes: a copy
-// of an empty outbox leaves the empty inbox empty.
+// Extends a range if one longer command takes at most as long as two commands. A range may include empty outboxes,
+// because the copy of an empty outbox leaves the empty inbox empty.
 std::vector<LinkExchange::CopyRange> LinkExchange::copy_ranges(const NodeStatus& status, std::uint32_t link) const {
     std::vector<CopyRange> ranges;
     bool may_extend = false;

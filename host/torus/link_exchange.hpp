@@ -23,15 +23,17 @@ using ExchangeKernel = DescribedKernel<"torus/exchange.cl", "exchange", const Bu
                                        Uint<"outbox_status">, Uint<"inbox_status">, const Buffer<std::uint32_t>&,
                                        Buffer<std::uint32_t>&, Buffer<std::uint32_t>&, Buffer<std::uint32_t>&>;
 
+/// Mailboxes of one class of packets (rays or returns), and their transfers over all links.
 class LinkExchange {
   public:
-    /// Packets that one LinkExchange transfers, and number of words that the model charges for them.
+    /// Class of packets that one LinkExchange transfers, and number of words that the model charges for them.
     struct PacketClass {
-        std::string label;                          // prefix of command labels
-        std::uint32_t packet_words;                 // number of words in a packet
-        std::uint32_t outbox_status, inbox_status;  // first of RAYA_LINKS status words: numbers of packets in mailboxes
+        std::string label;           // prefix of command labels
+        std::uint32_t packet_words;  // number of words in a packet
+        std::uint32_t outbox_status,
+            inbox_status;  // first of RAYA_LINKS status words with the mailboxes' packet counts
         std::uint32_t charged_words = packet_words;        // number of words charged for each message
-        std::optional<std::uint32_t> charged_status = {};  // status word: number of charged packets; empty: all packets
+        std::optional<std::uint32_t> charged_status = {};  // status word with the number of charged packets; empty: all
         int tag = 0;                                       // tag of messages between ranks
     };
 
@@ -39,7 +41,7 @@ class LinkExchange {
     LinkExchange(Session& session, const NodeDistribution& distribution, std::uint32_t capacity,
                  const PacketClass& packet_class);
 
-    /// Makes exchange() use `kernel`, in work-groups of `group_size` work-items, instead of buffer copies, the default.
+    /// Makes exchange() use `kernel`, in work-groups of `group_size` work-items. The default is buffer copies.
     /// `status`: device buffer with the same status words that exchange() receives; must outlive this object.
     void use_kernel(const ExchangeKernel& kernel, std::uint32_t group_size, Buffer<std::uint32_t>& status);
     void use_copies() { kernel_.reset(); }
@@ -47,12 +49,12 @@ class LinkExchange {
     /// Empties the mailboxes and resets the counters.
     void clear();
 
-    /// Transfers all packets of an outbox if both ends of its link are on this device and the inbox is empty. A kernel
-    /// transfers all links in one launch, labelled PacketClass::label. Buffer copies take one command for each link
-    /// direction, labelled "LABEL +x" and so on. A direction takes several commands if some of its inboxes are not
-    /// empty, or if the lengths of the outboxes differ so much that one command with the maximum length would take
-    /// longer. Adds the number of words charged for each link to `words`, [node][link]. `status`, `words`, packets()
-    /// and moved() cover all nodes of all ranks.
+    /// For each link with both ends on this device, transfers all packets of the outbox if the inbox is empty. A kernel
+    /// transfers the packets of all links in one launch, labelled PacketClass::label. Buffer copies take one command
+    /// for each link direction, labelled "LABEL +x", "LABEL -x", ... A direction takes several commands if some of its
+    /// inboxes are not empty, or if the lengths of the outboxes differ so much that one command with the maximum length
+    /// would take longer. Adds the number of words charged for each link to `words`, [node][link]. `status`, `words`,
+    /// packets() and moved() cover all nodes of all ranks.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
     /// Transfers between ranks, in the same superstep as an exchange(). begin_transfers() appends the messages to `out`
@@ -64,12 +66,12 @@ class LinkExchange {
 
     Buffer<std::uint32_t>& outboxes() { return outboxes_; }
     Buffer<std::uint32_t>& inboxes() { return inboxes_; }
-    const Buffer<std::uint32_t>& sent_flags() const { return sent_; }  // [link][slot]: 1: outbox transferred
+    const Buffer<std::uint32_t>& sent_flags() const { return sent_; }  // [link][slot]: 1 if the outbox was transferred
 
-    /// [node][link]: number of messages sent since clear().
+    /// [node][link]: number of messages (charged packets) sent since clear().
     const std::vector<std::uint64_t>& packets() const { return packets_; }
 
-    /// Number of packets sent over all links since clear(), charged or not.
+    /// Number of packets sent over all links since clear(), including packets that are not charged.
     std::uint64_t moved() const { return moved_; }
 
     /// Calls `visit`, unless it is empty, with the node and the head of every packet that was put into an outbox of
@@ -122,8 +124,9 @@ class LinkExchange {
         Buffer<std::uint32_t> end_slots;  // [link][slot]: slot of the node at the end of the link, or RAYA_NO_SLOT
     };
     std::optional<KernelTransfer> kernel_;
-    std::vector<std::uint32_t> sent_flags_, device_flags_;  // contents of sent_: next, present
-    std::vector<std::uint32_t> visited_;  // [link][slot]: number of packets in the outbox already visited
+    std::vector<std::uint32_t> sent_flags_;    // next contents of sent_
+    std::vector<std::uint32_t> device_flags_;  // present contents of sent_
+    std::vector<std::uint32_t> visited_;       // [link][slot]: number of packets in the outbox already visited
     std::vector<std::uint64_t> packets_;
     std::uint64_t moved_ = 0;
     const std::vector<RankLink> rank_links_;  // sorted by link, then by sender

@@ -18,9 +18,9 @@ std::uint32_t max_node_words(const NodeMemories& memories) {
 
 constexpr std::size_t kRowWords = 4;  // the words of each node start at a multiple of kRowWords
 
-// Chooses whether kernels copy a node's words to local memory: only if the words and the other data of the work-group
-// fit the local memory, and if the device does not limit loop iterations. Devices that limit them are CPUs, whose local
-// memory is not faster than global memory.
+// Sets `words_local` to false if the node's words and the work-group's other data do not fit the local memory, or if
+// the device limits loop iterations. Devices that limit loop iterations are CPUs, whose local memory is not faster than
+// global memory.
 KernelOptions choose_words_local(KernelOptions options, const NodeMemories& memories, const DeviceInfo& device) {
     const std::size_t work_group_words =
         std::max(RAYA_INJECT_WORDS(options.group_size, options.lanes), RAYA_ROUTE_WORDS(options.group_size));
@@ -119,7 +119,7 @@ void NodeArray::set_pixels(const PixelSubset& pixels) {
                        .stride = pixels.stride,
                        .offset = pixels.first,
                        .root_injects = settings_.inject == Injection::kRoot || raya_nodes(settings_.torus) == 1,
-                       .return_a_ray = settings_.packets.return_a_ray};
+                       .one_return_per_ray = settings_.packets.one_return_per_ray};
     session_.write("scatter", run_, {&run, 1});
 }
 
@@ -269,7 +269,7 @@ void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns
 }
 
 // Called in the superstep after the one that started the readback. The readback is complete, because read_status() has
-// waited for the command queue since its start.
+// waited for the command queue since the readback started.
 void NodeArray::gather_remaining(std::vector<raya_head>& returns) {
     if (returns_pending_ == 0) return;
     session_.wait("gather", returns_readback_);

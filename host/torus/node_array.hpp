@@ -27,7 +27,7 @@ struct MachineState {
     double injected_fraction = 0;     // fraction of the image rows whose primary rays are generated
 };
 
-/// `capacity`: capacity of a queue, in packets.
+/// Computes the state from the status of all `nodes` nodes. `capacity`: capacity of a queue, in packets.
 MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity);
 
 /// Returns [node]: modelled cycles of the node in the superstep.
@@ -45,7 +45,7 @@ using InputWords = const Buffer<std::uint32_t>&;
 using RunConstants = const Buffer<raya_run>&;
 using FirstNode = Uint<"first_node">;           // slot of the first node of a launch
 using Work = Uint<"work">;                      // work budget of a node in a launch
-using Resume = Uint<"resume">;                  // 1: continue the work that the previous launch left
+using Resume = Uint<"resume">;                  // 1: continue the work that the previous launch did not complete
 using LocalWords = LocalMemory<std::uint32_t>;  // local memory of a work-group, which computes one node
 using Queues = Buffer<raya_packet>&;
 using Mailboxes = Buffer<std::uint32_t>&;
@@ -67,8 +67,9 @@ using Accept = DescribedKernel<"torus/accept.cl", "accept", InputWords, InputWor
 
 }  // namespace node_kernels
 
-/// Each kernel is launched with one work-group per node, and relaunched until no node has work left. Commands are
-/// labelled with the kernel's name. Throws DeviceError if the device cuts loops short even in the smallest launch.
+/// The torus nodes of this rank. Each kernel is launched with one work-group per node, and relaunched until no node has
+/// work left. Commands are labelled with the kernel's name. Functions that launch kernels throw DeviceError if the
+/// device cuts loops short even in the smallest launch.
 class NodeArray {
   public:
     /// Builds the kernels with `options` and allocates the device memory. `memories`: memories of this rank's nodes, by
@@ -100,8 +101,8 @@ class NodeArray {
     void finish_exchange();
     void accept(Slots nodes, Reserve reserve, std::uint32_t superstep);
 
-    /// Reads the status of the nodes of all ranks; blocks. Some status words are counts of the current superstep;
-    /// accept() resets them.
+    /// Reads the status of the nodes of all ranks; blocks. RAYA_STATUS_PROGRESS and RAYA_STATUS_CYCLES are counts of
+    /// the current superstep, which accept() resets.
     NodeStatus read_status();
 
     /// Passes the work of each node in this superstep to `sink`. Must be called after trace_voxel() and before route().
@@ -109,15 +110,15 @@ class NodeArray {
     /// KernelOptions::costs and a single rank.
     void report_work(const NodeStatus& injected, const NodeWorkSink& sink);
 
-    /// In rank 0, appends the returns of the readback that the previous call started to `returns`, and starts to read
-    /// back the returns that have reached the root since that call. After the last superstep, gather_remaining()
-    /// appends the returns of the last readback.
+    /// In rank 0, appends the returns of the readback that the previous call started to `returns`. Then starts a
+    /// readback of the returns that have reached the root since the previous call. After the last superstep,
+    /// gather_remaining() appends the returns of the last readback.
     void gather(const NodeStatus& status, std::vector<raya_head>& returns);
     void gather_remaining(std::vector<raya_head>& returns);
 
-    /// In rank 0, passes to `sink` the messages in the outboxes of all ranks that the sending node created or changed.
-    /// All ranks must call record_packets() in every superstep, and either all or none of them with an empty sink. An
-    /// empty sink skips the superstep.
+    /// In rank 0, passes to `sink` the packets in the outboxes of all ranks that the outbox's node created or changed
+    /// and that the model charges as messages. All ranks must call record_packets() in every superstep. An empty sink
+    /// skips the superstep; it must be empty in all ranks or in none.
     void record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
     std::vector<std::uint64_t> read_events();  // rank 0: [node][RAYA_EVENTS] of all nodes; others: empty
@@ -155,7 +156,7 @@ class NodeArray {
     NodeBuffers buffers_;
     const NodeDistribution& distribution_;
     Ranks& ranks_;
-    std::uint32_t nodes_, node_words_;  // number of nodes of this rank; number of words of the fullest of them
+    std::uint32_t nodes_, node_words_;  // number of nodes of this rank; number of words of the fullest of these nodes
     KernelOptions options_;
     LaunchPlan plan_;
     Buffer<std::uint32_t> memories_, starts_;

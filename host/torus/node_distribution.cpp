@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-// A cuboid of nodes: the places from `first` to one before `end` on each axis.
+// A cuboid of nodes: along each axis the places from `first` to `end` - 1.
 struct Cuboid {
     raya_place first, end;
 
@@ -18,6 +18,7 @@ struct Cuboid {
     std::uint64_t nodes() const { return std::uint64_t{side(0)} * side(1) * side(2); }
 };
 
+// Divides the nodes of a torus among ranks by recursive bisection.
 class NodeDivider {
   public:
     explicit NodeDivider(const raya_torus& torus) : torus_(torus), rank_of(raya_nodes(torus)) {}
@@ -45,7 +46,7 @@ class NodeDivider {
     }
 
     const raya_torus torus_;
-    std::vector<std::uint32_t> rank_of;
+    std::vector<std::uint32_t> rank_of;  // [node]: rank of the node
 
   private:
     // Returns the first layer of the high part. The low part gets about low_ranks / ranks of the nodes, and both parts

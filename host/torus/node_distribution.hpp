@@ -16,18 +16,21 @@ namespace raya {
 /// nodes.
 std::vector<std::uint32_t> ranks_of_nodes(const raya_torus& torus, std::uint32_t ranks);
 
-/// Distribution of the nodes, and the nodes of one rank (`this rank`). A slot is the index of a node within its rank.
-/// First come the inner nodes, whose links all end in the same rank, then the border nodes, both in ascending order.
-/// With one rank all nodes are inner.
+/// Distribution of the nodes over the ranks, seen from one rank ("this rank", the constructor's `rank`). A slot is the
+/// index of a node within its rank. The first slots are those of the inner nodes, whose links all end in the same rank.
+/// The slots of the border nodes follow. Inner nodes and border nodes are each in ascending order. With one rank all
+/// nodes are inner.
 class NodeDistribution {
   public:
     explicit NodeDistribution(const raya_torus& torus, std::uint32_t ranks = 1, std::uint32_t rank = 0);
 
     const raya_torus& torus() const { return torus_; }
     std::uint32_t rank() const { return rank_; }
-    /// Number of nodes of this rank, and number of its inner nodes.
+    /// Number of nodes of this rank.
     std::uint32_t nodes() const { return static_cast<std::uint32_t>(own_nodes().size()); }
+    /// Number of inner nodes of this rank.
     std::uint32_t inner() const { return inner_; }
+    /// Maximum number of nodes of a rank.
     std::uint32_t max_nodes_of_rank() const;
 
     /// Return the nodes of a rank, and of this rank, indexed by slot.
@@ -37,9 +40,9 @@ class NodeDistribution {
     bool has(std::uint32_t node) const { return rank_of_[node] == rank_; }
     std::uint32_t slot_of(std::uint32_t node) const { return slot_of_[node]; }
 
-    /// Number of inboxes that this rank has for each link direction. First come the inboxes of links that start at
-    /// nodes of this rank, indexed by slot; then those of links from other ranks. All directions have the same number:
-    /// the maximum that a direction needs.
+    /// Number of inboxes that this rank has for each link direction. The first inboxes belong to links that start at
+    /// nodes of this rank, and are indexed by the slot of the start. Inboxes of links from other ranks follow. All
+    /// directions have the same number of inboxes: the maximum that a direction needs.
     std::uint32_t inboxes() const { return inboxes_; }
 
     /// Returns the index of the inbox for packets that `sender` sends over its link `link`. The sender or the node at

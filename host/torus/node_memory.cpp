@@ -55,7 +55,7 @@ std::size_t outline_words(const std::uint32_t* polygon) {
            (polygon[RAYA_POLYGON_NORMALS_AT] != 0 ? RAYA_PATCH_WORDS : 0);
 }
 
-// Numbers of the objects in a voxel: of all objects, and of those of each kind.
+// Object numbers of a voxel's list: of all objects, and of the objects of each kind.
 struct VoxelLists {
     ObjectNumbers all, spheres, polygons, cones;
 };
@@ -68,6 +68,7 @@ VoxelLists lists_of(const JobParts& job, const Partition& partition, std::uint32
     return {{first, last}, {first, polygons}, {polygons, cones}, {cones, last}};
 }
 
+// Packs the words of one node after another.
 class NodePacker {
   public:
     NodePacker(const PackedJob& job, const Partition& partition, const raya_torus& torus)

@@ -9,10 +9,11 @@
 
 namespace raya {
 
+/// Words of the nodes' memories, and their figures.
 struct NodeMemories {
     std::vector<std::uint32_t> words;   // words of all nodes, node after node
     std::vector<std::uint32_t> starts;  // [nodes + 1]: index of each node's first word
-    std::uint64_t copies = 0;           // number of voxel list entries minus number of finite objects in the lists
+    std::uint64_t copies = 0;           // number of voxel list entries minus number of distinct objects in the lists
     std::uint32_t max_objects = 0;      // maximum number of objects in a node, planes included
 };
 

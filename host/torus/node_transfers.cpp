@@ -1,5 +1,5 @@
-// Members of NodeArray, and functions of node_array.hpp, that evaluate the nodes' status, choose the method of link
-// exchange by a measurement, and record packets for a trace.
+// The part of node_array.hpp that evaluates the nodes' status, chooses the method of link exchange by a measurement,
+// and records packets for a trace.
 #include <algorithm>
 #include <limits>
 
@@ -14,7 +14,7 @@ std::uint64_t cycles_of(const NodeStatus& status, std::uint32_t node) {
 }
 
 constexpr std::uint32_t kMeasuredPackets = 32;  // number of packets in each outbox during a measurement
-constexpr int kRepetitions = 5;                 // the measurement uses the shortest time
+constexpr int kRepetitions = 5;                 // number of timed exchanges; the measurement uses the shortest time
 
 bool is_return(const raya_head& packet) { return raya_state_kind(packet.state) == RAYA_KIND_RETURN; }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNoTimeBytesPerS = 1e18;  // rate of links whose transfers take no time
 
-// Text that grows by formatted pieces.
+// Text to which formatted text is appended.
 struct Text {
     std::string text;
     template <class... Args>
@@ -23,7 +23,8 @@ struct Text {
 
 std::string channel_name(std::uint32_t node, std::uint32_t link) { return fmt::format("{}{}", node, link_name(link)); }
 
-// Returns the name of a wire, which contains the name of its channel in the direction of ascending coordinates.
+// Returns the name of a link's wire. It contains the name of the wire's channel in the direction of ascending
+// coordinates.
 std::string wire_name(const raya_torus& torus, std::uint32_t node, std::uint32_t link) {
     return "wire " +
            (link % 2 == 0 ? channel_name(node, link) : channel_name(raya_link_end(torus, node, link), link ^ 1u));
@@ -37,8 +38,8 @@ std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machin
     Text hosts, links, routes;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
         hosts.add("    <host id=\"{}\" speed=\"{:.17g}f\"/>\n", node, 1e9 / machine.cycle_ns);
-        std::set<std::uint32_t> connected = {
-            node};  // two wires connect the nodes of a side of 2; raya uses only the first
+        // Two wires connect the nodes of a side of two nodes; raya uses only the first.
+        std::set<std::uint32_t> connected = {node};
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t end = raya_link_end(torus, node, link);
             if (!connected.insert(end).second) continue;

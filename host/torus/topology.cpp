@@ -12,7 +12,7 @@ namespace raya {
 namespace {
 
 // Returns C, the number of slabs in a row (see make_torus()). The product of the sides I C and J K / C does not depend
-// on C, so the smallest difference of the sides also gives the ratio nearest to 1.
+// on C. So the C with the smallest difference of the sides also has the ratio of the sides nearest to 1.
 std::uint32_t slabs_per_row(const std::array<std::uint32_t, 3>& nodes) {
     const std::uint32_t i = nodes[0], j = nodes[1], k = nodes[2];
     const auto side_difference = [&](std::uint32_t c) {

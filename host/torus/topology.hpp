@@ -8,7 +8,7 @@
 
 namespace raya {
 
-inline constexpr std::uint32_t kMaxNodes = 65536;
+inline constexpr std::uint32_t kMaxNodes = 65536;  // maximum number of nodes
 
 /// Topology of the links.
 enum class Links { kTorus3d, kTorus2d };
@@ -16,9 +16,9 @@ enum class Links { kTorus3d, kTorus2d };
 /// Returns "torus3d" or "torus2d".
 std::string links_name(Links links);
 
-/// Makes a torus of I x J x K nodes. A 2-D torus places the K slabs of I x J nodes on a grid, C slabs in each row, so
-/// that its sides are I C and J K / C nodes. C is the divisor of K that minimises the difference of the sides, the
-/// smallest such divisor in case of a tie. Throws UserError unless 1 <= I, J, K and I J K <= kMaxNodes.
+/// Makes a torus of I x J x K nodes. A 2-D torus arranges the K slabs of I x J nodes in rows of C slabs, so that its
+/// sides are I C and J K / C nodes. C is the divisor of K that minimises the difference of the sides; in case of a tie,
+/// the smallest such divisor. Throws UserError unless I, J, K >= 1 and I J K <= kMaxNodes.
 raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links);
 
 /// Returns the number of links of a node that lead to another node: 2 for each side of the torus that is longer than 1,

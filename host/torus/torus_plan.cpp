@@ -72,7 +72,7 @@ NodeMemories select_memories(const NodeMemories& all, const std::vector<std::uin
     return selected;
 }
 
-// A job without the nodes' words, in the form that is sent to other ranks.
+// The part of a TorusJob that is the same in all ranks: all but the nodes' words and their starts.
 struct TorusJobHeader {
     raya_job header;
     bool has_patches;
@@ -148,7 +148,7 @@ void check_packets(const TorusSettings& s, const Scene& scene) {
 
 TorusSettings checked_settings(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
     check_packets(s, scene);
-    s.kernels = chosen(s.kernels, device, {.torus = true, .fp32 = s.format.is_fp32()});
+    s.kernels = chosen_kernels(s.kernels, device, {.torus = true, .fp32 = s.format.is_fp32()});
     check_kernel_options({.lanes = s.kernels.lanes, .group_size = s.kernels.group_size, .bounces = s.bounces}, device);
     return s;
 }

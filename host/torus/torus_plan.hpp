@@ -22,16 +22,16 @@
 
 namespace raya {
 
-/// Half-open ranges of rows and columns: [0] is the first row or column, [1] is one past the last.
+/// A rectangle of pixels: rows rows[0] to rows[1] - 1 and columns columns[0] to columns[1] - 1.
 struct PixelWindow {
     std::uint32_t rows[2], columns[2];
 };
 
 /// Returns [node]: window that contains every pixel whose primary ray enters the bounding box at one of the node's
-/// voxels. Such a ray enters through a face of the voxel that is part of a side of the box facing the eye. The window
+/// voxels. Such a ray enters through a face of the voxel that lies in a side of the box facing the eye. The window
 /// bounds the projections of these faces, widened by the rounding error of a ray's direction. The window is the whole
-/// image if the eye is in a voxel of the node or too close to such a side, or if the format has too few bits for an
-/// error bound. The window is empty if no primary ray can enter the box at the node.
+/// image in three cases: the eye is in a voxel of the node, the eye is too close to one of these sides, or the format
+/// has too few bits for an error bound. The window is empty if no primary ray can enter the box at the node.
 std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& grid, const raya_torus& torus,
                                        const NumberFormat& format);
 
@@ -44,8 +44,9 @@ JobSettings job_settings(const TorusSettings& settings, const LengthScale& scale
 /// Throws UserError if there are more voxels or lights than the fields of a packet can number.
 void check_packets(const TorusSettings& settings, const Scene& scene);
 
-/// Returns the settings with lanes and group size filled in. Throws UserError like check_packets(), and if the kernels
-/// cannot be built with the settings. Needs neither the packed scene nor device memory.
+/// Returns the settings with the device's lanes, group size and other kernel settings filled in. Throws UserError like
+/// check_packets(), and if the kernels cannot be built with the settings. Needs neither the packed scene nor device
+/// memory.
 TorusSettings checked_settings(TorusSettings settings, const Scene& scene, const DeviceInfo& device);
 
 /// Returns the number of pixels to trace.
@@ -70,18 +71,20 @@ struct TorusJob {
 /// Length scale of a scene, and memory that the fullest node needs.
 struct NodeNeeds {
     LengthScale scale;
-    std::uint64_t words = 0, bytes = 0;  // number of scene words; number of bytes of scene words and buffers
+    std::uint64_t words = 0;  // number of scene words
+    std::uint64_t bytes = 0;  // number of bytes of scene words and buffers
 };
 
 /// Divides the scene as a render does, but without a device. Throws UserError like check_packets(), or NodesDoNotFit.
 NodeNeeds node_needs(const Scene& scene, const TorusSettings& settings);
 
-/// Collective: returns the minimum over the devices of all ranks.
+/// Collective: returns the minima of both members over the devices of all ranks.
 DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks);
 
-/// Collective: rank 0 packs the scene, divides it among the nodes and sends each rank the words of its nodes. Meanwhile
-/// the host memory of rank 0 holds the words of all nodes. Other ranks do not read `scene`. `device`:
-/// smallest_device_memory(). Throws UserError if the scene or the buffers exceed the memory of a node or of the device.
+/// Collective: returns this rank's job. Rank 0 packs the scene, divides it among the nodes and sends each rank the
+/// words of its nodes; until then the host memory of rank 0 holds the words of all nodes. Other ranks do not read
+/// `scene`. `device`: smallest_device_memory(). Throws UserError if the scene or the buffers exceed the memory of a
+/// node or of the device.
 TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,
                         const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks);
 

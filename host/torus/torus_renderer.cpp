@@ -17,9 +17,9 @@ namespace raya {
 namespace {
 
 // Returns the progress, 0..1: the fraction of image rows whose primary rays are generated, times the mean of two
-// estimates. The first estimate, the fraction of finished packets, is accurate as long as all nodes compute, but too
-// high at the end, when few packets take many supersteps. The second, the logarithmic decrease of the number of live
-// packets, is accurate at the end, but too low before.
+// estimates. The first estimate is the fraction of finished packets. It is accurate as long as all nodes compute, but
+// too high at the end, when few packets take many supersteps. The second estimate is the logarithmic decrease of the
+// number of live packets. It is accurate at the end, but too low before.
 double progress_of(const MachineState& state, std::size_t returns, std::uint64_t max_live) {
     const auto finished_packets = static_cast<double>(returns), live_packets = static_cast<double>(state.live);
     if (live_packets == 0) return state.injected_fraction;
@@ -29,8 +29,8 @@ double progress_of(const MachineState& state, std::size_t returns, std::uint64_t
 
 }  // namespace
 
-// Maximum number of returns for which memory is reserved in advance: 128 MB, of which only the used pages are
-// allocated.
+// Maximum number of returns for which render() reserves memory in advance: 128 MB of address space. The operating
+// system allocates a page only when it is used.
 constexpr std::uint64_t kReservedReturns = 1 << 22;
 
 struct TorusRenderer::Impl {
@@ -203,8 +203,8 @@ std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusResult& 
         const bool ended = state.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && state.all_injected;
         if (progress) progress(ended ? 1 : progress_of(state, returns.size(), max_live));
         const bool injects = !state.all_injected && state.longest_queue <= job.buffers.queue / 4;
-        // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep. So the
-        // machine is in a deadlock only after three supersteps without progress.
+        // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep. So only
+        // three supersteps without progress prove a deadlock.
         stalled = state.progress == 0 && result.supersteps.back().max_link_words == 0 ? stalled + 1 : 0;
         const Reserve next_reserve = stalled > 0 ? Reserve::kTight : Reserve::kWholeTree;
         const bool continues = !ended && stalled < 3;
@@ -253,7 +253,7 @@ void TorusRenderer::Impl::collect(TorusResult& result) {
     result.moved_returns = nodes->moved_returns();
 }
 
-// Throws std::logic_error if a packet was lost or duplicated: the image would be wrong.
+// Throws std::logic_error if a packet was lost or duplicated, because the image would be wrong.
 void TorusRenderer::Impl::check(const TorusResult& result) const {
     for (std::size_t kind = 1; kind < RAYA_KINDS; ++kind)
         if (result.made[kind] != result.ended[kind])
@@ -263,7 +263,7 @@ void TorusRenderer::Impl::check(const TorusResult& result) const {
         throw std::logic_error(
             fmt::format("{} primary rays for {} pixels", result.made[RAYA_KIND_PRIMARY], traced_pixels(settings)));
     const EventCounts& e = result.events;
-    const std::uint64_t expected_returns = settings.packets.return_a_ray
+    const std::uint64_t expected_returns = settings.packets.one_return_per_ray
                                                ? e[RAYA_PRIMARY] + e[RAYA_REFLECTED] + e[RAYA_REFRACTED]
                                                : result.made[RAYA_KIND_RETURN];
     if (result.returns != expected_returns)

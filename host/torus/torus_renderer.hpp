@@ -15,6 +15,7 @@
 
 namespace raya {
 
+/// Renders images of one scene. All ranks must make the same calls in the same order.
 class TorusRenderer {
   public:
     /// Collective: packs and divides the scene, checks that it fits the nodes, builds the kernels and allocates the
@@ -31,8 +32,8 @@ class TorusRenderer {
     /// Returns the factor by which the scene's lengths are multiplied.
     const LengthScale& scale() const;
 
-    /// Sets the pixels of the following images. So one renderer can render the pixel subsets of several groups of
-    /// nodes, one after another.
+    /// Sets the pixels of the following images. With it, one renderer can render the pixel subsets of several groups of
+    /// nodes one after another.
     void set_pixels(const PixelSubset& pixels);
 
     /// Sets the capacity of the queues, in packets, for the following images. The queues may exceed a node's memory.

@@ -29,14 +29,14 @@ std::uint64_t packet_bytes(const PacketCounts& made) {
     return kWordBytes * words;
 }
 
-// Checks for the shortest packets, the worst case, that transfers take longer than the processors' work for messages,
-// as the stepwise time assumes (torus_time()).
+// torus_time() assumes that transfers take longer than the processors' work for messages. The second static_assert
+// checks this for the worst case, the shortest packets.
 constexpr std::uint32_t kShortestWords = PacketCharge::kRayReturnWords;
 static_assert(kShortestWords < RAYA_RETURN_WORDS);
 static_assert(2 * RAYA_LINKS * (kT805MessageWordCycles * kShortestWords + kT805MessageCycles) * kT805CycleNs <
               kShortestWords * 1e9 * 2 * 4 / kT805BothWaysBytesPerS);
 
-// Returns, for each node, the processor cycles for the messages that it sends and receives.
+// Returns [node]: processor cycles for the messages that the node sends and receives.
 std::vector<std::uint64_t> message_cycles(const raya_torus& torus, const TorusResult& result) {
     std::vector<std::uint64_t> cycles(raya_nodes(torus));
     for (std::uint32_t node = 0; node < cycles.size(); ++node)
@@ -50,7 +50,7 @@ std::vector<std::uint64_t> message_cycles(const raya_torus& torus, const TorusRe
 }
 
 // Returns the milliseconds that the busiest link takes for its transfers in both directions. Link 2 d of a node and
-// link 2 d + 1 of the node at its end are the two directions of one link.
+// link 2 d + 1 of the node at the end of link 2 d are the two directions of one link.
 double busiest_link_ms(const raya_torus& torus, const TorusResult& result) {
     double max_ms = 0;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node)

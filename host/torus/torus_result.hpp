@@ -23,8 +23,8 @@
 
 namespace raya {
 
-/// A packet that leaves the node that created or changed the packet. Returns that the model does not charge as separate
-/// messages have no record (PacketCharge::return_a_ray).
+/// Record of a packet when it leaves the node that created or changed it. Returns that the model does not charge as
+/// separate messages (PacketCharge::one_return_per_ray) have no record.
 struct PacketRecord {
     std::uint32_t superstep = 0, source = 0, destination = 0;  // source, destination: nodes
     raya_head head{};
@@ -36,8 +36,8 @@ using PacketSink = std::function<void(const PacketRecord&)>;
 struct NodeWork {
     std::uint32_t node = 0;
     std::uint64_t injection_cycles = 0;           // of the primary rays that the node generated or discarded
-    std::span<const raya_processed> processed{};  // [slot of the queue before the superstep]
-    std::span<const raya_packet> queue{};         // queue after the superstep; RAYA_STATE_FRESH: packet new or changed
+    std::span<const raya_processed> processed{};  // [slot of the queue before trace_voxel]: cost of the packet
+    std::span<const raya_packet> queue{};         // queue after trace_voxel; RAYA_STATE_FRESH: packet new or changed
 };
 using NodeWorkSink = std::function<void(const NodeWork&)>;
 
@@ -67,6 +67,7 @@ struct RenderObservers {
 /// Number of packets of each kind (RAYA_KIND_* of kernels/shared/packet.h).
 using PacketCounts = std::array<std::uint64_t, RAYA_KINDS>;
 
+/// Result of a render.
 struct TorusResult {
     Image image;  // pixels outside TorusSettings::pixels are 0
     EventCounts events{};
@@ -106,8 +107,8 @@ struct DeadlockFigures {
     std::uint32_t queue = 0;  // capacity of a queue, packets
 };
 
-/// The torus is in a deadlock. Longer queues prevent the deadlock; find_longer_queue() (host/torus/buffer_plan.hpp)
-/// finds a sufficient length.
+/// Thrown if the torus is in a deadlock. Longer queues prevent the deadlock; find_longer_queue()
+/// (host/torus/buffer_plan.hpp) finds a sufficient length.
 struct TorusDeadlock : UserError {
     explicit TorusDeadlock(const DeadlockFigures& state, const std::string& remedy = "use a longer queue");
 
@@ -118,8 +119,8 @@ struct TorusDeadlock : UserError {
 /// rays count as operations of inject; all other events, including those of the entry of primary rays into the bounding
 /// box, count as operations of trace_voxel. Bytes are lower bounds:
 ///   - trace_voxel, inject, route: read the words of all nodes in each launch, if kernels copy them to local memory;
-///   - trace_voxel: reads a ray packet for each voxel in which the ray was tested, and writes each packet created,
-///     except primary rays; inject: writes a packet for each primary ray;
+///   - trace_voxel: reads a ray packet for each voxel in which the ray was tested, and writes each packet that it
+///     creates; inject: writes a packet for each primary ray;
 ///   - route: reads and writes a ray for each link of its route, and a return once; accept: reads and writes each
 ///     packet once for each link;
 ///   - compose: reads each contribution and the start of each pixel, and writes the colour of each pixel.
@@ -131,8 +132,8 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
 ///     of the busiest link, whichever is longer. A lower bound for a real machine.
 ///   - stepwise: the sum over supersteps of the busiest node's computation and the busiest link's transfers, at the
 ///     rate of a link with both directions in use. The processors' work for messages is not added, because it overlaps
-///     with the transfers and is shorter: at most 12 link directions x (2 + 19 / 8) cycles per word of the busiest
-///     direction, which takes 83 cycles on its link.
+///     with the transfers and is shorter. For each word of the busiest link direction it takes at most 12 link
+///     directions x (2 + 19 / 6) = 62 cycles (packets of 6 words); the transfer of the word takes 83 cycles.
 /// So overlapped <= stepwise. Throws std::invalid_argument if `result` is for another torus.
 TorusTime torus_time(const raya_torus& torus, const TorusResult& result);
 

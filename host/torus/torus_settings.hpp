@@ -13,7 +13,7 @@
 
 namespace raya {
 
-/// Capacity of a node's buffers, in packets of 16 words (kernels/shared/packet.h).
+/// Capacities of a node's buffers, in packets.
 struct NodeBuffers {
     std::uint32_t queue = 0;  // capacity of the queue
     std::uint32_t box = 0;    // capacity of each outbox and each inbox

@@ -19,15 +19,16 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kCompressedBlock = 1 << 16;  // number of bytes of text that are compressed at a time
+constexpr std::size_t kCompressedBlock = 1 << 16;  // number of bytes of text that PacketTrace compresses at a time
 
-// Numbers of a packet and of its parent ray; a primary ray has no parent.
+// Number of a packet's ray, and number of the ray's parent; a primary ray has no parent.
 struct Lineage {
     std::uint64_t ray = 0;
     std::optional<std::uint64_t> parent;
 };
 
-// A return packet gets a new number, because it is recorded once and has no children.
+// A return packet gets a new number that is not looked up again, because the packet is recorded once and has no
+// children.
 Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
     const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
     const RayId id = {record.head.pixel, RayId::tree_index_of(record.head.path, raya_state_level(state)),
@@ -131,12 +132,12 @@ class TorusTrace::Timeline {
     void add_supersteps() {
         for (std::size_t step = 0; step < machine_trace_.steps_.size(); ++step) {
             const Superstep& all = result_.supersteps[step];
-            begins_.push_back(now_ms_);
-            const double computed = now_ms_ + t805_ms(all.max_node_cycles);
-            computed_.push_back(computed);
-            const double end = computed + link_ms(all.max_link_words);
+            begins_ms_.push_back(now_ms_);
+            const double computed_ms = now_ms_ + t805_ms(all.max_node_cycles);
+            computed_ms_.push_back(computed_ms);
+            const double end = computed_ms + link_ms(all.max_link_words);
             add_machine(step, end);
-            for (const TracedPe& n : nodes_) add_node(step, n.pe, computed, end);
+            for (const TracedPe& n : nodes_) add_node(step, n.pe, computed_ms, end);
             now_ms_ = end;
         }
     }
@@ -148,10 +149,12 @@ class TorusTrace::Timeline {
         std::size_t flows = 0;
         for (const SampledPacket& p : machine_trace_.packets_) {
             const std::size_t arrival = p.superstep + route_length(machine_trace_.torus_, p.source, p.destination);
-            if (!traced_nodes.contains(p.source) || !traced_nodes.contains(p.destination) || arrival >= begins_.size())
+            if (!traced_nodes.contains(p.source) || !traced_nodes.contains(p.destination) ||
+                arrival >= begins_ms_.size())
                 continue;
             trace_.flow(packet_kind_name(raya_state_kind(p.state)), track_of(p.source),
-                        nanoseconds(computed_[p.superstep]), track_of(p.destination), nanoseconds(begins_[arrival]));
+                        nanoseconds(computed_ms_[p.superstep]), track_of(p.destination),
+                        nanoseconds(begins_ms_[arrival]));
             ++flows;
         }
         return flows;
@@ -183,7 +186,7 @@ class TorusTrace::Timeline {
                         {"mean", links > 0 ? static_cast<double>(words) / links : 0}});
     }
 
-    void add_node(std::size_t step, std::uint32_t node, double computed, double end) {
+    void add_node(std::size_t step, std::uint32_t node, double computed_ms, double end) {
         const NodeStep& n = machine_trace_.steps_[step][node];
         const TraceTrack track = track_of(node);
         const auto slice = [&](const char* name, double begin, double finish, const Json& arguments = {}) {
@@ -191,10 +194,10 @@ class TorusTrace::Timeline {
                 trace_.slice(track, name, nanoseconds(begin), nanoseconds(finish), arguments);
         };
         trace_.slice(track, fmt::format("superstep {}", step), nanoseconds(now_ms_), nanoseconds(end));
-        const double done = now_ms_ + t805_ms(n.cycles), sent = computed + link_ms(n.link_words);
+        const double done = now_ms_ + t805_ms(n.cycles), sent = computed_ms + link_ms(n.link_words);
         slice("compute", now_ms_, done, {{"cycles", n.cycles}});
-        slice("wait for the busiest node", done, computed);
-        slice("exchange", computed, sent, {{"busiest_link_words", n.link_words}, {"words", n.words}});
+        slice("wait for the busiest node", done, computed_ms);
+        slice("exchange", computed_ms, sent, {{"busiest_link_words", n.link_words}, {"words", n.words}});
         slice("wait for the busiest link", sent, end);
     }
 
@@ -202,7 +205,7 @@ class TorusTrace::Timeline {
     TraceFile& trace_;
     const TorusResult& result_;
     std::vector<TracedPe> nodes_;
-    std::vector<double> begins_, computed_;  // [superstep]: start of the superstep, end of its computation, ms
+    std::vector<double> begins_ms_, computed_ms_;  // [superstep]: start of the superstep, end of its computation, ms
     double now_ms_ = 0;
 };
 
@@ -211,9 +214,9 @@ void TorusTrace::add_to(TraceFile& trace, const TorusResult& result, std::size_t
         trace.metadata()["machine"] = "left out: the number of nodes to trace is 0";
         return;
     }
-    Timeline line(*this, trace, result, nodes);
-    line.add_supersteps();
-    const std::size_t flows = line.add_flows();
+    Timeline timeline(*this, trace, result, nodes);
+    timeline.add_supersteps();
+    const std::size_t flows = timeline.add_flows();
     trace.metadata()["machine"] = {
         {"name", "torus"},
         {"nodes", raya_nodes(torus_)},

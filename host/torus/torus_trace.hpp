@@ -18,8 +18,8 @@ namespace raya {
 /// Returns "primary", "reflected", "refracted", "shadow" or "return". Throws std::logic_error for other kinds.
 const char* packet_kind_name(std::uint32_t kind);
 
-/// Writes packet records as CSV, in the order in which add() receives them. Most of its memory is RayNumbers, with up
-/// to 48 bytes for each ray that was sent or whose child was sent; the rest is the compressed text.
+/// Writes packet records as CSV, in the order in which add() receives them. RayNumbers takes most of the memory, up to
+/// 48 bytes for each ray that was sent or whose child was sent; the compressed text takes the remainder.
 class PacketTrace {
   public:
     PacketTrace();
@@ -44,7 +44,7 @@ class PacketTrace {
 class TorusTrace {
   public:
     static constexpr std::size_t kMaxPackets = 20'000;
-    static constexpr std::uint32_t kPacketsEvery = 16;  // supersteps from one record of packets to the next
+    static constexpr std::uint32_t kPacketsEvery = 16;  // packets are recorded in every 16th superstep
 
     explicit TorusTrace(const raya_torus& torus) : torus_(torus) {}
 
@@ -55,8 +55,8 @@ class TorusTrace {
     /// stepwise time of torus_time(): in each superstep a node computes and waits for the busiest node, then it sends
     /// and waits for the busiest link. Counters: live packets, load imbalance u of the superstep, words over the
     /// busiest link and mean words over a link. Flows: the sampled packets whose source and destination have a track.
-    /// A flow ends as many supersteps after its start as the packet's route has links, the earliest possible arrival.
-    /// `result` must be of the same render. If `nodes` is 0, adds only a remark to the metadata.
+    /// A flow ends at the earliest possible arrival: as many supersteps after its start as the packet's route has
+    /// links. `result` must be of the same render. If `nodes` is 0, adds only a remark to the metadata.
     void add_to(TraceFile& trace, const TorusResult& result, std::size_t nodes) const;
 
   private:
@@ -65,8 +65,8 @@ class TorusTrace {
     };
     struct NodeStep {
         std::uint64_t cycles = 0;
-        std::uint32_t link_words = 0,
-                      words = 0;  // numbers of words over the node's busiest link, and over all its links
+        std::uint32_t link_words = 0;  // number of words over the node's busiest link
+        std::uint32_t words = 0;       // number of words over all links of the node
     };
     class Timeline;
 

@@ -24,7 +24,7 @@ class Projection {
           step_(std::min(column_.length(), row_.length())) {
         const double width = job.mapping.width, height = job.mapping.height;
         // Bound of the rounding error of a direction, in pixels: 16 units in the last place of the sum of the lengths
-        // of the direction's terms, and one pixel for the half-open edge.
+        // of the direction's terms. One pixel more, because the edge of a window is half-open.
         const double unit = std::ldexp(1.0, -format.fraction_bits);
         margin_ = 1 + 16 * unit * (corner_.length() + width * column_.length() + height * row_.length()) / step_;
         for (const double x : {-1.0, width})
@@ -34,10 +34,11 @@ class Projection {
 
     const Vec3& eye() const { return eye_; }
     double margin() const { return margin_; }
-    double step() const { return step_; }        // minimum distance of adjacent pixels at c = 1
-    double longest() const { return longest_; }  // maximum |P - eye| of a pixel at c = 1
+    double step() const { return step_; }        // minimum distance of adjacent pixels at depth c = 1
+    double longest() const { return longest_; }  // maximum |P - eye| of a pixel at depth c = 1
 
-    double depth(const Vec3& p) const { return (p - eye_).dot(normal_) / corner_.dot(normal_); }  // c
+    // Returns depth c of P.
+    double depth(const Vec3& p) const { return (p - eye_).dot(normal_) / corner_.dot(normal_); }
 
     // Returns column and row of P, which must be in front of the eye.
     std::array<double, 2> pixel(const Vec3& p) const {
@@ -55,12 +56,12 @@ class Projection {
 struct ScreenBounds {
     double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     double high[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    bool whole = false;  // no bound is known: use the whole image
+    bool whole = false;  // true: no bound is known, so the window is the whole image
     bool is_nonempty() const { return whole || low[0] <= high[0]; }
 };
 
-// Extent of the bounding box along an axis. slack: bound of the rounding error of a ray's entry point
-// (grid/traversal.clh), a few fp32 units in the last place of the path length and of the origin.
+// Extent of the bounding box along an axis. `slack`: bound of the rounding error of a ray's entry point
+// (grid/traversal.clh), which is a few fp32 units in the last place of the path length and of the origin.
 struct BoxExtent {
     double low, high, slack;
 };
@@ -83,8 +84,8 @@ std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4
     return polygon;
 }
 
-// Extends the bounds by a face of the voxel at place `at`: the face in plane `k` between voxels along `axis`.
-// `distance`: distance of this plane from the eye.
+// Extends the bounds by a face of the voxel at place `at`. The face lies in plane `k` of the grid's planes across
+// `axis`. `distance`: distance of this plane from the eye.
 void add_face(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, const raya_place& at,
               std::uint32_t axis, std::uint32_t k, double distance) {
     const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
@@ -113,12 +114,14 @@ void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_gr
         const double low = raya_voxel_plane(grid, axis, at.at[axis]),
                      high = raya_voxel_plane(grid, axis, at.at[axis] + 1);
         contains_eye = contains_eye && eye >= low - box.slack && eye <= high + box.slack;
-        const double before = box.low - eye, behind = eye - box.high, distance = std::max(before, behind);
-        const bool is_outer = before > 0 ? low <= box.low + box.slack : behind > 0 && high >= box.high - box.slack;
+        const double distance_below = box.low - eye, distance_above = eye - box.high,
+                     distance = std::max(distance_below, distance_above);
+        const bool is_outer =
+            distance_below > 0 ? low <= box.low + box.slack : distance_above > 0 && high >= box.high - box.slack;
         if (!is_outer) continue;
-        // The eye is so close to this side that rounding may move the entry point by more than a pixel.
+        // No bound is known if the eye is so close to this side that rounding may move the entry point by a pixel.
         bounds.whole = bounds.whole || box.slack * projection.longest() > distance * projection.step();
-        add_face(bounds, projection, grid, at, axis, at.at[axis] + (behind > 0 ? 1 : 0), distance);
+        add_face(bounds, projection, grid, at, axis, at.at[axis] + (distance_above > 0 ? 1 : 0), distance);
     }
     bounds.whole = bounds.whole || contains_eye;
 }

@@ -14,10 +14,10 @@ using Values = std::vector<std::uint32_t>;
 
 // Returns the powers of two in minimum..maximum, or `maximum` if there are none; `minimum` is a power of two.
 Values group_sizes(std::uint32_t minimum, std::uint32_t maximum) {
-    Values all;
-    for (std::uint32_t size = minimum; size <= maximum; size *= 2) all.push_back(size);
-    if (all.empty()) all.push_back(maximum);
-    return all;
+    Values sizes;
+    for (std::uint32_t size = minimum; size <= maximum; size *= 2) sizes.push_back(size);
+    if (sizes.empty()) sizes.push_back(maximum);
+    return sizes;
 }
 
 constexpr auto kCopyExchange = static_cast<std::uint32_t>(LinkMove::kCopies);
@@ -36,21 +36,24 @@ std::string value_text(const TuningParameter& parameter, std::uint32_t value) {
     return value ? std::to_string(value) : "own";
 }
 
-constexpr double kDropped = std::numeric_limits<double>::infinity();  // cost of a candidate that failed
-// Limits for a candidate's time divided by the best time. If the measured ratio of a value exceeds kStopRatio, the
-// search tries no further values in this direction. Because parameters interact, it also tries candidates with a
-// predicted ratio below kMaxPredictedRatio, and neighbours that differ in two parameters with one below kMaxPairRatio.
-constexpr double kStopRatio = 1.25;
-constexpr double kMaxPredictedRatio = 1.12;
-constexpr double kMaxPairRatio = 1.5;
+constexpr double kDroppedCost = std::numeric_limits<double>::infinity();  // cost of a candidate that failed
+
+// Limits for a candidate's time divided by the best time. Phases 1, 2 and 3 are those of search() in search.hpp.
+constexpr double kStopRatio = 1.25;  // phase 1 stops varying a parameter in a direction above this measured ratio
+constexpr double kMaxPredictedRatio = 1.12;  // phase 2 tries candidates with a predicted ratio below this limit
+constexpr double kMaxPairRatio = 1.5;        // phase 3 tries neighbours with a predicted ratio below this limit
 
 class CoordinateDescent {
   public:
     CoordinateDescent(const Space& space, const MeasureRatio& measure, const ShouldStop& stop)
-        : space_(space), measure_(measure), stop_(stop), order_(space.parameters.size()), result_{.best = space.start} {
+        : space_(space),
+          measure_(measure),
+          stop_(stop),
+          parameter_order_(space.parameters.size()),
+          result_{.best = space.start} {
         costs_[space.start] = 1;
-        std::iota(order_.begin(), order_.end(), std::size_t{0});
-        std::stable_sort(order_.begin(), order_.end(), [&space](std::size_t a, std::size_t b) {
+        std::iota(parameter_order_.begin(), parameter_order_.end(), std::size_t{0});
+        std::stable_sort(parameter_order_.begin(), parameter_order_.end(), [&space](std::size_t a, std::size_t b) {
             return space.parameters[a].values.size() < space.parameters[b].values.size();
         });
     }
@@ -58,8 +61,8 @@ class CoordinateDescent {
     SearchResult run() {
         descend();
         while (result_.ended) {
-            Candidate next = most_promising();
-            if (next.empty()) next = most_promising_pair_step();
+            Candidate next = most_promising_candidate();
+            if (next.empty()) next = most_promising_neighbour();
             if (next.empty()) break;
             if (try_candidate(next)) descend();
         }
@@ -76,7 +79,7 @@ class CoordinateDescent {
         }
         const std::optional<double> ratio = measure_(result_.best, candidate);
         ++result_.tried;
-        const double cost = ratio ? *ratio * result_.cost : kDropped;
+        const double cost = ratio ? *ratio * result_.cost : kDroppedCost;
         costs_[candidate] = cost;
         if (!ratio || *ratio > kMaxWinRatio) return false;
         result_.best = candidate;
@@ -89,12 +92,12 @@ class CoordinateDescent {
     void descend() {
         for (bool improved = true; improved && result_.ended;) {
             improved = false;
-            for (const std::size_t parameter : order_) improved |= try_values(parameter);
+            for (const std::size_t parameter : parameter_order_) improved |= try_values(parameter);
         }
     }
 
-    // Tries larger values of the parameter than the best candidate's; if none of them helps, smaller values. Returns
-    // true if a value helps.
+    // Tries values of the parameter larger than the best candidate's; if none of them helps, tries smaller values.
+    // Returns true if a value helps.
     bool try_values(std::size_t parameter) {
         const Candidate start = result_.best;
         return try_direction(start, parameter, +1) || try_direction(start, parameter, -1);
@@ -116,15 +119,15 @@ class CoordinateDescent {
     std::vector<std::vector<double>> minimum_costs() const {
         std::vector<std::vector<double>> costs;
         for (const TuningParameter& parameter : space_.parameters)
-            costs.emplace_back(parameter.values.size(), kDropped);
+            costs.emplace_back(parameter.values.size(), kDroppedCost);
         for (const auto& [candidate, cost] : costs_)
             for (std::size_t k = 0; k < candidate.size(); ++k)
                 costs[k][candidate[k]] = std::min(costs[k][candidate[k]], cost);
         return costs;
     }
 
-    // Finds the candidate with the lowest predicted cost among the untried candidates passed to offer(). search()
-    // defines the prediction.
+    // Finds the candidate with the lowest predicted cost among the untried candidates passed to offer(). The prediction
+    // is that of phase 2 of search().
     class LowestPrediction {
       public:
         LowestPrediction(const CoordinateDescent& search, double max_ratio)
@@ -147,7 +150,7 @@ class CoordinateDescent {
         Candidate candidate_;  // empty: every prediction is above max_ratio
     };
 
-    Candidate most_promising() const {
+    Candidate most_promising_candidate() const {
         LowestPrediction prediction(*this, kMaxPredictedRatio);
         for_each_candidate(space_, [&](const Candidate& candidate) { prediction.offer(candidate); });
         return prediction.lowest_candidate();
@@ -155,14 +158,14 @@ class CoordinateDescent {
 
     // Returns the most promising neighbour that differs in two parameters. If two parameters share a resource, such as
     // registers, a gain may require a change of both.
-    Candidate most_promising_pair_step() const {
+    Candidate most_promising_neighbour() const {
         LowestPrediction prediction(*this, kMaxPairRatio);
         for (std::size_t a = 0; a < space_.parameters.size(); ++a)
             for (std::size_t b = 0; b < a; ++b)
-                for (const int corner : {0, 1, 2, 3}) {
+                for (const int signs : {0, 1, 2, 3}) {  // bits 0 and 1: signs of the steps of a and b
                     Candidate candidate = result_.best;
-                    candidate[a] += corner & 1 ? 1 : -1;  // wraps below 0
-                    candidate[b] += corner & 2 ? 1 : -1;
+                    candidate[a] += signs & 1 ? 1 : -1;  // wraps below 0
+                    candidate[b] += signs & 2 ? 1 : -1;
                     if (candidate[a] < space_.parameters[a].values.size() &&
                         candidate[b] < space_.parameters[b].values.size())
                         prediction.offer(candidate);
@@ -173,9 +176,9 @@ class CoordinateDescent {
     const Space& space_;
     const MeasureRatio& measure_;
     const ShouldStop& stop_;
-    std::vector<std::size_t> order_;  // indices of the parameters in the order in which they are varied
+    std::vector<std::size_t> parameter_order_;  // parameter indices in the order in which the search varies them
     SearchResult result_;
-    std::map<Candidate, double> costs_;  // time divided by the time of the start, or kDropped
+    std::map<Candidate, double> costs_;  // time divided by the time of the start, or kDroppedCost
 };
 
 }  // namespace
@@ -223,8 +226,8 @@ Space space_of(const DeviceInfo& device, const TuningKey& key) {
     const bool llvmpipe = device.max_loop_iterations > 0;
     add(&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16});
     // Torus nodes on a CPU keep their default group size, which preserves the order of packets (docs/packets.md).
-    const std::uint32_t max_on_cpu = key.torus ? space.defaults.group : std::min(llvmpipe ? 16u : 4u, max_group);
-    add(&TunedValues::group, cpu ? group_sizes(1, max_on_cpu) : group_sizes(16, max_group));
+    const std::uint32_t max_cpu_group = key.torus ? space.defaults.group : std::min(llvmpipe ? 16u : 4u, max_group);
+    add(&TunedValues::group, cpu ? group_sizes(1, max_cpu_group) : group_sizes(16, max_group));
     if (supports_register_limit(device)) add(&TunedValues::registers, {0, 64, 96, 128, 168});
     if (tests_all_objects) add(&TunedValues::local_words, {0, 1});
     if (tests_all_objects && key.fp32 && !key.torus)
@@ -239,13 +242,15 @@ Space space_of(const DeviceInfo& device, const TuningKey& key) {
     return space;
 }
 
-std::string change_text(const Space& space, const TunedValues& from, const TunedValues& to) {
+std::string change_text(const Space& space, const TunedValues& old_values, const TunedValues& new_values) {
     std::string text;
     for (const TuningParameter& parameter : space.parameters) {
         std::string name = parameter.name();
         std::replace(name.begin(), name.end(), '_', ' ');
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value_text(parameter, from.*parameter.value));
-        if (from.*parameter.value != to.*parameter.value) text += " -> " + value_text(parameter, to.*parameter.value);
+        text +=
+            fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value_text(parameter, old_values.*parameter.value));
+        if (old_values.*parameter.value != new_values.*parameter.value)
+            text += " -> " + value_text(parameter, new_values.*parameter.value);
     }
     return text;
 }

@@ -43,7 +43,7 @@ void for_each_candidate(const Space& space, const std::function<void(const Candi
 
 /// Returns the tuning parameters of these kernels on this device:
 ///   - lanes;
-///   - group size: few work-items on a CPU, because lanes already use its vector instructions; one for torus nodes on
+///   - group size: few work-items on a CPU, because lanes already use its vector instructions; 1 for torus nodes on
 ///     a CPU, because larger groups change the order of packets;
 ///   - job words in local or global memory, without an accelerator;
 ///   - the number of spheres that a batch tests, without an accelerator in fp32 on the ring;
@@ -54,9 +54,9 @@ void for_each_candidate(const Space& space, const std::function<void(const Candi
 /// not tuning parameters, so that modelled figures do not depend on tuning.
 Space space_of(const DeviceInfo& device, const TuningKey& key);
 
-/// Returns the values of all parameters, and the changes from `from` to `to`: "lanes 16, group 1 -> 2, batch own".
-/// "own" is value 0: the kernels' default.
-std::string change_text(const Space& space, const TunedValues& from, const TunedValues& to);
+/// Returns a text with the old values of all parameters, and their new values where they differ:
+/// "lanes 16, group 1 -> 2, batch own". "own" is value 0: the kernels' default.
+std::string change_text(const Space& space, const TunedValues& old_values, const TunedValues& new_values);
 
 /// Measures a candidate and the best so far alternately. Returns the candidate's time divided by the best's, or nullopt
 /// if the candidate fails and is dropped.
@@ -68,7 +68,7 @@ using ShouldStop = std::function<bool()>;
 struct SearchResult {
     Candidate best;
     double cost = 1;        // time of `best` divided by the time of the start: product of the measured ratios
-    std::size_t tried = 0;  // number of measured candidates except the start
+    std::size_t tried = 0;  // number of measured candidates, without the start
     bool ended = true;      // true: no promising candidate is left; false: stopped by ShouldStop
 };
 
@@ -83,7 +83,7 @@ struct SearchResult {
 ///   3. Tries the neighbours of the best candidate that differ from it in two parameters.
 SearchResult search(const Space& space, const MeasureRatio& measure, const ShouldStop& stop);
 
-/// Exhaustive search, the reference for search(): compares every candidate with the best so far, starting from `start`.
+/// Exhaustive search, for comparison with search(): compares every candidate with the best so far, at first `start`.
 SearchResult search_all(const Space& space, const Candidate& start, const MeasureRatio& measure,
                         const ShouldStop& stop);
 

@@ -56,7 +56,8 @@ Json device_json(const DeviceInfo& device) {
         {"name", device.name}, {"platform", device.platform}, {"version", device.version}, {"driver", device.driver}};
 }
 
-// Throws UserError unless the file is one of raya tune for this device, driver, version of raya and file format.
+// Throws UserError unless raya tune wrote the file for this device and driver, with this version of raya and of the
+// file format.
 void check_origin(const Json& json, const DeviceInfo& device) {
     if (!json.find("kind") || json.at("kind").text() != kKind) throw UserError(fmt::format("not a file of {}", kKind));
     const auto check = [](const std::string& stored, const std::string& required, const char* property) {
@@ -80,7 +81,8 @@ TunedFile file_of(const Json& json, const DeviceInfo& device) {
 
 constexpr std::uint64_t kMaxFileBytes = 1 << 20;
 
-// Returns nullopt if the file does not exist. Throws UserError if it is unusable or other users may write it.
+// Reads the stored file. Returns nullopt if it does not exist. Throws UserError if it is unusable or other users may
+// write it.
 std::optional<TunedFile> read_stored(const fs::path& path, const DeviceInfo& device) {
     std::error_code ignored;
     if (!fs::exists(path, ignored)) return {};
@@ -102,9 +104,9 @@ std::string file_name_part(const std::string& name) {
     return text.substr(0, kMaxLength);
 }
 
-// Returns the folder named by an environment variable. Ignores relative paths, as the XDG Base Directory Specification
-// requires.
-std::optional<fs::path> folder_in(const char* variable) {
+// Returns the folder that an environment variable contains. Ignores relative paths, as the XDG Base Directory
+// Specification requires.
+std::optional<fs::path> folder_of_variable(const char* variable) {
     const char* text = std::getenv(variable);
     if (text == nullptr || !fs::path(text).is_absolute()) return {};
     return fs::path(text);
@@ -126,8 +128,8 @@ TunedValues values_of(const Json& json) {
 }
 
 std::optional<fs::path> tuned_folder() {
-    if (const auto cache = folder_in("XDG_CACHE_HOME")) return *cache / "raya";
-    if (const auto home = folder_in("HOME")) return *home / ".cache" / "raya";
+    if (const auto cache = folder_of_variable("XDG_CACHE_HOME")) return *cache / "raya";
+    if (const auto home = folder_of_variable("HOME")) return *home / ".cache" / "raya";
     return {};
 }
 

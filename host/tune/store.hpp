@@ -17,7 +17,7 @@ Json to_json(const TunedValues& values);
 /// Inverse of to_json(). Throws JsonError if a value is missing or not an unsigned 32-bit integer.
 TunedValues values_of(const Json& json);
 
-/// Tuned values of one configuration of kernels.
+/// Tuned values of one kind of render.
 struct TunedEntry {
     TuningKey key;
     TunedValues values;

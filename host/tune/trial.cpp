@@ -23,7 +23,7 @@ namespace raya {
 namespace {
 
 constexpr std::size_t kMinSamples = 2;  // number of samples before stop_early may end a trial
-constexpr double kDropRatio = 1.25;     // stop_early ends a trial if the last candidate is slower by this factor
+constexpr double kDropRatio = 1.25;     // stop_early ends a trial if last time / first time exceeds this ratio
 
 struct Variant {
     const char* name;
@@ -90,26 +90,27 @@ const EventCounts& events_of(const TorusResult& result) { return result.events; 
 using TimedRender = std::function<double()>;
 
 // Writes the lines "built" and "check" of candidate `number`, whose kernels `renderer` has built. Renders the first
-// image.
+// image for "check". Returns a function that renders further images.
 template <class Renderer>
-TimedRender prepare(int lines, std::size_t number, std::shared_ptr<Renderer> renderer) {
+TimedRender prepare_candidate(int lines, std::size_t number, std::shared_ptr<Renderer> renderer) {
     send_line(lines, {{"built", number}});
-    const auto first = renderer->render();
-    const std::string check = fmt::format("{}, {} rays", pixel_hash(first.image), ray_count(events_of(first)));
-    send_line(lines, {{"check", check}, {"build_s", first.build_s}});
+    const auto first_result = renderer->render();
+    const std::string check =
+        fmt::format("{}, {} rays", pixel_hash(first_result.image), ray_count(events_of(first_result)));
+    send_line(lines, {{"check", check}, {"build_s", first_result.build_s}});
     return [renderer] { return renderer->render().render_s; };
 }
 
 double min_seconds(const std::vector<double>& seconds) { return *std::min_element(seconds.begin(), seconds.end()); }
 
 std::vector<std::vector<double>> samples_of(const std::vector<TimedRender>& renders, const TrialRequest& request) {
-    std::vector<std::vector<double>> all(renders.size());
+    std::vector<std::vector<double>> samples(renders.size());
     for (std::uint32_t i = 0; i < request.samples; ++i) {
-        for (std::size_t n = 0; n < renders.size(); ++n) all[n].push_back(mean_seconds(renders[n]));
-        const bool may_stop = request.stop_early && all.front().size() >= kMinSamples;
-        if (may_stop && min_seconds(all.back()) > kDropRatio * min_seconds(all.front())) break;
+        for (std::size_t n = 0; n < renders.size(); ++n) samples[n].push_back(mean_seconds(renders[n]));
+        const bool may_stop = request.stop_early && samples.front().size() >= kMinSamples;
+        if (may_stop && min_seconds(samples.back()) > kDropRatio * min_seconds(samples.front())) break;
     }
-    return all;
+    return samples;
 }
 
 TrialRequest request_of(const Json& json) {
@@ -206,11 +207,11 @@ void run_trial(int lines, const Json& json) {
         const KernelChoice kernels = with_values({.sources = {.folder = request.render.kernel_dir}}, values);
         const std::size_t number = renders.size();
         if (request.workload.key().torus)
-            renders.push_back(prepare(
+            renders.push_back(prepare_candidate(
                 lines, number,
                 std::make_shared<TorusRenderer>(session, input.scene, torus_settings(request, input.size, kernels))));
         else
-            renders.push_back(prepare(
+            renders.push_back(prepare_candidate(
                 lines, number,
                 std::make_shared<RingRenderer>(session, input.scene, ring_settings(request, input.size, kernels))));
     }

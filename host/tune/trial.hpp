@@ -11,7 +11,7 @@
 
 namespace raya {
 
-/// A variant of the renderer in a number format. Variants: "none", "grid" and "bvh" (ring machine with that
+/// A kind of render to tune: a variant and a number format. Variants: "none", "grid" and "bvh" (ring machine with that
 /// accelerator) and "torus" (4 x 4 x 4 nodes).
 struct Workload {
     std::string variant;
@@ -60,28 +60,28 @@ struct Trial {
     TunedValues values;  // the last candidate's values
     TrialStatus status = TrialStatus::kUnfinished;
     std::string error;                         // one line of text; empty for kCorrect
-    std::string check;                         // image hash and number of rays of the last candidate
+    std::string check;                         // image hash and number of rays of the last candidate, for comparison
     double build_s = 0;                        // build time of the last candidate's kernels
     double wall_s = 0;                         // run time of the child process
     std::vector<std::vector<double>> samples;  // [candidate][sample]: seconds per image
-    std::string when;                          // time of the trial's end: "2026-11-22T23:59:59Z"
+    std::string ended_at;                      // time of the trial's end: "2026-11-22T23:59:59Z"
 };
 
-/// Returns the time of the last candidate divided by the time of the first; 1 if there are no samples. It is the larger
-/// of two ratios, so that a faster candidate must be faster by both: the ratio of the minimum times, and the median
-/// ratio of consecutive samples.
+/// Returns the time of the last candidate divided by the time of the first; 1 if there are no samples. The result is
+/// the larger of two ratios: the ratio of the minimum times, and the median ratio of consecutive samples. A candidate
+/// is therefore faster only if both ratios are below 1.
 double ratio_of(const Trial& trial);
 
 /// Returns true if the last candidate is significantly faster than the first: ratio_of() is at most kMaxWinRatio, and
-/// the last candidate is faster in at least 8 of 9 pairs of samples. If both
-/// candidates are equally fast, the last one is faster in at least 8 of 9 pairs with a probability of 2 %.
+/// the last candidate is faster in at least 8 of 9 pairs of samples. If both candidates are equally fast, this happens
+/// with a probability of only 2 %.
 bool wins_significantly(const Trial& trial);
 
 /// Returns the median of seconds[i] / reference[i], the ratios of the samples of two candidates; 1 without samples.
 double median_ratio(const std::vector<double>& seconds, const std::vector<double>& reference);
 
 /// Calls `render`, which returns its duration in seconds, until the durations add up to at least 20 ms, so that the
-/// clock's resolution does not matter. Returns their mean.
+/// clock's resolution does not matter. Returns the mean duration.
 double mean_seconds(const std::function<double()>& render);
 
 /// Name and function of the child process's task (host/base/child_process.hpp). run_trial() writes one JSON object per

@@ -22,12 +22,12 @@ class TrialReader {
         trial_.values = request.candidates.back();
     }
 
-    void take(const Json& line) {
+    void take_line(const Json& line) {
         if (const Json* error = line.find("error")) {
             if (line.at("kind").text() == "user") throw UserError(error->text());
-            end(failure(), error->text());
+            end(failure_status(), error->text());
         }
-        if (const Json* built = line.find("built")) built_ = built->integer() + 1;
+        if (const Json* built = line.find("built")) built_candidates_ = built->integer() + 1;
         if (line.find("check")) take_check(line);
         if (const Json* samples = line.find("samples")) take_samples(*samples);
     }
@@ -40,9 +40,9 @@ class TrialReader {
         trial_.error = error.substr(0, error.find('\n'));
     }
 
-    // Returns the status of a trial that fails now.
-    TrialStatus failure() const {
-        return built_ < request_.candidates.size() ? TrialStatus::kCompile : TrialStatus::kRuntime;
+    // Returns the status of a trial that fails now: kCompile until all kernels are built, then kRuntime.
+    TrialStatus failure_status() const {
+        return built_candidates_ < request_.candidates.size() ? TrialStatus::kCompile : TrialStatus::kRuntime;
     }
     bool ended() const { return ended_; }
     Trial trial() const { return trial_; }
@@ -64,31 +64,33 @@ class TrialReader {
     }
 
     const TrialRequest& request_;
-    const std::string& expected_check_;  // empty: accept any
+    const std::string& expected_check_;  // empty: accept any check
     Trial trial_;
-    std::size_t built_ = 0;  // number of candidates built so far
+    std::size_t built_candidates_ = 0;  // number of candidates built so far
     bool ended_ = false;
 };
 
 // Runs a trial in a child process, because drivers may crash or hang, and ends the process after `limit_s` seconds.
-// `expected_check`: the expected Trial::check; empty: accept any. Throws UserError if the process reports a user error.
+// `expected_check`: the expected Trial::check; empty: accept any check. Throws UserError if the process reports a user
+// error.
 Trial supervise_trial(const TrialRequest& request, double limit_s, const std::string& expected_check,
-                      const TrialProgress& running) {
+                      const TrialProgress& progress) {
     const Clock::time_point start = Clock::now();
     TrialReader reader(request, expected_check);
     ChildProcess process(kTrialTask, to_json(request));
     while (!reader.ended()) {
         std::string line;
         const ChildProcess::Read read = process.read(line, std::chrono::milliseconds(200));
-        if (read == ChildProcess::Read::kLine) reader.take(Json::parse(line, {"the trial's process"}));
-        if (read == ChildProcess::Read::kEnd) reader.end(reader.failure(), "ended by " + ending_text(process.wait()));
-        if (read == ChildProcess::Read::kNothing) running(request.candidates.back(), seconds_since(start));
+        if (read == ChildProcess::Read::kLine) reader.take_line(Json::parse(line, {"the trial's process"}));
+        if (read == ChildProcess::Read::kEnd)
+            reader.end(reader.failure_status(), "ended by " + ending_text(process.wait()));
+        if (read == ChildProcess::Read::kNothing) progress(request.candidates.back(), seconds_since(start));
         if (seconds_since(start) > limit_s)
             reader.end(TrialStatus::kTimeout, fmt::format("not done in {:.0f} s", limit_s));
     }
     Trial trial = reader.trial();  // ~ChildProcess() ends the process if it still runs
     trial.wall_s = seconds_since(start);
-    trial.when = utc_text("%Y-%m-%dT%H:%M:%SZ");
+    trial.ended_at = utc_text("%Y-%m-%dT%H:%M:%SZ");
     return trial;
 }
 
@@ -98,8 +100,8 @@ constexpr double kLimitFactor = 10;  // factor of limit_s for the first trial of
 class Tuner {
   public:
     Tuner(const DeviceInfo& device, const Workload& workload, const TuneSettings& settings,
-          const TrialProgress& running)
-        : settings_(settings), running_(running) {
+          const TrialProgress& progress)
+        : settings_(settings), progress_(progress) {
         result_.workload = workload;
         result_.space = space_of(device, workload.key());
     }
@@ -115,28 +117,29 @@ class Tuner {
         result_.seconds = elapsed_s();
         confirm(result_.space.values_of(found.best));
         if (settings_.exhaustive)
-            measure_all(result_.best == result_.space.defaults ? result_.space.start : found.best);
+            measure_all_candidates(result_.best == result_.space.defaults ? result_.space.start : found.best);
         return std::move(result_);
     }
 
   private:
     double elapsed_s() const { return seconds_since(start_); }
 
-    // Returns the time left for a candidate in seconds: at least 2, so that the last candidate may exceed the limit of
-    // the search slightly.
+    // Returns the time left for a candidate in seconds. It is at least 2, so that the last candidate can finish
+    // although the time of the search is over.
     double remaining_s() const { return std::max(2.0, settings_.seconds - elapsed_s()); }
 
     Trial run_trial_of(const std::vector<TunedValues>& candidates, std::uint32_t samples, double limit_s,
                        bool stop_early) {
         const TrialRequest request{settings_.render, result_.workload, candidates, samples, stop_early};
-        return supervise_trial(request, limit_s, check_, running_);
+        return supervise_trial(request, limit_s, check_, progress_);
     }
 
     Trial measure_defaults() {
         const Trial first = run_trial_of({result_.space.defaults}, 1, kLimitFactor * settings_.limit_s, false);
         if (first.status == TrialStatus::kCorrect) return first;
-        throw DeviceError(fmt::format("{}: cannot measure the defaults: {}; remedy: run raya verify to find the error",
-                                      result_.workload.name(), first.error));
+        throw DeviceError(fmt::format(
+            "{}: the render with the default parameters failed: {}; remedy: run raya verify to find the error",
+            result_.workload.name(), first.error));
     }
 
     // Runs a trial. Returns the candidate's time divided by the best's, or nullopt if the candidate is dropped.
@@ -149,8 +152,8 @@ class Tuner {
         return t.status == TrialStatus::kCorrect ? std::optional(ratio_of(t)) : std::nullopt;
     }
 
-    // Sets the result to `found` if a new comparison with the defaults confirms that it is faster. The search's own
-    // measurement of the best candidate is biased: the best of many measurements is often a lucky one.
+    // Sets the result to `found` if a new comparison with the defaults confirms that `found` is faster. The search's
+    // own measurement of `found` is biased: the best of many measurements is often a lucky one.
     void confirm(const TunedValues& found) {
         result_.best = result_.space.defaults;
         if (found == result_.best) return;
@@ -161,7 +164,7 @@ class Tuner {
     }
 
     // Measures every candidate, and compares the best of them with the search's result.
-    void measure_all(const Candidate& start) {
+    void measure_all_candidates(const Candidate& start) {
         const Tuning search_result = result_;
         const MeasureRatio ratio = [this](const Candidate& best, const Candidate& candidate) {
             return measure(best, candidate, settings_.limit_s);
@@ -178,7 +181,7 @@ class Tuner {
     }
 
     const TuneSettings& settings_;
-    const TrialProgress& running_;
+    const TrialProgress& progress_;
     const Clock::time_point start_ = Clock::now();
     std::string check_;  // Trial::check of the defaults
     Tuning result_;
@@ -218,7 +221,7 @@ Json result_json(const Tuning& tuning, const Trial& trial) {
         measurements.push_back(measurement("time", 1e3 * *std::min_element(seconds.begin(), seconds.end()), "ms"));
         measurements.push_back(measurement("ratio", ratio_of(trial), ""));
     }
-    return {{"timestamp", trial.when},
+    return {{"timestamp", trial.ended_at},
             {"configuration", configuration},
             {"objectives", std::vector<std::string>{"time"}},
             {"times",
@@ -244,8 +247,8 @@ std::size_t Tuning::dropped() const {
 }
 
 Tuning tune(const DeviceInfo& device, const Workload& workload, const TuneSettings& settings,
-            const TrialProgress& running) {
-    return Tuner(device, workload, settings, running).run();
+            const TrialProgress& progress) {
+    return Tuner(device, workload, settings, progress).run();
 }
 
 std::string t4_text(const DeviceInfo& device, const std::vector<Tuning>& tunings) {

@@ -29,9 +29,9 @@ struct Tuning {
     TunedValues best;
     double ratio = 1;           // time of `best` divided by the time of the defaults, from the final comparison
     bool complete = false;      // false: the time limit ended the search
-    std::vector<Trial> trials;  // trials of the search, one for each candidate
+    std::vector<Trial> trials;  // trials of the search, one for each measured candidate
     double seconds = 0;         // duration of the search, including builds
-    std::optional<TunedValues> exhaustive_best;  // best candidate of the exhaustive search
+    std::optional<TunedValues> exhaustive_best;  // best candidate of the exhaustive search, if requested
     double exhaustive_ratio = 1;                 // time of `best` divided by the time of `exhaustive_best`
     std::size_t exhaustive_tried = 0;            // number of candidates that the exhaustive search measured
 
@@ -43,9 +43,9 @@ struct Tuning {
 
 /// Tunes `workload`. A candidate is better than the best so far if ratio_of() is at most kMaxWinRatio. `best` has the
 /// default values unless the best candidate is significantly faster than the defaults (wins_significantly()). Throws
-/// DeviceError if rendering with the defaults fails.
+/// DeviceError if the render with the defaults fails.
 Tuning tune(const DeviceInfo& device, const Workload& workload, const TuneSettings& settings,
-            const TrialProgress& running);
+            const TrialProgress& progress);
 
 /// Returns all trials as JSON in the T4 results format 1.0.0 of Kernel Tuner (KernelTuner/kernel_tuner,
 /// kernel_tuner/schema/T4/1.0.0/results-schema.json). There is one result for each finished candidate, with

@@ -12,10 +12,11 @@
 
 namespace raya {
 
-/// Maximum number of lanes. Checks pad their rows of operands to a multiple of kMaxLanes, so that every number of lanes
-/// uses the same rows.
+/// Maximum number of lanes. A row is one set of operands, processed by one lane. Checks pad the rows to a multiple of
+/// kMaxLanes, so that builds with any number of lanes test the same rows.
 inline constexpr std::size_t kMaxLanes = 16;
 
+/// A program with kernels of checks, and the session in which they run.
 class CheckRunner {
   public:
     /// `lanes`: V, the number of lanes for which the program is built.
@@ -46,6 +47,7 @@ class CheckRunner {
         return constant(name, count, kPoison);
     }
 
+    /// Returns the contents of `buffer`.
     template <class T>
     std::vector<T> read(const Buffer<T>& buffer) {
         std::vector<T> values(buffer.size());

@@ -34,8 +34,8 @@ PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
     return job;
 }
 
-// Returns `count` rays from random points in and around the scene to random points near its centre. Directions have
-// length 1; all numbers are rounded to the format.
+// Returns `count` rays from random points in and around the scene to random points near its centre. `extent`: maximum
+// absolute coordinate in the scene. Directions have length 1. All numbers are rounded to the format.
 Rays random_rays(const NumberFormat& format, double extent, std::size_t count) {
     constexpr std::uint64_t kSeed = 1986;
     SplitMix random(kSeed);

@@ -18,16 +18,18 @@
 namespace raya {
 
 inline constexpr std::uint32_t kNoObject = 0xffffffffu;  // equals RAYA_NO_OBJECT of the kernels
-inline constexpr float kDefaultRayLimit = 4096;  // ray limit (maximum t), farther away than all objects of the scenes
+inline constexpr float kDefaultRayLimit = 4096;          // limit of a ray (maximum t), beyond all objects of the scenes
 
+/// A ray, and its hit in a KnownScene.
 struct KnownHit {
     const char* description;
     std::array<float, 3> origin, direction;
     std::uint32_t object;  // object number in the job, or kNoObject
-    float t;               // distance of the hit; undefined for a miss
+    float t;               // distance of the hit; unused for a miss
     float limit = kDefaultRayLimit;
 };
 
+/// A scene, and rays whose hits are calculated by hand.
 struct KnownScene {
     std::string name;
     Scene scene;
@@ -45,12 +47,12 @@ struct Rays {
 
     std::size_t count() const { return words.size() / kWords; }
     void add(const std::array<float, 3>& origin, const std::array<float, 3>& direction, float limit);
-    /// Appends rays of limit 0, which hit nothing, up to a multiple of kMaxLanes.
+    /// Appends rays of limit 0, which hit nothing, until the number of rays is a multiple of kMaxLanes.
     void pad();
     std::string text(std::size_t ray) const;
 };
 
-/// Results, indexed by ray.
+/// Hits that a kernel has found. Both vectors are indexed by the number of the ray.
 struct Hits {
     std::vector<std::uint32_t> objects;    // object number, or kNoObject
     std::vector<std::uint32_t> distances;  // bits of t if the ray hits an object, else bits of its limit
@@ -66,7 +68,7 @@ Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector
 struct HitBuild {
     NumberFormat format;
     std::uint32_t lanes = 1;
-    bool filter = false;  // fp32 pre-test that rejects spheres
+    bool filter = false;  // use the sphere filter
     bool grid = true;     // false: leave out the grid traversal, which takes most of the build time
     KernelSources sources{};
 
@@ -74,6 +76,7 @@ struct HitBuild {
     std::string name() const;
 };
 
+/// Runs the kernels that one build of kernels/checks/hits.cl contains.
 class HitRunner : public CheckRunner {
   public:
     HitRunner(Session& session, const HitBuild& build);
@@ -96,8 +99,7 @@ Verdict check_known_hits(HitRunner& runner, const KnownScene& known);
 
 /// Checks that the grid traversal finds the same hits as testing all objects on the same device, for
 /// `rays_per_scene` random rays in each scene. `scenes`: names of files in scenes/, without extension. `rays_per_scene`
-/// must be a multiple of kMaxLanes. The build must
-/// include the grid traversal.
+/// must be a multiple of kMaxLanes. The build must include the grid traversal.
 Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_per_scene);
 
 }  // namespace raya

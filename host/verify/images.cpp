@@ -38,8 +38,9 @@ struct Rendering {
     bool refined = false;       // division, square root and fma are refined, as if the device did not round them
                                 // correctly
 
-    // Returns the key in StoredImage::counts. Renderings of the same image with the same key have equal counts.
-    std::string variant() const {
+    // Returns the check kind, the key in StoredImage::counts: the renderer with its accelerator or torus, such as
+    // "ring", "bvh" or "torus2d 3x2x2 root". Renderings of an image with the same check kind have equal counts.
+    std::string check_kind() const {
         if (torus)
             return fmt::format("{} {}{}", links_name(links), sides_text(nodes),
                                inject == Injection::kRoot ? " root" : "");
@@ -47,9 +48,9 @@ struct Rendering {
     }
 
     std::string name() const {
-        std::string text = torus ? variant()
+        std::string text = torus ? check_kind()
                                  : fmt::format("{} on {}{}", mapping_name(mapping), pes,
-                                               accel == AccelKind::kNone ? "" : ", " + variant());
+                                               accel == AccelKind::kNone ? "" : ", " + check_kind());
         if (mapping.kind == RAYA_FOLD_BLOCK) text += ", block fold";
         if (work_per_launch) text += fmt::format(", launches of {} {}", work_per_launch, torus ? "units" : "tests");
         if (link_move == LinkMove::kKernel) text += ", links by a kernel";
@@ -68,7 +69,8 @@ KernelChoice kernels_for(KernelChoice choice, const Rendering& r) {
 
 struct Rendered {
     Image image;
-    std::string options, counts;
+    std::string options;  // build options of the kernels
+    std::string counts;   // text of counts_text()
 };
 
 std::uint64_t sum(std::span<const std::uint64_t> numbers) {
@@ -98,7 +100,7 @@ Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Re
     s.links = r.links;
     s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // more voxels than nodes, so that some nodes have several
     s.inject = r.inject;
-    s.packets.return_a_ray = r.inject == Injection::kRoot;  // so that the checks cover both values
+    s.packets.one_return_per_ray = r.inject == Injection::kRoot;  // so that the checks cover both values
     s.bounces = kReferenceBounces;
     s.format = parse_format(image.format);
     s.sampling = image.sampling;
@@ -139,7 +141,7 @@ std::optional<Image> unoptimised_image(const Verification& v, Session& session, 
     }
 }
 
-// Returns remedies for a wrong image. They depend on whether unoptimised_image() is correct on this device.
+// Returns remedies for a wrong image. The remedies depend on whether unoptimised_image() is correct on this device.
 std::vector<std::string> image_remedies(const Verification& v, Session& session, const ReferenceImage& image) {
     const std::optional<Image> unoptimised = unoptimised_image(v, session, image);
     if (unoptimised && pixel_hash(*unoptimised) == stored_image(image).hash)
@@ -160,7 +162,7 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
     const StoredImage& stored = stored_image(image);
     const Rendered got = render(v.kernels(r.lanes, r.group_size), session, r);
     if (pixel_hash(got.image) == stored.hash)
-        return check_counts(stored.counts.at(r.variant()), got.counts, stored.hash.substr(0, 8), got.options);
+        return check_counts(stored.counts.at(r.check_kind()), got.counts, stored.hash.substr(0, 8), got.options);
     std::size_t wrong = 0, first = 0;
     const std::size_t pixels = stored.image.rgb.size() / 3;
     for (std::size_t i = pixels; i-- > 0;) {
@@ -178,8 +180,8 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
 }
 
 // Returns renderings that together use every kernel and option. Building kernels takes most of a rendering's time, so
-// renderings with equal build options are adjacent, in order to use the same build, and some renderings of depth kQuick
-// combine several features, such as global words and refined division. The renderings of depth kBrief need three
+// renderings with equal build options are adjacent and use the same build. For the same reason some renderings of depth
+// kQuick combine several features, such as global words and refined division. The renderings of depth kBrief need three
 // builds: one for each machine and one for a reduced format.
 std::vector<Rendering> standard_renderings() {
     constexpr auto k2d = Links::kTorus2d;
@@ -269,13 +271,13 @@ std::vector<Rendering> renderings_of_all_builds() {
 
 }  // namespace
 
-std::map<std::string, std::string> counts_by_variant(Session& session, const ReferenceImage& image) {
+std::map<std::string, std::string> counts_by_check_kind(Session& session, const ReferenceImage& image) {
     std::map<std::string, std::string> counts;
     std::vector<Rendering> all = standard_renderings();
     all.push_back({.image = image.name});  // so that every image has the counts of the ring
     for (const Rendering& r : all)
-        if (r.image == image.name && !counts.contains(r.variant()))
-            counts[r.variant()] = render({.lanes = 1, .group_size = 1}, session, r).counts;
+        if (r.image == image.name && !counts.contains(r.check_kind()))
+            counts[r.check_kind()] = render({.lanes = 1, .group_size = 1}, session, r).counts;
     return counts;
 }
 

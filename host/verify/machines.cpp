@@ -38,7 +38,7 @@ std::uint32_t random_divisor(SplitMix& random, std::uint32_t side) {
     return divisor;
 }
 
-// Returns a random side of an image in pixels: at most 40, at most kMaxSide, or kMaxSide.
+// Returns a random side of an image in pixels, with equal probability from 1..40, from 1..kMaxSide, or kMaxSide.
 std::uint32_t random_side(SplitMix& random) {
     const std::uint32_t sides[] = {1 + random_below(random, 40), 1 + random_below(random, kMaxSide), kMaxSide};
     return sides[random_below(random, 3)];
@@ -103,7 +103,7 @@ Verdict compare_cases(const Words& expected, const Words& got, const std::vector
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < expected.size(); i += stride)
         wrong += !std::equal(&expected[i], &expected[i] + stride, &got[i]);
-    return failed(fmt::format("{} of {} wrong", wrong, expected.size() / stride),
+    return failed(fmt::format("{} of {} cases wrong", wrong, expected.size() / stride),
                   {.where = fmt::format("{} of {}", names[at % stride], describe(at / stride)),
                    .expected = fmt::format("{0} = 0x{0:08x}", expected[at]),
                    .got = fmt::format("{0} = 0x{0:08x}", got[at])});
@@ -257,8 +257,8 @@ void verify_transfers(Verification& v) {
             const raya_torus torus = make_torus({3, 2, 4}, links);
             check(name, [&](Session& s) { return check_links(s, torus, stride); });
             v.check("machine", name + " by a kernel", [&](Session& s) {
-                // 8 work-items copy the 4 to 12 units of 8 words of a mailbox, so the check covers work-items that copy
-                // two units, one or none.
+                // A mailbox takes 4 to 12 units of 8 words. So some of the 8 work-items copy two units, some one unit,
+                // and some none.
                 Kernels kernels(s, {.group_size = std::min(8u, max_group_size_of(v.device()))}, v.sources());
                 return with_remedies(check_links(s, torus, stride, &kernels), "", integer_remedies());
             });

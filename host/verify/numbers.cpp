@@ -201,8 +201,8 @@ void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t 
     });
 }
 
-// Returns true for a few formats that cover every code path of the number layer: fp32; reduced formats with fewer
-// exponent bits than fp32 or as many; both kinds of rounding.
+// Returns true for a few formats that together cover every code path of the number layer: fp32, reduced formats with
+// fewer exponent bits than fp32, reduced formats with 8 exponent bits as in fp32, and both kinds of rounding.
 bool is_representative(const NumberFormat& format) {
     for (const char* name : {"fp32", "e6m15", "e6m15t", "e5m10", "e8m12", "e8m21t"})
         if (format == parse_format(name)) return true;

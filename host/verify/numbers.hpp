@@ -14,9 +14,10 @@
 
 namespace raya {
 
+/// An operation of the number layer.
 struct NumberOperation {
     const char* name;
-    std::size_t operands;  // 1..3
+    std::size_t operands;  // number of operands, 1..3
 };
 
 /// The operations in the order in which kernels/checks/numbers.cl returns their results.
@@ -55,8 +56,8 @@ enum NumberOperationNumber : std::size_t {
     kLog2,
     kExp2
 };
-/// Number of operations with known answers: the first ones in kNumberOperations. Kernel `operations` computes them,
-/// kernel `functions` the remaining operations.
+/// Number of operations with known answers; they are the first operations in kNumberOperations. Kernel `operations`
+/// computes them, kernel `functions` the remaining operations.
 inline constexpr std::size_t kAnsweredOperations = kPower + 1;
 
 /// Operands a, b and c of each row. An operation ignores the operands that it does not need. For from_index, `a`
@@ -66,7 +67,7 @@ struct NumberRows {
 
     std::size_t count() const { return a.size(); }
     void add(float x, float y, float z);
-    /// Appends rows of ones up to a multiple of kMaxLanes.
+    /// Appends rows of ones until the number of rows is a multiple of kMaxLanes.
     void pad();
 };
 
@@ -93,14 +94,15 @@ struct ExpectedNumbers {
     std::size_t first_row = 0;
 };
 
+/// Runs the kernels of one build of kernels/checks/numbers.cl.
 class NumberRunner {
   public:
     NumberRunner(Session& session, const NumberBuild& build);
 
     const std::string& options() const { return runner_.options(); }
 
-    /// Returns the results of the first kAnsweredOperations operations, and of the others if `with_functions` is true.
-    /// The number of rows must be a multiple of kMaxLanes.
+    /// Returns the results of the first kAnsweredOperations operations, and of the remaining operations if
+    /// `with_functions` is true. The number of rows must be a multiple of kMaxLanes.
     NumberResults run(const NumberRows& rows, bool with_functions);
 
     /// Computes the operations and compares the results with `expected`. The verdict of a pass has a text such as "357

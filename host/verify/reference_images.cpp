@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kReferenceHeading =
     "# Hashes, counts and pixels of the reference images, made by tests/verify/make_reference_images.cpp: do not "
     "edit.\n"
-    "# An image has a line \"NAME: HASH\", lines \"counts VARIANT: COUNTER NUMBER ...\", and a line for each row of "
+    "# An image has a line \"NAME: HASH\", lines \"counts KIND: COUNTER NUMBER ...\", and a line for each row of "
     "pixels.\n"
     "# A pixel is RED/GREEN/BLUE, bits of fp32 numbers in hexadecimal without trailing zeros; \".\" repeats the pixel "
     "to the\n"
@@ -129,7 +129,7 @@ std::string reference_images_text(const std::vector<StoredImage>& all) {
     std::vector<std::string> previous(kReferenceSide * kReferenceSide);
     for (const StoredImage& stored : all) {
         text += fmt::format("{}: {}\n", stored.name, stored.hash);
-        for (const auto& [variant, counts] : stored.counts) text += fmt::format("counts {}: {}\n", variant, counts);
+        for (const auto& [kind, counts] : stored.counts) text += fmt::format("counts {}: {}\n", kind, counts);
         std::string left;
         for (std::size_t i = 0; i < previous.size(); ++i) {
             const std::string pixel = colour_text(&stored.image.rgb.at(3 * i));

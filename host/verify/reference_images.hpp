@@ -25,7 +25,7 @@ struct ReferenceImage {
     std::string scene;  // file name without extension: in scenes/, or "ties" for host/verify/ties.nff
     std::string format;
     AntialiasMethod antialias = AntialiasMethod::kNone;
-    raya_u32 points = RAYA_POINTS_AXES;  // points of supersampling
+    raya_u32 points = RAYA_POINTS_AXES;  // RAYA_POINTS_*: positions of the additional samples of supersampling
     Sampling sampling = Sampling::kCentres;
 };
 
@@ -38,20 +38,22 @@ const ReferenceImage& reference_image_named(const std::string& name);
 Scene scene_of(const ReferenceImage& image);
 
 /// Returns the settings with which reference_images.txt was generated: a ring with one PE, one lane, work-groups of one
-/// work-item, no accelerator, no fp32 pre-test of objects.
+/// work-item, no accelerator, no sphere filter or polygon filter.
 RingSettings reference_settings(const ReferenceImage& image);
 
 /// The stored hash, pixels and counts of a reference image.
 struct StoredImage {
     std::string name, hash;
     Image image;
-    std::map<std::string, std::string> counts;  // [variant, such as "ring" or "bvh"]: "COUNTER NUMBER ..."
+    // [check kind]: "COUNTER NUMBER ...". The check kind is the renderer with its accelerator or torus: "ring", "grid",
+    // "bvh", or a text such as "torus3d 2x2x2".
+    std::map<std::string, std::string> counts;
 };
 
-/// Parses reference_images.txt. A line "NAME: HASH" starts an image. Lines "counts VARIANT: COUNTER NUMBER ..." follow,
-/// then one line for each row of pixels. A pixel is RED/GREEN/BLUE, fp32 bits in hexadecimal without trailing zeros;
-/// "." repeats the pixel to the left, "=" the pixel at the same position in the previous image. Throws std::logic_error
-/// for a syntax error.
+/// Parses reference_images.txt. A line "NAME: HASH" starts an image. Lines "counts KIND: COUNTER NUMBER ..." follow,
+/// one for each check kind; then one line for each row of pixels. A pixel is RED/GREEN/BLUE, fp32 bits in hexadecimal
+/// without trailing zeros; "." repeats the pixel to the left, "=" the pixel at the same position in the previous image.
+/// Throws std::logic_error for a syntax error.
 std::vector<StoredImage> parse_reference_images(const std::string& text);
 /// Inverse of parse_reference_images().
 std::string reference_images_text(const std::vector<StoredImage>& all);
@@ -69,8 +71,8 @@ std::string counts_text(const EventCounts& events,
 Verdict check_counts(const std::string& expected, const std::string& got, const std::string& pass_text,
                      const std::string& options);
 
-/// Renders the image with each variant that `raya verify` renders. Returns [variant]: counts_text(). The counts do not
-/// depend on lanes, group size, number of PEs or launches.
-std::map<std::string, std::string> counts_by_variant(Session& session, const ReferenceImage& image);
+/// Renders the image once for each check kind that `raya verify` has for it. Returns [check kind]: counts_text(). The
+/// counts do not depend on lanes, group size, number of PEs or launches.
+std::map<std::string, std::string> counts_by_check_kind(Session& session, const ReferenceImage& image);
 
 }  // namespace raya

@@ -86,8 +86,8 @@ void refuse_empty_selection(const cl::Device& device, const VerifySettings& sett
 
 // --- In the parent process
 
-// Returns remedies for a crash. `full_name`: "LAYER NAME" of the check that was running; empty: none was. `status`:
-// exit status of the process.
+// Returns remedies for a crash. `full_name`: "LAYER NAME" of the check that was running; empty: no check was running.
+// `status`: exit status of the process.
 std::vector<std::string> crash_remedies(const std::string& full_name, int status, const VerifySettings& settings) {
     std::vector<std::string> all;
     const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
@@ -173,8 +173,8 @@ class Supervision {
         if (sink_.finished) sink_.finished(check);
     }
 
-    // Returns a failed check for a process that ended too early with exit status `status`. Throws an exception if the
-    // process has not found a device.
+    // Returns a failed check for a process that ended too early with exit status `status`. Throws an exception if no
+    // process has found a device.
     Check crashed_check(int status) const {
         const std::string result = "ended by " + ending_text(status);
         if (devices_ == 0 && WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)

@@ -26,11 +26,13 @@ struct DeviceChecks {
     bool all_passed() const { return count_of(checks, Outcome::kFail) == 0 && count_of(checks, Outcome::kPass) > 0; }
 };
 
+/// Callbacks of supervise().
 struct SupervisorSink {
     /// Called before a device's first check. `left_out`: one line for each unusable device.
     std::function<void(const DeviceChecks&, const std::vector<std::string>& left_out)> device{};
     /// Called about once a second while a check runs, with the check's run time in seconds.
     std::function<void(const std::string& layer, const std::string& name, double seconds)> running{};
+    /// Called after each check.
     std::function<void(const Check&)> finished{};
 };
 

@@ -34,8 +34,8 @@ Words as_words(const std::vector<float>& floats) {
     return words;
 }
 
-// Compares words. Returns nullopt if they are equal, else a failure with the first difference. `unit`: name of a group
-// of `words_per_unit` words, such as "PE".
+// Compares `expected` with `got`. Returns nullopt if they are equal, else a failure with the first difference. `unit`:
+// name of a group of `words_per_unit` words, such as "PE".
 std::optional<Verdict> difference(const Words& expected, const Words& got, const std::string& transfer,
                                   std::size_t words_per_unit, const char* unit) {
     const auto differ = std::mismatch(expected.begin(), expected.end(), got.begin());
@@ -58,7 +58,7 @@ struct LinkTraffic {
             for (std::uint32_t node = 0; node < nodes && torus.sides[link / 2] > 1; ++node)
                 fill(link, node, nodes, stride);
         for (std::size_t at = 0; at < words; ++at)
-            inboxes[at] = at % kMailboxWords ? kPoison : 0;  // no packets, even if LinkExchange::clear() is wrong
+            inboxes[at] = at % kMailboxWords ? kPoison : 0;  // 0 packets, even if LinkExchange::clear() is wrong
     }
 
     static constexpr std::uint32_t kCapacity = 5, kPacketWords = RAYA_PACKET_WORDS,
@@ -119,13 +119,13 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Bus bus(session, counted, static_cast<std::uint32_t>(pes));
     const SourceLayout layout{pes, words, words + 3, 2};
-    auto memory = session.buffer<float>("memory_words words", layout.size()),
+    auto memory = session.buffer<float>("memory words", layout.size()),
          blocks = session.buffer<float>("blocks", pes * kRows * words);
     for (std::uint32_t round = 0; round < 6; ++round) {
-        const bool to_all = round == 5;  // every PE broadcasts; the result is that of distance 0
+        const bool to_all = round == 5;  // every PE broadcasts; the expected words are those of distance 0
         const std::size_t distance = to_all ? 0 : 1 + round * (pes - 1) / 5;
         const Words memory_words = distinct_words(layout.size(), round * static_cast<std::uint32_t>(layout.size()));
-        session.write("memory_words words", memory, as_floats(memory_words));
+        session.write("memory words", memory, as_floats(memory_words));
         for (std::size_t pe = 0; pe < pes; ++pe) {
             const PeWords from{(pe + distance) % pes, layout.pitch, layout.offset, kRows}, to{pe, words, 0, kRows};
             to_all ? bus.broadcast_from(memory, from, blocks, to, words) : bus.send(memory, from, blocks, to, words);
@@ -141,17 +141,17 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
                               kRows * words));
 }
 
-// After a rotation PE i has the block of PE (i + distance) mod P. Each rotation transfers new words. With the same
-// words and two PEs, a rotation that does nothing would not be detected if the blocks of the rotation before the last
-// remained.
+// After a rotation PE i has the block of PE (i + distance) mod P. Each rotation transfers new words. If all rotations
+// transferred the same words, two PEs would have the same blocks after every second rotation, and a rotation that does
+// nothing could pass.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Ring ring(session, counted, static_cast<std::uint32_t>(pes), kRows, words);
     const SourceLayout layout{pes, words, words + 3, 2};
-    auto memory = session.buffer<float>("memory_words words", layout.size());
+    auto memory = session.buffer<float>("memory words", layout.size());
     for (std::uint32_t i = 0; i < 12; ++i) {
         const Words memory_words = distinct_words(layout.size(), i * static_cast<std::uint32_t>(layout.size()));
-        session.write("memory_words words", memory, as_floats(memory_words));
+        session.write("memory words", memory, as_floats(memory_words));
         ring.load(memory, layout.pitch, layout.offset);
         const RingDirection direction = i % 4 == 3 ? RingDirection::kUp : RingDirection::kDown;
         const std::size_t distance = direction == RingDirection::kDown ? 1 : pes - 1;

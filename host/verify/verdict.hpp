@@ -16,7 +16,7 @@ enum class Outcome { kPass, kFail, kSkip };
 /// Details of a failed check. Unknown members are empty.
 struct Fault {
     std::string where{};                  // first wrong operation, ray, word or pixel
-    std::string expected{}, got{};        // bits and their meaning
+    std::string expected{}, got{};        // bits of the results, and their meaning
     std::string options{};                // build options of the kernel
     std::vector<std::string> remedies{};  // remedies to try, most promising first
 };

@@ -63,7 +63,7 @@ struct VerifySettings {
     std::string only{};       // run only checks whose "LAYER NAME" contains this text; empty: all
     std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default number, with
                               // Depth::kFull all four numbers
-    std::size_t done = 0;     // number of checks that are already done; verify() skips them
+    std::size_t done = 0;     // number of checks, from the first on, that are already done; verify() skips them
 };
 
 /// Callbacks: `started` is called with the layer and name of every check before it runs, `finished` after it has run.
@@ -117,7 +117,7 @@ class Verification {
     CheckSink sink_;
     bool runs_;
     std::vector<Check> checks_;
-    std::vector<std::string> names_;  // names of all selected checks, including those that are skipped
+    std::vector<std::string> names_;  // names of all selected checks, including skipped checks
 };
 
 // Run the checks of one layer. Each layer relies on the layers before it.

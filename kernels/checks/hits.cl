@@ -1,13 +1,13 @@
-// Kernels that find the nearest hits of given rays: one by testing all objects and, unless RAYA_ACCEL is
-// RAYA_ACCEL_NONE, one by the ring machine's search in the job's grid or BVH. The host compares their hits. The job's
-// words must lie in global memory.
+// Kernels that find the nearest hits of given rays. hits_without_accel tests all objects. hits_with_accel uses the ring
+// machine's search in the job's grid or BVH; it exists unless RAYA_ACCEL is RAYA_ACCEL_NONE. The host compares the hits
+// of the two kernels. The job's words must be in global memory.
 #include "kernels/checks/rays.clh"
 #include "kernels/shading/search.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void hits_without_accel(__global const uint* restrict job,
                         __global const float* restrict rays,
-                        __global uint* restrict objects,    // [ray]: object number, RAYA_NO_OBJECT without a hit
+                        __global uint* restrict objects,    // [ray]: object number; RAYA_NO_OBJECT without a hit
                         __global uint* restrict distances)  // [ray]: bits of t; without a hit, bits of the ray's limit
 {
     const uint first = first_ray();
@@ -17,7 +17,7 @@ void hits_without_accel(__global const uint* restrict job,
 }
 
 #if RAYA_ACCEL != RAYA_ACCEL_NONE
-// Returns the hits that the search finds. If `shadow` is 1, any hit suffices.
+// Returns the nearest hits that the search finds; if `shadow` is 1, any hits.
 RAYA_KERNEL_BODY hit searched_hit(words job, const ray* r, int shadow) {
     tree t;
     ray_pool pool;
@@ -31,7 +31,7 @@ RAYA_KERNEL_BODY hit searched_hit(words job, const ray* r, int shadow) {
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void hits_with_accel(__global const uint* restrict job,
                      __global const float* restrict rays,
-                     __global uint* restrict objects,    // objects, distances: as in hits_of_all
+                     __global uint* restrict objects,    // `objects`, `distances`: as in hits_without_accel
                      __global uint* restrict distances)
 {
     const uint first = first_ray();

@@ -37,8 +37,8 @@ __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [c
     to[5] = sides;
 }
 
-// For a ray packet and a return packet in a node, finds the first link of the packet's route. Also finds the node at
-// the other end of each link. One work-item per case.
+// For a node, finds the first link of a ray packet's route to the destination, the first link of a return packet's
+// route, and the node at the end of each link. One work-item per case.
 __kernel void find_routes(__global const raya_torus* restrict toruses,  // [case]
                           __global const uint* restrict nodes,          // [case][2]: node of the packet, destination
                           const uint cases,
@@ -56,8 +56,8 @@ __kernel void find_routes(__global const raya_torus* restrict toruses,  // [case
 }
 
 // Exercises local memory, barriers and atomics as the trace kernel uses them. Every work-group copies its words to
-// local memory, `repeats` times reverses their order and adds 1 to each, and writes them to `output`. Then its
-// work-items draw the numbers 0 .. words - 1 from `counter`.
+// local memory. It reverses their order and adds 1 to each word, `repeats` times, and writes the words to `output`.
+// Then its work-items draw the numbers 0 .. words - 1 from `counter`.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void reverse_words(__global const uint* restrict input,  // [group][words]
                    const uint words,                     // number of words of a work-group
@@ -65,8 +65,8 @@ void reverse_words(__global const uint* restrict input,  // [group][words]
                    __local uint* restrict buffers,       // [2][words]
                    __local uint* restrict counter,       // [1]
                    __global uint* restrict output,       // [group][words]
-                   __global uint* restrict draws)        // [group][words]: number of times that each number was drawn,
-                                                         // added to
+                   __global uint* restrict draws)        // [group][words]: the kernel adds 1 to a number's element each
+                                                         // time that the number is drawn
 {
     const uint group = get_group_id(0);
     if (get_local_id(0) == 0) *counter = 0;

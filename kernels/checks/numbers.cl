@@ -1,8 +1,9 @@
 // Checks of the number layer: applies every operation to rows of operands.
 //
-// Work-group g is one work-item, which processes the V rows from g V on; `rows` is a multiple of V. Arrays are
-// column-major: element k * rows + i is operand k, or the bits of result k, of row i. Every operation is applied to
-// every row. The host compares only the results of the operations for which the row was made (host/verify/numbers.hpp).
+// Work-group g is one work-item, which processes the V rows from row g V on; `rows` is a multiple of V. Arrays are
+// column-major. In the array of operands, element k * rows + i is operand k of row i. In the array of results it is the
+// bits of result k of row i. Every operation is applied to every row, but the host compares only the results of the
+// operations for which the row was made (host/verify/numbers.hpp).
 #include "kernels/checks/rows.clh"
 #include "kernels/number/power.clh"
 
@@ -32,8 +33,8 @@ void operations(__global const float* restrict operands,  // [3][rows]: a, b, c;
     store_operations(a, b, c, results + first, rows);
 }
 
-// The remaining operations, for which the host has no known answers. This kernel is separate because it takes long to
-// compile.
+// Applies the remaining operations, for which the host has no known answers. These operations have a separate kernel,
+// because it takes long to compile.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void functions(__global const float* restrict operands,  // as in operations
                const uint rows,

@@ -7,7 +7,7 @@
 #include "kernels/shared/chains.h"
 
 #ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
+#define RAYA_GROUP 1  // L: number of work-items in a work-group, 1..1024
 #endif
 
 // The chains are unrolled by macros, because compilers would keep an array that is indexed in a loop in memory.

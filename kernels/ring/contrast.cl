@@ -23,7 +23,7 @@ void mark_contrasts(__global const uint* restrict broadcast,  // the job's words
                     const uint distance,                      // the block comes from PE (i + distance) mod P
                     const uint begin,                         // index of the block's first pixel in its owner's share
                     const uint band,                          // number of pixels in the block
-                    const uint capacity,                      // number of pixels in a PE's memory; 0: do nothing
+                    const uint capacity,                      // capacity of a PE's memory, in pixels; 0: do nothing
                     const uint first_pe,                      // number of the PE that is work-group 0
                     const float threshold,                    // a number of the format, 0..1
                     __global const float* restrict arrived,   // [PE][3][band]

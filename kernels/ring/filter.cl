@@ -4,9 +4,9 @@
 //     columns:  sum = (pixel + above) + below       of the row sums
 //     pixel = sum / 9                               at the image's border: sum / number of pixels summed (6, 4, ...)
 //
-// Sums and quotient are rounded to the number format. For each of the two sums the host copies the PEs' own values to
-// the sums, rotates the blocks, and launches add_neighbours after each rotation that brings neighbours to PEs. At the
-// end it launches take_means.
+// Sums and quotient are rounded to the number format. For each of the two sums, the host first copies each PE's own
+// values to `sums`. Then it rotates the blocks and launches add_neighbours after each rotation that brings neighbours
+// to PEs. At the end the host launches take_means.
 //
 // One work-group is one PE; its work-items process the PE's pixels in turn. A PE reads only its own block and the block
 // that it has received.
@@ -19,7 +19,7 @@ void add_neighbours(__global const uint* restrict broadcast,  // the job's words
                     const uint distance,                      // the block comes from PE (i + distance) mod P
                     const uint begin,                         // index of the block's first pixel in its owner's share
                     const uint band,                          // number of pixels in the block
-                    const uint capacity,                      // number of pixels in a PE's memory; 0: do nothing
+                    const uint capacity,                      // capacity of a PE's memory, in pixels; 0: do nothing
                     const uint first_pe,                      // number of the PE that is work-group 0
                     __global const float* restrict arrived,   // [PE][3][band]
                     __global float* restrict sums)            // [PE][3][capacity]: added to
@@ -42,7 +42,7 @@ void add_neighbours(__global const uint* restrict broadcast,  // the job's words
 // Divides each sum by the number of pixels of the neighbourhood that lie in the image.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void take_means(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
-                const uint capacity,                      // number of pixels in a PE's memory; 0: do nothing
+                const uint capacity,                      // capacity of a PE's memory, in pixels; 0: do nothing
                 const uint first_pe,                      // number of the PE that is work-group 0
                 __global float* restrict sums)            // [PE][3][capacity]: sums on entry, means on return
 {

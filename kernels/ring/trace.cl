@@ -2,8 +2,8 @@
 // 2, and supersampling).
 //
 // One work-group is one PE. It copies the broadcast words to its local memory. Then each of its work-items traces V ray
-// trees at once, one in each lane. As soon as its tree is done, a lane takes the next point of its pixel or, after the
-// last point, the PE's next pixel:
+// trees at once, one in each lane. A lane whose tree is done takes the next point of its pixel or, after the last
+// point, the PE's next pixel:
 //
 //     copy the job's words to local memory, barrier
 //     while a lane has a pixel:
@@ -25,7 +25,7 @@
 #include "kernels/shared/loop_canary.clh"
 
 #ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
+#define RAYA_GROUP 1  // L: number of work-items in a work-group, 1..1024
 #endif
 
 // In the lanes `started`, starts the ray tree of the point that lies `row` pixels below and `column` pixels to the
@@ -56,8 +56,8 @@ static inline void next_points(words scene, tree* t, pixel_store* store, tree_pi
     start_tree(scene, t, started, point_rows(store, p), point_columns(store, p));
 }
 
-// Traces the trees until no pixels are left or a lane has done `work` tests and steps. Returns true if this work-item
-// or PE has work left.
+// Traces the trees until no pixels are left or a lane has done `work` tests and steps. Returns 1 if trees are
+// unfinished or the PE has pixels that no work-item has taken; else 0.
 static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree_pixels* pixels,
                               volatile __local uint* next, uint work) {
     ray_pool pool;
@@ -74,8 +74,8 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
     }
 }
 
-// As trace_trees(), but if `resumes` is 1, first restores the trees that the last launch saved, from `from`. Saves
-// unfinished trees to `to`.
+// Calls trace_trees() and returns its result. If `resumes` is 1, first restores, from `from`, the trees that the last
+// launch saved. Saves unfinished trees to `to`.
 RAYA_KERNEL_BODY int trace_share(words scene, pixel_store* store, volatile __local uint* next, uint work,
                                  save_cursor from, save_cursor to, int resumes) {
     tree trees[RAYA_TREES];
@@ -112,7 +112,8 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
            __global float* restrict pixels,          // [PE][3][capacity]: linear rgb; also read in supersampling
            __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels of this pass
            __global ulong* restrict events,          // [PE][work-item][RAYA_EVENTS], added to
-           __global raya_trace_progress* restrict progress,  // [PE]: after the last launch; on return, after this one
+           __global raya_trace_progress* restrict progress,  // [PE]: on entry after the last launch, on return
+                                                             // after this launch
            __global uint* restrict saved)            // state of unfinished trees (kernels/ring/saved_trees.clh)
 {
     // A kernel argument, not a __local variable of the kernel: PoCL 3.1 lost pixels when the address of a __local

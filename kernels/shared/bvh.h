@@ -31,7 +31,7 @@ typedef struct {
 } raya_bvh;
 RAYA_SHARED_SIZE(raya_bvh, 4 * 5);
 
-#define RAYA_BVH_WIDTH 16  // words of a row; maximum number of children of a node and of objects in a leaf
+#define RAYA_BVH_WIDTH 16  // number of words in a row; maximum number of children of a node and of objects in a leaf
 
 enum {                  // first row of each field of a node
     RAYA_BVH_LOW = 0,   // lowest x, y, z of the boxes

@@ -14,7 +14,7 @@
 //
 //   RAYA_ROWS     j mod P: interleaved scan lines
 //   RAYA_BLOCKS   floor(j P / H): contiguous scan lines
-//   RAYA_GRID     (j mod A) B + (x mod B), P = A B: A rows of B PEs (as in CAP: 16 x 16, Pixel Machine: 8 x 8)
+//   RAYA_GRID     (j mod A) B + (x mod B), P = A B: A rows of B PEs (CAP: 16 x 16 PEs; Pixel Machine: 8 x 8 PEs)
 //   RAYA_TILES    t mod P: tiles of w x h pixels, t = (j div h)(W div w) + (x div w); w divides W, h divides H
 //   RAYA_RANDOM   raya_scramble(j W + x, W H, seed) mod P (scramble.h); share sizes differ by at most 1 pixel
 //
@@ -77,7 +77,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_tile_of(raya_mapping m, raya_u32 row, raya_u3
     return row / h * (m.width / w) + column / w;
 }
 
-// As raya_owner(), for the slot mappings only.
+// Returns the PE that owns a pixel. For the slot mappings only.
 RAYA_SHARED_FUNCTION raya_u32 raya_slot_owner(raya_mapping m, raya_u32 row, raya_u32 column) {
     const raya_u32 slot = raya_slot_of(m, row, column);
     if (m.kind == RAYA_FOLD_CYCLIC) {
@@ -103,7 +103,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_owner(raya_mapping m, raya_u32 row, raya_u32 
     return raya_scramble(row * m.width + column, m.width * m.height, m.parameter) % m.pes;
 }
 
-// As raya_share_of(), for the slot mappings only.
+// Returns the share of a PE. For the slot mappings only.
 RAYA_SHARED_FUNCTION raya_share raya_slot_share(raya_mapping m, raya_u32 pe) {
     raya_share s = {pe, 0, pe % m.width, 1, 1, 0, 1};
     raya_u32 rows = m.height;
@@ -133,7 +133,7 @@ RAYA_SHARED_FUNCTION raya_share raya_slot_share(raya_mapping m, raya_u32 pe) {
 // Returns the share of a PE: the pixels whose raya_owner() is this PE.
 RAYA_SHARED_FUNCTION raya_share raya_share_of(raya_mapping m, raya_u32 pe) {
     if (raya_has_slots(m)) return raya_slot_share(m, pe);
-    raya_share s = {pe, 0, 0, 1, m.width, pe, m.pes};  // the share with RAYA_ROWS, modified below for the others
+    raya_share s = {pe, 0, 0, 1, m.width, pe, m.pes};  // the share with RAYA_ROWS; changed below for other mappings
     const raya_u32 first = raya_first_of(m.parameter), second = raya_second_of(m.parameter);
     const raya_u32 pixels = m.width * m.height;
     if (m.kind == RAYA_ROWS) s.size = raya_steps_below(pe, m.pes, m.height) * m.width;

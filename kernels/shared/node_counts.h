@@ -7,13 +7,13 @@
 
 enum {
     RAYA_COUNT_NEXT,      // number of packets that work-items have taken from the queue so far
-    RAYA_COUNT_RESERVED,  // queue slots in use or reserved
-    RAYA_COUNT_USED,      // queue slots in use
-    RAYA_COUNT_PROGRESS,  // packets processed
+    RAYA_COUNT_RESERVED,  // number of queue slots in use or reserved
+    RAYA_COUNT_USED,      // number of queue slots in use
+    RAYA_COUNT_PROGRESS,  // number of packets processed
     RAYA_COUNT_WORK,      // work done in this launch, in object tests; at the limit work-items take no more packets
-    RAYA_COUNT_EVENTS,    // events of each kind: low and high word
-    RAYA_COUNT_MADE = RAYA_COUNT_EVENTS + 2 * RAYA_EVENTS,  // packets of each kind that were made
-    RAYA_COUNT_ENDED = RAYA_COUNT_MADE + RAYA_KINDS,        // packets of each kind that ended
+    RAYA_COUNT_EVENTS,    // number of events of each kind: low and high word
+    RAYA_COUNT_MADE = RAYA_COUNT_EVENTS + 2 * RAYA_EVENTS,  // number of packets of each kind made
+    RAYA_COUNT_ENDED = RAYA_COUNT_MADE + RAYA_KINDS,        // number of packets of each kind ended
     RAYA_COUNT_WORDS = RAYA_COUNT_ENDED + RAYA_KINDS
 };
 

@@ -79,7 +79,7 @@ enum {  // kinds of packets; 0: the slot holds no packet
 // message.
 #define RAYA_STATE_FRESH 0x20u
 // Of a return: the model charges it as a message. Of a shadow ray: the last shadow ray of a ray. When it ends, it makes
-// the only return of that ray that is charged (raya_run.return_a_ray).
+// the only return of that ray that is charged (raya_run.one_return_per_ray).
 #define RAYA_STATE_CHARGED 0x40u
 #define RAYA_STATE_LEVEL_SHIFT 8u
 #define RAYA_STATE_LIGHT_SHIFT 16u

@@ -77,7 +77,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_node_of_voxel(raya_torus t, raya_grid g, raya
     return raya_node_of(t, v.at[0] % t.nodes[0], v.at[1] % t.nodes[1], v.at[2] % t.nodes[2]);
 }
 
-// Returns the number of coordinates that a node's voxels have along an axis: first, first + step, ... < divisions.
+// Returns how many coordinates a node's voxels have along an axis. They are first, first + step, ... < divisions.
 RAYA_SHARED_FUNCTION raya_u32 raya_node_voxels_along(raya_torus t, raya_grid g, raya_place node, raya_u32 axis) {
     const raya_u32 first = node.at[axis], step = t.nodes[axis], end = g.divisions[axis];
     return first < end ? (end - first - 1) / step + 1 : 0;

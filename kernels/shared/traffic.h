@@ -22,17 +22,17 @@ enum {
     RAYA_STATUS_NEXT_ROW,       // next row of pixels to examine: an index into the node's own sequence of rows
     RAYA_STATUS_NEXT_COLUMN,    // number of pixels of that row examined so far
     RAYA_STATUS_ROWS,           // total number of rows to examine
-    RAYA_STATUS_PROGRESS,       // packets accepted, made, tested and routed since the host last read the status
-    RAYA_STATUS_HOST,           // in the root: returns that the host has not read yet
+    RAYA_STATUS_PROGRESS,       // number of packets accepted, made, tested and routed since the last read
+    RAYA_STATUS_HOST,           // in the root: number of returns that the host has not read yet
     RAYA_STATUS_CYCLES,         // modelled cycles of this superstep: low and high word
-    RAYA_STATUS_OUTBOX = 9,         // rays in the outbox of each link
-    RAYA_STATUS_INBOX = 15,         // rays left in the inbox of each link that ends here
-    RAYA_STATUS_RETURN_OUTBOX = 21, // returns in the outbox of each link; 0 except for raya_return_link()
-    RAYA_STATUS_RETURN_INBOX = 27,  // returns left in the inbox of each link that ends here
-    RAYA_STATUS_RETURN_CHARGED = 33,// returns in the outbox of raya_return_link() that the model charges as messages
+    RAYA_STATUS_OUTBOX = 9,         // number of rays in the outbox of each link
+    RAYA_STATUS_INBOX = 15,         // number of rays left in the inbox of each link that ends here
+    RAYA_STATUS_RETURN_OUTBOX = 21, // number of returns in each link's outbox; 0 except for raya_return_link()
+    RAYA_STATUS_RETURN_INBOX = 27,  // number of returns left in the inbox of each link that ends here
+    RAYA_STATUS_RETURN_CHARGED = 33,// how many of RAYA_STATUS_RETURN_OUTBOX the model charges as messages
     RAYA_STATUS_LEFT,           // work that the last launch left for the next: number of packets to process or route,
                                 // number of links to empty, or 1 if primary rays remain to be made
-    RAYA_STATUS_KEPT,           // packets that the superstep's launches of `route` have examined and left in the queue
+    RAYA_STATUS_KEPT,           // number of packets that `route` has examined and left in the queue in this superstep
     RAYA_STATUS_CUT,            // 1: the device has ended loops early (kernels/shared/loop_canary.clh)
     RAYA_STATUS_WORDS
 };
@@ -47,13 +47,13 @@ RAYA_SHARED_SIZE(raya_processed, 4 * 4);
 // Constants of a render, in a buffer that all nodes read.
 typedef struct {
     raya_u32 nodes;           // number of nodes on the device
-    raya_u32 inboxes;         // inboxes on the device, per link: first of links that start here, then of the others
+    raya_u32 inboxes;         // number of inboxes on the device per link; those of links that start here come first
     raya_u32 queue;           // capacity of a node's queue, packets
     raya_u32 box;             // capacity of a mailbox, packets
     raya_u32 host;            // maximum number of returns that wait for the host
     raya_u32 stride, offset;  // primary rays are made for pixels offset, offset + stride, ..., counted row by row
     raya_u32 root_injects;    // 1: the root makes all primary rays, or it is the only node; 0: every node makes its own
-    raya_u32 return_a_ray;    // 1: only one return of each ray is charged as a message, made when its shadow rays are
+    raya_u32 one_return_per_ray;    // 1: only one return of each ray is charged as a message, made when its shadow rays are
                               // done; 0: all returns are charged
 } raya_run;
 RAYA_SHARED_SIZE(raya_run, 4 * 9);
@@ -62,11 +62,12 @@ RAYA_SHARED_SIZE(raya_run, 4 * 9);
 // shadow ray for each light, a reflected and a refracted ray.
 RAYA_SHARED_FUNCTION raya_u32 raya_max_new_packets(raya_u32 lights) { return lights + 2; }
 
-// Return the number of free slots that a node must have before it accepts or processes a ray of a level, or a packet.
-// They suffice for the ray's whole tree, traced depth first, if every ray of the tree hits something. A shadow ray
-// turns into at most one packet, so it is processed without reserved slots, but it is accepted only if the slots for
-// one hit are free. So a node by itself can finish every ray that it has accepted. Nodes can deadlock only by waiting
-// for each other's links. In a deadlock the host lets them continue with fewer free slots for a superstep (`tight`).
+// Return the number of free slots that a node must have before it accepts or processes a ray of the given level, or a
+// packet of the given state. The slots suffice for the ray's whole tree, traced depth first, if every ray of the tree
+// hits something. A shadow ray turns into at most one packet, so it is processed without reserved slots, but it is
+// accepted only if the slots for one hit are free. So a node by itself can finish every ray that it has accepted. Nodes
+// can deadlock only by waiting for each other's links. In a deadlock the host lets them continue with fewer free slots
+// for a superstep (`tight`).
 RAYA_SHARED_FUNCTION raya_u32 raya_slots_for_ray(raya_u32 new_packets, raya_u32 bounces, raya_u32 level) {
     return (bounces + 1 - level) * new_packets;
 }

@@ -1,30 +1,29 @@
-// accept: removes packets that have arrived over the links from the inboxes. A ray goes into the node's queue if the
-// queue has the free slots that the ray needs (raya_slots_for_packet()). Returns go directly to the outbox of the link
-// towards the root or, in the root, to the buffer that the host reads. A packet for which there is no free slot stays
-// in its inbox. A link transfers packets only to an empty inbox.
+// accept: removes packets that have arrived over the links from the inboxes. A ray moves to the node's queue if the
+// queue has the free slots that the ray needs (raya_slots_for_packet()). A return moves to the outbox of the link
+// towards the root. In the root it moves to the buffer that the host reads. A packet for which there is no free slot
+// stays in its inbox. A link transfers packets only to an empty inbox.
 //
 // One work-group is one node. It processes one inbox after another, L packets at a time. In each superstep it starts
 // with a different inbox:
 //
-//     for each link, from `turn` mod 6 on, while `work` is left:
+//     for each link, from `turn` mod 6 on, until `work` batches of L packets are done:
 //         move the rays that fit to the end of the queue, close the gaps in the inbox           (accept_rays)
 //         move the returns that fit to the outbox towards the root, close the gaps in the inbox (forward_returns)
 //         store in the node's status how many rays and how many returns stay in the inboxes
 //
-// A launch that has done its `work` starts no further inbox. The next launch (`resume` = 1) continues with the
-// remaining inboxes.
+// The next launch (`resume` = 1) continues with the remaining inboxes.
 #include "kernels/torus/moves.clh"
 
-// The queue of the node. Rays are appended to it.
+// The queue of the node, to which accept appends rays.
 typedef struct {
     __global raya_packet* packets;
-    uint used, capacity;  // number of packets in the queue, maximum number of packets
+    uint used, capacity;  // number of packets in the queue; maximum number of packets in the queue
     uint new_packets;     // raya_max_new_packets() of the scene
     uint tight;           // 1: one free slot suffices for any ray
 } ray_queue;
 
-// Moves the rays that fit from an inbox to the queue, and the others to the front of the inbox. Returns the number of
-// rays that stay in the inbox. All work-items must call it, because it has barriers.
+// Moves the rays that fit from an inbox to the queue, and the remaining rays to the front of the inbox. Returns the
+// number of remaining rays. All work-items must call accept_rays(), because it has barriers.
 static inline uint accept_rays(__global uint* inbox, ray_queue* queue, vote_words votes) {
     __global raya_packet* const rays = rays_in(inbox);
     const uint item = get_local_id(0), waiting = inbox[0];
@@ -39,7 +38,7 @@ static inline uint accept_rays(__global uint* inbox, ray_queue* queue, vote_word
         vote(votes, goal);
         node_barrier();
         const uint position = votes_before(votes, goal);
-        // An earlier iteration or this one has already read the slot to which the packet moves.
+        // The packet may overwrite its new slot, because this or an earlier iteration has read that slot.
         if (goal == RAYA_LEFT_THERE) rays[left + position] = packet;
         packet.head.state &= ~RAYA_STATE_FRESH;
         if (goal == RAYA_TAKEN) queue->packets[queue->used + taken + position] = packet;
@@ -54,9 +53,9 @@ static inline uint accept_rays(__global uint* inbox, ray_queue* queue, vote_word
 }
 
 // Moves as many returns as fit from an inbox to `to` (an outbox's packets or the host's buffer), which has space for
-// `capacity` returns and holds `used` returns. Returns the number of moved returns. The other `left` returns move to
-// the front of the inbox. Adds to `charged` the number of moved returns that the model charges as messages. All
-// work-items must call it, because it has barriers.
+// `capacity` returns and holds `used` returns. Moves the remaining returns to the front of the inbox, and sets `left`
+// to their number. Adds to `charged` the number of moved returns that the model charges as messages. Returns the number
+// of moved returns. All work-items must call forward_returns(), because it has barriers.
 static inline uint forward_returns(__global uint* inbox, __global raya_head* to, uint used, uint capacity, uint* left,
                                 volatile __local uint* charged) {
     __global raya_head* const returns = returns_in(inbox);
@@ -85,7 +84,7 @@ void accept(__global const uint* restrict memories,     // the words of all node
             const uint tight,                           // 1: one free slot suffices for any ray
             const uint turn,                            // number of the superstep; selects the first link
             const uint first_node,                      // slot of the node that is work-group 0
-            __global const uint* restrict inbox_slots,  // [link][node]: slot of the inbox of the link that ends there
+            __global const uint* restrict inbox_slots,  // [link][node]: inbox of the link that ends at the node
             __global const uint* restrict sent,         // [link][node]: 1 if the outbox of rays has been copied
             __global const uint* restrict return_sent,  // [link][node]: 1 if the outbox of returns has been copied
             const uint work,                            // maximum work of a node in a launch, batches of L packets, > 0

@@ -3,8 +3,8 @@
 //
 //     pixel = 0; for each contribution: pixel = colour * weight + pixel, rounded once
 //
-// The ring machine adds them in the same way (kernels/README.md, Shading). Work-item i of n takes the pixels i, i + n,
-// ... The kernel is built for one lane.
+// The ring machine adds contributions in the same order and rounds in the same way (kernels/README.md, Shading).
+// Work-item i of n computes the pixels i, i + n, i + 2 n, ... The kernel is built for one lane.
 #include "kernels/geometry/vec.clh"
 #include "kernels/shared/loop_canary.clh"
 
@@ -17,7 +17,7 @@ void compose(__global const float* restrict contributions,  // [contribution][4]
              __global const uint* restrict starts,          // [pixels + 1]: index of each pixel's first contribution
              const uint pixels,
              __global float* restrict image,                // [pixels][3]: linear red, green, blue
-             __global uint* restrict cut)                   // [1]: set to 1 if the device has ended loops early
+             __global uint* restrict cut)                   // [1]: set to 1 if the device ends loops early
 {
     for (uint pixel = get_global_id(0); pixel < pixels; pixel += get_global_size(0)) {
         vec sum = vec_of(num_const(0.0f), num_const(0.0f), num_const(0.0f));

@@ -1,14 +1,15 @@
-// exchange: copies outboxes to the inboxes at the other ends of their links. One launch copies the mailboxes of all
-// rays, or of all returns. It replaces buffer copies (host/torus/link_exchange.cpp) on devices on which starting a copy
-// takes longer than moving a mailbox.
+// exchange: copies outboxes to the inboxes at the ends of their links. One launch copies either all outboxes of rays or
+// all outboxes of returns. The kernel replaces buffer copies (host/torus/link_exchange.cpp) on devices on which
+// starting a copy takes longer than moving a mailbox.
 //
 // Work-group g copies the outbox of link g / nodes of the node in slot g mod nodes. If the outbox holds packets and the
-// inbox at the link's other end is empty, it sets `sent` to 1 and copies; else it sets `sent` to 0:
+// inbox at the end of the link is empty, the work-group sets `sent` to 1 and copies the outbox; else it sets `sent` to
+// 0. Header and packets are copied in units of 8 words:
 //
-//     work-item i copies the units i, i + L, ... of 8 words of the header and the packets
+//     work-item i copies the units i, i + L, i + 2 L, ...
 //
-// The kernel skips links that lead to another rank's device or back to the same node. The host transfers the packets of
-// links to other ranks and sets `sent` of these links.
+// The kernel skips links that lead to another rank's device or back to their own node. The host transfers the packets
+// of links to other ranks and sets `sent` of these links.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/shared/traffic.h"
 
@@ -17,26 +18,26 @@
 #endif
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
-void exchange(__global const uint* restrict ends,      // [link][node]: slot of the node at the link's other end;
-                                                       // RAYA_NO_SLOT: the link is skipped
+void exchange(__global const uint* restrict ends,      // [link][node]: slot of the node at the end of the link;
+                                                       // RAYA_NO_SLOT: the kernel skips the link
               const uint nodes,                        // number of nodes on the device
               const uint inboxes_of_link,              // number of inboxes on the device per link
               const uint capacity,                     // maximum number of packets in a mailbox
-              const uint packet_words,                 // words of a packet: 8 or 16
+              const uint packet_words,                 // number of words of a packet: 8 or 16
               const uint outbox_status,                // index in a node's status of the counts of its
                                                        // outboxes (RAYA_STATUS_OUTBOX or _RETURN_OUTBOX)
               const uint inbox_status,                 // index in a node's status of the counts of its inboxes
               __global const uint* restrict outboxes,  // mailboxes (kernels/shared/traffic.h)
               __global uint* restrict inboxes,
-              __global uint* restrict sent,            // [link][node]: 1 if the outbox has been copied
+              __global uint* restrict sent,            // [link][node]: 1 if the kernel has copied the outbox
               __global uint* restrict status)          // [node][RAYA_STATUS_WORDS]
 {
     const uint box = get_group_id(0), link = box / nodes, slot = box % nodes, item = get_local_id(0), end = ends[box];
     if (end == RAYA_NO_SLOT) return;
     const uint packets = status[slot * RAYA_STATUS_WORDS + outbox_status + link];
-    const int goes = packets > 0 && status[end * RAYA_STATUS_WORDS + inbox_status + link] == 0;
-    if (item == 0) sent[box] = goes;
-    if (!goes) return;
+    const int transfers = packets > 0 && status[end * RAYA_STATUS_WORDS + inbox_status + link] == 0;
+    if (item == 0) sent[box] = transfers;
+    if (!transfers) return;
     const ulong source_at = raya_box_at(link, nodes, slot, capacity, packet_words);
     const ulong target_at = raya_box_at(link, inboxes_of_link, slot, capacity, packet_words);
     __global const uint8* const source = (__global const uint8*)(outboxes + source_at);

@@ -1,19 +1,19 @@
 // inject: nodes make the packets of primary rays, up to the limit described below.
 //
-// One work-group is one node. If the root makes all primary rays, it processes all pixels and the other nodes do
-// nothing. Else a ray that enters the box belongs to the node that holds its first voxel, and a ray that misses the box
-// belongs to node (row mod nodes). A node makes the rays of all pixels in its window and in its rows
-// (torus/pixel_rows.clh), and discards rays that belong to other nodes. Making a discarded ray takes time, so discarded
-// rays are counted (RAYA_DISCARDED).
+// One work-group is one node. If the root makes all primary rays, it processes all pixels and the remaining nodes do
+// nothing. If all nodes make primary rays, a ray that enters the box belongs to the node that holds the ray's first
+// voxel. A ray that misses the box belongs to node (row mod number of nodes). A node makes the rays of all pixels in
+// its window and in its rows (torus/pixel_rows.clh), and discards rays that belong to other nodes. Making a discarded
+// ray takes time, so the kernel counts discarded rays (RAYA_DISCARDED).
 //
 //     from the node's next pixel on, L x V pixels of a row at a time:
 //         make their rays and find their first voxels                      (shading/camera.clh, grid/traversal.clh)
 //         append the rays that belong to the node to the queue, as many as fit
 //         the next pixel is the first whose ray did not fit
 //
-// A node makes rays until an eighth of its queue is in use. It always leaves as many slots free as the tree of one ray
-// needs. So there are free slots for arriving packets and for packets of secondary rays. A launch also ends when it has
-// done its `work`. The next launch (`resume` = 1) continues at the next pixel.
+// A node makes rays until an eighth of its queue is in use, so that slots remain free for arriving packets and for
+// packets of secondary rays. It always leaves as many slots free as the tree of one ray needs. A launch also ends when
+// a node has done its `work`. The next launch (`resume` = 1) continues at the next pixel.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/torus/primaries.clh"
 
@@ -26,12 +26,12 @@ typedef struct {
     shared_words shared;            // RAYA_COUNT_WORDS
     shared_words next;              // [1]: next pixel of the row
     shared_words own_bits;          // RAYA_VOTE_WORDS(L V): a bit for each lane's ray, 1 if it belongs to the node
-    uint work, spent;               // maximum work of the launch, work done so far; unit: a batch of up to L V pixels,
-                                    // or a row
+    uint work, spent;               // maximum work of a node in the launch; work done so far. Unit: a batch of up to
+                                    // L V pixels, or a row
 } injection;
 
-// Sets the bits of the lanes whose rays belong to the node. Lane l of work-item i has bit i V + l. With one work-item
-// no bits are needed.
+// Sets the bits of the lanes whose rays belong to the node. Lane l of work-item i has bit i V + l. A single work-item
+// needs no bits.
 static inline void vote_own_rays(const injection* to, const primaries* p) {
 #if RAYA_GROUP > 1
     const uint bit = get_local_id(0) * RAYA_LANES;
@@ -54,8 +54,8 @@ static inline void clear_votes(const injection* to) {
     for (uint i = get_local_id(0); i < RAYA_VOTE_WORDS(RAYA_STEP); i += RAYA_GROUP) to->own_bits[i] = 0;
 }
 
-// Appends those of the lanes' rays that belong to the node to the queue, from slot `at` on, as many as fit. Lane l has
-// pixel first + l of the row. Returns the index in the row of the first pixel whose ray did not fit; `end` if all fit.
+// Appends the lanes' rays that belong to the node to the queue, from slot `at` on, as many as fit. Lane l has pixel
+// first + l of the row. Returns the index in the row of the first pixel whose ray did not fit; `end` if all rays fit.
 static inline uint put_primaries(const primaries* p, const injection* to, uint at, uint first, uint end) {
     lanes_index own_rays, meets;
     own_rays.truth = p->own_rays;
@@ -89,8 +89,8 @@ static inline uint number_of_discarded(const primaries* p, uint first, uint next
     return number;
 }
 
-// Makes the rays of the row from its pixel `at` on until the queue has `max_packets` packets or the launch has done its
-// work. Returns the index of the next pixel. All work-items must call it, because it has barriers.
+// Makes the rays of the row from its pixel `at` on until the queue has `max_packets` packets or the node has done its
+// work. Returns the index of the next pixel. All work-items must call make_row(), because it has barriers.
 static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, injection* to) {
     const uint item = get_local_id(0);
     shared_words used = to->shared + RAYA_COUNT_USED, next = to->next;
@@ -116,10 +116,10 @@ void inject(__global const uint* restrict memories,  // for parameters without a
             __global const uint* restrict starts,
             __global const raya_run* restrict run,
             const uint first_node,
-            const uint work,                         // maximum work of a node in a launch, > 0; unit: a batch or a row
+            const uint work,                         // as in `injection`, > 0
             const uint resume,
-            __local uint* local_words,               // RAYA_INJECT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
-                                                     // of a node
+            __local uint* local_words,               // RAYA_INJECT_WORDS words; if RAYA_WORDS_LOCAL is 1, then the
+                                                     // words of a node
             __global raya_packet* restrict queues,
             __global uint* restrict status,
             __global ulong* restrict events,

@@ -1,6 +1,6 @@
 // route: moves packets from the queue to the outboxes (Yoshitani & Yamazaki, method: the communication task). A ray
-// whose next voxel belongs to another node goes to the outbox of the next link on its route. A return goes to the
-// outbox of the link towards the root or, in the root, to the buffer that the host reads.
+// whose next voxel belongs to another node moves to the outbox of the next link on its route. A return moves to the
+// outbox of the link towards the root. In the root it moves to the buffer that the host reads.
 //
 // One work-group is one node. L packets at a time, in the order of the queue:
 //
@@ -8,7 +8,7 @@
 //     move the packets to their goals; close the gaps in the queue
 //
 // A launch ends after `work` batches of L packets. The next launch (`resume` = 1) continues with the remaining packets.
-// Packets that stay move to the front of the queue; the last launch sets the queue's new length.
+// Packets that stay in the queue move to its front; the last launch sets the queue's new length.
 //
 // Routes are those of raya_next_link() and raya_return_link() (kernels/shared/torus.h).
 #include "kernels/torus/moves.clh"
@@ -25,8 +25,8 @@ static inline uint goal_of(const node* n, const raya_head* packet) {
     return raya_next_link(n->torus, n->number, raya_node_of(n->torus, to.at[0], to.at[1], to.at[2]));
 }
 
-// Adds the votes of L packets to the number of slots `used` by each goal. A packet votes for its outbox even if the
-// outbox is full. So a count may exceed the outbox's capacity, and the caller must limit the count.
+// Adds the votes of L packets to `used`, [goal]: number of used slots. A packet's vote for a full outbox remains set
+// although the packet stays in the queue. So a count may exceed the outbox's capacity, and the caller must limit it.
 static inline void count_votes(volatile __local uint* used, vote_words votes, uint goal) {
 #if RAYA_GROUP == 1
     ++used[goal];
@@ -42,8 +42,8 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
            const uint first_node,
            const uint work,                          // maximum work of a node in a launch, batches of L packets, > 0
            const uint resume,                        // 1: continues where the last launch ended
-           __local uint* local_words,                // RAYA_ROUTE_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
-                                                     // of a node
+           __local uint* local_words,                // RAYA_ROUTE_WORDS words; if RAYA_WORDS_LOCAL is 1, then the
+                                                     // words of a node
            __global raya_packet* restrict queues,    // [node][queue]
            __global uint* restrict outboxes,         // of rays (kernels/shared/traffic.h)
            __global uint* restrict return_outboxes,
@@ -87,7 +87,7 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
         vote(votes, goal);
         node_barrier();
         const uint place = used[goal] + votes_before(votes, goal);
-        // The slot `place` has already been read by an earlier iteration or this one.
+        // The packet may overwrite the slot `place`, because this or an earlier iteration has read that slot.
         if (goal == RAYA_STAYS) queue[place] = packet;
         if (goal == RAYA_TO_ROOT) return_target[place] = packet.head;
         if (goal == RAYA_TO_ROOT && packet.head.state & RAYA_STATE_CHARGED) shared_add(charged, 1);

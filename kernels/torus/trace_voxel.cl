@@ -7,12 +7,12 @@
 //         reserve slots for the packets that these packets may turn into (raya_slots_for_ray()); packets for which
 //             there are no free slots wait for the next superstep
 //         test the rays of these lanes against the voxel's objects                        (geometry/)
-//         a ray is done if its nearest hit lies before it leaves the voxel, or if it has left the box: it turns into a
-//             return packet and the packets of its secondary rays (torus/shade_packets.clh), or into a return packet
-//             with the background
-//         a shadow ray ends at any hit; at its light it turns into a return packet. If raya_run.return_a_ray is 1, the
+//         a ray is done if its nearest hit lies before its exit from the voxel, or if it leaves the box. With a hit it
+//             turns into a return packet and the packets of its secondary rays (torus/shade_packets.clh). Without a
+//             hit it turns into a return packet with the background
+//         a shadow ray ends at any hit; at its light it turns into a return packet. If raya_run.one_return_per_ray is 1, the
 //             last shadow ray of a ray always turns into a return packet
-//         all other rays move to the next voxel                                               (grid/traversal.clh)
+//         all remaining rays move to the next voxel                                           (grid/traversal.clh)
 //
 // Wide rays (is_wide() in kernels/grid/traversal.clh) must be tested against all objects. They visit all voxels in the
 // order of voxel numbers. Their packets record the voxel of the nearest hit. At the end the packets return to that
@@ -22,14 +22,14 @@
 // the node takes packets from the end of the queue. The next launch (`resume` = 1) processes them. Dividing the work
 // among launches does not change the result.
 //
-// Limits: packets of a node < 2^31; events of one kind, per node and superstep, < 2^64; if costs are recorded
-// (RAYA_COSTS), cycles per packet and launch < 2^32.
+// Limits: number of packets in a queue < 2^31; number of events of one kind, per node and superstep, < 2^64; if
+// RAYA_COSTS is 1, cycles per packet and launch < 2^32.
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/torus/outcome.clh"
 #include "kernels/torus/shade_packets.clh"
 
 // Reserves slots for the packets that the packets of the lanes m may turn into. Returns the lanes for which there were
-// enough free slots. Sets `reserved` to the number of slots reserved. Shadow rays need none.
+// enough free slots. Sets `reserved` to the number of slots reserved. Shadow rays need no slots.
 static inline mask reserve(const node* n, const packet_batch* f, mask m, uint* reserved) {
     lanes_index chosen, level;
     chosen.truth = m & mask_not(is_shadow(f));
@@ -124,8 +124,8 @@ static inline void record_costs(const packet_batch* f, uint end, __global raya_p
 }
 #endif
 
-// Processes the packets in the queue's slots first .. end - 1, at most V. Skips packets whose next voxel belongs to
-// another node.
+// Processes the packets in the queue's slots first .. end - 1, at most V slots. Skips packets whose next voxel belongs
+// to another node.
 RAYA_KERNEL_BODY void process_slots(const node* n, packet_batch* f, uint first, uint end) {
     load_batch(f, first, end);
     lanes_index waiting;
@@ -149,7 +149,7 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
                                                           // hit, not for its whole tree
                  const uint work,                         // maximum RAYA_COUNT_WORK of a node in a launch, > 0
                  const uint resume,                       // 1: continues where the last launch ended
-                 __local uint* local_words,               // RAYA_COUNT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the
+                 __local uint* local_words,               // RAYA_COUNT_WORDS words; if RAYA_WORDS_LOCAL is 1, then the
                                                           // words of a node
                  __global raya_packet* restrict queues,   // [node][queue]
                  __global uint* restrict status,          // [node][RAYA_STATUS_WORDS]
@@ -166,7 +166,7 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
     f.queue = queues + (size_t)slot * run->queue;
     f.capacity = run->queue;
     f.tight = tight;
-    f.charged = run->return_a_ray ? 0 : RAYA_STATE_CHARGED;
+    f.charged = run->one_return_per_ray ? 0 : RAYA_STATE_CHARGED;
     f.shared = local_words;
     init_shared(f.shared, status[RAYA_STATUS_QUEUE]);
     const node n = load_node(memories, starts, slot, local_words + RAYA_COUNT_WORDS);
@@ -175,8 +175,8 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
     processed += (size_t)slot * run->queue;
 #endif
     while (shared_add(&f.shared[RAYA_COUNT_WORK], 0) < work) {
-        // Packets are taken from the end of the queue. The newest packets are there, among them the deepest rays, whose
-        // trees need the fewest slots.
+        // Takes packets from the end of the queue, because the newest packets are there. They include the deepest rays,
+        // whose trees need the fewest slots.
         const uint taken = shared_add(&f.shared[RAYA_COUNT_NEXT], RAYA_LANES);
         if (taken >= count) break;
         count_shared(f.shared, RAYA_COUNT_WORK, 1);

@@ -16,8 +16,8 @@
 
 namespace raya {
 
-/// Bounds of rays that are not wide in a format: no coordinate of an origin exceeds `reach` in absolute value, and |
-/// |D|^2 - 1 | does not exceed RAYA_STRETCH.
+/// Bounds of rays that are not wide in a format. Each origin O and each direction D satisfies
+///   |O_i| <= reach and | |D|^2 - 1 | <= RAYA_STRETCH
 struct RayBounds {
     NumberFormat format;
     double reach = 0;
@@ -25,26 +25,26 @@ struct RayBounds {
     /// Returns the spacing of the format's numbers in [1, 2).
     double unit() const { return std::ldexp(1.0, -format.fraction_bits); }
     Vec3 rounded(const Vec3& v) const {
-        Vec3 to;
-        for (int axis = 0; axis < 3; ++axis) to[axis] = round_to_format(v[axis], format);
-        return to;
+        Vec3 result;
+        for (int axis = 0; axis < 3; ++axis) result[axis] = round_to_format(v[axis], format);
+        return result;
     }
 };
 
 /// Returns the scene scaled by `scale`. Each object is also scaled by its own random factor, 2^-9 to 2. About a third
 /// of the cones are aligned with a coordinate axis.
 inline Scene with_random_sizes(Scene scene, SplitMix& random, double scale) {
-    const auto size = [&] { return std::exp2(random.uniform(-9, 1)); };
+    const auto random_factor = [&] { return std::exp2(random.uniform(-9, 1)); };
     scene.view.from *= scale;
-    for (Sphere& s : scene.spheres) s = {scale * s.centre, scale * size() * s.radius, s.surface};
+    for (Sphere& s : scene.spheres) s = {scale * s.centre, scale * random_factor() * s.radius, s.surface};
     for (Plane& p : scene.planes) p.distance *= scale;
     for (Polygon& p : scene.polygons) {
-        const double factor = size();
+        const double factor = random_factor();
         const Vec3 first = p.vertices[0];
         for (Vec3& v : p.vertices) v = scale * (first + factor * (v - first));
     }
     for (Cone& c : scene.cones) {
-        const double factor = size();
+        const double factor = random_factor();
         if (below(random, 3) == 0) c.apex = c.base + (c.apex - c.base).length() * axis_direction(random);
         c = {scale * c.base, scale * factor * c.base_radius, scale * (c.base + factor * (c.apex - c.base)),
              scale * factor * c.apex_radius, c.surface};
@@ -57,10 +57,11 @@ struct Aim {
     Vec3 point{0}, tangent{0};
 };
 
-inline Vec3 perpendicular(SplitMix& random, const Vec3& to) {
+/// Returns a random unit vector perpendicular to `axis`.
+inline Vec3 perpendicular(SplitMix& random, const Vec3& axis) {
     for (;;) {
-        const Vec3 v = to.cross(random_direction(random));
-        if (v.length() > 0.1 * to.length()) return v.normalized();
+        const Vec3 v = axis.cross(random_direction(random));
+        if (v.length() > 0.1 * axis.length()) return v.normalized();
     }
 }
 
@@ -69,7 +70,7 @@ inline Aim aim_at(SplitMix& random, const Sphere& s) {
     return {s.centre + std::abs(s.radius) * normal, perpendicular(random, normal)};
 }
 
-/// The point lies on an edge or at a corner; `tangent` lies in the plane.
+/// Aims at an edge or a corner of the polygon; `tangent` lies in its plane.
 inline Aim aim_at(SplitMix& random, const Polygon& p) {
     const std::size_t i = below(random, static_cast<std::uint32_t>(p.vertices.size()));
     const Vec3 start = p.vertices[i], side = p.vertices[(i + 1) % p.vertices.size()] - start;
@@ -77,17 +78,19 @@ inline Aim aim_at(SplitMix& random, const Polygon& p) {
             perpendicular(random, newell_normal(p.vertices).normalized())};
 }
 
-/// The point lies on the side, on a rim or on the axis; `tangent` lies along the side or around the axis.
+/// Aims at the side, a rim or the axis of the cone; `tangent` lies along the side or around the axis.
 inline Aim aim_at(SplitMix& random, const Cone& c) {
     static constexpr std::array<double, 4> kEnds = {0, 1, 1e-3, 1 - 1e-3};
-    const Vec3 axis = (c.apex - c.base).normalized(), out = perpendicular(random, axis);
+    const Vec3 axis = (c.apex - c.base).normalized(), outward = perpendicular(random, axis);
     const double fraction = below(random, 2) == 0 ? kEnds[below(random, kEnds.size())] : random.uniform(0, 1);
     const double radius = std::abs(c.base_radius) + fraction * (std::abs(c.apex_radius) - std::abs(c.base_radius));
-    const Vec3 point = c.base + fraction * (c.apex - c.base) + (below(random, 8) == 0 ? 0 : radius) * out;
-    const Vec3 down = c.apex - c.base + (std::abs(c.apex_radius) - std::abs(c.base_radius)) * out;
-    const Vec3 around = axis.cross(out),
-               mixed = random.uniform(-1, 1) * down.normalized() + random.uniform(-1, 1) * around;
-    return {point, below(random, 3) == 0 ? down.normalized() : below(random, 2) == 0 ? around : mixed.normalized()};
+    const Vec3 point = c.base + fraction * (c.apex - c.base) + (below(random, 8) == 0 ? 0 : radius) * outward;
+    const Vec3 side = c.apex - c.base + (std::abs(c.apex_radius) - std::abs(c.base_radius)) * outward;
+    const Vec3 rim_tangent = axis.cross(outward),
+               mixed = random.uniform(-1, 1) * side.normalized() + random.uniform(-1, 1) * rim_tangent;
+    return {point, below(random, 3) == 0   ? side.normalized()
+                   : below(random, 2) == 0 ? rim_tangent
+                                           : mixed.normalized()};
 }
 
 inline Aim aim_at(SplitMix& random, const Scene& scene, std::size_t number) {
@@ -97,33 +100,33 @@ inline Aim aim_at(SplitMix& random, const Scene& scene, std::size_t number) {
     return aim_at(random, scene.cones[number - scene.polygons.size()]);
 }
 
-/// Returns the distance from point `from` along `direction` to the surface of the cube of allowed origins, whose
-/// coordinates do not exceed `reach` in absolute value.
-inline double distance_within_reach(const RayBounds& bounds, const Vec3& from, const Vec3& direction) {
+/// Returns the distance from a point along `direction` to the surface of the cube of allowed origins, whose coordinates
+/// do not exceed `reach` in absolute value.
+inline double distance_within_reach(const RayBounds& bounds, const Vec3& point, const Vec3& direction) {
     double distance = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
         if (direction[axis] != 0)
             distance =
-                std::min(distance, (std::copysign(bounds.reach, direction[axis]) - from[axis]) / direction[axis]);
+                std::min(distance, (std::copysign(bounds.reach, direction[axis]) - point[axis]) / direction[axis]);
     return std::max(distance, 0.0);
 }
 
-/// Returns an origin for a ray towards the aim, within the bounds but for rounding.
+/// Returns an origin for a ray towards the aim. Rounding may move the origin slightly beyond the bounds.
 inline Vec3 random_origin(SplitMix& random, const RayBounds& bounds, const Aim& aim) {
     const bool grazes = below(random, 2) == 0;
-    const Vec3 away = grazes ? (below(random, 2) == 0 ? 1.0 : -1.0) * aim.tangent : random_direction(random);
-    const double distance = distance_within_reach(bounds, aim.point, away);
+    const Vec3 to_origin = grazes ? (below(random, 2) == 0 ? 1.0 : -1.0) * aim.tangent : random_direction(random);
+    const double distance = distance_within_reach(bounds, aim.point, to_origin);
     switch (below(random, 4)) {
         case 0:
-            return aim.point + distance * away;
+            return aim.point + distance * to_origin;
         case 1:
-            return aim.point + random.uniform(0, distance) * away;
+            return aim.point + random.uniform(0, distance) * to_origin;
         case 2:
-            return aim.point + distance * std::exp2(random.uniform(-12, 0)) * away;
+            return aim.point + distance * std::exp2(random.uniform(-12, 0)) * to_origin;
         default: {  // a corner of the cube of allowed origins
             Vec3 corner;
             for (int axis = 0; axis < 3; ++axis) corner[axis] = (below(random, 2) == 0 ? 1 : -1) * bounds.reach;
-            return grazes ? aim.point + distance * away : corner;
+            return grazes ? aim.point + distance * to_origin : corner;
         }
     }
 }

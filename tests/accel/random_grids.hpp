@@ -50,7 +50,7 @@ inline Vec3 grid_point(const raya_grid& grid, const Vec3& planes) {
     return p;
 }
 
-/// Returns a random point of the box.
+/// Returns a random point of the grid's box.
 inline Vec3 random_place(SplitMix& random, const raya_grid& grid) {
     Vec3 planes;
     for (std::uint32_t axis = 0; axis < 3; ++axis)
@@ -86,7 +86,7 @@ inline Vec3 special_direction(SplitMix& random) {
 /// axis; along edges or faces of voxels; through corners of voxels.
 inline reference::Ray random_grid_ray(SplitMix& random, const raya_grid& grid) {
     const Vec3 inside = random_place(random, grid), corner = random_corner(random, grid);
-    const Vec3 other = below(random, 2) == 0 ? random_place(random, grid) : random_corner(random, grid);
+    const Vec3 second_point = below(random, 2) == 0 ? random_place(random, grid) : random_corner(random, grid);
     const double size = std::sqrt(3.0) * (grid_point(grid, Vec3(0)) - inside).length() + grid.cell[0];
     const Vec3 outside = inside + random.uniform(0.5, 3) * size * random_direction(random);
     switch (below(random, 9)) {
@@ -98,10 +98,10 @@ inline reference::Ray random_grid_ray(SplitMix& random, const raya_grid& grid) {
             return {fp32(outside), fp32((corner - fp32(outside)).normalized())};
         case 3: {
             const Vec3 far = fp32(inside + random.uniform(10, 1000) * size * random_direction(random));
-            return {far, fp32((other - far).normalized())};
+            return {far, fp32((second_point - far).normalized())};
         }
         case 4:
-            return {fp32(corner), fp32((other - corner + Vec3(1e-30)).normalized())};
+            return {fp32(corner), fp32((second_point - corner + Vec3(1e-30)).normalized())};
         case 5:
             return {fp32(corner - random.uniform(-1, 2) * size * axis_direction(random)), axis_direction(random)};
         case 6: {

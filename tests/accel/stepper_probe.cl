@@ -8,7 +8,7 @@ void stepped_traversal(__global const raya_grid* restrict grid,
                    __global const float* restrict rays,
                    const uint max_count,
                    __global uint* restrict voxels,  // [ray][max_count]
-                   __global float* restrict leaves) // [ray][max_count]
+                   __global float* restrict t_exits) // [ray][max_count]
 {
     const uint first = first_ray();
     const raya_grid g = *grid;
@@ -27,7 +27,7 @@ void stepped_traversal(__global const raya_grid* restrict grid,
         for (uint lane = 0; lane < RAYA_LANES; ++lane) {
             if (!in.lane[lane]) continue;
             voxels[(first + lane) * max_count + i] = voxel.lane[lane];
-            leaves[(first + lane) * max_count + i] = t.lane[lane];
+            t_exits[(first + lane) * max_count + i] = t.lane[lane];
         }
         inside = advance_voxel(&s, g, inside, t_out);
     }

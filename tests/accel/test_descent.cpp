@@ -22,8 +22,8 @@ void add_star(Scene& scene, SplitMix& random) {
     Polygon star;
     const std::uint32_t corners = 5 + below(random, 60);
     for (std::uint32_t i = 0; i < corners; ++i) {
-        const double turn = 2 * std::numbers::pi * i / corners, reach = i % 2 ? 0.4 : 1;
-        star.vertices.push_back(middle + reach * (std::cos(turn) * u + std::sin(turn) * v));
+        const double turn = 2 * std::numbers::pi * i / corners, radius = i % 2 ? 0.4 : 1;
+        star.vertices.push_back(middle + radius * (std::cos(turn) * u + std::sin(turn) * v));
     }
     scene.polygons.push_back(star);
 }
@@ -59,28 +59,30 @@ Rays rays_at(SplitMix& random, const Scene& scene, const RayBounds& bounds, int 
     return rays;
 }
 
+/// Numbers of rays: with a wrong result, with a hit, and in total.
 struct Tally {
     std::size_t wrong = 0, hits = 0, rays = 0;
 };
 
-Tally compare(const Variant& variant, unsigned cases) {
-    KernelRunner runner("tests/accel/descent_probe.cl", variant);
+Tally compare(const TestBuild& test_build, unsigned cases) {
+    KernelRunner runner("tests/accel/descent_probe.cl", test_build);
     Tally tally;
     for (unsigned seed = 1; seed <= cases; ++seed) {
         SplitMix random(seed);
-        const double scale = random_scale(random, variant.format);
+        const double scale = random_scale(random, test_build.format);
         const Scene scene = with_random_sizes(crowded_objects(random, 12), random, scale);
-        PackedJob job = job_in(scene, variant.format);
-        append_bvh(job, variant.format);
-        const RayBounds bounds{variant.format, 2.0 * job.header().extent};
+        PackedJob job = job_in(scene, test_build.format);
+        append_bvh(job, test_build.format);
+        const RayBounds bounds{test_build.format, 2.0 * job.header().extent};
         const Rays rays = rays_at(random, scene, bounds, 1);
-        const Hits all = find_hits(runner, "hits_without_accel", job.words(), rays);
+        const Hits expected = find_hits(runner, "hits_without_accel", job.words(), rays);
         const Hits traversed = find_hits(runner, "hits_with_accel", job.words(), rays);
         const Hits shadow_hits = find_hits(runner, "shadow_hits_with_accel", job.words(), rays);
         for (std::size_t i = 0; i < rays.count(); ++i) {
-            const bool hit = all.objects[i] != kNoObject;
+            const bool hit = expected.objects[i] != kNoObject;
             tally.hits += hit;
-            tally.wrong += traversed.objects[i] != all.objects[i] || traversed.distances[i] != all.distances[i] ||
+            tally.wrong += traversed.objects[i] != expected.objects[i] ||
+                           traversed.distances[i] != expected.distances[i] ||
                            (shadow_hits.objects[i] != kNoObject) != hit;
         }
         tally.rays += rays.count();

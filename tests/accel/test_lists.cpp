@@ -86,9 +86,9 @@ TEST_CASE("a grid's words hold the lists of the partition, and the job's words d
         CHECK(summary.separate == separate.size());
         CHECK(summary.divisions == divisions);
         CHECK(job.words().size() - before.size() == summary.words);
-        raya_job unlinked = job.header();
-        unlinked.accel_at = 0;
-        job.set_header(unlinked);
+        raya_job header_without_grid = job.header();
+        header_without_grid.accel_at = 0;
+        job.set_header(header_without_grid);
         CHECK(std::equal(before.begin(), before.end(), job.words().begin()));
     }
 }

@@ -67,12 +67,12 @@ TEST_CASE("lists are ascending and hold all finite objects and no planes; copies
         const std::vector<std::uint32_t> numbers = finite_numbers(job);
         REQUIRE(std::set<std::uint32_t>(p.objects.begin(), p.objects.end()) ==
                 std::set<std::uint32_t>(numbers.begin(), numbers.end()));
-        REQUIRE(p.distinct == numbers.size());
+        REQUIRE(p.listed_objects == numbers.size());
         REQUIRE(p.copies() == p.objects.size() - numbers.size());
     }
 }
 
-TEST_CASE("an object well inside a voxel is registered only there") {
+TEST_CASE("an object well inside a voxel is registered only in that voxel") {
     for (const std::string format : {"fp32", "e6m15", "e6m15t", "e7m20t"}) {
         const raya_grid grid = partition_of(cornered_scene(), format, {4, 4, 4}).grid;
         for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -82,7 +82,7 @@ TEST_CASE("an object well inside a voxel is registered only there") {
             if (kind.name == "plane") continue;
             Scene scene = cornered_scene(), object;
             kind.add(object, random);
-            // The object lies within about 2 units of its place, scaled by 0.05: less than half a voxel.
+            // The object is scaled so that it extends by less than half a voxel from the voxel's middle.
             const Vec3 middle = middle_of(grid, voxel);
             for (const Sphere& s : object.spheres) scene.spheres.push_back({middle, 0.1 * s.radius, 0});
             for (Polygon q : object.polygons) {
@@ -120,7 +120,7 @@ TEST_CASE("spheres are registered in the voxels of their surfaces and in few oth
 }
 
 // Rounding may put the traversal on the other side of the plane at the point where the ray touches the sphere.
-TEST_CASE("an object that ends just before a plane is registered on both sides") {
+TEST_CASE("an object that ends just before a plane is registered on both sides of the plane") {
     Scene scene = cornered_scene();
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
         SplitMix random(seed);
@@ -169,7 +169,7 @@ TEST_CASE("the box contains all finite objects, and its sides are never 0") {
             REQUIRE(grid.divisions[axis] == divisions[axis]);
             const double low = raya_voxel_plane(grid, axis, 0), high = raya_voxel_plane(grid, axis, divisions[axis]);
             REQUIRE(low < high);
-            for (std::size_t i = 0; i < regions.size() && regions.known(); ++i) {
+            for (std::size_t i = 0; i < regions.size() && regions.all_bounded(); ++i) {
                 const Box box = regions.region(i).box;
                 REQUIRE(low + traversal_error(grid) < box.min[static_cast<int>(axis)]);
                 REQUIRE(high - traversal_error(grid) > box.max[static_cast<int>(axis)]);
@@ -192,7 +192,7 @@ TEST_CASE("a scene without finite objects has a box with side 1 and empty lists"
         if (planes) scene.planes = {{{0, 0, 1}, 1, 0}};
         const Partition p = partition_of(scene, "fp32", {2, 3, 4});
         CHECK(p.objects.empty());
-        CHECK(p.distinct == 0);
+        CHECK(p.listed_objects == 0);
         CHECK(p.copies() == 0);
         for (std::uint32_t axis = 0; axis < 3; ++axis) {
             CHECK(raya_voxel_plane(p.grid, axis, 0) == -0.5F);
@@ -255,7 +255,7 @@ TEST_CASE("illegal divisions are refused") {
     CHECK(partition_of(scene, "fp32", {1, 1u << 20, 1}).starts.size() == (1u << 20) + 1);
 }
 
-TEST_CASE("an accelerating grid has about the requested number of voxels, which are nearly cubes") {
+TEST_CASE("an acceleration grid has about the requested number of voxels, which are nearly cubes") {
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
         SplitMix random(seed);
         Scene scene = cornered_scene();
@@ -280,7 +280,7 @@ TEST_CASE("an accelerating grid has about the requested number of voxels, which 
     CHECK(divisions_for(job, {}, std::uint64_t{1} << 40) == Divisions{256, 256, 256});
 }
 
-TEST_CASE("an accelerating grid has fewer voxels if rounding would spread objects over many") {
+TEST_CASE("an acceleration grid has fewer voxels if rounding would spread each object over many voxels") {
     Scene scene = cornered_scene();
     SplitMix random(1);
     for (int i = 0; i < 20000; ++i) scene.spheres.push_back({random_point(random, 1), 0.02, 0});

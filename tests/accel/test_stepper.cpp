@@ -14,7 +14,7 @@ constexpr std::size_t kGrids = 40, kRays = 1024;  // kRays: number of rays per g
 
 struct SteppedVoxels {
     std::vector<std::uint32_t> voxels;  // [ray][max_count]: voxel numbers, RAYA_NO_VOXEL after the last
-    std::vector<float> leaves;          // [ray][max_count]: t at which the ray leaves each voxel
+    std::vector<float> t_exits;         // [ray][max_count]: t at which the ray leaves each voxel
 };
 
 std::vector<std::uint32_t> words_of(const raya_grid& grid) {
@@ -30,11 +30,11 @@ SteppedVoxels plain_traversal(KernelRunner& runner, const raya_grid& grid, const
     const auto ray_buffer = runner.filled("rays", rays);
     auto wide = runner.constant<std::uint32_t>("wide", count, 0);
     auto voxels = runner.constant<std::uint32_t>("voxels", count * max_count, RAYA_NO_VOXEL);
-    auto leaves = runner.constant<float>("leaves", count * max_count, 0);
+    auto t_exits = runner.constant<float>("t_exits", count * max_count, 0);
     runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&,
                     Buffer<std::uint32_t>&, Buffer<float>&>("traverse", count, grid_buffer, ray_buffer, max_count, wide,
-                                                            voxels, leaves);
-    return {runner.read(voxels), runner.read(leaves)};
+                                                            voxels, t_exits);
+    return {runner.read(voxels), runner.read(t_exits)};
 }
 
 SteppedVoxels stepped_traversal(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
@@ -43,11 +43,11 @@ SteppedVoxels stepped_traversal(KernelRunner& runner, const raya_grid& grid, con
     const auto grid_buffer = runner.filled("grid", words_of(grid));
     const auto ray_buffer = runner.filled("rays", rays);
     auto voxels = runner.constant<std::uint32_t>("voxels", count * max_count, RAYA_NO_VOXEL);
-    auto leaves = runner.constant<float>("leaves", count * max_count, 0);
+    auto t_exits = runner.constant<float>("t_exits", count * max_count, 0);
     runner
         .run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&, Buffer<float>&>(
-            "stepped_traversal", count, grid_buffer, ray_buffer, max_count, voxels, leaves);
-    return {runner.read(voxels), runner.read(leaves)};
+            "stepped_traversal", count, grid_buffer, ray_buffer, max_count, voxels, t_exits);
+    return {runner.read(voxels), runner.read(t_exits)};
 }
 
 /// Returns the number of voxels that stepper.clh must visit, given the voxels that traversal.clh visits. stepper.clh
@@ -56,7 +56,7 @@ SteppedVoxels stepped_traversal(KernelRunner& runner, const raya_grid& grid, con
 std::size_t voxels_until_end(const SteppedVoxels& w, std::size_t ray, std::uint32_t max_count) {
     std::size_t count = 0;
     while (count < max_count && w.voxels[ray * max_count + count] != RAYA_NO_VOXEL) ++count;
-    while (count > 1 && w.leaves[ray * max_count + count - 2] == w.leaves[ray * max_count + count - 1]) --count;
+    while (count > 1 && w.t_exits[ray * max_count + count - 2] == w.t_exits[ray * max_count + count - 1]) --count;
     return count;
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("for every number of lanes, the stepper visits the voxels of the plain
                 std::size_t i = ray * max_count;
                 for (; i < ray * max_count + end; ++i) {
                     if (found.voxels[i] != expected.voxels[i]) FAIL("the stepper visits a different voxel");
-                    if (bits({found.leaves[i]}) != bits({expected.leaves[i]}))
+                    if (bits({found.t_exits[i]}) != bits({expected.t_exits[i]}))
                         FAIL("the stepper leaves the voxel at a different t");
                 }
                 if (i < (ray + 1) * max_count) REQUIRE(found.voxels[i] == RAYA_NO_VOXEL);

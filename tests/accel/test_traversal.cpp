@@ -19,8 +19,8 @@ constexpr std::size_t kTraversedGrids = 50, kTraversedRays = 2048;  // kTraverse
 struct Traversals {
     std::vector<std::uint32_t> wide;         // [ray]: 1 if the ray is wide, else 0
     std::vector<std::uint32_t> voxels;       // [ray][max_count]: voxel numbers, then RAYA_NO_VOXEL
-    std::vector<float> leaves;               // [ray][max_count]: t at which the ray leaves each voxel
-    std::vector<float> resumed_leaves;       // [ray][max_count]: as `leaves`, if the traversal is resumed in the voxel
+    std::vector<float> t_exits;              // [ray][max_count]: t at which the ray leaves each voxel
+    std::vector<float> resumed_t_exits;      // [ray][max_count]: as `t_exits`, if the traversal is resumed in the voxel
     std::vector<std::uint32_t> next_voxels;  // [ray][max_count]: voxel after each voxel, if resumed in it
 };
 
@@ -37,35 +37,36 @@ Traversals traverse(KernelRunner& runner, const raya_grid& grid, const std::vect
     const auto ray_buffer = runner.filled("rays", rays);
     auto wide = runner.constant<std::uint32_t>("wide", count, 0);
     auto voxels = runner.constant<std::uint32_t>("voxels", count * max_count, RAYA_NO_VOXEL);
-    auto leaves = runner.constant<float>("leaves", count * max_count, 0);
+    auto t_exits = runner.constant<float>("t_exits", count * max_count, 0);
     runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&,
                     Buffer<std::uint32_t>&, Buffer<float>&>("traverse", count, grid_buffer, ray_buffer, max_count, wide,
-                                                            voxels, leaves);
+                                                            voxels, t_exits);
     auto resumed = runner.constant<float>("resumed", count * max_count, 0);
-    auto nexts = runner.constant<std::uint32_t>("nexts", count * max_count, RAYA_NO_VOXEL);
+    auto next_voxels = runner.constant<std::uint32_t>("next voxels", count * max_count, RAYA_NO_VOXEL);
     runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, const Buffer<std::uint32_t>&,
                     Buffer<float>&, Buffer<std::uint32_t>&>("resumes", count, grid_buffer, ray_buffer, max_count,
-                                                            voxels, resumed, nexts);
-    return {runner.read(wide), runner.read(voxels), runner.read(leaves), runner.read(resumed), runner.read(nexts)};
+                                                            voxels, resumed, next_voxels);
+    return {runner.read(wide), runner.read(voxels), runner.read(t_exits), runner.read(resumed),
+            runner.read(next_voxels)};
 }
 
-/// The voxels that a ray visits, in order, and t at which the ray leaves each.
+/// The voxels that a ray visits, in order, and the values of t at which the ray leaves them.
 struct Path {
     std::vector<std::uint32_t> voxels;
-    std::vector<float> leaves;
+    std::vector<float> t_exits;
 };
 
 Path path_of(const Traversals& traversals, std::size_t ray, std::uint32_t max_count) {
     Path path;
     for (std::size_t i = ray * max_count; i < (ray + 1) * max_count && traversals.voxels[i] != RAYA_NO_VOXEL; ++i) {
         path.voxels.push_back(traversals.voxels[i]);
-        path.leaves.push_back(traversals.leaves[i]);
+        path.t_exits.push_back(traversals.t_exits[i]);
     }
     return path;
 }
 
-/// Returns the maximum allowed distance of a ray from its voxel: a quarter of the error that host/accel/partition.cpp
-/// allows for.
+/// Returns the maximum allowed distance of a ray from the traversal's voxel: a quarter of the error for which
+/// host/accel/partition.cpp has a margin.
 double traversal_error(const raya_grid& grid, const reference::Ray& ray) {
     double box = 0, origin = 0;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -79,14 +80,14 @@ double traversal_error(const raya_grid& grid, const reference::Ray& ray) {
 /// Returns true if each step leads to a neighbouring voxel in the direction of the ray and t never decreases.
 bool steps_forward(const raya_grid& grid, const reference::Ray& ray, const Path& path) {
     for (std::size_t i = 1; i < path.voxels.size(); ++i) {
-        const VoxelBlock from = one_voxel(grid, path.voxels[i - 1]), to = one_voxel(grid, path.voxels[i]);
+        const VoxelBlock previous = one_voxel(grid, path.voxels[i - 1]), current = one_voxel(grid, path.voxels[i]);
         int steps = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (to.first[axis] == from.first[axis]) continue;
+            if (current.first[axis] == previous.first[axis]) continue;
             const bool up = ray.direction[static_cast<int>(axis)] > 0;
-            steps += to.first[axis] == from.first[axis] + (up ? 1u : -1u) ? 1 : 4;
+            steps += current.first[axis] == previous.first[axis] + (up ? 1u : -1u) ? 1 : 4;
         }
-        if (steps != 1 || path.leaves[i] < path.leaves[i - 1]) return false;
+        if (steps != 1 || path.t_exits[i] < path.t_exits[i - 1]) return false;
     }
     return true;
 }
@@ -96,8 +97,9 @@ bool stays_near_ray(const raya_grid& grid, const reference::Ray& ray, const Path
     const Passage box = passage(grid, all_voxels(grid), ray, -error);
     for (std::size_t i = 0; i < path.voxels.size(); ++i) {
         const Passage near = passage(grid, one_voxel(grid, path.voxels[i]), ray, error);
-        const double from = i == 0 ? near.in : std::max(box.in, double{path.leaves[i - 1]}), to = path.leaves[i];
-        if (near.empty() || to > near.out || (from <= to && from < near.in)) return false;
+        const double t_entry = i == 0 ? near.in : std::max(box.in, double{path.t_exits[i - 1]}),
+                     t_exit = path.t_exits[i];
+        if (near.empty() || t_exit > near.out || (t_entry <= t_exit && t_entry < near.in)) return false;
     }
     return true;
 }
@@ -111,11 +113,11 @@ bool misses_none(const raya_grid& grid, const reference::Ray& ray, const Path& p
     return std::all_of(crossed.begin(), crossed.end(), [&](std::uint32_t v) { return visited.count(v) == 1; });
 }
 
-/// States if a ray enters the grid. It may do so only if it comes near the box before its limit, and must if it
-/// certainly crosses the box before its limit.
+/// Requirement on a ray. kMust: the ray certainly crosses the box before its limit, so it must enter the grid. kMay:
+/// the ray comes near the box before its limit. kMustNot: all other rays.
 enum class Entry { kMust, kMay, kMustNot };
 
-Entry entry(const raya_grid& grid, const reference::Ray& ray, double limit, double error) {
+Entry required_entry(const raya_grid& grid, const reference::Ray& ray, double limit, double error) {
     const Passage near = passage(grid, all_voxels(grid), ray, error),
                   crossed = passage(grid, all_voxels(grid), ray, -error);
     if (near.empty() || near.in > limit) return Entry::kMustNot;
@@ -152,8 +154,8 @@ struct TraversalCase {
 
 void check_grid_traversal(const raya_grid& grid, const reference::Ray& ray, double limit, const Path& path) {
     const double error = traversal_error(grid, ray);
-    const Entry expected = entry(grid, ray, limit, error);
-    CAPTURE(ray.origin, ray.direction, limit, path.voxels, path.leaves, error);
+    const Entry expected = required_entry(grid, ray, limit, error);
+    CAPTURE(ray.origin, ray.direction, limit, path.voxels, path.t_exits, error);
     if (expected == Entry::kMust) REQUIRE(!path.voxels.empty());
     if (expected == Entry::kMustNot) REQUIRE(path.voxels.empty());
     REQUIRE(steps_forward(grid, ray, path));
@@ -187,19 +189,19 @@ TEST_CASE("a traversal that is resumed in any of its voxels continues in the sam
         const TraversalCase c(seed);
         const Traversals traversals = traverse(runner, c.grid, c.words());
         CAPTURE(seed);
-        REQUIRE(bits(traversals.resumed_leaves) == bits(traversals.leaves));
-        std::vector<std::uint32_t> nexts(traversals.voxels.size(), RAYA_NO_VOXEL);
-        for (std::size_t i = 0; i + 1 < nexts.size(); ++i)
-            if (traversals.voxels[i] != RAYA_NO_VOXEL) nexts[i] = traversals.voxels[i + 1];
-        REQUIRE(traversals.next_voxels == nexts);
+        REQUIRE(bits(traversals.resumed_t_exits) == bits(traversals.t_exits));
+        std::vector<std::uint32_t> expected_next(traversals.voxels.size(), RAYA_NO_VOXEL);
+        for (std::size_t i = 0; i + 1 < expected_next.size(); ++i)
+            if (traversals.voxels[i] != RAYA_NO_VOXEL) expected_next[i] = traversals.voxels[i + 1];
+        REQUIRE(traversals.next_voxels == expected_next);
     }
 }
 
 TEST_CASE("traversals have the same bits for all numbers of lanes") {
     std::vector<Traversals> first;
-    for (const Variant& variant : variants()) {
-        CAPTURE(variant.name());
-        KernelRunner runner("tests/accel/traversal_probe.cl", variant);
+    for (const TestBuild& test_build : test_builds()) {
+        CAPTURE(test_build.name());
+        KernelRunner runner("tests/accel/traversal_probe.cl", test_build);
         constexpr std::size_t kFewGrids = 8;
         for (std::size_t seed = 0; seed < kFewGrids; ++seed) {
             const TraversalCase c(seed);
@@ -207,7 +209,7 @@ TEST_CASE("traversals have the same bits for all numbers of lanes") {
             if (first.size() < kFewGrids) first.push_back(traversals);
             CAPTURE(seed);
             REQUIRE(traversals.voxels == first[seed].voxels);
-            REQUIRE(bits(traversals.leaves) == bits(first[seed].leaves));
+            REQUIRE(bits(traversals.t_exits) == bits(first[seed].t_exits));
             REQUIRE(traversals.wide == first[seed].wide);
         }
     }
@@ -218,7 +220,7 @@ TEST_CASE("a ray is wide only if it starts beyond the reach or its direction is 
     constexpr float kAboveReach = 0x1.000002p3F, kLong = 1 + 0x1.8p-20F, kTooLong = 1 + 0x1.4p-19F,
                     kTooShort = 1 - 0x1.4p-19F;
     raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
-    const std::vector<std::array<float, 6>> near = {
+    const std::vector<std::array<float, 6>> not_wide = {
         {0, 0, 0, 1, 0, 0}, {8, -8, 8, 0, 0.6F, 0.8F}, {0, 0, 0, 0, 0, kLong}};
     const std::vector<std::array<float, 6>> wide = {{kAboveReach, 0, 0, 1, 0, 0},
                                                     {0, -kAboveReach, 0, 1, 0, 0},
@@ -228,7 +230,7 @@ TEST_CASE("a ray is wide only if it starts beyond the reach or its direction is 
                                                     {0, 0, 0, 0, NAN, 1},
                                                     {0, 0, 0, 0, 0, 0}};
     std::vector<float> words;
-    for (const auto* rays : {&near, &wide})
+    for (const auto* rays : {&not_wide, &wide})
         for (const auto& ray : *rays) {
             words.insert(words.end(), ray.begin(), ray.end());
             words.push_back(kFarLimit);
@@ -238,7 +240,7 @@ TEST_CASE("a ray is wide only if it starts beyond the reach or its direction is 
     const std::vector<std::uint32_t> found = traverse(runner, grid, words).wide;
     for (std::size_t i = 0; i < rays; ++i) {
         CAPTURE(i);
-        CHECK(found[i] == (i < near.size() ? 0 : 1));
+        CHECK(found[i] == (i < not_wide.size() ? 0 : 1));
     }
 }
 

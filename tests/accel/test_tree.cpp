@@ -39,7 +39,8 @@ bool fits(const Bounds& outer, const Boxed* first, const Boxed* end) {
     return true;
 }
 
-/// Checks the invariants of a subtree and collects the numbers of its items. Returns its depth in nodes.
+/// Checks the invariants of a subtree and collects the numbers of its items. Returns the depth of the subtree: the
+/// maximum number of nodes on a path to a leaf.
 std::uint32_t check_child(const Bvh& tree, const BvhChild& child, std::multiset<std::uint32_t>& numbers) {
     if (child.kind != RAYA_LINK_NODE) {
         REQUIRE(child.items >= 1);
@@ -57,9 +58,9 @@ std::uint32_t check_child(const Bvh& tree, const BvhChild& child, std::multiset<
     CHECK(fits(child.box, node.children.data(), node.children.data() + node.count));
     std::uint32_t depth = 0;
     for (std::uint32_t i = 0; i < node.count; ++i) {
-        const BvhChild& below = node.children[i];
-        if (below.kind == RAYA_LINK_NODE) CHECK(below.first > child.first);
-        depth = std::max(depth, check_child(tree, below, numbers));
+        const BvhChild& grandchild = node.children[i];
+        if (grandchild.kind == RAYA_LINK_NODE) CHECK(grandchild.first > child.first);
+        depth = std::max(depth, check_child(tree, grandchild, numbers));
     }
     return depth + 1;
 }

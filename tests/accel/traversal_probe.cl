@@ -10,7 +10,7 @@ void traverse(__global const raya_grid* restrict grid,
               __global uint* restrict wide,    // [ray]: 1 if the ray is wide, else 0
               __global uint* restrict voxels,  // [ray][max_count]: voxel numbers in the order of traversal, then
                                                // RAYA_NO_VOXEL
-              __global float* restrict leaves) // [ray][max_count]: t at which the ray leaves each voxel
+              __global float* restrict t_exits) // [ray][max_count]: t at which the ray leaves each voxel
 {
     const uint first = first_ray();
     const raya_grid g = *grid;
@@ -21,7 +21,7 @@ void traverse(__global const raya_grid* restrict grid,
         const mask inside = w.voxel != RAYA_NO_VOXEL;
         if (!mask_any(inside)) return;
         store_index(voxels + first * max_count + i, max_count, w.voxel);
-        store_lanes(leaves + first * max_count + i, max_count, choose(inside, t_exit_of(&w), num_all(0.0f)));
+        store_lanes(t_exits + first * max_count + i, max_count, choose(inside, t_exit_of(&w), num_all(0.0f)));
         next_voxel(&w, g, inside);
     }
 }
@@ -32,8 +32,8 @@ void resumes(__global const raya_grid* restrict grid,
              __global const float* restrict rays,
              const uint max_count,
              __global const uint* restrict voxels,  // [ray][max_count], results of `traverse`
-             __global float* restrict leaves,       // [ray][max_count]: t at which the ray leaves each voxel
-             __global uint* restrict nexts)         // [ray][max_count]: the voxel that follows each voxel
+             __global float* restrict t_exits,      // [ray][max_count]: t at which the ray leaves each voxel
+             __global uint* restrict next_voxels)   // [ray][max_count]: the voxel that follows each voxel
 {
     const uint first = first_ray();
     const raya_grid g = *grid;
@@ -48,8 +48,8 @@ void resumes(__global const raya_grid* restrict grid,
             t.all = t_exit_of(&w);
             next_voxel(&w, g, mask_all(1));
             next.all = w.voxel;
-            leaves[i] = t.lane[lane];
-            nexts[i] = next.lane[lane];
+            t_exits[i] = t.lane[lane];
+            next_voxels[i] = next.lane[lane];
         }
 }
 

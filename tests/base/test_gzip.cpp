@@ -16,7 +16,7 @@ std::string packed(const std::string& text) {
     return file.finish();
 }
 
-TEST_CASE("gzip unpacks the appended text, whatever its pieces", "[report]") {
+TEST_CASE("gzip unpacks the appended text, however it was divided into pieces", "[report]") {
     constexpr std::uint64_t kSeed = 41;
     SplitMix random(kSeed);
     for (int i = 0; i < 40; ++i) {

@@ -22,7 +22,7 @@ TEST_CASE("a known fraction shows a bar and the estimated time left", "[progress
     CHECK(progress_line("rendering", StageProgress{0.001, 1}, 1) == "[" + std::string(40, '.') + "]   0 %  999 s left");
 }
 
-TEST_CASE("without a new fraction the time left counts down, and then the time so far is shown", "[progress]") {
+TEST_CASE("without a new fraction the time left counts down to 0, and then the time so far is shown", "[progress]") {
     const std::string quarter = "[" + std::string(10, '#') + std::string(30, '.') + "]  25 %  ";
     CHECK(progress_line("rendering", StageProgress{0.25, 10}, 25) == quarter + "15 s left");
     CHECK(progress_line("rendering", StageProgress{0.25, 10}, 60) == quarter + "60 s so far");

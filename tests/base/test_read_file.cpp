@@ -23,7 +23,7 @@ TEST_CASE("all bytes of a file are read, even if its size is not known", "[read_
     CHECK_THAT(read_file("/proc/self/status"), Contains("Name:"));  // its size is reported as 0
 }
 
-TEST_CASE("a pipe is read if allowed, and else refused without waiting", "[read_file]") {
+TEST_CASE("a pipe is read with Pipes::kRead, and otherwise refused without waiting", "[read_file]") {
     const ScratchFolder folder;
     const auto pipe = folder / "pipe";
     REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);

@@ -86,13 +86,13 @@ TEST_CASE("write_whole_file writes a file given in pieces", "[whole_file]") {
     CHECK(contents(folder / "a").empty());
 }
 
-TEST_CASE("an exception while making a piece leaves the old file and no temporary one", "[whole_file]") {
+TEST_CASE("an exception while making a piece leaves the old file and no temporary file", "[whole_file]") {
     const ScratchFolder folder;
     const fs::path file = folder / "x";
     write_whole_file(file, "old");
-    int asked = 0;
+    int calls = 0;
     const auto next = [&]() -> std::string_view {
-        if (++asked == 3) throw std::bad_alloc();
+        if (++calls == 3) throw std::bad_alloc();
         return "new";
     };
     CHECK_THROWS_AS(write_whole_file(file, next), std::bad_alloc);
@@ -107,7 +107,8 @@ TEST_CASE("write_whole_file creates files with the default permissions", "[whole
     CHECK(fs::status(folder / "report").permissions() == fs::status(folder / "other").permissions());
 }
 
-TEST_CASE("write_whole_file replaces an old file and does not change it for its readers", "[whole_file]") {
+TEST_CASE("write_whole_file replaces an old file; processes that have the old file open still read its content",
+          "[whole_file]") {
     const ScratchFolder folder;
     write_whole_file(folder / "f", std::string(100'000, 'x'));
     std::ifstream reader(folder / "f");  // a reader of the old file
@@ -159,10 +160,10 @@ TEST_CASE("file_identity is equal for all names of a file, existing or not", "[w
         CAPTURE(exists);
         if (exists) write_whole_file(folder / "there/new", "x");
         const std::string file = file_identity(folder / "there/new");
-        for (const char* other :
+        for (const char* name :
              {"there/./new", "alias/new", "link", "there/../there/new", "alias/../link", "there//new"}) {
-            CAPTURE(other);
-            CHECK(file_identity(folder / other) == file);
+            CAPTURE(name);
+            CHECK(file_identity(folder / name) == file);
         }
         CHECK(file_identity(folder / "there/old") != file);
         fs::current_path(folder / "there");
@@ -174,8 +175,8 @@ TEST_CASE("file_identity is equal for all names of a file, existing or not", "[w
     CHECK(file_identity(folder / "hard") == file_identity(folder / "there/new"));
     CHECK(file_identity(folder / "none/new") == file_identity(folder / "none/./new"));
     CHECK(file_identity(folder / "none/new") != file_identity(folder / "none/old"));
-    for (const std::string& other : {std::string("/dev/null"), std::string(folder / "there")})
-        CHECK(file_identity(other).empty());
+    for (const std::string& path : {std::string("/dev/null"), std::string(folder / "there")})
+        CHECK(file_identity(path).empty());
 }
 
 TEST_CASE("write_whole_file writes a device or a pipe directly", "[whole_file]") {
@@ -186,7 +187,7 @@ TEST_CASE("write_whole_file writes a device or a pipe directly", "[whole_file]")
     CHECK(fs::is_character_file("/dev/full"));
 }
 
-TEST_CASE("a full disk leaves the old file and no temporary one", "[whole_file]") {
+TEST_CASE("a full disk leaves the old file and no temporary file", "[whole_file]") {
     const ScratchFolder folder;
     write_whole_file(folder / "f", "old");
     {

@@ -235,13 +235,13 @@ TEST_CASE("transfers of any size through pinned memory move the same bytes", "[c
         CAPTURE(kSeed, i, count, offset);
         std::vector<cl_uint> words = consecutive_numbers(count, static_cast<cl_uint>(random.next()));
         std::copy(words.begin(), words.end(), expected.begin() + static_cast<std::ptrdiff_t>(offset));
-        session.write("there", buffer, words, offset);
+        session.write("write", buffer, words, offset);
         std::fill(words.begin(), words.end(), 0xdeadbeef);  // the transfer may still be running
-        std::vector<cl_uint> back(random.next() % 2 ? count : 7);
-        session.read("back", buffer, back, offset + back.size() <= buffer.size() ? offset : 0);
-        const auto from =
-            expected.begin() + static_cast<std::ptrdiff_t>(offset + back.size() <= buffer.size() ? offset : 0);
-        REQUIRE(std::equal(back.begin(), back.end(), from));
+        std::vector<cl_uint> read_words(random.next() % 2 ? count : 7);
+        session.read("read", buffer, read_words, offset + read_words.size() <= buffer.size() ? offset : 0);
+        const auto first =
+            expected.begin() + static_cast<std::ptrdiff_t>(offset + read_words.size() <= buffer.size() ? offset : 0);
+        REQUIRE(std::equal(read_words.begin(), read_words.end(), first));
     }
     CHECK(contents(session, buffer) == expected);
     std::size_t bytes = 0;
@@ -255,31 +255,31 @@ TEST_CASE("an asynchronous read returns the contents at its place in the queue, 
     SplitMix random(kSeed);
     for (const Transfers transfers : {Transfers::kDirect, Transfers::kStaged}) {
         Session session(choose_device(""), Timing::kOn, transfers);
-        // Fills the halves of the plain staging memory several times without waiting.
+        // The writes fill the halves of the plain staging memory several times without waiting.
         constexpr std::size_t kWords = kPlainHalfBytes / sizeof(cl_uint);
         Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", kWords);
         Readback<cl_uint> readback = session.readback<cl_uint>("words", 4 * kWords);
-        std::vector<cl_uint> there(kWords), expected;
-        session.write("there", buffer, there);
+        std::vector<cl_uint> device_words(kWords), expected;
+        session.write("write", buffer, device_words);
         while (expected.size() < readback.size()) {
             const std::size_t count = random.next() % 16 ? 1 + random.next() % 200 : kWords - random.next() % 2,
                               offset = random.next() % (kWords - count + 1);
             std::vector<cl_uint> words = consecutive_numbers(count, static_cast<cl_uint>(random.next()));
-            session.write("there", buffer, words, offset);
-            std::copy(words.begin(), words.end(), there.begin() + static_cast<std::ptrdiff_t>(offset));
+            session.write("write", buffer, words, offset);
+            std::copy(words.begin(), words.end(), device_words.begin() + static_cast<std::ptrdiff_t>(offset));
             std::fill(words.begin(), words.end(), 0xdeadbeef);
-            const std::size_t back = std::min(1 + random.next() % 300, readback.size() - expected.size()),
-                              from = random.next() % (kWords - back + 1);
-            session.read("back", buffer, from, readback, expected.size(), back);
-            expected.insert(expected.end(), there.begin() + static_cast<std::ptrdiff_t>(from),
-                            there.begin() + static_cast<std::ptrdiff_t>(from + back));
+            const std::size_t read_count = std::min(1 + random.next() % 300, readback.size() - expected.size()),
+                              first = random.next() % (kWords - read_count + 1);
+            session.read("read", buffer, first, readback, expected.size(), read_count);
+            expected.insert(expected.end(), device_words.begin() + static_cast<std::ptrdiff_t>(first),
+                            device_words.begin() + static_cast<std::ptrdiff_t>(first + read_count));
         }
-        session.wait("back", readback);
+        session.wait("read", readback);
         const std::span<const cl_uint> got = readback.first(readback.size());
         CAPTURE(kSeed, transfers == Transfers::kStaged);
         CHECK(std::equal(got.begin(), got.end(), expected.begin(), expected.end()));
-        CHECK_THROWS_AS(session.read("back", buffer, 0, readback, readback.size(), 1), std::out_of_range);
-        CHECK_THROWS_AS(session.read("back", buffer, kWords, readback, 0, 1), std::out_of_range);
+        CHECK_THROWS_AS(session.read("read", buffer, 0, readback, readback.size(), 1), std::out_of_range);
+        CHECK_THROWS_AS(session.read("read", buffer, kWords, readback, 0, 1), std::out_of_range);
     }
 }
 

@@ -73,7 +73,7 @@ TEST_CASE("a real device is found by number and by any part of its name, ignorin
     CHECK(device_info(choose_device(part)).name == device_info(devices[0]).name);
 }
 
-TEST_CASE("a device is chosen by name across all platforms", "[cl]") {
+TEST_CASE("a device is chosen by number or by part of its name; by default the first usable GPU", "[cl]") {
     CHECK(device_index("", kDevices) == 2);  // the first usable GPU, not the first device
     CHECK(device_index("", {kDevices[0], kDevices[1]}) == 1);
     CHECK(device_index("", {device_info_of("Vendor", "FPGA", "other")}) == 0);

@@ -69,7 +69,7 @@ TEST_CASE("a kernel receives local memory, sized in elements", "[cl]") {
                           Contains(std::to_string(session.device().local_memory_bytes)));
 }
 
-TEST_CASE("errors for a wrong number of arguments and an unknown kernel name the kernel", "[cl]") {
+TEST_CASE("the errors for a wrong number of arguments and for an unknown kernel contain the kernel's name", "[cl]") {
     const Session session(choose_device(""));
     const Program program = build_test_program(session);
     CHECK_THROWS_WITH((program.kernel<const Buffer<float>&, Buffer<float>&>("scale")),
@@ -80,7 +80,7 @@ TEST_CASE("errors for a wrong number of arguments and an unknown kernel name the
     CHECK_THROWS_AS(program.kernel<cl_int>("scael"), DeviceError);
 }
 
-TEST_CASE("the error for an argument of the wrong size names kernel and argument", "[cl]") {
+TEST_CASE("the error for an argument of the wrong size contains the kernel's name and the argument's number", "[cl]") {
     Session session(choose_device(""));
     auto wrong = build_test_program(session).kernel<const Buffer<float>&, cl_double2, Buffer<float>&>("scale");
     Buffer<float> data = session.buffer<float>("data", 8);

@@ -33,7 +33,7 @@ TEST_CASE("a session that an exception ends waits for the device's running comma
     CHECK_THROWS_AS(fail(), std::invalid_argument);
     // This separate queue does not wait for the session's commands.
     const auto context = memory.getInfo<CL_MEM_CONTEXT>();
-    const cl::CommandQueue other(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
-    other.enqueueReadBuffer(memory, CL_TRUE, 0, sizeof got, &got);
+    const cl::CommandQueue separate_queue(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
+    separate_queue.enqueueReadBuffer(memory, CL_TRUE, 0, sizeof got, &got);
     CHECK(got == expected);
 }

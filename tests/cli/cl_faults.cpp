@@ -93,7 +93,8 @@ cl_int call_or_fail(const char* name, Args... args) {
     return error != CL_SUCCESS ? error : driver_function<Function>(name)(args...);
 }
 
-/// Same, for functions that return an object and store the error in `*error`.
+/// Calls the driver's function `name`, which returns an object and stores its error in `*error`; or stores the injected
+/// error there and returns null.
 template <class Function, class... Args>
 auto create_or_fail(const char* name, cl_int* error, Args... args)
     -> decltype(driver_function<Function>(name)(args..., error)) {
@@ -103,14 +104,15 @@ auto create_or_fail(const char* name, cl_int* error, Args... args)
     return nullptr;
 }
 
-/// Returns the target offset of a misdirected copy; `offset` itself if the buffer has no space for another.
+/// Returns the target offset of a misdirected copy; `offset` itself if the buffer has no space for another `size`
+/// bytes.
 size_t displaced_offset(cl_mem buffer, size_t offset, size_t size) {
     size_t bytes = 0;
     clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr);
     return offset + 2 * size <= bytes ? offset + size : offset >= size ? offset - size : offset;
 }
 
-/// Replaces the answer to the query if the fault is for this query.
+/// Replaces the answer to `query` if the injected fault names this query.
 void replace_answer(const char* call, cl_uint query, size_t size, void* value) {
     const Fault& fault = injected_fault();
     if (fault.call != call || static_cast<int>(query) != fault.threshold || value == nullptr) return;
@@ -118,7 +120,8 @@ void replace_answer(const char* call, cl_uint query, size_t size, void* value) {
     std::memcpy(value, &answer, std::min(size, sizeof answer));
 }
 
-/// Enqueues a read of one byte, which is discarded, instead of a copy. Its event completes and has profiling times.
+/// Enqueues a read of one byte, which is discarded, instead of a copy. The read's event completes and has profiling
+/// times.
 cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, const cl_event* wait_list,
                             cl_event* event) {
     static char discarded_byte;

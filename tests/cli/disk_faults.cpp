@@ -7,7 +7,7 @@
 //   RAYA_WRITE_FAULT="17 short"         the 17th of raya's writing calls writes half its bytes
 //   RAYA_WRITE_CALLS=FILE               appends a line to FILE for each writing call: its name, and "fails" if it fails
 // Writing calls: calls of the functions at the end of this file by raya or the C++ library, not by drivers.
-// A small mounted file system would need root, which not every container has.
+// The library simulates a full disk, because mounting a small file system needs root, which not every container has.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -115,7 +115,8 @@ bool next_call_fails(const char* call, bool can_be_short, bool can_be_interrupte
     return fails_now;
 }
 
-/// Same for calls by raya. Calls by other libraries are not counted and do not fail.
+/// Returns next_call_fails() for a call by raya or the C++ library. Calls by other libraries are not counted and do not
+/// fail.
 bool fails(const char* call, const void* caller, bool can_be_short, bool can_be_interrupted) {
     return is_call_by_raya(caller) && next_call_fails(call, can_be_short, can_be_interrupted);
 }
@@ -196,19 +197,19 @@ ssize_t pwrite(int descriptor, const void* bytes, std::size_t count, off_t at) {
 }
 
 int open(const char* path, int flags, ...) {
-    std::va_list more;
-    va_start(more, flags);
-    const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(more, mode_t) : 0;
-    va_end(more);
+    std::va_list mode_argument;
+    va_start(mode_argument, flags);
+    const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(mode_argument, mode_t) : 0;
+    va_end(mode_argument);
     if (opens_for_writing(flags) && fails("open", CALLER, false, true)) return -1;
     return library_function("open", &::open)(path, flags, mode);
 }
 
 int open64(const char* path, int flags, ...) {
-    std::va_list more;
-    va_start(more, flags);
-    const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(more, mode_t) : 0;
-    va_end(more);
+    std::va_list mode_argument;
+    va_start(mode_argument, flags);
+    const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(mode_argument, mode_t) : 0;
+    va_end(mode_argument);
     if (opens_for_writing(flags) && fails("open", CALLER, false, true)) return -1;
     return library_function("open64", &::open64)(path, flags, mode);
 }

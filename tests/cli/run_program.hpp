@@ -53,7 +53,7 @@ struct RunOptions {
     int signal = 0;                       // signal number, sent to the program unless it has ended; 0: none
     int signal_after_ms = 0;              // delay after the program has a handler and `signal_when` returned true
     std::function<bool()> signal_when{};  // polled; empty: always true
-    int signal_count = 1;                 // number of times that it is sent; timeout(1) sends it twice
+    int signal_count = 1;                 // number of times that the signal is sent; timeout(1) sends it twice
     std::string out_file{};               // file that stdout is written to; empty: RunOutcome::out
 };
 
@@ -75,7 +75,7 @@ inline std::string contents(std::FILE* file) {
     return text;
 }
 
-/// Returns pointers to the texts and a final null pointer, for exec().
+/// Returns pointers to the texts and a final null pointer, as exec() expects them.
 inline std::vector<char*> pointers(std::vector<std::string>& texts) {
     std::vector<char*> all;
     for (std::string& text : texts) all.push_back(text.data());
@@ -88,7 +88,8 @@ inline std::vector<std::string> environment(const RunOptions& options) {
     for (char** variable = environ; *variable != nullptr; ++variable) {
         const std::string_view text = *variable;
         bool replaced = false;
-        for (const auto& [name, value] : options.variables)  // without RAYA_KERNEL_LOG, which would add writes
+        // Preloaded libraries count writes. RAYA_KERNEL_LOG is omitted with them, because it would add writes.
+        for (const auto& [name, value] : options.variables)
             replaced = replaced || text.starts_with(name + "=") ||
                        (name == "LD_PRELOAD" && text.starts_with("RAYA_KERNEL_LOG="));
         if (!replaced) all.emplace_back(text);

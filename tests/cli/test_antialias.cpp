@@ -14,9 +14,9 @@ using Loads = std::vector<std::uint64_t>;
 
 constexpr std::uint64_t kPixels = kTestWidth * kTestHeight;
 
-Arguments supersample_options(const Arguments& more = {}) {
+Arguments supersample_options(const Arguments& extra_options = {}) {
     Arguments options = {"--antialias", "supersample"};
-    options.insert(options.end(), more.begin(), more.end());
+    options.insert(options.end(), extra_options.begin(), extra_options.end());
     return options;
 }
 
@@ -55,7 +55,7 @@ TEST_CASE("render --antialias: the report has the keys of its method", "[cli]") 
     CHECK(keys_of(RenderFiles("planes", supersample_options()).report()) == keys);
 }
 
-TEST_CASE("render --antialias none: the report says none, and the image is that of the default", "[cli]") {
+TEST_CASE("render --antialias none: the report names no method, and the image is that of the default", "[cli]") {
     const RenderFiles files("planes", {"--antialias", "none"});
     const Document report = files.report();
     CHECK(report["antialias"] == Document{{"method", "none"}});
@@ -159,15 +159,15 @@ TEST_CASE("render --mask: white where pixels were supersampled, black elsewhere"
     CHECK(folder.entries() == 1);
     REQUIRE(mask.width == kTestWidth);
     REQUIRE(mask.height == kTestHeight);
-    std::uint64_t white = 0, neither = 0;
+    std::uint64_t white_pixels = 0, other_pixels = 0;  // other: neither white nor black
     for (std::size_t i = 0; i < mask.rgb.size(); i += 3) {
         const std::array<float, 3> pixel = {mask.rgb[i], mask.rgb[i + 1], mask.rgb[i + 2]};
-        white += pixel == std::array<float, 3>{1, 1, 1};
-        neither += pixel != std::array<float, 3>{1, 1, 1} && pixel != std::array<float, 3>{0, 0, 0};
+        white_pixels += pixel == std::array<float, 3>{1, 1, 1};
+        other_pixels += pixel != std::array<float, 3>{1, 1, 1} && pixel != std::array<float, 3>{0, 0, 0};
     }
-    CHECK(neither == 0);
-    CHECK(white == antialias["recomputed_pixels"]);
-    CHECK(double(white) / double(kPixels) == antialias["recomputed_share"]);
+    CHECK(other_pixels == 0);
+    CHECK(white_pixels == antialias["recomputed_pixels"]);
+    CHECK(double(white_pixels) / double(kPixels) == antialias["recomputed_share"]);
 }
 
 TEST_CASE("render: refuses options of supersampling out of range and without --antialias supersample", "[cli]") {

@@ -11,15 +11,15 @@ namespace raya {
 namespace {
 
 /// Returns the arguments of a bench with one small row, which takes less than a second.
-Arguments small_bench(const Arguments& more) {
+Arguments small_bench(const Arguments& extra_options) {
     Arguments arguments = {"bench", "--size",   "32",   "--pes",     "32", "--lanes",
                            "4",     "--format", "fp32", "--samples", "3"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
     return arguments;
 }
 
-/// Writes a copy of base.json in which the rate of the row is multiplied by `factor`, and the hash replaced by
-/// `hash` unless that is empty. Returns the path of the copy.
+/// Writes a copy of base.json in which the rate of the row is multiplied by `factor`, and the hash is replaced by
+/// `hash` unless `hash` is empty. Returns the path of the copy.
 std::string write_changed_baseline(const ScratchFolder& folder, const std::string& name, double factor,
                                    const std::string& hash = {}) {
     Document json = json_of(folder / "base.json");
@@ -154,7 +154,7 @@ TEST_CASE("bench --denormals: times every row twice, with the same image if no v
 
 TEST_CASE("bench --build: lists compile times, and exits with 4 if a kernel takes longer than --limit", "[cli]") {
     const ScratchFolder folder, outputs;
-    const auto build = [&](const Arguments& more) {
+    const auto build = [&](const Arguments& extra_options) {
         Arguments arguments = {"bench",   RAYA_SOURCE_DIR "/scenes/planes.nff",
                                "--build", "--variants",
                                "none",    "--size",
@@ -162,7 +162,7 @@ TEST_CASE("bench --build: lists compile times, and exits with 4 if a kernel take
                                "4",       "--lanes",
                                "4",       "--format",
                                "fp32"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
+        arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
         return arguments;
     };
     const RunOutcome run = run_raya(build({"--report", folder / "b.json"}));

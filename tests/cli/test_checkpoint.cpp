@@ -10,17 +10,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Arguments render_arguments(const ScratchFolder& folder, const Arguments& more = {}) {
+Arguments render_arguments(const ScratchFolder& folder, const Arguments& extra_options = {}) {
     Arguments arguments = {"render",         scene_file("centre"), "--size",         "256", "--lanes", "1", "-o",
                            folder / "x.pfm", "--report",           folder / "x.json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
     return arguments;
 }
 
 TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][checkpoint]") {
     const ScratchFolder folder;
     REQUIRE(run_raya(render_arguments(folder)).code == 0);
-    const std::string picture = file_contents(folder / "x.pfm");
+    const std::string image_bytes = file_contents(folder / "x.pfm");
     const Arguments checkpoint = {"--checkpoint", folder / "s.rst", "--checkpoint-every", "0"};
     // Interrupts the render, each time after a longer delay, until a checkpoint exists.
     bool interrupted = false;
@@ -35,7 +35,7 @@ TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][c
         REQUIRE((run.code == 0 || run.code == 128 + SIGINT));
         if (run.code == 0) {
             CHECK_FALSE(fs::exists(folder / "s.rst"));
-            CHECK((file_contents(folder / "x.pfm") == picture));
+            CHECK((file_contents(folder / "x.pfm") == image_bytes));
         }
         interrupted = run.code != 0 && fs::exists(folder / "s.rst");
     }
@@ -45,7 +45,7 @@ TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][c
     const RunOutcome run = run_raya(render_arguments(folder, resume));
     INFO(run.describe());
     REQUIRE(run.code == 0);
-    CHECK((file_contents(folder / "x.pfm") == picture));
+    CHECK((file_contents(folder / "x.pfm") == image_bytes));
     CHECK_FALSE(fs::exists(folder / "s.rst"));
     const Document report = Document::parse(file_contents(folder / "x.json"));
     CHECK_THAT(run.err, Catch::Contains("continuing at "));
@@ -54,8 +54,8 @@ TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][c
 
 TEST_CASE("render --checkpoint: refuses options that exclude it", "[cli][checkpoint]") {
     const ScratchFolder folder;
-    const auto refused = [&](const Arguments& more, const Arguments& message) {
-        check_refused(folder, render_arguments(folder, more), 2, message);
+    const auto refused = [&](const Arguments& extra_options, const Arguments& message) {
+        check_refused(folder, render_arguments(folder, extra_options), 2, message);
     };
     refused({"--resume"}, {"--resume", "--checkpoint FILE.rst"});
     refused({"--checkpoint-every", "5"}, {"--checkpoint-every", "--checkpoint FILE.rst"});
@@ -71,9 +71,9 @@ TEST_CASE("render --checkpoint: refuses a file that is not a checkpoint, and lea
           "[cli][checkpoint]") {
     const ScratchFolder folder;
     const std::string file = folder / "s.rst";
-    const auto refused = [&](const Arguments& more, const std::string& message) {
+    const auto refused = [&](const Arguments& extra_options, const std::string& message) {
         const std::string before = file_contents(file);
-        const RunOutcome run = run_raya(render_arguments(folder, more));
+        const RunOutcome run = run_raya(render_arguments(folder, extra_options));
         INFO(run.describe());
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Catch::Contains("--checkpoint " + file) && Catch::Contains(message));

@@ -80,14 +80,14 @@ TEST_CASE("readers of JSON: refuse damaged files with file and line", "[cli][jso
         std::ofstream(tuned, std::ios::binary) << damage.text;
         std::string warning;
         CHECK_FALSE(stored_choices([&](const std::string& text) { warning = text; })(device, {}));
-        const std::string in_cache = tuned.string() + damage.reason.substr(std::string("x.json").size());
+        const std::string reason_in_cache = tuned.string() + damage.reason.substr(std::string("x.json").size());
         CHECK_THAT(warning, Contains("ignored"));
         const std::vector<std::string> messages = {refusal([&] { page_of_report(damage.text, "x.json"); }),
                                                    refusal([&] { read_bench_report(file); }),
                                                    refusal([&] { FrameRecord record(file); }), warning};
         for (const std::string& message : messages) {
             CAPTURE(message);
-            CHECK_THAT(message, Contains(&message == &messages.back() ? in_cache : damage.reason));
+            CHECK_THAT(message, Contains(&message == &messages.back() ? reason_in_cache : damage.reason));
             CHECK(message.find('\n') == std::string::npos);
             CHECK(message.size() < 600);
         }

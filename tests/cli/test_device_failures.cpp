@@ -50,8 +50,8 @@ TEST_CASE("RAYA_BUILD_OPTIONS: is used in every build and shown in the report an
     INFO(run.describe());
     CHECK(run.code == 0);
     CHECK(contains(file_contents(outputs / "x.json"), "-cl-opt-disable -DNO_MATTER=1\""));
-    const ScratchFolder none;
-    check_refused(none, render_into(none, scene_file("planes"), {"--size", "16"}), 3,
+    const ScratchFolder no_outputs;
+    check_refused(no_outputs, render_into(no_outputs, scene_file("planes"), {"--size", "16"}), 3,
                   {"building program 'ring/trace.cl'", "-no-such-option"},
                   {.variables = {{"RAYA_BUILD_OPTIONS", "-no-such-option"}}});
 }
@@ -116,9 +116,9 @@ TEST_CASE("devices: lists a driver with two ICD entries once, and numbers equal 
                         {.variables = {{"OCL_ICD_VENDORS", vendors.path()}, {"POCL_DEVICES", "pthread pthread"}}});
     };
     for (const char* device : {"0", "1", "cpu", "0,1"}) CHECK(render(device).code == 0);
-    const RunOutcome none = render("no such device");
-    CHECK(none.code == 3);
-    CHECK_THAT(none.err, Catch::Contains("\n  1: ") && !Catch::Contains("\n  2: "));
+    const RunOutcome refused_run = render("no such device");
+    CHECK(refused_run.code == 3);
+    CHECK_THAT(refused_run.err, Catch::Contains("\n  1: ") && !Catch::Contains("\n  2: "));
 }
 
 TEST_CASE("--device: the error for an unknown device lists the devices", "[cli]") {
@@ -135,11 +135,11 @@ TEST_CASE("--device: the error for an unknown device lists the devices", "[cli]"
 
 TEST_CASE("render, devices, bench: without OpenCL the error contains the remedy", "[cli]") {
     const ScratchFolder no_drivers, outputs;
-    const RunOptions without{.variables = {{"OCL_ICD_VENDORS", no_drivers.path()}}};
+    const RunOptions no_opencl{.variables = {{"OCL_ICD_VENDORS", no_drivers.path()}}};
     const Arguments message = {"no OpenCL device found", "apt install pocl-opencl-icd", "OCL_ICD_VENDORS"};
-    check_refused(outputs, render_into(outputs, scene_file("planes")), 3, message, without);
-    check_refused(outputs, {"devices"}, 3, message, without);
-    check_refused(outputs, {"bench"}, 3, message, without);
+    check_refused(outputs, render_into(outputs, scene_file("planes")), 3, message, no_opencl);
+    check_refused(outputs, {"devices"}, 3, message, no_opencl);
+    check_refused(outputs, {"bench"}, 3, message, no_opencl);
 }
 
 TEST_CASE("render: if the driver crashes, raya exits with 3 and names the failed call", "[cli]") {
@@ -166,11 +166,11 @@ TEST_CASE("render --group: refuses a group that the kernel does not allow, with 
 }
 
 /// Returns the bytes of the image of a render with groups of `group` work-items on the PoCL device `device`.
-std::string image_of(const std::string& group, const std::string& device, const Arguments& more) {
+std::string image_of(const std::string& group, const std::string& device, const Arguments& extra_options) {
     const ScratchFolder outputs;
     Arguments arguments = {"render", scene_file("centre"), "-o", outputs / "x.pfm", "--size", "16", "--lanes", "16"};
     arguments.insert(arguments.end(), {"--group", group});
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
     const RunOutcome run = run_raya(arguments, {.variables = {{"POCL_DEVICES", device}}});
     INFO(run.describe());
     CHECK(run.code == 0);
@@ -185,13 +185,13 @@ TEST_CASE("render --group: the largest group with 16 lanes renders the same imag
 
 TEST_CASE("render --group: the largest group with the most private memory renders the same image", "[cli][slow]") {
     for (const char* device : {"pthread", "basic"})
-        for (const Arguments& more :
+        for (const Arguments& extra_options :
              {Arguments{"--machine", "grande"}, Arguments{"--machine", "torus", "--nodes", "2x1x1"},
               Arguments{"--machine", "grande", "--antialias", "filter"},
               Arguments{"--machine", "grande", "--bounces", "31", "--accel", "grid"},
               Arguments{"--machine", "grande", "--bounces", "31", "--accel", "bvh", "--antialias", "supersample"}}) {
-            CAPTURE(device, more);
-            CHECK(image_of("1024", device, more) == image_of("1", device, more));
+            CAPTURE(device, extra_options);
+            CHECK(image_of("1024", device, extra_options) == image_of("1", device, extra_options));
         }
 }
 
@@ -214,7 +214,7 @@ TEST_CASE("render: the error for a damaged kernel cache of the driver contains t
                   run_options);
 }
 
-TEST_CASE("render: ends if memory runs out during a build, although the driver keeps its lock", "[cli]") {
+TEST_CASE("render: ends if memory runs out during a build, although the driver still holds its lock", "[cli]") {
     if (kSanitized) return;
     const ScratchFolder cache, outputs;
     RunOptions run_options = device_with_fault("new 1000000 0");

@@ -31,8 +31,8 @@ std::vector<Command> all_commands() {
     return commands;
 }
 
-Arguments operator+(Arguments arguments, const Arguments& more) {
-    arguments.insert(arguments.end(), more.begin(), more.end());
+Arguments operator+(Arguments arguments, const Arguments& extra_arguments) {
+    arguments.insert(arguments.end(), extra_arguments.begin(), extra_arguments.end());
     return arguments;
 }
 

@@ -10,9 +10,9 @@ namespace {
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
-std::vector<std::string> explore_arguments(std::vector<std::string> more) {
+std::vector<std::string> explore_arguments(std::vector<std::string> extra_options) {
     std::vector<std::string> arguments = {"explore", scene_file("spheres"), "--size", "24x16", "--lanes", "4"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
     return arguments;
 }
 
@@ -24,7 +24,8 @@ TEST_CASE("explore: writes a page and prints the mapping that it opens with", "[
     INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
-    CHECK_THAT(run.out, Contains("24 x 16 pixels, opens with cyclic:3 on 20 PEs: u = ") && Contains("page    " + page));
+    CHECK_THAT(run.out,
+               Contains("24 x 16 pixels; the page opens with cyclic:3 on 20 PEs: u = ") && Contains("page    " + page));
     const std::string html = file_contents(page);
     CHECK_THAT(html, StartsWith("<!doctype html>"));
     for (const char* member :

@@ -15,9 +15,9 @@
 namespace raya {
 namespace {
 
-Arguments small_render(const ScratchFolder& outputs, const Arguments& more = {}) {
+Arguments small_render(const ScratchFolder& outputs, const Arguments& extra_options = {}) {
     Arguments options = {"--size", "16", "--lanes", "1", "--quiet"};
-    options.insert(options.end(), more.begin(), more.end());
+    options.insert(options.end(), extra_options.begin(), extra_options.end());
     return render_into(outputs, scene_file("planes"), options);
 }
 

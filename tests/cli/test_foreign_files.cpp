@@ -63,7 +63,7 @@ struct Installation {
     fs::path top, program, modules;
 };
 
-TEST_CASE("modules: are loaded from one folder of an installation only", "[cli][module]") {
+TEST_CASE("raya loads modules only from its own folder, or from ../lib/raya if it is in bin", "[cli][module]") {
     const ScratchFolder folder;
     CHECK(Installation(folder / "flat", ".", ".").run().code == 0);
     CHECK(Installation(folder / "prefix", "bin", "lib/raya").run().code == 0);
@@ -172,7 +172,7 @@ void give_to_nobody(const fs::path& path) {
     if (::geteuid() == 0) REQUIRE(::chown(path.c_str(), kNobody, kNobody) == 0);
 }
 
-TEST_CASE("kernel cache: a private folder replaces PoCL's default if others may write that", "[cli][cache]") {
+TEST_CASE("kernel cache: raya uses a private folder if other users may write PoCL's default folder", "[cli][cache]") {
     const CacheRun run;
     const ScratchFolder homes;
     ::chmod(homes.path().c_str(), 0755);
@@ -229,7 +229,7 @@ TEST_CASE("kernel cache: PoCL's default folder is used if only this user may wri
 TEST_CASE("kernel cache: raya skips private folders that it does not own", "[cli][cache]") {
     const CacheRun run;
     fs::create_directory(run.private_folder());
-    ::chmod(run.private_folder().c_str(), 0777);  // owned by root, not by nobody, who runs raya
+    ::chmod(run.private_folder().c_str(), 0777);  // owned by root; raya runs as the user `nobody`
     if (::geteuid() != 0) ::chmod(run.private_folder().c_str(), 0755);
     fs::create_directory_symlink(run.temporary.path(), run.private_folder("-1"));
     std::ofstream(run.private_folder("-2")) << "x";

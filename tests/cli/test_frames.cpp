@@ -112,16 +112,16 @@ TEST_CASE("--camera-path: each line is a camera; a wrong line is refused with it
 /// A sequence of small frames in a new folder.
 class Sequence {
   public:
-    Arguments arguments(const Arguments& more = {}) const {
+    Arguments arguments(const Arguments& extra_options = {}) const {
         Arguments all = {"render", scene_file("centre"), "--size", "16x12", "--pes", "16", "--lanes", "4",
                          "-o",     folder_ / "t.ppm",    "--turn", "360"};
-        all.insert(all.end(), more.begin(), more.end());
+        all.insert(all.end(), extra_options.begin(), extra_options.end());
         return all;
     }
 
-    /// Renders the sequence with `more` options and returns the number of frames that raya rendered.
-    int rendered_frames(const Arguments& more) const {
-        const RunOutcome run = run_raya(arguments(more));
+    /// Renders the sequence with the extra options and returns the number of frames that raya rendered.
+    int rendered_frames(const Arguments& extra_options) const {
+        const RunOutcome run = run_raya(arguments(extra_options));
         INFO(run.describe());
         REQUIRE(run.code == 0);
         CHECK(run.messages().empty());

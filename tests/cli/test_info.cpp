@@ -35,7 +35,7 @@ const Document& need_of(const Document& machine, const std::string& accel) {
     return machine;
 }
 
-/// A render with given options: the report if it succeeds, otherwise the messages.
+/// A render with the given options. `report` is set only if the render succeeds; `run` has its messages.
 struct RenderedScene {
     RenderedScene(const ScratchFolder& folder, const std::string& scene, Arguments options) {
         options.insert(options.begin(), {"render", scene, "-o", folder / "x.pfm", "--report", folder / "x.json",

@@ -19,7 +19,7 @@ struct ProgramCopy {
 
     ProgramCopy() { fs::copy_file(RAYA_PROGRAM, folder / "raya"); }
 
-    RunOutcome render(const Arguments& more, const std::string& binaries = "") const {
+    RunOutcome render(const Arguments& extra_options, const std::string& binaries = "") const {
         const ScratchFolder cache;
         Arguments arguments = {"render",
                                scene_file("planes"),
@@ -36,7 +36,7 @@ struct ProgramCopy {
                                "-vv",
                                "--report",
                                outputs / "r.json"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
+        arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
         const RunOutcome run = run_raya(
             arguments,
             {.variables = {{"POCL_CACHE_DIR", cache.path()}, {"RAYA_BINARIES", binaries}}, .program = folder / "raya"});
@@ -68,7 +68,7 @@ TEST_CASE("render --cache-kernels: the next render uses the binary and makes the
     CHECK_FALSE(used_binary(copy.render({"--bounces", "1"})));  // other options need another OpenCL program
 }
 
-TEST_CASE("kernel binaries: raya does not use damaged ones, or ones that other users can write", "[cli]") {
+TEST_CASE("kernel binaries: raya uses neither damaged binaries nor binaries that other users can write", "[cli]") {
     const ProgramCopy copy;
     copy.render({"--cache-kernels"});
     const std::string expected_hash = copy.hash();

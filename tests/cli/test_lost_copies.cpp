@@ -1,4 +1,4 @@
-// A driver that loses or misdirects copies: the checks of copies and of images in raya verify detect it.
+// The checks of copies and of images in raya verify detect a driver that loses or misdirects copies.
 #include <algorithm>
 #include <sstream>
 #include <utility>

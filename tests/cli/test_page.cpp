@@ -14,19 +14,20 @@ namespace {
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
-Arguments joined(Arguments arguments, const Arguments& more) {
-    arguments.insert(arguments.end(), more.begin(), more.end());
+Arguments joined(Arguments arguments, const Arguments& extra_arguments) {
+    arguments.insert(arguments.end(), extra_arguments.begin(), extra_arguments.end());
     return arguments;
 }
 
-Arguments render_24x16(const ScratchFolder& folder, const Arguments& more = {}) {
+Arguments render_24x16(const ScratchFolder& folder, const Arguments& extra_options = {}) {
     return joined(
-        {"render", scene_file("planes"), "--size", "24x16", "--lanes", "4", "--quiet", "-o", folder / "c.pfm"}, more);
+        {"render", scene_file("planes"), "--size", "24x16", "--lanes", "4", "--quiet", "-o", folder / "c.pfm"},
+        extra_options);
 }
 
 // Runs raya page without an OpenCL driver, so that it cannot repeat the command of the report.
-RunOutcome page_of_file(const std::string& report, const std::string& page, const Arguments& more = {}) {
-    return run_raya(joined({"page", report, "-o", page}, more),
+RunOutcome page_of_file(const std::string& report, const std::string& page, const Arguments& extra_options = {}) {
+    return run_raya(joined({"page", report, "-o", page}, extra_options),
                     {.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}});
 }
 
@@ -50,9 +51,10 @@ std::string check_page(const ScratchFolder& folder, const Arguments& command, in
 
 TEST_CASE("render --page: equals the page that raya page makes from the report", "[cli][page]") {
     const ScratchFolder folder;
-    for (const Arguments& more : {Arguments{"--pes", "20"}, Arguments{"--machine", "torus", "--nodes", "2x2x2"},
-                                  Arguments{"--mapping", "dynamic:4", "--pes", "6"}}) {
-        const std::string html = check_page(folder, render_24x16(folder, more));
+    for (const Arguments& extra_options :
+         {Arguments{"--pes", "20"}, Arguments{"--machine", "torus", "--nodes", "2x2x2"},
+          Arguments{"--mapping", "dynamic:4", "--pes", "6"}}) {
+        const std::string html = check_page(folder, render_24x16(folder, extra_options));
         const Document report = Document::parse(file_contents(folder / "r.json"));
         for (const std::string& part :
              {report["image"]["hash"].get<std::string>(), report["device"]["driver"].get<std::string>(),

@@ -21,7 +21,7 @@ struct Phase {
     std::string name;
     Arguments arguments;
     std::function<bool()> reached;  // returns true in this phase
-    int delay_ms = 0;               // delay after `reached` returned true
+    int delay_ms = 0;               // from `reached` returning true to the signal
     RunOptions run_options{};
 };
 
@@ -69,7 +69,7 @@ void check_phases(const Folders& folders, const std::vector<Phase>& phases, cons
 
 const std::initializer_list<int> kSignals = {SIGQUIT, SIGINT, SIGTERM, SIGHUP};
 
-/// Returns, for every command that reads input, the phase in which it waits for the input.
+/// Returns a phase for every command that reads an input: the command waits for its input.
 std::vector<Phase> reading_phases(const Folders& folders) {
     const std::string fifo = folders.fifo("never.nff"), out = folders.outputs / "x.ppm",
                       page = folders.outputs / "x.html";
@@ -82,13 +82,14 @@ std::vector<Phase> reading_phases(const Folders& folders) {
 }
 
 /// Returns the arguments of a long computation: one lane, and not more than the 2,000,000 pixels that a page allows.
-Arguments long_work(const std::string& command, const Arguments& more) {
+Arguments long_work(const std::string& command, const Arguments& extra_options) {
     Arguments arguments = {command, scene_file("spheres"), "--size", "1400", "--lanes", "1", "--format", "e8m21"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
     return arguments;
 }
 
-/// Returns, for every command that uses a device, the phase in which it compiles kernels (if `builds`) or computes.
+/// Returns a phase for every command that uses a device: the compilation of kernels (`builds` is true) or the
+/// computation.
 std::vector<Phase> computing_phases(const Folders& folders, bool builds) {
     const std::string out = folders.outputs / "x.ppm", cache = folders.cache.path();
     std::vector<Arguments> commands = {long_work("render", {"-o", out, "--machine", "grande"}),
@@ -112,14 +113,14 @@ std::vector<Phase> computing_phases(const Folders& folders, bool builds) {
     return phases;
 }
 
-/// Returns, for every command that writes a file, the phase in which it is blocked in `call`: write() or rename().
+/// Returns a phase for every command that writes a file: the command is blocked in `call`, write() or rename().
 std::vector<Phase> writing_phases(const Folders& folders, const std::string& call) {
     const std::string folder = fs::canonical(folders.outputs.path()).string(), output_path = folder + "/x";
     const Arguments small = {scene_file("planes"), "--size", "16", "--lanes", "4", "--format", "fp32"};
-    const auto small_command = [&](const std::string& command, const Arguments& more) {
+    const auto small_command = [&](const std::string& command, const Arguments& extra_options) {
         Arguments arguments = {command};
         if (command != "verify") arguments.insert(arguments.end(), small.begin(), small.end());
-        arguments.insert(arguments.end(), more.begin(), more.end());
+        arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
         return arguments;
     };
     const std::string report = folders.inputs / "report.json";

@@ -26,14 +26,14 @@ struct Shell {
 
 const std::string kRaya = std::string("'") + RAYA_PROGRAM + "' ";
 const std::string kRender = kRaya + "render ";
-const std::string kSmall = " --size 12 --pes 12 --lanes 4 ";
+const std::string kSmallOptions = " --size 12 --pes 12 --lanes 4 ";
 
 TEST_CASE("render - -o -: reads stdin and writes stdout with the same bytes as files", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     const std::string scene = scene_file("planes");
-    REQUIRE(shell(kRender + scene + " -o a.ppm --report a.json --quiet" + kSmall) == 0);
-    REQUIRE(shell("cat " + scene + " | " + kRender + "- -o - --report b.json" + kSmall + "> b.ppm 2> log") == 0);
+    REQUIRE(shell(kRender + scene + " -o a.ppm --report a.json --quiet" + kSmallOptions) == 0);
+    REQUIRE(shell("cat " + scene + " | " + kRender + "- -o - --report b.json" + kSmallOptions + "> b.ppm 2> log") == 0);
     CHECK(file_contents(folder / "b.ppm") == file_contents(folder / "a.ppm"));
     const std::string log = file_contents(folder / "log");
     CHECK(contains(log, "stdin: 12 x 12 pixels"));
@@ -42,7 +42,7 @@ TEST_CASE("render - -o -: reads stdin and writes stdout with the same bytes as f
     CHECK(report["scene"] == "stdin");
     CHECK(report["image"]["file"] == "stdout");
     CHECK(report["image"]["hash"] == json_of(folder / "a.json")["image"]["hash"]);
-    REQUIRE(shell(kRender + "- -o - --quiet" + kSmall + "< " + scene + " > c.ppm 2> log") == 0);
+    REQUIRE(shell(kRender + "- -o - --quiet" + kSmallOptions + "< " + scene + " > c.ppm 2> log") == 0);
     CHECK(file_contents(folder / "c.ppm") == file_contents(folder / "a.ppm"));
     CHECK(file_contents(folder / "log").empty());
 }
@@ -51,10 +51,13 @@ TEST_CASE("render: every output file can go to stdout", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     const std::string scene = scene_file("planes");
-    const auto stdout_of = [&](const std::string& option, const std::string& file, const std::string& more = "") {
+    const auto stdout_of = [&](const std::string& option, const std::string& file,
+                               const std::string& extra_options = "") {
         CAPTURE(option);
-        REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " " + file + kSmall + more + "> log") == 0);
-        REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " -" + kSmall + more + "> out 2> log") == 0);
+        REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " " + file + kSmallOptions + extra_options + "> log") ==
+                0);
+        REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " -" + kSmallOptions + extra_options +
+                      "> out 2> log") == 0);
         CHECK(contains(file_contents(folder / "log"), "rays    "));
         return file_contents(folder / "out");
     };
@@ -81,7 +84,7 @@ TEST_CASE("render --packets -: writes the same bytes to stdout as to a file", "[
 TEST_CASE("explore -o -: writes the same page to stdout as to a file", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
-    const std::string line = kRaya + "explore " + scene_file("planes") + kSmall;
+    const std::string line = kRaya + "explore " + scene_file("planes") + kSmallOptions;
     REQUIRE(shell(line + "-o a.html --quiet") == 0);
     REQUIRE(shell(line + "-o - > b.html 2> log") == 0);
     CHECK((file_contents(folder / "b.html") == file_contents(folder / "a.html")));
@@ -103,7 +106,7 @@ TEST_CASE("generate, info, verify, bench: read stdin and write stdout", "[cli]")
     CHECK(json_of(folder / "v.json")["devices"][0]["right"] == true);
     CHECK(contains(file_contents(folder / "log"), "PASS"));
     const auto bench = [&](const std::string& scene) {
-        return kRaya + "bench " + scene + " --format fp32 --samples 1" + kSmall;
+        return kRaya + "bench " + scene + " --format fp32 --samples 1" + kSmallOptions;
     };
     REQUIRE(shell(bench("-") + "--report - < s.nff > piped.json 2> log") == 0);
     CHECK(contains(file_contents(folder / "log"), "Mrays/s"));
@@ -121,7 +124,7 @@ TEST_CASE("./-: is a file named -", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     std::filesystem::copy(scene_file("planes"), folder / "-");
-    REQUIRE(shell(kRender + "./- -o a.ppm --report ./-.json" + kSmall + "> log") == 0);
+    REQUIRE(shell(kRender + "./- -o a.ppm --report ./-.json" + kSmallOptions + "> log") == 0);
     CHECK(json_of(folder / "-.json")["scene"] == "./-");
     REQUIRE(shell(kRaya + "generate random 5 -o ./- > log") == 0);
     CHECK(file_contents(folder / "log").empty());
@@ -182,7 +185,7 @@ TEST_CASE("-o -: a failed write to stdout is exit code 2", "[cli]") {
     const Shell shell{folder};
     for (const std::string redirection : {"> /dev/full", ">&-"}) {
         CAPTURE(redirection);
-        CHECK(shell(kRender + scene_file("planes") + " -o - --quiet" + kSmall + redirection + " 2> log") == 2);
+        CHECK(shell(kRender + scene_file("planes") + " -o - --quiet" + kSmallOptions + redirection + " 2> log") == 2);
         CHECK(contains(file_contents(folder / "log"), "cannot write 'stdout'"));
         CHECK(shell(kRaya + "generate random 5 -o - " + redirection + " 2> log") == 2);
     }
@@ -221,7 +224,7 @@ TEST_CASE("-: a message says that raya reads a terminal; binary output to a term
     CHECK(shell(kRaya + "info - < " + terminal.name() + " > out 2> log") == 0);
     CHECK(contains(file_contents(folder / "log"), "raya: reading stdin from the terminal; end with Ctrl-D"));
     CHECK(contains(file_contents(folder / "out"), "stdin: 1 object: 1 sphere"));
-    CHECK(shell(kRender + scene_file("planes") + " -o -" + kSmall + "> " + terminal.name() + " 2> log") == 2);
+    CHECK(shell(kRender + scene_file("planes") + " -o -" + kSmallOptions + "> " + terminal.name() + " 2> log") == 2);
     CHECK(contains(file_contents(folder / "log"), "stdout is a terminal"));
 }
 

@@ -31,7 +31,7 @@ TracedRun run_with_trace(const std::string& scene, const Arguments& options, con
     return traced;
 }
 
-// Key: "label/kind"; value: total nanoseconds and number of the commands.
+// Key: "label/kind" of commands; value: [total time in nanoseconds, number of commands].
 using Sums = std::map<std::string, std::pair<std::int64_t, std::int64_t>>;
 
 Sums sums_of_trace(const Document& trace) {
@@ -89,7 +89,7 @@ const Document& kernel_of(const Document& trace, const std::string& label) {
 
 }  // namespace
 
-TEST_CASE("render --trace: the trace of a ring follows the schema and sums to the report", "[cli]") {
+TEST_CASE("render --trace: the trace of a ring follows the schema, and its sums equal those of the report", "[cli]") {
     const TracedRun traced = run_with_trace("centre", {"--pes", "24"});
     check_trace(traced);
     check_clocks(traced.trace);
@@ -133,7 +133,8 @@ TEST_CASE("render --trace --machine torus: has nodes, packets and links", "[cli]
         CHECK_THAT(traced.run.out, Catch::Contains(std::string("roof    ") + label + ": "));
 }
 
-TEST_CASE("render --trace-events: limits the events, and a message counts those left out", "[cli]") {
+TEST_CASE("render --trace-events: limits the number of events, and a message has the number of omitted events",
+          "[cli]") {
     const TracedRun traced = run_with_trace("centre", {"--pes", "24", "--trace-events", "20"});
     CHECK(traced.trace["otherData"]["events"] == 20);
     const std::uint64_t left_out = traced.trace["otherData"]["events_left_out"];

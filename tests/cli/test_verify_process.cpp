@@ -113,8 +113,8 @@ TEST_CASE("progress: slow commands print it on a terminal within two seconds, at
     const ScratchFolder folder;
     const RunOptions slow = device_with_fault("clCreateContext 1 slow");
     const Arguments render = {"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--lanes", "4"};
-    const auto extended = [&](Arguments arguments, const Arguments& more) {
-        arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto extended = [&](Arguments arguments, const Arguments& extra_options) {
+        arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
         return arguments;
     };
     for (const auto& [arguments, progress] :

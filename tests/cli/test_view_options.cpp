@@ -68,7 +68,7 @@ TEST_CASE("change_view: replaces the given values of the scene exactly, and no o
     }
 }
 
-TEST_CASE("change_view: refuses what the scene reader would refuse, with the option's name", "[cli]") {
+TEST_CASE("change_view: refuses the values that the scene reader refuses, with the option's name", "[cli]") {
     const auto refusal = [](const ViewOptions& v) -> std::string {
         Scene scene = read_nff(scene_file("centre"));
         const Scene before = scene;

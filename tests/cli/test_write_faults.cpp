@@ -23,18 +23,18 @@ constexpr const char* kOld = "old content";
 struct WritingCommand {
     std::string name;
     Arguments arguments;     // with the folder in each file name
-    bool replaces = true;    // it replaces existing files
-    bool thorough = false;   // slow: tested only if thorough()
-    std::string input = "";  // name of the file that it reads
-    bool prints = false;     // it prints the same on stdout in each run
+    bool replaces = true;    // replaces existing files
+    bool is_slow = false;    // tested only if thorough()
+    std::string input = "";  // name of the file that the command reads
+    bool prints = false;     // prints a text on stdout, the same in each run
 };
 
 /// Returns the commands that write files, with arguments that write them into `folder`.
 std::vector<WritingCommand> commands(const std::string& folder) {
     const auto file = [&](const std::string& name) { return folder + "/" + name; };
-    const auto render = [&](const Arguments& more) {
+    const auto render = [&](const Arguments& extra_options) {
         Arguments arguments = {"render", scene_file("centre"), "--size", "16", "--lanes", "4", "--format", "fp32"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
+        arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
         return arguments;
     };
     const Arguments bench = {"bench", scene_file("centre"), "--size", "16", "--samples", "1", "--lanes",
@@ -145,7 +145,7 @@ TEST_CASE("every command that writes: repeats a call that failed once, or keeps 
                                              "short"};
     const std::vector<WritingCommand> tested_commands = commands("");
     for (std::size_t index = 0; index < tested_commands.size(); ++index) {
-        if (tested_commands[index].thorough && !thorough()) continue;
+        if (tested_commands[index].is_slow && !thorough()) continue;
         CAPTURE(tested_commands[index].name);
         const FaultRun faultless = run_with(index, "0 0", {}, saved_report);
         INFO(faultless.run.describe());
@@ -154,12 +154,12 @@ TEST_CASE("every command that writes: repeats a call that failed once, or keeps 
         const Contents old = tested_commands[index].replaces ? faultless.files : Contents{};
         std::size_t calls = 0;
         for (std::size_t call = 1; call <= faultless.calls.size(); ++call) {
-            // In a sequence of equal calls only the first two and the last fail, unless the test is thorough and the
-            // command is not slow.
+            // If equal calls follow one another, only the first two and the last of them fail, unless the test is
+            // thorough and the command is not slow.
             const auto call_name = [&](std::size_t number) {
                 return number <= faultless.calls.size() ? faultless.calls[number - 1] : "end";
             };
-            const bool all_writes = thorough() && !tested_commands[index].thorough;
+            const bool all_writes = thorough() && !tested_commands[index].is_slow;
             if (!all_writes && call > 2 && call_name(call) == call_name(call - 1) &&
                 call_name(call) == call_name(call + 1))
                 continue;

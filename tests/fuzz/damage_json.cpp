@@ -118,8 +118,8 @@ Document other_value(const Document& value, Random& random) {
     if (value.is_number_integer() != other_kind) return random.pick(kIntegers);
     if (value.is_number() != other_kind) return static_cast<double>(random.pick(kIntegers)) / 3;
     if (value.is_string() != other_kind) return random.pick(kTexts);
-    static const Document kOthers[] = {nullptr, true, false, Document::array(), Document::object(), 1.5};
-    return random.pick(kOthers);
+    static const Document kOtherValues[] = {nullptr, true, false, Document::array(), Document::object(), 1.5};
+    return random.pick(kOtherValues);
 }
 
 void mutate_text(Document& value, Random& random) {

@@ -18,7 +18,8 @@ namespace raya::fuzz {
     std::abort();
 }
 
-/// Requires that an error message contains the file's name, then a reason, and has at most 2000 characters.
+/// Requires that an error message consists of at most 2000 characters and contains the file's name, followed by a
+/// reason.
 inline void check_refusal(std::string_view message, std::string_view file) {
     const std::size_t at = message.find(file);
     if (at == std::string_view::npos) report_finding("an error message without the file's name", message);
@@ -27,7 +28,8 @@ inline void check_refusal(std::string_view message, std::string_view file) {
     if (message.size() > kMaxLength) report_finding("an error message that is too long", message);
 }
 
-/// Same as check_refusal(); the message must also contain a line number: "FILE:LINE: " or "FILE, line LINE: ".
+/// Requires what check_refusal() requires. The message must also contain a line number, as in
+/// "FILE:LINE: " or "FILE, line LINE: ".
 inline void check_refusal_with_line(std::string_view message, std::string_view file) {
     check_refusal(message, file);
     std::string_view rest = message.substr(message.find(file) + file.size());
@@ -35,7 +37,7 @@ inline void check_refusal_with_line(std::string_view message, std::string_view f
     rest.remove_prefix(rest.starts_with(kLine) ? kLine.size() : 1);
     const std::size_t end = rest.find_first_not_of("0123456789");
     if (end == 0 || end == std::string_view::npos || rest[0] == '0')
-        report_finding("an error message without a line", message);
+        report_finding("an error message without a line number", message);
 }
 
 /// A temporary folder in /dev/shm, for readers that take a file name.

@@ -19,7 +19,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         const std::vector<View> cameras = read_camera_path(file, view);
         const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
-        if (cameras.empty() || cameras.size() > lines) report_finding("wrong number of cameras", text);
+        if (cameras.empty() || cameras.size() > lines)
+            report_finding("the reader returns no camera, or more cameras than lines", text);
         for (const View& camera : cameras)
             if (const std::string reason = view_error(camera); !reason.empty())
                 report_finding("an invalid camera is accepted", reason);

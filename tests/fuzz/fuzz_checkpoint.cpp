@@ -35,10 +35,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         const CheckpointFile file(options);
         const auto state = file.checkpointing()->resume(settings, sized_state());
-        if (!state) report_finding("an existing file is not found", options.file);
+        if (!state) report_finding("an existing checkpoint is not found", options.file);
         const std::string written = state_bytes(*state, settings);
         if (state_bytes(read_state(written, settings, sized_state()), settings) != written)
-            report_finding("changed by being written and read", text_of(data, size).substr(0, 200));
+            report_finding("a checkpoint changes if it is written and read again", text_of(data, size).substr(0, 200));
     } catch (const UserError& error) {
         check_refusal(error.what(), options.file);
     }

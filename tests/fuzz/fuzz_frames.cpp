@@ -1,5 +1,5 @@
 // Fuzz target for frame records as `raya render --frames` reads them: the reader must either return a record, which
-// must not change if written and read reread, or throw an error.
+// must not change if written and read again, or throw an error.
 #include "host/base/whole_file.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/error.hpp"
@@ -22,7 +22,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::string written = read_file(file);
         FrameRecord reread(file);
         reread.write();
-        if (read_file(file) != written) report_finding("changed by being written and read", written);
+        if (read_file(file) != written)
+            report_finding("a frame record changes if it is written and read again", written);
         reread.add({.number = 1, .settings = "settings", .pixels = {}, .files = {}}, {frame});
         reread.write();
         if (reread.find(1, "settings", {frame}) == nullptr)

@@ -23,7 +23,8 @@ void check_triangles(const Polygon& polygon) {
     const std::size_t n = polygon.vertices.size();
     if (n > kMaxVertices) return;
     const auto triangles = triangulate(polygon.vertices, newell_normal(polygon.vertices));
-    if (triangles.size() != n - 2) report_finding("wrong number of triangles", std::to_string(triangles.size()));
+    if (triangles.size() != n - 2)
+        report_finding("a patch has a wrong number of triangles", std::to_string(triangles.size()));
     for (const auto& [a, b, c] : triangles)
         if (a == b || b == c || c == a || a < 0 || b < 0 || c < 0 || static_cast<std::size_t>(std::max({a, b, c})) >= n)
             report_finding("an invalid triangle", std::to_string(a));
@@ -31,7 +32,8 @@ void check_triangles(const Polygon& polygon) {
 
 void check_round_trip(const Scene& scene) {
     const std::string written = write_nff(scene);
-    if (!(parse_nff(written, kFile) == scene)) report_finding("changed by being written and read", written);
+    if (!(parse_nff(written, kFile) == scene))
+        report_finding("a scene changes if it is written and read again", written);
 }
 
 /// Checks lenient reading: the resulting scene can be written as NFF, and a file without remarks is plain NFF.
@@ -43,15 +45,16 @@ void check_leniently(std::string_view text) {
         if (remark.count == 0 || remark.line < 1) report_finding("a remark without count or line", remark.what);
         check_refusal_with_line(remark_text(kFile, remark), kFile);
     }
-    if (remarks.empty() && !(parse_nff(text, kFile) == scene)) report_finding("skipped without a remark", text);
+    if (remarks.empty() && !(parse_nff(text, kFile) == scene))
+        report_finding("the lenient reader changes a scene without a remark", text);
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text = text_of(data, size);
-    if (const auto other = foreign_format(text); !other.empty() && !other.starts_with("a"))
-        report_finding("a format without an article", other);
+    if (const auto format = foreign_format(text); !format.empty() && !format.starts_with("a"))
+        report_finding("the name of a format has no article", format);
     try {
         check_leniently(text);
     } catch (const UserError& error) {

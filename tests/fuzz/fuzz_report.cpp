@@ -33,10 +33,10 @@ void check_bench(const ScratchFolder& folder, std::string_view text) {
         report.builds.clear();
         if (to_json(read_bench_report(folder.write("again.json", to_json(reread).dump()))).dump().size() + 64 <
             to_json(report).dump().size())
-            report_finding("changed by being written and read", written);
+            report_finding("a bench report is shorter after it is written and read again", written);
         const BenchComparison comparison = compare_bench(report, reread, 1e-6);
         if (comparison.slower != 0 || comparison.other_images != 0)
-            report_finding("differs from itself", comparison.text);
+            report_finding("a bench report differs from its own copy", comparison.text);
     } catch (const UserError& error) {
         check_refusal(error.what(), file);
     }

@@ -38,9 +38,9 @@ void check_choices(const std::string& file) {
     for (const bool torus : {false, true})
         for (const std::uint32_t accel : {0u, 1u, 2u}) {
             const auto choice = source(kDevice, {.torus = torus, .accel = accel, .fp32 = true});
-            if (choice && warnings > 0) report_finding("used despite a warning", choice->origin);
+            if (choice && warnings > 0) report_finding("a tuned file is used despite a warning", choice->origin);
         }
-    if (warnings > 1) report_finding("warned more than once", file);
+    if (warnings > 1) report_finding("the reader warns more than once", file);
 }
 
 /// Checks device names, folders and environment variables with unusual values.
@@ -48,7 +48,7 @@ void check_environment(const ScratchFolder& folder) {
     DeviceInfo device = kDevice;
     device.name = "--a  b/c(R)-- 1.0+x";
     if (tuned_file_name(device).find_first_of("/ ()") != std::string::npos)
-        report_finding("a file name", tuned_file_name(device));
+        report_finding("the name of a tuned file has forbidden characters", tuned_file_name(device));
     const auto is_refused = [](auto call) {
         try {
             call();
@@ -58,18 +58,21 @@ void check_environment(const ScratchFolder& folder) {
         return false;
     };
     ::setenv("RAYA_TUNED", "maybe", 1);
-    if (!is_refused([] { stored_choices({}); })) report_finding("accepted", "RAYA_TUNED=maybe");
+    if (!is_refused([] { stored_choices({}); })) report_finding("an invalid variable is accepted", "RAYA_TUNED=maybe");
     ::setenv("RAYA_TUNED", "off", 1);
-    if (stored_choices({})) report_finding("used", "RAYA_TUNED=off");
+    if (stored_choices({})) report_finding("tuned files are used", "RAYA_TUNED=off");
     ::unsetenv("RAYA_TUNED");
     ::setenv("XDG_CACHE_HOME", "no/absolute/path", 1);
     ::setenv("HOME", folder.path("").c_str(), 1);
-    if (is_refused([] { tuned_path(kDevice); })) report_finding("refused", "HOME");
-    if (const TunedSource source = stored_choices({}); source && source(kDevice, {})) report_finding("used", "no file");
+    if (is_refused([] { tuned_path(kDevice); })) report_finding("a valid folder is refused", "HOME");
+    if (const TunedSource source = stored_choices({}); source && source(kDevice, {}))
+        report_finding("a missing tuned file is used", folder.path(""));
     ::unsetenv("HOME");
-    if (!is_refused([] { tuned_path(kDevice); }) || stored_choices({})) report_finding("accepted", "no folder");
+    if (!is_refused([] { tuned_path(kDevice); }) || stored_choices({}))
+        report_finding("a missing HOME is accepted", "HOME, XDG_CACHE_HOME");
     ::setenv("XDG_CACHE_HOME", "/dev/null", 1);
-    if (!is_refused([] { tuned_path(kDevice); })) report_finding("accepted", "/dev/null");
+    if (!is_refused([] { tuned_path(kDevice); }))
+        report_finding("a path that is not a folder is accepted", "XDG_CACHE_HOME=/dev/null");
 }
 
 }  // namespace
@@ -87,7 +90,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const TunedFile tuned = read_tuned(text, "tuned.json", kDevice);
         const std::string written = tuned_text(kDevice, tuned);
         if (tuned_text(kDevice, read_tuned(written, "tuned.json", kDevice)) != written)
-            report_finding("changed by being written and read", written);
+            report_finding("a tuned file changes if it is written and read again", written);
         save_tuned(kDevice, {.date = "2026-11-24", .entries = {TunedEntry{.key = {}, .values = {}, .scene = "s"}}});
     } catch (const UserError& error) {
         if (std::string_view(error.what()).empty()) report_finding("an error message without a reason", text);

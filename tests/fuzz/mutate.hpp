@@ -17,7 +17,9 @@ namespace raya::fuzz {
 class Random {
   public:
     explicit Random(unsigned seed) : engine_(seed + 1) {}
+    /// Returns an integer in [0, limit).
     std::size_t below(std::size_t limit) { return static_cast<std::size_t>(engine_() >> 4) % limit; }
+    /// Returns true with probability 1 / n.
     bool one_in(std::size_t n) { return below(n) == 0; }
     template <class List>
     const auto& pick(const List& list) {

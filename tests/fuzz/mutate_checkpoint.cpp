@@ -27,19 +27,20 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
                                                unsigned seed) {
     Random random(seed);
     std::string text(reinterpret_cast<const char*>(data), size);
-    const std::size_t magic = text.find('\n'), header = magic == std::string::npos ? magic : text.find('\n', magic + 1);
-    if (header == std::string::npos || text.size() < header + 1 + kHashDigits || random.one_in(10)) {
+    const std::size_t magic_end = text.find('\n'),
+                      header_end = magic_end == std::string::npos ? magic_end : text.find('\n', magic_end + 1);
+    if (header_end == std::string::npos || text.size() < header_end + 1 + kHashDigits || random.one_in(10)) {
         mutate_bytes(text);
         return store(text, data, max_size);
     }
-    std::string line = text.substr(magic + 1, header - magic - 1);
-    std::string values = text.substr(header + 1, text.size() - header - 1 - kHashDigits);
+    std::string line = text.substr(magic_end + 1, header_end - magic_end - 1);
+    std::string values = text.substr(header_end + 1, text.size() - header_end - 1 - kHashDigits);
     if (random.one_in(2))
         damage_values(values, random);
     else if (!damage_json(line, random))
         mutate_bytes(line);
     std::replace(line.begin(), line.end(), '\n', ' ');  // the header is one line
-    std::string mutated = text.substr(0, magic + 1) + line + "\n" + values;
+    std::string mutated = text.substr(0, magic_end + 1) + line + "\n" + values;
     if (mutated.size() + kHashDigits > max_size) mutated.resize(max_size - kHashDigits);
     return store(mutated + bytes_hash(mutated), data, max_size);
 }

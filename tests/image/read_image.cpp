@@ -25,7 +25,7 @@ std::vector<float> read_floats(const std::filesystem::path& path, int channels, 
     const auto input = OIIO::ImageInput::open(path.string());
     if (!input) throw std::runtime_error(OIIO::geterror());
     const OIIO::ImageSpec& spec = input->spec();
-    if (spec.nchannels != channels) throw std::runtime_error(path.string() + " has another number of channels");
+    if (spec.nchannels != channels) throw std::runtime_error(path.string() + ": wrong number of channels");
     width = spec.width;
     height = spec.height;
     if (spec.format != OIIO::TypeDesc::UINT8) return read_values<float>(*input, OIIO::TypeDesc::FLOAT);

@@ -17,7 +17,9 @@ Image ramp(int width, int height) {
 }
 
 TEST_CASE("pixel_hash: is XXH3 of the little-endian words", "[image]") {
-    // XXH3_128bits() of the bytes 01 00 00 00  01 00 00 00  00 00 00 3f  00 00 80 3f  00 00 00 c0, upper half first
+    // The expected text is XXH3_128bits() of the bytes
+    //   01 00 00 00  01 00 00 00  00 00 00 3f  00 00 80 3f  00 00 00 c0,
+    // printed with its upper 64 bits first.
     CHECK(pixel_hash(Image{1, 1, {0.5f, 1.0f, -2.0f}}) == "ede5021099dc7fb9e634093e89f01db8");
 }
 
@@ -40,7 +42,7 @@ TEST_CASE("pixel_hash: depends on the last bit of every float", "[image]") {
     const std::uint32_t seed = 20260;
     CAPTURE(seed);
     std::mt19937 random(seed);
-    const Image image = ramp(160, 120);  // several blocks of the hash function XXH3
+    const Image image = ramp(160, 120);  // long enough for several blocks of XXH3
     const std::string hash = pixel_hash(image);
     for (int n = 0; n < 40; ++n) {
         const std::size_t at = n == 0 ? image.rgb.size() - 1 : random() % image.rgb.size();

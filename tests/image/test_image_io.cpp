@@ -133,7 +133,7 @@ TEST_CASE("JPEG: differs from PNG by at most 4 codes, without chroma subsampling
     CHECK(max_difference <= 4);
 }
 
-TEST_CASE("TIFF, JPEG: the description has an attribute per line", "[image_io]") {
+TEST_CASE("TIFF, JPEG: each line of the description is one attribute", "[image_io]") {
     const ScratchFolder folder;
     for (const char* name : {"a.tif", "a.jpg"}) {
         CAPTURE(name);
@@ -203,7 +203,7 @@ TEST_CASE("srgb_code: rounds the sRGB curve to the nearest code", "[image_io]") 
     }
 }
 
-TEST_CASE("srgb_code: clamps", "[image_io]") {
+TEST_CASE("srgb_code: values outside 0..1 and NaN are clamped to 0 or 255", "[image_io]") {
     CHECK(srgb_code(-3.0f) == 0);
     CHECK(srgb_code(0.0f) == 0);
     CHECK(srgb_code(1.0f) == 255);

@@ -24,7 +24,7 @@ TEST_CASE("plain_png: stores the sRGB codes of all pixels", "[image]") {
         REQUIRE(read.height == height);
         for (std::size_t i = 0; i < image.rgb.size(); ++i)
             if (read.rgb[i] != linear_from_srgb_code(srgb_code(image.rgb[i])))
-                FAIL(width << " x " << height << ", value " << i);
+                FAIL("wrong code of value " << i << " in an image of " << width << " x " << height << " pixels");
     }
 }
 

@@ -58,7 +58,7 @@ TEST_CASE("as_displayed: the displayed image has, with the default tone, the cod
         const ToneCodes codes(tone), default_codes(Tone{});
         REQUIRE(displayed.rgb.size() == image.rgb.size());
         for (std::size_t at = 0; at < image.rgb.size(); at += 3)
-            if (codes(&image.rgb[at]) != default_codes(&displayed.rgb[at])) FAIL("pixel " << at / 3);
+            if (codes(&image.rgb[at]) != default_codes(&displayed.rgb[at])) FAIL("wrong codes of pixel " << at / 3);
     }
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("preview_of: keeps the mean brightness", "[image]") {
         return std::accumulate(i.rgb.begin(), i.rgb.end(), 0.0) / static_cast<double>(i.rgb.size());
     };
     CHECK(small.width == 256);
-    CHECK(mean(small) == Approx(mean(image)).epsilon(2e-3));  // some preview pixels average more columns
+    CHECK(mean(small) == Approx(mean(image)).epsilon(2e-3));  // tolerance: some preview pixels cover fewer rows
 }
 
 }  // namespace

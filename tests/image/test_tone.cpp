@@ -6,6 +6,7 @@
 
 #include "host/image/tone.hpp"
 #include "host/scene/split_mix.hpp"
+#include "tests/image/read_image.hpp"
 
 namespace raya {
 namespace {
@@ -63,7 +64,7 @@ TEST_CASE("ToneCodes: codes equal those of the formulas up to rounding", "[tone]
     }
 }
 
-TEST_CASE("ToneCodes: one stop more is twice the light", "[tone]") {
+TEST_CASE("ToneCodes: one more stop has the same effect as twice the light", "[tone]") {
     SplitMix random(43);
     for (Tone tone : tone_combinations()) {
         const ToneCodes codes(tone);

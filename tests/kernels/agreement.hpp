@@ -1,5 +1,5 @@
-// Compares the numbers that a kernel computes for a ray with those of the reference, and excuses differences above the
-// limits that rounding explains.
+// Compares the numbers that a kernel computes for a ray with those of the reference. Rounding explains differences up
+// to given limits. Larger differences are excused only for rays that graze an edge.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ inline void append(Found& found, const Vec3& v) {
 /// the ray sideways by `reach` changes the reference's result as much: such a ray grazes an edge, an outline or a
 /// shadow, or the distance of its hit is ill-conditioned.
 struct Agreement {
-    double reach = 0;         // scene units
+    double reach = 0;         // distance by which rays are moved sideways, in scene units
     std::size_t rays = 0;     // number of rays compared
     std::size_t grazing = 0;  // number of rays whose results differ by more than a limit
     double largest = 0;       // largest difference within the limits, as a fraction of its limit
@@ -49,6 +49,7 @@ struct Agreement {
         return true;
     }
 
+    // Returns true if moving the ray by `reach` changes the reference's result at least as much as `actual` differs.
     template <class Find>
     bool moved_rays_reach(const Find& find, const reference::Ray& ray, const Found& expected, const Found& actual,
                           const Found& limits) const {

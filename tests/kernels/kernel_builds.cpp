@@ -47,7 +47,7 @@ KernelOptions with_accel(KernelOptions options, std::uint32_t accel) {
     return options;
 }
 
-// Returns builds of the kernels that compute in `all.format`, for all variants of their code: with and without
+// Returns builds of the kernels that compute in `all.format`, for all alternatives of their code: with and without
 // acceleration structures and kinds of objects, and for devices without exact arithmetic.
 std::vector<Build> builds_in(const std::string& format, const KernelOptions& all) {
     KernelOptions spheres = all, check = all;

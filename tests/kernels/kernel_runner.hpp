@@ -21,8 +21,8 @@ struct SessionOwner {
     Session session{choose_device("")};
 };
 
-/// Build options of a kernel. All variants with the same format and no patches must give the same bits.
-struct Variant {
+/// Build options of a kernel. All builds with the same format and no patches must give the same bits.
+struct TestBuild {
     std::uint32_t lanes = 1;
     bool optimised = true;
     NumberFormat format{};
@@ -34,10 +34,10 @@ struct Variant {
     }
 };
 
-/// All variants in fp32. Tests compare the results of each variant with those of the first.
-inline const std::vector<Variant>& variants() {
-    static const std::vector<Variant> all = {{1, true},  {4, true},  {8, true},  {16, true},
-                                             {1, false}, {4, false}, {8, false}, {16, false}};
+/// All builds in fp32. Tests compare the results of each build with those of the first.
+inline const std::vector<TestBuild>& test_builds() {
+    static const std::vector<TestBuild> all = {{1, true},  {4, true},  {8, true},  {16, true},
+                                               {1, false}, {4, false}, {8, false}, {16, false}};
     return all;
 }
 
@@ -46,21 +46,21 @@ class KernelRunner : private SessionOwner, public CheckRunner {
   public:
     /// Builds `file`, a path relative to the project's root. Throws std::runtime_error if the file is missing,
     /// DeviceError if the build fails.
-    KernelRunner(const std::string& file, const Variant& variant)
-        : CheckRunner(session, build(session, file, variant), variant.lanes) {}
+    KernelRunner(const std::string& file, const TestBuild& test_build)
+        : CheckRunner(session, build(session, file, test_build), test_build.lanes) {}
 
   private:
-    static Program build(Session& session, const std::string& file, const Variant& variant) {
+    static Program build(Session& session, const std::string& file, const TestBuild& test_build) {
         std::ifstream in(RAYA_SOURCE_DIR "/" + file, std::ios::binary);
-        if (!in) throw std::runtime_error("no test kernel " + file);
+        if (!in) throw std::runtime_error("test kernel " + file + " is missing");
         KernelOptions options;
-        options.lanes = variant.lanes;
-        options.format = variant.format;
+        options.lanes = test_build.lanes;
+        options.format = test_build.format;
         options.words_local = false;  // test kernels take the job's words in global memory
         KernelSources sources;
-        sources.patches = variant.patches;
-        sources.more_options = variant.more_options;
-        if (!variant.optimised) sources.more_options.emplace_back("-cl-opt-disable");
+        sources.patches = test_build.patches;
+        sources.more_options = test_build.more_options;
+        if (!test_build.optimised) sources.more_options.emplace_back("-cl-opt-disable");
         return Kernels(session, options, sources).build(file, {std::istreambuf_iterator<char>(in), {}});
     }
 };

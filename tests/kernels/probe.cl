@@ -9,9 +9,10 @@ static inline void store_ray(__global float* to, uint stride, const tree_ray* r)
     store_lanes(to + 6, stride, r->weight.all);
 }
 
+// Finds the nearest hit of each ray, and its points, normals and colour (find_place() of shading/surface.clh).
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void find_places(__global const uint* restrict job,
-                 __global const float* restrict rays,
+void find_places(__global const uint* restrict job,    // the job's words (kernels/shared/job.h)
+                 __global const float* restrict rays,  // [ray][7]: origin, direction, limit
                  __global uint* restrict leaving,  // [ray]: 1 if the ray leaves the object, else 0
                  __global float* restrict places)  // [ray][6][3]: P, P+, P-, G, N, colour; undefined for a miss
 {
@@ -33,11 +34,12 @@ void find_places(__global const uint* restrict job,
 
 // Does one step of a ray tree: traces and shades the given rays, as rays of level `level` and weight 1/2.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void shade_once(__global const uint* restrict job,
-                __global const float* restrict rays,
-                const uint level,
-                __global uint* restrict state,     // [ray][3 + RAYA_EVENTS]: active (0 or 1), level, pending, events
-                __global float* restrict numbers)  // [ray][17]: sum, current ray, pending ray made at `level`
+void shade_tree_step(__global const uint* restrict job,    // the job's words (kernels/shared/job.h)
+                     __global const float* restrict rays,  // [ray][7]: origin, direction, limit
+                     const uint level,
+                     __global uint* restrict state,     // [ray][3 + RAYA_EVENTS]: active (0 or 1), level, pending
+                                                        // levels, event counts
+                     __global float* restrict numbers)  // [ray][17]: sum, current ray, pending ray made at `level`
 {
     const uint first = first_ray();
     const ray r = load_ray(rays, first);

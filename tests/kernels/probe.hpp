@@ -12,7 +12,8 @@
 
 namespace raya {
 
-/// Returns the job's words of a scene. The kernels of probe.cl use neither camera, image size nor cycles.
+/// Returns the job's words of a scene. The image size is arbitrary, because probe.cl uses neither camera, image size
+/// nor cycles.
 inline std::vector<std::uint32_t> job_words(const Scene& scene) {
     JobSettings settings;
     settings.image = {16, 16};
@@ -47,6 +48,7 @@ inline std::vector<float> ray_words(const std::vector<reference::Ray>& rays, flo
     return words;
 }
 
+/// The nearest hits of rays: [ray].
 struct ProbedHits {
     std::vector<std::uint32_t> objects;  // object numbers in the job
     std::vector<float> distances;
@@ -83,7 +85,7 @@ inline ProbedPlaces find_places(KernelRunner& runner, const std::vector<std::uin
     return {runner.read(leaving), runner.read(places)};
 }
 
-/// A ray of the ray tree as shade_once stores it.
+/// A ray of the ray tree as shade_tree_step stores it.
 struct ProbedRay {
     Vec3 origin, direction;
     double weight;
@@ -92,8 +94,8 @@ struct ProbedRay {
 struct ProbedSteps {
     static constexpr std::size_t kStateWords = 3 + RAYA_EVENTS;
     static constexpr std::size_t kNumberWords = 17;
-    std::vector<std::uint32_t> state;  // [ray][kStateWords]: as stored by shade_once in probe.cl
-    std::vector<float> numbers;        // [ray][kNumberWords]: as stored by shade_once in probe.cl
+    std::vector<std::uint32_t> state;  // [ray][kStateWords]: as stored by shade_tree_step in probe.cl
+    std::vector<float> numbers;        // [ray][kNumberWords]: as stored by shade_tree_step in probe.cl
 
     bool active(std::size_t ray) const { return state[ray * kStateWords] != 0; }
     std::uint32_t level(std::size_t ray) const { return state[ray * kStateWords + 1]; }
@@ -110,8 +112,8 @@ struct ProbedSteps {
     }
 };
 
-inline ProbedSteps shade_once(KernelRunner& runner, const std::vector<std::uint32_t>& job,
-                              const std::vector<float>& rays, std::uint32_t level) {
+inline ProbedSteps shade_tree_step(KernelRunner& runner, const std::vector<std::uint32_t>& job,
+                                   const std::vector<float>& rays, std::uint32_t level) {
     const std::size_t count = rays.size() / 7;
     const auto job_buffer = runner.filled("job", job);
     const auto ray_buffer = runner.filled("rays", rays);
@@ -119,7 +121,7 @@ inline ProbedSteps shade_once(KernelRunner& runner, const std::vector<std::uint3
     auto numbers = runner.constant<float>("numbers", count * ProbedSteps::kNumberWords, 0);
     runner
         .run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&, Buffer<float>&>(
-            "shade_once", count, job_buffer, ray_buffer, level, state, numbers);
+            "shade_tree_step", count, job_buffer, ray_buffer, level, state, numbers);
     return {runner.read(state), runner.read(numbers)};
 }
 

@@ -59,9 +59,11 @@ inline std::vector<Surface> every_surface() {
     return {matte, gloss, glass, clear, checker};
 }
 
+/// Return the index of a random surface: any but the checker for round objects, any for flat objects.
 inline int round_surface(SplitMix& random) { return static_cast<int>(whole_uniform(random, 4)); }
 inline int flat_surface(SplitMix& random) { return static_cast<int>(whole_uniform(random, 5)); }
 
+/// Adds a sphere. `sign`: -1 if only the inside is visible, else 1.
 inline void add_sphere(Scene& scene, SplitMix& random, double sign) {
     scene.spheres.push_back({random_point(random, 2), sign * random.uniform(0.2, 0.9), round_surface(random)});
 }

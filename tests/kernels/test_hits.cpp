@@ -1,5 +1,5 @@
-// Compares the nearest hits that kernels find with those of the reference, for every kind of object and every build
-// variant.
+// Compares the nearest hits that kernels find with those of the reference, for every kind of object and every build of
+// the kernels.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -55,17 +55,17 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
 
 }  // namespace
 
-TEST_CASE("closest hits agree with the reference, with the same bits in all variants", "[kernels]") {
+TEST_CASE("closest hits agree with the reference, with the same bits in all builds", "[kernels]") {
     const std::vector<reference::Ray> rays = random_rays(11, kRays);
     const std::vector<float> words = ray_words(rays);
     std::map<std::string, ProbedHits> first;
-    std::string grazing;  // numbers of grazing rays, for each kind of object
-    for (const Variant& variant : variants()) {
-        KernelRunner runner("tests/kernels/probe.cl", variant);
+    std::string grazing;  // number of grazing rays for each kind of object
+    for (const TestBuild& test_build : test_builds()) {
+        KernelRunner runner("tests/kernels/probe.cl", test_build);
         for (std::size_t k = 0; k < object_kinds().size(); ++k) {
             const ObjectKind& kind = object_kinds()[k];
             const std::uint64_t seed = 100 + k;
-            CAPTURE(variant.name(), kind.name, seed);
+            CAPTURE(test_build.name(), kind.name, seed);
             const Scene scene = random_scene(kind, seed);
             const ProbedHits hits = closest_hits(runner, job_words(scene), words);
             const auto [entry, is_first] = first.try_emplace(kind.name, hits);
@@ -75,8 +75,9 @@ TEST_CASE("closest hits agree with the reference, with the same bits in all vari
         }
     }
     grazing.pop_back();
-    fmt::print("Number of {} rays per kind of object that graze and differ by more than the limit:{}.\n", kRays,
-               grazing);
+    fmt::print(
+        "Grazing rays that differ from the reference by more than the limit, of {} rays per kind of object:{}.\n",
+        kRays, grazing);
 }
 
 TEST_CASE("on a tie the lowest object number wins", "[kernels]") {

@@ -26,7 +26,7 @@ const DeviceInfo kCpu = a_device("cpu", 8, 4096);
 
 }  // namespace
 
-TEST_CASE("every tunable of the kernels has a -D option", "[ring]") {
+TEST_CASE("every kernel option becomes a -D option", "[ring]") {
     using Options = std::vector<std::string>;
     CHECK(build_options({}, kCpu) == Options{"-cl-std=CL1.2", "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0",
                                              "-DRAYA_LANES=1", "-DRAYA_GROUP=1", "-DRAYA_BOUNCES=8",
@@ -92,7 +92,7 @@ TEST_CASE("lanes, group sizes and bounces out of range are refused", "[ring]") {
     check_error({.bounces = 32}, kCpu, Contains("--bounces 32:") && Contains("0..31"));
 }
 
-TEST_CASE("lanes and group size follow the device", "[ring]") {
+TEST_CASE("default lanes and group size depend on the device", "[ring]") {
     CHECK(default_lanes(a_device("cpu", 16, 4096)) == 16);
     CHECK(default_lanes(a_device("cpu", 8, 4096)) == 8);
     CHECK(default_lanes(a_device("cpu", 2, 4096)) == 4);  // more than the vector width: more work per branch
@@ -103,7 +103,7 @@ TEST_CASE("lanes and group size follow the device", "[ring]") {
     CHECK(default_group_size(a_device("gpu", 1, 1024), true) == 128);
 }
 
-TEST_CASE("llvmpipe, which vectorises over work-items, has groups of 8 and one lane; its torus nodes one work-item",
+TEST_CASE("defaults on llvmpipe, which vectorises over work-items: one lane, groups of 8, of 1 for torus nodes",
           "[ring]") {
     DeviceInfo llvmpipe = a_device("cpu", 1, 1024);
     llvmpipe.max_loop_iterations = 65'535;
@@ -112,14 +112,14 @@ TEST_CASE("llvmpipe, which vectorises over work-items, has groups of 8 and one l
     CHECK(default_group_size(llvmpipe, true) == 1);
     CHECK(default_group_size(a_device("cpu", 16, 4096), true) == 1);
     for (const bool torus : {false, true}) {
-        const KernelChoice defaults = chosen({}, llvmpipe, {.torus = torus});
+        const KernelChoice defaults = chosen_kernels({}, llvmpipe, {.torus = torus});
         CHECK(defaults.group_size == default_group_size(llvmpipe, torus));
         CHECK(defaults.tuning.sphere_batch == (torus ? 0 : 16));
-        const KernelChoice with_lanes = chosen({.lanes = 4}, llvmpipe, {.torus = torus});
+        const KernelChoice with_lanes = chosen_kernels({.lanes = 4}, llvmpipe, {.torus = torus});
         CHECK((with_lanes.lanes == 4 && with_lanes.group_size == defaults.group_size));
         CHECK(with_lanes.tuning.sphere_batch == defaults.tuning.sphere_batch);
     }
     for (const TuningKey& what :
          {TuningKey{.accel = RAYA_ACCEL_GRID}, TuningKey{.accel = RAYA_ACCEL_BVH}, {.fp32 = false}})
-        CHECK(chosen({}, llvmpipe, what).tuning.sphere_batch == 0);
+        CHECK(chosen_kernels({}, llvmpipe, what).tuning.sphere_batch == 0);
 }

@@ -133,7 +133,7 @@ TEST_CASE("a patch changes its file wherever that file is included, and nothing 
     CHECK_THAT(kernel_source("ring/trace.cl", {.patches = {renaming}}), Contains("void retrace("));
 }
 
-TEST_CASE("a patch that does not find its text exactly once is refused", "[kernels]") {
+TEST_CASE("a patch is refused unless its text occurs exactly once", "[kernels]") {
     const auto check_patch_error = [](const SourcePatch& patch, const std::string& why) {
         const KernelSources sources{.patches = {patch}};
         CHECK_THROWS_AS(kernel_file(patch.file, sources), std::logic_error);

@@ -83,7 +83,7 @@ TEST_CASE("a kernel with other parameters, another name or another file is refus
     CHECK_THROWS_AS(kernels.get<OtherFile>(), UserError);
 }
 
-TEST_CASE("sources and more options reach every build", "[kernels]") {
+TEST_CASE("source patches and additional options reach every build", "[kernels]") {
     Session session(choose_device(""));
     const KernelSources sources{.patches = {{"torus/compose.cl", "void compose(", "void RAYA_NAME("}},
                                 .more_options = {"-DRAYA_NAME=decompose"}};

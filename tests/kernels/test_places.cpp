@@ -1,4 +1,5 @@
-// Compares the hit points, normals, sides and colours that kernels compute with those of the reference.
+// Compares the hit points, normals, sides (entering or leaving) and colours that kernels compute with those of the
+// reference.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ constexpr std::size_t kPlaceRays = 4'000;
 
 constexpr double kPlaceLimit = 1e-6;         // relative to the scene's extent, as for the distance of a hit
 constexpr double kColourLimit = 1e-7;        // rounding of the scene's words
-constexpr double kMaxPlacesGrazing = 0.002;  // fraction of rays, as for hits, and at the sides of checker squares
+constexpr double kMaxPlacesGrazing = 0.002;  // fraction of rays that may graze an edge or a checker square's side
 
 Found reference_place(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
@@ -99,18 +100,18 @@ void check_starts(const Scene& scene, const ProbedHits& hits, const ProbedPlaces
 
 }  // namespace
 
-TEST_CASE("places, normals, sides and colours agree with the reference, with the same bits in all variants",
+TEST_CASE("hit points, normals, sides and colours agree with the reference, with the same bits in all builds",
           "[kernels]") {
     const std::vector<reference::Ray> rays = random_rays(41, kPlaceRays);
     const std::vector<float> words = ray_words(rays);
     std::map<std::string, ProbedPlaces> first;
     std::string grazing;
-    for (const Variant& variant : variants()) {
-        KernelRunner runner("tests/kernels/probe.cl", variant);
+    for (const TestBuild& test_build : test_builds()) {
+        KernelRunner runner("tests/kernels/probe.cl", test_build);
         for (std::size_t k = 0; k < object_kinds().size(); ++k) {
             const ObjectKind& kind = object_kinds()[k];
             const std::uint64_t seed = 200 + k;
-            CAPTURE(variant.name(), kind.name, seed);
+            CAPTURE(test_build.name(), kind.name, seed);
             const Scene scene = random_scene(kind, seed);
             const std::vector<std::uint32_t> job = job_words(scene);
             const ProbedPlaces places = find_places(runner, job, words);
@@ -125,7 +126,7 @@ TEST_CASE("places, normals, sides and colours agree with the reference, with the
         }
     }
     grazing.pop_back();
-    fmt::print("Number of {} rays per kind of object whose places differ by more than the limits, at edges:{}.\n",
+    fmt::print("Grazing rays whose places differ from the reference by more than the limits, of {} rays per kind:{}.\n",
                kPlaceRays, grazing);
 }
 

@@ -30,7 +30,7 @@ constexpr double kDirectionLimit = 2 * kPlaceLimit * 4 / 0.2;
 // product is at most 0.1.
 constexpr double kSumLimit = 100 * 0.1 * kDirectionLimit;
 constexpr double kWeightLimit = 1e-7;
-constexpr double kMaxShadesGrazing = 0.01;  // as for hits, and at shadow edges, cone tips, critical angles
+constexpr double kMaxShadesGrazing = 0.01;  // fraction of rays that graze an edge, shadow, cone tip or critical angle
 
 void append_ray(Found& found, const ProbedRay& ray) {
     append(found, ray.origin);
@@ -38,9 +38,8 @@ void append_ray(Found& found, const ProbedRay& ray) {
     found.push_back(ray.weight);
 }
 
-// The numbers of a step are: object number; numbers of shadow rays, shadow hits, reflected rays and refracted rays;
-// sum; then the reflected ray and the refracted ray, if they were made. The numbers of a miss are object number and
-// sum.
+// Found holds for a hit: object number; numbers of shadow rays, shadow hits, reflected rays and refracted rays; sum;
+// then the reflected ray and the refracted ray, if they were made. For a miss it holds object number and sum.
 constexpr std::size_t kIntegers = 5, kSumAt = 5, kRaysAt = 8, kRayNumbers = 7;
 
 Found limits_for(const Found& found, double extent) {
@@ -154,9 +153,9 @@ TEST_CASE("a step of a ray tree agrees with the reference's formulas", "[kernels
     const std::vector<reference::Ray> rays = random_rays(kRaySeed, kShadeRays);
     const std::vector<int> numbers = object_numbers(scene);
     const std::size_t faces = face_count(scene);
-    KernelRunner runner("tests/kernels/probe.cl", variants().front());
+    KernelRunner runner("tests/kernels/probe.cl", test_builds().front());
     const ProbedHits hits = closest_hits(runner, job_words(scene), ray_words(rays));
-    const ProbedSteps steps = shade_once(runner, job_words(scene), ray_words(rays), 0);
+    const ProbedSteps steps = shade_tree_step(runner, job_words(scene), ray_words(rays), 0);
     const auto find = [&](const reference::Ray& ray) { return reference_step(scene, ray); };
     Agreement agreement{.reach = kPlaceLimit * scene_extent(scene)};
     std::size_t both = 0, through = 0, total = 0;
@@ -171,22 +170,23 @@ TEST_CASE("a step of a ray tree agrees with the reference's formulas", "[kernels
         through += steps.events(i, at(RAYA_REFRACTED)) && !steps.events(i, at(RAYA_REFLECTED));
         total += hit && steps.events(i, at(RAYA_REFLECTED)) && steps.followed(i).weight > 0.9 * kWeight;
     }
-    fmt::print("Number of {} shaded rays that differ by more than the limits, at edges and tips: {}.\n", kShadeRays,
-               agreement.grazing);
+    fmt::print("Grazing rays that differ from the reference by more than the limits, of {} shaded rays: {}.\n",
+               kShadeRays, agreement.grazing);
     CHECK(static_cast<double>(agreement.grazing) <= kMaxShadesGrazing * kShadeRays);
     CHECK(both > kShadeRays / 50);     // number of hits that reflect and refract
     CHECK(through > kShadeRays / 50);  // number of hits that only refract
     CHECK(total > kShadeRays / 50);    // number of total reflections: weight factor Ks + T, 0.92 or 0.95
 }
 
-TEST_CASE("a step at a deeper level differs only in its level, and the last level makes no rays", "[kernels]") {
+TEST_CASE("a step at a deeper level differs only in its level, and a step at the last level makes no rays",
+          "[kernels]") {
     const Scene scene = mixed_scene(kSceneSeed);
     const std::vector<std::uint32_t> job = job_words(scene);
     const std::vector<float> rays = ray_words(random_rays(kRaySeed, kShadeRays));
     const std::size_t faces = face_count(scene);
-    KernelRunner runner("tests/kernels/probe.cl", variants().front());
-    const ProbedSteps first = shade_once(runner, job, rays, 0), deeper = shade_once(runner, job, rays, 5);
-    const ProbedSteps last = shade_once(runner, job, rays, kLastLevel);
+    KernelRunner runner("tests/kernels/probe.cl", test_builds().front());
+    const ProbedSteps first = shade_tree_step(runner, job, rays, 0), deeper = shade_tree_step(runner, job, rays, 5);
+    const ProbedSteps last = shade_tree_step(runner, job, rays, kLastLevel);
     CHECK(bits(deeper.numbers) == bits(first.numbers));
     for (std::size_t i = 0; i < kShadeRays; ++i) {
         CAPTURE(kSceneSeed, kRaySeed, i);
@@ -198,15 +198,15 @@ TEST_CASE("a step at a deeper level differs only in its level, and the last leve
     }
 }
 
-TEST_CASE("a step gives the same bits in all variants", "[kernels]") {
+TEST_CASE("a step gives the same bits in all builds", "[kernels]") {
     const std::vector<std::uint32_t> job = job_words(mixed_scene(kSceneSeed));
     const std::vector<float> rays = ray_words(random_rays(kRaySeed, kShadeRays));
-    std::map<std::uint32_t, ProbedSteps> first;  // results of the first variant, by level
-    for (const Variant& variant : variants()) {
-        KernelRunner runner("tests/kernels/probe.cl", variant);
+    std::map<std::uint32_t, ProbedSteps> first;  // [level]: results of the first build
+    for (const TestBuild& test_build : test_builds()) {
+        KernelRunner runner("tests/kernels/probe.cl", test_build);
         for (const std::uint32_t level : {0u, 5u, kLastLevel}) {
-            CAPTURE(variant.name(), level, kSceneSeed, kRaySeed);
-            const ProbedSteps steps = shade_once(runner, job, rays, level);
+            CAPTURE(test_build.name(), level, kSceneSeed, kRaySeed);
+            const ProbedSteps steps = shade_tree_step(runner, job, rays, level);
             const auto entry = first.try_emplace(level, steps).first;
             CHECK(steps.state == entry->second.state);
             CHECK(bits(steps.numbers) == bits(entry->second.numbers));

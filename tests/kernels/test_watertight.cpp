@@ -11,7 +11,7 @@ namespace raya {
 namespace {
 
 /// Returns a polygon mesh of a sphere of radius 1 around (0.3, -0.2, 0.1): planar quadrangles between circles of
-/// latitude, and triangles at the poles.
+/// latitude, and triangles at the poles. The corners of every third polygon are in reversed order.
 Scene ball() {
     constexpr int kMeridians = 24, kLatitudes = 12;
     const auto corner = [](int i, int j) {
@@ -68,14 +68,15 @@ Rays rays_at_edges(const Scene& scene, const NumberFormat& format, unsigned coun
     return rays;
 }
 
-std::size_t misses(const Variant& variant, unsigned count) {
+std::size_t misses(const TestBuild& test_build, unsigned count) {
     const Scene scene = ball();
     JobSettings settings;
     settings.image = {16, 16};
-    settings.format = variant.format;
+    settings.format = test_build.format;
     const PackedJob job = pack_job(scene, settings);
-    KernelRunner runner("kernels/checks/hits.cl", variant);
-    const Hits hits = find_hits(runner, "hits_without_accel", job.words(), rays_at_edges(scene, variant.format, count));
+    KernelRunner runner("kernels/checks/hits.cl", test_build);
+    const Hits hits =
+        find_hits(runner, "hits_without_accel", job.words(), rays_at_edges(scene, test_build.format, count));
     return static_cast<std::size_t>(std::count(hits.objects.begin(), hits.objects.end(), kNoObject));
 }
 

@@ -1,5 +1,5 @@
-// The instruction budgets: cycles of events counted by hand, sums, and the accuracy of the seeds and Newton steps of
-// division and root.
+// The instruction budgets: cycles of events counted by hand, sums, and the accuracy of divisions and square roots,
+// which a DSP computes from a first approximation (seed) by a Newton step.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -13,14 +13,17 @@ namespace {
 
 const Budget& budget_of(int event) { return budgets()[static_cast<std::size_t>(event)]; }
 
-bool has_numbers(const Budget& b) { return b.multiply_accumulates + b.divisions + b.roots + b.moves + b.branches > 0; }
+bool has_operations(const Budget& b) {
+    return b.multiply_accumulates + b.divisions + b.roots + b.moves + b.branches > 0;
+}
 
 std::uint64_t cycles_of(const Operations& sum) {
     return sum.multiply_accumulates + kDivisionCycles * sum.divisions + kRootCycles * sum.roots + sum.moves +
            kBranchCycles * sum.branches;
 }
 
-/// Returns log2 of the maximum of |relative_error(x)| for x in [1, 4), the two binades that the root's table covers.
+/// Returns log2 of the maximum of |relative_error(x)| for x in [1, 4), the two binades that the table of seeds of
+/// square roots covers.
 template <class RelativeError>
 double error_bits(RelativeError&& relative_error) {
     double max_error = 0;
@@ -41,14 +44,14 @@ TEST_CASE("budgets are in the order of the events, and only primary hits, which 
     for (int event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
         CHECK(budget_of(event).event == event);
-        CHECK(has_numbers(budget_of(event)) == (event != RAYA_PRIMARY_HITS));
+        CHECK(has_operations(budget_of(event)) == (event != RAYA_PRIMARY_HITS));
         CHECK_FALSE(std::string(budget_of(event).work).empty());
         CHECK(cycles_of_events()[static_cast<std::size_t>(event)] == cycles_of(budget_of(event)));
     }
 }
 
-// Cycles of a division: 3 for the seed y, and one each for e = 1 - b y, y + e y and a y. Cycles of a root: 3 for the
-// seed y, and one each for x/2, y y, d = 3/2 - (x/2)(y y), y d, and x y. Cycles of a branch: 3.
+// Cycles of a division: 3 for the seed y, and one each for e = 1 - b y, y + e y and a y. Cycles of a square root: 3 for
+// the seed y, and one each for x/2, y y, d = 3/2 - (x/2)(y y), y d, and x y. Cycles of a branch: 3.
 TEST_CASE("cycles of each event agree with those counted by hand", "[machine]") {
     CHECK(kDivisionCycles == 6);
     CHECK(kRootCycles == 8);

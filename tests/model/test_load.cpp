@@ -39,10 +39,10 @@ TEST_CASE("one PE with all the work leaves the others idle", "[report]") {
 
 // Kohata & Ito 1993, Tables 2 and 3: 64,800 ms on one PE; 653 ms (p = 0) and 283 ms (p = 16) on 256 PEs.
 TEST_CASE("the loads of the paper's tables give its imbalance and speed-up", "[report]") {
-    const auto with_busiest = [](std::uint64_t busiest) {
-        constexpr std::uint64_t kSum = 64'800'000;  // microseconds
-        std::vector<std::uint64_t> per_pe(256, (kSum - busiest) / 255);
-        per_pe[100] = busiest;
+    const auto with_busiest = [](std::uint64_t busiest_us) {  // load of the busiest PE
+        constexpr std::uint64_t kSum = 64'800'000;            // microseconds
+        std::vector<std::uint64_t> per_pe(256, (kSum - busiest_us) / 255);
+        per_pe[100] = busiest_us;
         return load_of(per_pe);
     };
     CHECK(with_busiest(653'000).imbalance == Approx(1.580).margin(0.0005));

@@ -38,7 +38,7 @@ void check_rounding(const NumberFormat& format) {
         const float found = round_to_format(value, format), expected = oracle.round(value);
         if (std::bit_cast<std::uint32_t>(found) == std::bit_cast<std::uint32_t>(expected)) continue;
         CAPTURE(format_name(format), kSeed, i, value, expected);
-        FAIL("found " << found);
+        FAIL("the value is rounded to " << found);
     }
 }
 

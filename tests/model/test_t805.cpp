@@ -11,8 +11,8 @@ namespace {
 
 const T805Work& work_of(std::size_t event) { return t805_work()[event]; }
 
-// Cycles of arithmetic operations: addition 10, multiplication 15, division 20, root 123. Each includes 4 cycles for
-// its operand.
+// Cycles of arithmetic operations: addition 10, multiplication 15, division 20, square root 123. Each includes 4 cycles
+// for its operand.
 std::uint32_t arithmetic(std::uint32_t additions, std::uint32_t multiplications, std::uint32_t divisions = 0,
                          std::uint32_t roots = 0) {
     return 10 * additions + 15 * multiplications + 20 * divisions + 123 * roots;
@@ -58,8 +58,8 @@ TEST_CASE("cycles of each event on a T805 agree with those counted by hand", "[m
     CHECK(cycles[RAYA_DISCARDED] == arithmetic(8 + 25, 12 + 18, 1 + 3, 1) + control(2 + 6 + 6, 1 + 4 + 1));
 }
 
-// A packet charged with 30 words takes 14 more stores. If each ray has one return of 6 words, a return takes two stores
-// less, and the light sources need no returns.
+// A packet charged with 30 words takes 14 more stores. If each ray has one return of 6 words, a return takes two
+// stores less, and no light source needs a return of its own.
 TEST_CASE("an event that creates a packet includes the stores of the packet's charged words", "[machine]") {
     const auto default_cycles = t805_cycles(), charged_cycles = t805_cycles({30, true});
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {

@@ -56,7 +56,7 @@ class MpfrOracle {
         return fit();
     }
     float sqrt(float a) {
-        if (!(a > 0)) return 0;  // the root of -0 is +0
+        if (!(a > 0)) return 0;  // the square root of -0 is +0
         take(a, 0);
         mpfr_sqrt(z_, a_, rounding_);
         return fit();

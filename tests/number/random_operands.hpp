@@ -94,7 +94,7 @@ class RandomOperands {
                 return rounded(-product);  // cancels the product's leading bits
             case 1:
                 return rounded(-product +
-                               std::ldexp(within(-2, 2), e - y));  // the same, but for a few units of a last place
+                               std::ldexp(within(-2, 2), e - y));  // cancels all but up to two units in the last place
             case 2:
                 return rounded(addend_for_tie(product));  // the sum is a tie or next to one
             case 3:

@@ -47,7 +47,7 @@ std::vector<Case> sums(const SpecialNumbers& f) {
         {"tie, broken upwards by the last bit", kAdd, b, s / 2 * above, 0, b + s, b},
         {"tie, broken downwards by the last bit", kAdd, b + s, s / 2 * below, 0, b + s, b + s},
         {"negative tie", kAdd, -b - s, -s / 2, 0, -b - 2 * s, -b - s},
-        {"tie from above", kSub, b + s, s / 2, 0, b, b},
+        {"a difference that is a tie", kSub, b + s, s / 2, 0, b, b},
         {"below a power of two the steps are half as wide: a tie", kSub, b, s / 4, 0, b, b - s / 2},
         {"below a power of two, broken upwards", kSub, b, s / 4 * below, 0, b, b - s / 2},
         {"below a power of two, broken downwards", kSub, b, s / 4 * above, 0, b - s / 2, b - s / 2},
@@ -63,13 +63,14 @@ std::vector<Case> sums(const SpecialNumbers& f) {
         {"-0 + -0 is -0", kAdd, -0.0, -0.0, 0, -0.0, -0.0},
         {"-0 - 0 is -0", kSub, -0.0, 0.0, 0, -0.0, -0.0},
         {"0 - 0 is +0", kSub, 0.0, 0.0, 0, 0.0, 0.0},
-        {"a + 0", kAdd, f.smallest, -0.0, 0, f.smallest, f.smallest},
+        {"a + -0 is a", kAdd, f.smallest, -0.0, 0, f.smallest, f.smallest},
         {"overflow saturates", kAdd, f.largest, f.largest, 0, f.largest, f.largest},
         {"negative overflow saturates", kSub, -f.largest, f.largest, 0, -f.largest, -f.largest},
         {"half a step above the largest saturates", kAdd, f.largest, s, 0, f.largest, f.largest},
-        {"the largest is reached", kAdd, f.largest - 2 * s, 2 * s, 0, f.largest, f.largest},
+        {"the sum is the largest number", kAdd, f.largest - 2 * s, 2 * s, 0, f.largest, f.largest},
         {"a difference below the smallest is flushed", kSub, f.smallest * above, f.smallest, 0, 0.0, 0.0},
-        {"flushed with its sign", kSub, f.smallest, f.smallest * above, 0, -0.0, -0.0},
+        {"a negative difference below the smallest is flushed to -0", kSub, f.smallest, f.smallest * above, 0, -0.0,
+         -0.0},
         {"the smallest difference", kSub, f.smallest * 2, f.smallest, 0, f.smallest, f.smallest},
     };
 }
@@ -79,18 +80,18 @@ std::vector<Case> products(const SpecialNumbers& f) {
     const double above = 1 + f.unit, below = 1 - f.unit / 2, low = f.smallest, high = f.largest;
     return {
         {"(1 + u)^2, whose last bit is far below the rounding", kMul, above, above, 0, 1 + 2 * f.unit, 1 + 2 * f.unit},
-        {"(1 - u/2)^2", kMul, below, below, 0, 1 - f.unit, 1 - f.unit},
+        {"(1 - u/2)^2 rounds to 1 - u", kMul, below, below, 0, 1 - f.unit, 1 - f.unit},
         {"(1 + u)(1 - u/2): just below a tie between 1 and 1 + u", kMul, above, below, 0, 1, 1},
         {"1.5 (1 + u): a tie, upwards to even", kMul, 1.5, above, 0, 1.5 + 2 * f.unit, 1.5 + f.unit},
         {"1.5 (1 + 3 u): a tie, downwards to even", kMul, -1.5, 1 + 3 * f.unit, 0, -1.5 - 4 * f.unit,
          -1.5 - 4 * f.unit},
-        {"sign of a product of zeros", kMul, -0.0, 1, 0, -0.0, -0.0},
-        {"sign of a product of two negative numbers", kMul, -0.0, -1, 0, 0.0, 0.0},
+        {"-0 * 1 is -0", kMul, -0.0, 1, 0, -0.0, -0.0},
+        {"-0 * -1 is +0", kMul, -0.0, -1, 0, 0.0, 0.0},
         {"overflow saturates", kMul, high, -high, 0, -high, -high},
-        {"just overflows", kMul, high, above, 0, high, high},
+        {"a product just above the largest saturates", kMul, high, above, 0, high, high},
         {"underflow is flushed with its sign", kMul, -low, low, 0, -0.0, -0.0},
         {"half of the smallest is flushed", kMul, low, 0.5, 0, 0.0, 0.0},
-        {"less than half a step above the smallest", kMul, low * above, below, 0, low, low},
+        {"less than half a step above the smallest: rounded to the smallest", kMul, low * above, below, 0, low, low},
         {"just below the smallest: flushed, not rounded to the smallest", kMul, low, below, 0, 0.0, 0.0},
         {"far less than a unit below the smallest: rounded to the smallest, or flushed", kMul, -low * above, 1 - f.unit,
          0, -low, -0.0},
@@ -103,25 +104,27 @@ std::vector<Case> quotients(const SpecialNumbers& f) {
     return {
         {"x / 0 saturates", kDiv, 1, 0.0, 0, high, high},
         {"x / -0 saturates with the product of both signs", kDiv, 1, -0.0, 0, -high, -high},
-        {"-x / 0", kDiv, -low, 0.0, 0, -high, -high},
-        {"0 / 0", kDiv, 0.0, 0.0, 0, high, high},
-        {"-0 / 0", kDiv, -0.0, 0.0, 0, -high, -high},
-        {"0 / x", kDiv, 0.0, -3, 0, -0.0, -0.0},
-        {"x / x", kDiv, high, high, 0, 1, 1},
-        {"quotient overflows", kDiv, high, low, 0, high, high},
-        {"quotient underflows", kDiv, low, -high, 0, -0.0, -0.0},
+        {"-x / 0 saturates with the sign of -x", kDiv, -low, 0.0, 0, -high, -high},
+        {"0 / 0 saturates", kDiv, 0.0, 0.0, 0, high, high},
+        {"-0 / 0 saturates with the sign of -0", kDiv, -0.0, 0.0, 0, -high, -high},
+        {"0 / -3 is -0", kDiv, 0.0, -3, 0, -0.0, -0.0},
+        {"x / x is 1", kDiv, high, high, 0, 1, 1},
+        {"a quotient above the range saturates", kDiv, high, low, 0, high, high},
+        {"a quotient below the range is flushed with its sign", kDiv, low, -high, 0, -0.0, -0.0},
         {"1 / (1 + u), between 1 - u and 1 - u / 2", kDiv, 1, above, 0, 1 - f.unit, 1 - f.unit},
         {"1 / (1 - u/2), between 1 and 1 + u, just above the middle", kDiv, 1, below, 0, 1 + f.unit, 1},
-        {"quotient just below the smallest", kDiv, low, above, 0, 0.0, 0.0},
-        {"root of a negative number", kSqrt, -1, 0, 0, 0.0, 0.0},
-        {"root of the smallest negative number", kSqrt, -low, 0, 0, 0.0, 0.0},
-        {"root of -0 is +0", kSqrt, -0.0, 0, 0, 0.0, 0.0},
-        {"root of 0", kSqrt, 0.0, 0, 0, 0.0, 0.0},
-        {"root of a square", kSqrt, 2.25, 0, 0, 1.5, 1.5},
-        {"root of 1 + u, just below a tie", kSqrt, above, 0, 0, 1, 1},
-        {"root of 1 - u/2, just below a tie of finer steps", kSqrt, below, 0, 0, 1 - f.unit / 2, 1 - f.unit / 2},
-        {"root of 4 (1 + 2 u), just below 2 (1 + u)", kSqrt, 4 + 8 * f.unit, 0, 0, 2 + 2 * f.unit, 2.0},
-        {"root of the smallest", kSqrt, low, 0, 0, std::sqrt(low), std::sqrt(low)},  // low is an even power of 2
+        {"a quotient just below the smallest is flushed", kDiv, low, above, 0, 0.0, 0.0},
+        {"the square root of a negative number is +0", kSqrt, -1, 0, 0, 0.0, 0.0},
+        {"the square root of the smallest negative number is +0", kSqrt, -low, 0, 0, 0.0, 0.0},
+        {"the square root of -0 is +0", kSqrt, -0.0, 0, 0, 0.0, 0.0},
+        {"the square root of 0 is 0", kSqrt, 0.0, 0, 0, 0.0, 0.0},
+        {"the square root of a square is exact", kSqrt, 2.25, 0, 0, 1.5, 1.5},
+        {"the square root of 1 + u is just below a tie", kSqrt, above, 0, 0, 1, 1},
+        {"the square root of 1 - u/2 is just below a tie of finer steps", kSqrt, below, 0, 0, 1 - f.unit / 2,
+         1 - f.unit / 2},
+        {"the square root of 4 (1 + 2 u) is just below 2 (1 + u)", kSqrt, 4 + 8 * f.unit, 0, 0, 2 + 2 * f.unit, 2.0},
+        {"the square root of the smallest is exact", kSqrt, low, 0, 0, std::sqrt(low),
+         std::sqrt(low)},  // low is an even power of 2
     };
 }
 
@@ -134,21 +137,21 @@ std::vector<Case> accumulations(const SpecialNumbers& f) {
         {"ab = -c gives +0", kMad, 1.5, -1, 1.5, 0.0, 0.0},
         {"0 x + -0 with a negative product", kMad, 0.0, -1, -0.0, -0.0, -0.0},
         {"0 x + -0 with a positive product", kMad, 0.0, 1, -0.0, 0.0, 0.0},
-        {"tie, the product half a step", kMad, s, 0.5, b, b, b},
-        {"tie to the even number above", kMad, s, 0.5, b + s, b + 2 * s, b + s},
+        {"a product of half a step: a tie, downwards to even", kMad, s, 0.5, b, b, b},
+        {"a product of half a step: a tie, upwards to even", kMad, s, 0.5, b + s, b + 2 * s, b + s},
         {"tie broken upwards by the product's last bit", kMad, s * above, 0.5, b, b + s, b},
         {"tie broken by a product far below", kMad, b, 0.5, low, b / 2, b / 2},
         {"tiny c of the other sign than the product", kMad, b, 0.5, -low, b / 2, b / 2 - s / 4},
         {"tiny product of the other sign than c", kMad, low, -low, b, b, b - s / 2},
         {"tie of the product, broken by c upwards", kMad, 1.5, above, low, 1.5 + 2 * u, 1.5 + u},
         {"tie of the product, broken by c downwards", kMad, 1.5, above, -low, 1.5 + u, 1.5 + u},
-        {"overflows", kMad, high, high, -high, high, high},
-        {"overflows negative", kMad, high, -high, high, -high, -high},
+        {"a sum above the range saturates", kMad, high, high, -high, high, high},
+        {"a negative sum below the range saturates", kMad, high, -high, high, -high, -high},
         {"c brings the product back into the range", kMad, high, 2, -high, high, high},
         {"a product above the range, almost cancelled by c", kMad, high, above, -high, high * u, high * u},
-        {"a product below the range counts", kMad, low, 0.5, low / 2 * 2, low * 1.5, low * 1.5},
-        {"two halves of the smallest", kMad, low, -0.5, low, 0.0, 0.0},
-        {"flushed with its sign", kMad, low, -0.5, low * 0, -0.0, -0.0},
+        {"a product below the range still counts in the sum", kMad, low, 0.5, low / 2 * 2, low * 1.5, low * 1.5},
+        {"the smallest minus its half is flushed", kMad, low, -0.5, low, 0.0, 0.0},
+        {"minus half the smallest is flushed to -0", kMad, low, -0.5, low * 0, -0.0, -0.0},
     };
 }
 
@@ -176,7 +179,8 @@ void check_cases(const NumberFormat& format, const std::vector<Case>& cases) {
 
 }  // namespace
 
-TEST_CASE("ties, carries, cancellation, ends of the range and zeros", "[number][directed]") {
+TEST_CASE("hand-written cases have the known results: ties, carries, cancellation, ends of the range, zeros",
+          "[number][directed]") {
     for (const NumberFormat& format :
          {NumberFormat{5, 4}, NumberFormat{6, 15}, NumberFormat{7, 12}, NumberFormat{8, 21}})
         for (const bool truncates : {false, true}) {

@@ -25,7 +25,7 @@ void check_fp32(const NumberBuild& build) {
 
 }  // namespace
 
-TEST_CASE("fp32 gives the bits of IEEE 754 over its whole range, in all variants", "[number][fp32]") {
+TEST_CASE("fp32 gives the bits of IEEE 754 over its whole range, in all builds", "[number][fp32]") {
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
         for (const bool optimised : {true, false}) {
             if (lanes > widest_lanes()) continue;

@@ -40,17 +40,17 @@ TEST_CASE("masks choose, count and reduce correctly for every combination of lan
         const float above = std::nextafter(operands.back(), HUGE_VALF);
         operands.push_back(is_true ? above : operands.back());  // equal: a < b is false
     }
-    for (const Variant& variant : variants()) {
-        KernelRunner runner("tests/number/masks.cl", variant);
+    for (const TestBuild& test_build : test_builds()) {
+        KernelRunner runner("tests/number/masks.cl", test_build);
         const auto operand_buffer = runner.filled("operands", operands);
         auto result_buffer = runner.poisoned("results", truth.size() * kColumns);
         runner.run_rows<const Buffer<float>&, Buffer<std::uint32_t>&>("masks", truth.size(), operand_buffer,
                                                                       result_buffer);
         const Words results = runner.read(result_buffer);
         for (std::uint32_t i = 0; i < truth.size(); ++i) {
-            const auto group = truth.begin() + i / variant.lanes * variant.lanes;
+            const auto group = truth.begin() + i / test_build.lanes * test_build.lanes;
             const auto any = [&](bool value) {
-                return std::find(group, group + variant.lanes, value) != group + variant.lanes;
+                return std::find(group, group + test_build.lanes, value) != group + test_build.lanes;
             };
             const Words expected = {std::bit_cast<std::uint32_t>(operands[2 * i]),  // a, which equals b if m is false
                                     truth[i] ? i : 12345u,
@@ -62,7 +62,7 @@ TEST_CASE("masks choose, count and reduce correctly for every combination of lan
                                     2,
                                     std::bit_cast<std::uint32_t>(static_cast<float>(i))};
             const Words row(results.begin() + i * kColumns, results.begin() + (i + 1) * kColumns);
-            CAPTURE(variant.name(), kSeed, i);
+            CAPTURE(test_build.name(), kSeed, i);
             CHECK(row == expected);
         }
     }

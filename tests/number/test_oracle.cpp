@@ -19,7 +19,8 @@ struct Size {
 };
 
 /// Returns formats with Y = 4 .. 21 and every X, in both roundings. They include the smallest and the largest format,
-/// the SPA's format, and formats with X = 8, with Y > 15 and with both, because the layer's code for these differs.
+/// and the SPA's format. The layer has separate code for X = 8 and for Y > 15, so the formats include either case alone
+/// and both cases together.
 std::vector<NumberFormat> tested_formats() {
     std::vector<Size> sizes = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
     if (is_long_run(kDefaultRows)) sizes.insert(sizes.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});

@@ -23,8 +23,8 @@ double result_of(const NumberResults& results, std::size_t operation, std::size_
     return std::bit_cast<float>(results[operation][row]);
 }
 
-/// Returns rows x, n, y with x in (0, 4), a third of them just below 1; n in [0, 1000), many of them small; y in [-126,
-/// 0].
+/// Returns rows x, n, y. x is in (0, 4), and a third of the x are just below 1. n is in [0, 1024), and many n are
+/// small. y is in [-126, 0].
 NumberRows power_rows(const NumberFormat& format) {
     SplitMix random(kPowerSeed);
     const double smallest = std::ldexp(1, range_of(format).lowest);
@@ -43,7 +43,8 @@ NumberRows power_rows(const NumberFormat& format) {
     return rows;
 }
 
-/// Returns rows x, n, y with x from 0x1p-126 to 2, many near 1; n as in highlights; y from 0 to -126.
+/// Returns rows x, n, y. x is from 0x1p-126 to 2, and many x are near 1. n is from 0 to 100 000, with exponents of real
+/// highlights. y is from 0 to -126.
 NumberRows fp32_rows() {
     std::vector<float> xs = {1, 2, std::nextafter(1.0F, 0.0F), std::sqrt(0.5F), 0x1p-126F, 1e-30F};
     for (int i = 1; i <= 500; ++i) xs.push_back(static_cast<float>(i) / 500);
@@ -90,6 +91,7 @@ const std::vector<NumberFormat>& power_formats() {
 }
 
 void check_row(const PowerBounds& bounds, double x, double n, double y, const NumberResults& results, std::size_t i) {
+    // value(0), value(1), value(2): x^n, log2(x), 2^y
     const auto value = [&](std::size_t k) { return result_of(results, kFunctions[k], i); };
     const double log_x = std::log2(x), exponent = n * std::min(log_x, 0.0);
     CAPTURE(x, n, y, value(0), value(1), value(2));
@@ -119,9 +121,9 @@ TEST_CASE("powers stay within their error bounds, with the same bits for all num
     }
 }
 
-TEST_CASE("fp32 powers stay within their error bounds in all variants", "[number][power]") {
-    // Relative errors. num_log2: 8e-8 by the truncated series and 1.7e-7 by rounding. num_exp2: (ln 2 / 2)^7 / 7! at f
-    // = -1/2, which is 1.7e-7 of the result, by the truncated Taylor series, and 7e-8 by the last additions.
+TEST_CASE("fp32 powers stay within their error bounds in all builds", "[number][power]") {
+    // Relative errors. num_log2: 8e-8 by the truncated series and 1.7e-7 by rounding. num_exp2: 1.7e-7 by the truncated
+    // Taylor series, which is (ln 2 / 2)^7 / 7! relative to the result at f = -1/2, and 7e-8 by the last additions.
     constexpr double kLogError = 2.5e-7, kExpError = 2.4e-7;
     // The product n log2(x) is rounded too, so the relative error of the argument y of 2^y is 3.1e-7. The maximum of
     // |y| ln 2 2^y is 1 / e. Results below 2^-30 are 0, an error of at most 2^-30.

@@ -114,12 +114,12 @@ def test_pixels_do_not_depend_on_the_accelerator_but_on_the_format(centre):
     assert raya.render(centre, machine="grande", format="e8m15", size=24).hash not in hashes
 
 
-@pytest.mark.parametrize("options, words", [
+@pytest.mark.parametrize("options, message_part", [
     ({"size": 0}, "--size"), ({"offset": 300}, "--offset"), ({"machine": "sap"}, "did you mean spa"),
     ({"sise": 16}, "sise"), ({"format": "e9m4"}, "e9m4"), ({"pes": -1}, "--pes"),
     ({"frames": 3, "turn": 90}, "frames")])
-def test_bad_options_raise_value_error(centre, options, words):
-    with pytest.raises(ValueError, match=words):
+def test_bad_options_raise_value_error(centre, options, message_part):
+    with pytest.raises(ValueError, match=message_part):
         raya.render(centre, **options)
 
 

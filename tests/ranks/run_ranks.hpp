@@ -1,5 +1,5 @@
-// Runs raya under mpirun with one process per rank. Collects the output, the exit code and the number of processes that
-// do not end.
+// Runs raya under mpirun with one process per rank. Records the output, the exit code and the number of processes that
+// do not end by themselves.
 #pragma once
 #include <catch2/catch.hpp>
 #include <functional>
@@ -14,11 +14,11 @@ namespace raya {
 /// An installed MPI library.
 struct Mpi {
     std::string launcher;  // path of its mpirun; empty: not installed
-    std::string program;   // path of a raya program whose raya_mpi.so is built with this library
+    std::string program;   // path of a raya executable whose raya_mpi.so is built with this library
 };
 
-/// Returns those of Open MPI and MPICH that are installed, first the library with which RAYA_PROGRAM was built. If
-/// neither is installed, prints a warning and returns an empty list, so that the test passes.
+/// Returns the installed MPI libraries of Open MPI and MPICH; the first is the library with which RAYA_PROGRAM was
+/// built. If neither is installed, prints a warning and returns an empty list, so that the test passes.
 inline std::vector<Mpi> installed_mpis() {
     std::vector<Mpi> installed;
     for (const Mpi& mpi : {Mpi{RAYA_MPIRUN_OWN, RAYA_PROGRAM}, Mpi{RAYA_MPIRUN_OTHER, RAYA_OTHER_MPI "/raya"}})
@@ -36,7 +36,7 @@ struct RanksFault {
 
 /// Result of a run under mpirun.
 struct RanksOutcome : RunOutcome {
-    double seconds = 0;         // from the signal, or without a signal from the start, to the end of the last process
+    double seconds = 0;  // time from the signal (without a signal: from the start) to the end of the last process
     std::size_t remaining = 0;  // number of processes that did not end by themselves
     std::size_t messages = 0;   // number of lines on stderr that start with "raya:"
 };
@@ -51,7 +51,8 @@ struct RankProcess {
     std::uint32_t rank = 0;
 };
 
-/// Returns the value of a variable in `environment`, the text of /proc/PID/environ; empty if the variable is not set.
+/// Returns the value of the variable `name`; empty if the variable is not set. `environment`: text of
+/// /proc/PID/environ.
 inline std::string variable_of(const std::string& environment, const std::string& name) {
     const std::size_t position = ('\0' + environment).find('\0' + name + "=");
     return position == environment.npos ? "" : std::string(environment.c_str() + position + name.size() + 1);
@@ -126,8 +127,9 @@ inline std::size_t count_raya_lines(const std::string& text) {
 
 }  // namespace run_ranks_detail
 
-/// Runs the launcher with `arguments`, which must include the path of the program. A run that does not end within 60 s
-/// is killed and has exit code 124. Throws std::runtime_error if the signal could not be sent.
+/// Runs the launcher with `arguments`, which must include the path of the program. Kills a run that does not end within
+/// 60 s; its exit code is 124. `ranks`: number of ranks to wait for before the signal of `fault` is sent. Throws
+/// std::runtime_error if the signal cannot be sent.
 inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& arguments, std::size_t ranks = 0,
                               const RanksFault& fault = {}, RunOptions run_options = {}) {
     namespace detail = run_ranks_detail;

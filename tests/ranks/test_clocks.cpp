@@ -8,7 +8,8 @@
 namespace raya {
 
 TEST_CASE("clocks that are hours apart are aligned within the reported uncertainty", "[ranks]") {
-    const std::int64_t lead_ns[] = {0, 5'000'000'000'000, -7'000'000'000'000, 12'345};  // [rank]: of the rank's clock
+    // [rank]: time by which the rank's clock is ahead of rank 0's clock
+    const std::int64_t lead_ns[] = {0, 5'000'000'000'000, -7'000'000'000'000, 12'345};
     std::mutex mutex;
     std::vector<std::pair<std::uint32_t, RankClock>> clocks;
     on_ranks(4, [&](Ranks& ranks) {

@@ -20,7 +20,7 @@ std::optional<Launch> launch_in(const std::map<std::string, std::string>& enviro
 
 TEST_CASE("launchers are detected by their environment variables", "[ranks]") {
     CHECK(!launch_in({}));
-    CHECK(!launch_in({{"OMPI_COMM_WORLD_SIZE", "4"}, {"SLURM_NTASKS", "4"}}));  // of a shell in a Slurm allocation
+    CHECK(!launch_in({{"OMPI_COMM_WORLD_SIZE", "4"}, {"SLURM_NTASKS", "4"}}));  // variables of a shell under Slurm
     CHECK(!launch_in({{"PMI_RANK", ""}}));
     CHECK(!launch_in({{"PMI_RANK", "two"}}));
     const auto open_mpi = launch_in({{"OMPI_COMM_WORLD_RANK", "2"}, {"OMPI_COMM_WORLD_SIZE", "4"}, {"PMIX_RANK", "9"}});
@@ -36,7 +36,7 @@ TEST_CASE("launchers are detected by their environment variables", "[ranks]") {
     CHECK(!pmix->count);
 }
 
-TEST_CASE("a rank has as many threads as bound cores, or an equal part of the host's cores", "[ranks]") {
+TEST_CASE("a bound rank has one thread per bound core, an unbound rank an equal part of the host's cores", "[ranks]") {
     CHECK(threads_of_rank(1, 8, 2) == 1);
     CHECK(threads_of_rank(3, 8, 2) == 3);
     CHECK(threads_of_rank(8, 8, 1) == 8);
@@ -44,7 +44,7 @@ TEST_CASE("a rank has as many threads as bound cores, or an equal part of the ho
     CHECK(threads_of_rank(2, 2, 8) == 1);
 }
 
-TEST_CASE("only a rank with other arguments than rank 0 refuses to run", "[ranks]") {
+TEST_CASE("check_same_program() throws only in the rank whose arguments differ from rank 0's", "[ranks]") {
     for (const std::uint32_t different_rank : {1u, 3u}) {
         const auto arguments = [&](std::uint32_t rank) {
             return std::vector<std::string>{"render", rank == different_rank ? "b.nff" : "a.nff"};

@@ -1,5 +1,5 @@
-// Ranks with one device each: devices of different types, a scene too large for the memory of one device, traces and
-// reports.
+// Renders under mpirun: ranks with devices of different types, a scene too large for the memory of one device, and the
+// traces and reports of several ranks.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -17,7 +17,7 @@ std::string hash_of(const std::filesystem::path& report) {
 
 }  // namespace
 
-TEST_CASE("ranks with devices of different types give the image of one process", "[ranks][.mpirun]") {
+TEST_CASE("ranks with devices of different types give the image of a single process", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
     const std::filesystem::path single_report = folder.path() / "single.json",
                                 ranks_report = folder.path() / "ranks.json";

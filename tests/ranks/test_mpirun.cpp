@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kRankCounts[] = {1, 2, 3, 4, 7, 8};
 
-/// Contents of a render's files, by file name; reports without their measured values.
+/// Contents of a render's files, by file name. Reports omit the measured values.
 using Files = std::map<std::string, std::string>;
 
 Files files_in(const ScratchFolder& folder) {
@@ -51,7 +51,7 @@ void check_all_rank_counts(const ScratchFolder& folder, const Arguments& render)
         }
 }
 
-TEST_CASE("mpirun: images, counts and loads of the ring are those of one process", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: images, counts and loads of the ring are those of a single process", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     const Arguments common = {"render",   scene_file("centre"), "-o",      folder / "x.pfm", "--cost", folder / "c.pfm",
                               "--report", folder / "x.json",    "--quiet", "--lanes",        "4",      "--size",
@@ -65,14 +65,14 @@ TEST_CASE("mpirun: images, counts and loads of the ring are those of one process
     }
 }
 
-TEST_CASE("mpirun: image, counts, loads and packets of the torus are those of one process", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: image, counts, loads and packets of the torus are those of a single process", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     check_all_rank_counts(folder, {"render", scene_file("spheres"), "-o", folder / "x.pfm", "--report",
                                    folder / "x.json", "--packets", folder / "p.csv.gz", "--machine", "torus", "--nodes",
                                    "3x2x2", "--size", "16", "--group", "1", "--quiet"});
 }
 
-TEST_CASE("mpirun: frames are those of one process, and existing frames are not rendered again", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: frames equal those of a single process, and existing frames are skipped", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     const Arguments render = {"render",   scene_file("centre"),
                               "-o",       folder / "x.ppm",

@@ -1,5 +1,5 @@
-// Failures on one rank, or on all ranks at the start. raya prints one message, and no output file and no process
-// remains. The exit code is not 0, and it is that of a single process if mpirun forwards it.
+// Failures of one rank, and failures of all ranks at the start. raya prints one message, and no output file and no
+// process remains. The exit code is not 0. If mpirun forwards the exit code, it is that of a single process.
 #include <sys/stat.h>
 
 #include "tests/cli/device_with_fault.hpp"
@@ -34,7 +34,7 @@ void check_ended(const ScratchFolder& outputs, const RanksOutcome& run, std::siz
     CHECK(outputs.entries() == 0);
 }
 
-/// Checks the exit code, and that the run prints exactly one message, which contains all of `message_parts`.
+/// Checks that the run has ended with exit code `code` and one message, which contains all of `message_parts`.
 void check_message(const ScratchFolder& outputs, const RanksOutcome& run, int code, const Arguments& message_parts) {
     INFO(run.describe());
     CHECK(run.code == code);
@@ -69,7 +69,7 @@ std::string preload_command(const std::string& library, const std::string& varia
     return "export LD_PRELOAD=" + library + " " + variable + "='" + value + "'";
 }
 
-// Returns arguments of a render that takes longer than the start of the ranks and the signal to one of them.
+// Returns arguments of a render that has not ended when run_ranks() sends a signal.
 Arguments long_render(const ScratchFolder& outputs, const std::string& machine) {
     return {"render",
             scene_file("centre"),
@@ -116,9 +116,9 @@ TEST_CASE("mpirun: ranks with different arguments refuse to run", "[ranks][.mpir
     const ScratchFolder outputs;
     for (const Mpi& mpi : installed_mpis()) {
         Arguments arguments = launch_arguments(mpi, 1, render_arguments(outputs));
-        const Arguments of_other_ranks = launch_arguments(mpi, 2, render_arguments(outputs, {"--pes", "8"}));
+        const Arguments other_arguments = launch_arguments(mpi, 2, render_arguments(outputs, {"--pes", "8"}));
         arguments.push_back(":");
-        arguments.insert(arguments.end(), of_other_ranks.begin(), of_other_ranks.end());
+        arguments.insert(arguments.end(), other_arguments.begin(), other_arguments.end());
         check_message(outputs, run_ranks(mpi, arguments), 2, {"raya: rank ", "other arguments than rank 0"});
     }
 }
@@ -153,8 +153,8 @@ TEST_CASE("mpirun: a failing device or driver on one rank ends all ranks", "[ran
             const RanksOutcome crash = run("clEnqueueNDRangeKernel 1 crash", ring);
             CHECK_THAT(crash.err, Catch::Contains(prefix));
             CHECK_THAT(crash.err, Catch::Contains("the OpenCL driver crashed (SIGSEGV)"));
-            check_ended(outputs, crash,
-                        2);  // MPICH's mpirun returns another exit code and interrupts rank 0, which prints a message
+            // MPICH's mpirun returns another exit code, and interrupts rank 0, which then prints a second message.
+            check_ended(outputs, crash, 2);
             check_ended(outputs, run("clEnqueueNDRangeKernel 1 exit", ring), 1);
         }
 }
@@ -174,7 +174,7 @@ TEST_CASE("mpirun: a rank out of memory ends all ranks", "[ranks][.mpirun]") {
                                                      preload_command(RAYA_CL_FAULTS, "RAYA_FAULT", "new 1000000 0"),
                                                      large_render)),
                 2, {"raya: rank " + std::to_string(rank) + " on ", "out of memory on the host"});
-        // The memory limit may cause an error in raya, the driver or MPI.
+        // The memory limit may cause an error in raya, in the driver or in MPI, so the text is not checked.
         check_ended(outputs, run_ranks(mpi, rank_script.arguments(mpi, 3, 0, "ulimit -v 400000", large_render)), 2);
     }
 }
@@ -192,8 +192,8 @@ TEST_CASE("mpirun: a full disk on rank 0 ends all ranks", "[ranks][.mpirun]") {
             {"raya: rank 0 on ", "x.pfm", "No space left on device"});
 }
 
-// mpirun may drop the output of an interrupted rank, so rank 0 writes its messages to a file here. By default Open MPI
-// kills a rank one second after a signal, which is too early on a busy machine; here it waits 4 s.
+// mpirun may drop the output of an interrupted rank, so this test redirects rank 0's messages to a file. By default
+// Open MPI kills a rank one second after a signal, which is too early on a busy machine; in this test it waits 4 s.
 TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.mpirun]") {
     const ScratchFolder outputs, messages;
     const RankScript rank_script;
@@ -222,7 +222,7 @@ TEST_CASE("mpirun: a rank that hangs ends the run after RAYA_RANK_TIMEOUT", "[ra
     }
 }
 
-TEST_CASE("mpirun: a process that ends before MPI_Init ends the others", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: if a process ends before MPI_Init, all processes end", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     const RankScript rank_script;
     const RunOptions short_timeout{.variables = {{"RAYA_RANK_TIMEOUT", "2"}}};

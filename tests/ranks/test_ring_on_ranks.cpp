@@ -1,5 +1,5 @@
-// The ring distributed over ranks: pixels, costs, supersampling marks, loads and counts equal those of one rank, bit
-// for bit.
+// The ring distributed over ranks. Pixels, costs, supersampling marks, loads and counts equal those of a single rank,
+// bit for bit.
 #include <catch2/catch.hpp>
 #include <mutex>
 
@@ -106,7 +106,7 @@ TEST_CASE("more ranks than PEs are refused with both numbers", "[ranks]") {
                       Catch::Contains("4 ranks for 3 PEs") && Catch::Contains("start 3 ranks or fewer"));
 }
 
-TEST_CASE("every PE belongs to one rank, and each rank has a contiguous, even segment", "[ranks]") {
+TEST_CASE("every PE belongs to one rank, and the ranks' segments differ by at most one PE", "[ranks]") {
     for (const std::uint32_t pes : {1u, 2u, 5u, 8u, 256u, 1000u, 65'536u})
         for (std::uint32_t ranks = 1; ranks <= std::min(pes, 9u); ++ranks) {
             CAPTURE(pes, ranks);

@@ -1,4 +1,4 @@
-// The torus distributed over ranks: image, counts, loads, supersteps and traffic equal those of one rank.
+// The torus distributed over ranks. Image, counts, loads, supersteps and traffic equal those of a single rank.
 #include <catch2/catch.hpp>
 
 #include "host/torus/node_distribution.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 struct RenderOutput {
     TorusResult result;
-    std::string packets;
+    std::string packets;  // one line for each record
 };
 
 std::string text_of(const PacketRecord& r) {
@@ -133,7 +133,7 @@ TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its 
     }
 }
 
-TEST_CASE("random toruses: image, traffic or deadlock is the same on 1 to 8 ranks", "[ranks]") {
+TEST_CASE("random toruses: image and traffic, or the deadlock, are the same on 1 to 8 ranks", "[ranks]") {
     constexpr std::uint64_t kSeed = 77;
     SplitMix random(kSeed);
     std::vector<Scene> scenes;
@@ -162,7 +162,8 @@ TEST_CASE("random toruses: image, traffic or deadlock is the same on 1 to 8 rank
                 } catch (const TorusDeadlock& error) {
                     message = error.what();
                 }
-                if (ranks.is_first() && message != deadlock) throw std::logic_error(message + " is not " + deadlock);
+                if (ranks.is_first() && message != deadlock)
+                    throw std::logic_error("message of rank 0: " + message + "; of a single rank: " + deadlock);
                 if (message.empty()) throw std::logic_error("a rank does not detect the deadlock");
             });
             ++deadlocks;

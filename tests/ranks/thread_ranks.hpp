@@ -18,13 +18,13 @@
 
 namespace raya {
 
-/// Messages that ranks have sent and other ranks have not received yet.
+/// Messages that ranks have sent and that their receivers have not received yet.
 struct MessageStore {
     using Key = std::tuple<std::uint32_t, std::uint32_t, int>;  // sender, receiver, tag
     std::mutex mutex{};
     std::condition_variable changed{};
     std::map<Key, std::deque<std::vector<std::byte>>> messages{};
-    bool failed = false;
+    bool failed = false;  // true: a rank has failed
 
     void put(const Key& key, std::span<const std::byte> bytes) {
         const std::lock_guard lock(mutex);
@@ -39,8 +39,8 @@ struct MessageStore {
         const std::vector<std::byte> message = std::move(messages[key].front());
         messages[key].pop_front();
         if (message.size() != bytes.size())
-            throw std::logic_error(
-                "the receiver of a message expects another number of bytes than the sender has sent");
+            throw std::logic_error("a receiver expects " + std::to_string(bytes.size()) +
+                                   " bytes, but the message has " + std::to_string(message.size()));
         std::copy(message.begin(), message.end(), bytes.begin());
     }
 
@@ -51,6 +51,7 @@ struct MessageStore {
     }
 };
 
+/// Transport between threads of one process, through a MessageStore.
 class ThreadTransport final : public Transport {
   public:
     ThreadTransport(MessageStore& store, std::uint32_t rank, std::uint32_t count, std::uint32_t ranks_per_host)
@@ -102,8 +103,8 @@ class ThreadTransport final : public Transport {
 /// Runs `work` on `count` concurrent ranks, `ranks_per_host` per host. If ranks throw, rethrows the first exception.
 /// Throws std::logic_error if a sent message was not received.
 inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& work, std::uint32_t ranks_per_host = 8) {
-    all_devices();  // before the threads start, because PoCL 3.1 returns no device to some of several threads that
-                    // query first
+    // PoCL 3.1 returns no device to some threads if several threads make the first query at the same time.
+    all_devices();
     MessageStore store;
     std::exception_ptr first_exception;
     std::mutex exception_mutex;

@@ -1,6 +1,6 @@
 // Program that checks every call of the MPI transport with known bytes, for messages of 0 bytes up to more than MPI's
-// eager limit. Run it under mpirun, also with Valgrind or sanitizers. These tools find little in a whole render,
-// because most of a render runs inside an OpenCL driver.
+// eager limit. Run it under mpirun, also with Valgrind or sanitizers. It exists because these tools find few errors of
+// the transport in a whole render, which spends most of its time inside an OpenCL driver.
 #include <fmt/core.h>
 
 #include <memory>
@@ -13,13 +13,13 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kSizes[] = {0, 1, 3, 1000, 65'536, (1 << 20) + 1, 5 << 20};
-constexpr int kTags = 4;
+constexpr std::size_t kSizes[] = {0, 1, 3, 1000, 65'536, (1 << 20) + 1, 5 << 20};  // bytes
+constexpr int kTags = 4;                                                           // number of tags
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Returns the bytes that `sender` sends to `receiver` with `tag`. They differ between ranks, tags and neighbouring
-/// bytes.
+/// Returns the bytes that `sender` sends to `receiver` with `tag`. The bytes depend on both ranks, the tag and their
+/// position.
 Bytes known_bytes(std::size_t size, std::uint32_t sender, std::uint32_t receiver, int tag) {
     Bytes bytes(size);
     for (std::size_t i = 0; i < size; ++i)
@@ -44,7 +44,7 @@ void check_broadcast(Ranks& ranks, std::size_t size, Checks& checks) {
     checks.compare(bytes, expected);
 }
 
-// Every third rank contributes no bytes.
+// Checks all_gather() and gather(). Every third rank contributes no bytes.
 void check_gathers(Ranks& ranks, std::size_t size, Checks& checks) {
     const auto bytes_of = [size](std::uint32_t rank) { return known_bytes(size * (rank % 3), rank, 0, 0); };
     Bytes expected;
@@ -60,8 +60,8 @@ void check_gathers(Ranks& ranks, std::size_t size, Checks& checks) {
     checks.compare(ranks.gather(span, sizes), ranks.is_first() ? expected : Bytes());
 }
 
-// Sends to both neighbours in a ring of ranks concurrently, with several tags that are received in reverse order. With
-// two ranks, both neighbours are the same rank; a single rank sends to itself.
+// Each rank sends messages to ranks rank + 1 and rank - 1 (modulo the number of ranks) concurrently, with several tags
+// that are received in reverse order. With two ranks both receivers are the same rank; a single rank sends to itself.
 void check_neighbours(Ranks& ranks, std::size_t size, Checks& checks) {
     const std::uint32_t count = ranks.count(), own_rank = ranks.rank();
     struct Message {

@@ -36,8 +36,8 @@ std::optional<double> hit_plane(const Plane& plane, const Ray& ray);
 std::optional<double> hit_polygon(const Polygon& polygon, const Ray& ray);
 std::optional<double> hit_cone(const Cone& cone, const Ray& ray);
 
-/// Returns the hit of the ray with the smallest t in 0 < t < far; empty if there is none. Of objects with equal t, the
-/// one with the lowest number is hit.
+/// Returns the hit of the ray with the smallest t in 0 < t < far; empty if there is none. Of objects with equal t,
+/// the ray hits the object with the lowest number.
 std::optional<Hit> closest_hit(const Scene& scene, const Ray& ray, double far = kFar);
 
 /// Returns the direction R of the reflected ray. Direction and normal must have length 1.
@@ -89,12 +89,13 @@ Image render(const Scene& scene, const Options& options);
 
 /// Default distance for grazes_edge(), in pixels. The distance is about 1e-4 of the image's width, which is a few
 /// hundred fp32 rounding errors and too small to be visible.
-inline constexpr double kReachPixels = 1.0 / 32;
+inline constexpr double kEdgeDistancePixels = 1.0 / 32;
 
 /// Returns true if pixel (x, y) is near an edge, so that rounding may change it without an error. The pixel is near an
-/// edge if one of the 8 points at +-reach_pixels in x and y differs from the sample point: the history of the ray tree
-/// differs, or a channel, clamped to 0..1, differs by more than 1/255.
-bool grazes_edge(const Scene& scene, const Options& options, int x, int y, double reach_pixels = kReachPixels);
+/// edge if one of the 8 points at +-edge_distance_pixels in x and y differs from the sample point: the history of the
+/// ray tree differs, or a channel, clamped to 0..1, differs by more than 1/255.
+bool grazes_edge(const Scene& scene, const Options& options, int x, int y,
+                 double edge_distance_pixels = kEdgeDistancePixels);
 
 /// The difference between an image and the reference. Channels are clamped to 0..1. A value that is not finite counts
 /// as an infinite difference.
@@ -108,6 +109,6 @@ struct Difference {
 /// Compares `rgb` (height * width * 3 values, row 0 at the top, linear) with `reference`, which must have been rendered
 /// from `scene` with `options`. Throws std::invalid_argument if the sizes differ.
 Difference compare(const Image& reference, const std::vector<float>& rgb, const Scene& scene, const Options& options,
-                   double limit = 2.0 / 255, double reach_pixels = kReachPixels);
+                   double limit = 2.0 / 255, double edge_distance_pixels = kEdgeDistancePixels);
 
 }  // namespace raya::reference

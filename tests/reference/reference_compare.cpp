@@ -23,15 +23,15 @@ double channel_difference(const Colour& a, const Colour& b, double& squares) {
 
 }  // namespace
 
-bool grazes_edge(const Scene& scene, const Options& options, int x, int y, double reach_pixels) {
+bool grazes_edge(const Scene& scene, const Options& options, int x, int y, double edge_distance_pixels) {
     Counts ignored;
     History sample_history;
     const Colour sample = trace_pixel(scene, options, x, y, ignored, &sample_history);
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
             History history;
-            const Colour colour =
-                trace_pixel(scene, options, x + dx * reach_pixels, y + dy * reach_pixels, ignored, &history);
+            const Colour colour = trace_pixel(scene, options, x + dx * edge_distance_pixels,
+                                              y + dy * edge_distance_pixels, ignored, &history);
             double squares = 0;
             if (history != sample_history || channel_difference(colour, sample, squares) > 1.0 / 255) return true;
         }
@@ -39,7 +39,7 @@ bool grazes_edge(const Scene& scene, const Options& options, int x, int y, doubl
 }
 
 Difference compare(const Image& reference, const std::vector<float>& rgb, const Scene& scene, const Options& options,
-                   double limit, double reach_pixels) {
+                   double limit, double edge_distance_pixels) {
     if (options.width != reference.width || options.height != reference.height ||
         rgb.size() != 3 * reference.pixels.size())
         throw std::invalid_argument("reference::compare: the image, the reference and the options differ in size");
@@ -52,7 +52,7 @@ Difference compare(const Image& reference, const std::vector<float>& rgb, const 
         if (largest <= limit) continue;
         ++difference.above_limit;
         const int pixel = static_cast<int>(i);
-        if (grazes_edge(scene, options, pixel % options.width, pixel / options.width, reach_pixels))
+        if (grazes_edge(scene, options, pixel % options.width, pixel / options.width, edge_distance_pixels))
             ++difference.excused;
     }
     difference.psnr_db = -10 * std::log10(squares / static_cast<double>(rgb.size()));

@@ -48,8 +48,8 @@ struct ConeFrame {
     }
 };
 
-/// Returns the real roots of a t^2 + 2 b t + c in ascending order. The computation avoids cancellation.
-std::vector<double> quadratic_roots(double a, double b, double c) {
+/// Returns the real zeros t of a t^2 + 2 b t + c in ascending order. The computation avoids cancellation.
+std::vector<double> quadratic_zeros(double a, double b, double c) {
     if (a == 0) return b == 0 ? std::vector<double>{} : std::vector<double>{-c / (2 * b)};
     const double discriminant = b * b - a * c;
     if (discriminant < 0) return {};
@@ -176,7 +176,7 @@ std::optional<double> hit_cone(const Cone& cone, const Ray& ray) {
     const double a = q.dot(q) - frame.slope * frame.slope * dz * dz;
     const double b = p.dot(q) - frame.slope * dz * r;
     const double c = p.dot(p) - r * r;
-    for (const double t : quadratic_roots(a, b, c)) {
+    for (const double t : quadratic_zeros(a, b, c)) {
         const double z = z0 + t * dz;
         if (t <= 0 || z < 0 || z > frame.height) continue;
         const Vec3 outward = frame.outward_normal(cone, ray.origin + t * ray.direction);

@@ -9,7 +9,7 @@
 namespace raya::reference {
 namespace {
 
-constexpr double kRelativeMargin = 1e-9;  // offset of secondary rays / extent of the scene: about 10^7 ulps
+constexpr double kRelativeMargin = 1e-9;  // offset of secondary rays relative to the scene's extent: about 10^7 ulps
 
 // Codes in a History. The code of a hit is 2 * object number, + 1 on an odd checker square.
 constexpr int kMiss = -1, kLit = -2, kUnlit = -3, kTotalReflection = -4;
@@ -22,9 +22,9 @@ double margin_of(const Scene& scene, const Options& options) {
 double highlight(double x, double shine) { return x > 0 ? std::pow(x, shine) : 0; }
 
 /// Traces the ray tree of one pixel.
-class Tree {
+class TreeTracer {
   public:
-    Tree(const Scene& scene, int bounces, double margin, Counts& counts, History* history)
+    TreeTracer(const Scene& scene, int bounces, double margin, Counts& counts, History* history)
         : scene_(scene), bounces_(bounces), margin_(margin), counts_(counts), history_(history) {}
 
     /// Returns the radiance along a ray of level `bounces` (0 for the primary ray).
@@ -131,6 +131,7 @@ std::optional<Vec3> refracted_direction(const Vec3& direction, const Vec3& norma
 
 Ray primary_ray(const Scene& scene, const Options& options, double x, double y) {
     const View& view = scene.view;
+    // Returns the size of the image along an axis, in distances between sample points.
     const auto length = [&](int pixels) { return std::max(1.0, pixels - (options.corners ? 1.0 : 0.0)); };
     // Returns the position of a point in the image, 0..1 along an axis.
     const auto fraction = [&](double position, int pixels) {
@@ -140,17 +141,18 @@ Ray primary_ray(const Scene& scene, const Options& options, double x, double y) 
     const Vec3 view_direction = (view.at - view.from).normalized();
     const Vec3 right = view_direction.cross(view.up).normalized();
     const Vec3 top = right.cross(view_direction);
-    const double h = std::tan(view.angle_degrees * std::numbers::pi / 360);
-    const double w = h * length(options.width) / length(options.height);
+    const double half_height = std::tan(view.angle_degrees * std::numbers::pi / 360);
+    const double half_width = half_height * length(options.width) / length(options.height);
     const double fx = fraction(x, options.width);
     const double fy = fraction(y, options.height);
-    return {view.from, (view_direction + (2 * fx - 1) * w * right + (1 - 2 * fy) * h * top).normalized()};
+    return {view.from,
+            (view_direction + (2 * fx - 1) * half_width * right + (1 - 2 * fy) * half_height * top).normalized()};
 }
 
 Colour trace_pixel(const Scene& scene, const Options& options, double x, double y, Counts& counts, History* history) {
     ++counts.primary;
-    Tree tree(scene, options.bounces, margin_of(scene, options), counts, history);
-    return tree.radiance(primary_ray(scene, options, x, y), 0);
+    TreeTracer tracer(scene, options.bounces, margin_of(scene, options), counts, history);
+    return tracer.radiance(primary_ray(scene, options, x, y), 0);
 }
 
 Image render(const Scene& scene, const Options& options) {

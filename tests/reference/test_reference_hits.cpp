@@ -19,12 +19,13 @@ class Random {
     double uniform(double low, double high) {
         return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
     }
-    Vec3 point(double reach) {
-        const double x = uniform(-reach, reach), y = uniform(-reach, reach), z = uniform(-reach, reach);
+    Vec3 point(double magnitude) {
+        const double x = uniform(-magnitude, magnitude), y = uniform(-magnitude, magnitude),
+                     z = uniform(-magnitude, magnitude);
         return {x, y, z};
     }
-    Ray ray(double reach) {
-        const Vec3 origin = point(reach);
+    Ray ray(double magnitude) {
+        const Vec3 origin = point(magnitude);
         return {origin, (point(1) - origin).normalized()};
     }
 
@@ -146,8 +147,8 @@ TEST_CASE("a cylinder has no caps, and its normal is radial") {
     CHECK((inside->geometric - Vec3(1, 0, 0)).length() < 1e-15);
 }
 
-/// Returns true if the outline winds around the point: the angles at which the point sees the edges add up to +-2 pi;
-/// they add up to 0 if it does not. All points have z = 0.
+/// Returns true if the outline winds around the point. In this case, the angles at which the point sees the edges add
+/// up to +-2 pi, otherwise to 0. All points have z = 0.
 bool winds_around(const std::vector<Vec3>& outline, const Vec3& p) {
     double sum = 0;
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -247,7 +248,7 @@ TEST_CASE("a patch with five vertices reproduces a linear field, and turns norma
     CHECK((hit->shading - field({1, 0.5, 0}).normalized()).length() < 1e-14);
 }
 
-TEST_CASE("of objects with equal t the one with the lowest number is hit; hits with t >= far do not count") {
+TEST_CASE("of objects with equal t, a ray hits the object with the lowest number; hits with t >= far do not count") {
     Scene scene;
     scene.surfaces.resize(4);
     scene.spheres.push_back({{0, 0, 0}, 1, 0});

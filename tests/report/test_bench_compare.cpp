@@ -37,6 +37,7 @@ BenchReport report(std::vector<BenchMeasurement> rows) {
             .rows = std::move(rows)};
 }
 
+// Returns the error message of read_bench_report() for a file with this text, or "accepted".
 std::string refusal(const ScratchFolder& folder, const std::string& text) {
     std::ofstream(folder / "b.json") << text;
     try {

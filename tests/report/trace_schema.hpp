@@ -75,12 +75,12 @@ class TraceSchema {
             return fault("unknown phase", event);
         if (!event.contains("name") || !event["name"].is_string() || event["name"] == "")
             return fault("no name", event);
-        if (!event.contains("pid") || !event["pid"].is_number_integer()) return fault("pid is no integer", event);
+        if (!event.contains("pid") || !event["pid"].is_number_integer()) return fault("pid is not an integer", event);
         if (!counter && (!event.contains("tid") || !event["tid"].is_number_integer()))
-            return fault("tid is no integer", event);
+            return fault("tid is not an integer", event);
         const Track track = {event["pid"], counter ? Document(0) : event["tid"]};
         if (phase == "M") return check_name(event, track);
-        begun_ = true;
+        has_events_ = true;
         ++events_;
         used_processes_.insert(track.first);
         if (!counter) used_tracks_.insert(track);
@@ -91,7 +91,7 @@ class TraceSchema {
     }
 
     void check_name(const Document& event, const Track& track) {
-        if (begun_) fault("a name after other events", event);
+        if (has_events_) fault("a name after other events", event);
         const std::string name = event["name"];
         const bool sort = name.ends_with("_sort_index"), process = name.starts_with("process_");
         const char* key = sort ? "sort_index" : "name";
@@ -105,7 +105,7 @@ class TraceSchema {
 
     void check_slice(const Document& event, const Track& track) {
         if (!is_time(event, "dur")) return;
-        if (event.contains("args") && !event["args"].is_object()) fault("args are no object", event);
+        if (event.contains("args") && !event["args"].is_object()) fault("args are not an object", event);
         const std::int64_t start = ns(event["ts"]);
         slices_[track].push_back({start, start + ns(event["dur"]), event["name"]});
     }
@@ -115,7 +115,8 @@ class TraceSchema {
         if (!event.contains("args") || !event["args"].is_object() || event["args"].empty())
             return fault("a counter without values", event);
         for (const Document& value : event["args"])
-            if (!value.is_number() || !std::isfinite(value.get<double>())) fault("a counter that is no number", event);
+            if (!value.is_number() || !std::isfinite(value.get<double>()))
+                fault("a counter that is not a number", event);
     }
 
     void check_flow(const Document& event, const Track& track, const std::string& phase) {
@@ -123,7 +124,7 @@ class TraceSchema {
         if (phase == "f" && event.value("bp", "") != "e") fault("a flow's end that binds to the next slice", event);
         auto& ends = phase == "s" ? begins_ : ends_;
         const bool is_new = ends.try_emplace(event["id"], FlowEnd{track, ns(event["ts"]), event["name"]}).second;
-        if (!is_new) fault("a flow with two of one end", event);
+        if (!is_new) fault("a flow with two beginnings or two ends", event);
     }
 
     void check_names() {
@@ -181,7 +182,7 @@ class TraceSchema {
     }
 
     std::vector<std::string> faults_;
-    bool begun_ = false;  // true after the first event that is not a name
+    bool has_events_ = false;  // true after the first event that is not a name
     std::uint64_t events_ = 0;
     std::size_t counters_ = 0;
     std::set<std::tuple<std::string, std::int64_t, std::int64_t>> named_;  // kind of name, process ID, thread ID

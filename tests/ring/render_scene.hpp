@@ -1,5 +1,5 @@
-// Functions that render on the ring machine in one call. Without an OpenCL device, tests that call them fail; they are
-// not skipped.
+// Functions that render on the ring machine in one call. Without an OpenCL device, tests that call these functions fail
+// and are not skipped.
 #pragma once
 #include <optional>
 #include <string>
@@ -20,7 +20,7 @@ struct RingCase {
     Fold fold = Fold::kCyclic;
     std::string machine = "grande";
     std::optional<MappingRule> mapping{};                                // empty: cyclic with `offset` and `fold`
-    std::uint32_t lanes = default_test_lanes(), group = 0, bounces = 8;  // if lanes or group is 0, the device's default
+    std::uint32_t lanes = default_test_lanes(), group = 0, bounces = 8;  // lanes or group 0: the device's default
     Sampling sampling = Sampling::kCentres;
     std::string format = "fp32";
     bool filter = true;

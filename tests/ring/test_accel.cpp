@@ -170,8 +170,8 @@ TEST_CASE("the numbers of ray trees and beams per lane change no bit and no coun
     }
 }
 
-// Copies every object about twice, with distant object numbers and other surfaces, so that each ray hits several
-// objects at equal distances.
+// Returns a scene to which, for each kind of object, twice as many copies of random objects are added. The copies have
+// distant object numbers and other surfaces, so that most rays hit several objects at equal distances.
 Scene doubled_scene(std::uint64_t seed) {
     Scene scene = random_view_scene(seed);
     SplitMix random(seed);
@@ -191,7 +191,7 @@ Scene doubled_scene(std::uint64_t seed) {
     return scene;
 }
 
-TEST_CASE("of objects at equal distances the one with the lowest number is hit, for any voxels", "[ring][accel]") {
+TEST_CASE("of objects at equal distances, the one with the lowest number is hit, for any voxels", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(2, {"fp32", "spa22", "e5m6"})));
     for (const std::uint64_t seed : quick_of(1, kSceneSeeds)) {
@@ -208,8 +208,9 @@ TEST_CASE("of objects at equal distances the one with the lowest number is hit, 
 
 // A floor of many squares, a square larger than all of them, and an infinite plane lie in the same plane: a ray hits
 // them at equal distances.
-TEST_CASE("of a plane, a separate polygon and listed polygons at equal distances the lowest number is hit",
-          "[ring][accel]") {
+TEST_CASE(
+    "of a plane, a separate polygon and listed polygons at equal distances, the one with the lowest number is hit",
+    "[ring][accel]") {
     Session session(choose_device(""));
     Scene scene = project_scene("planes");
     scene.planes = {{{0, 0, 1}, 0, 0}};
@@ -243,8 +244,8 @@ TEST_CASE("of a plane, a separate polygon and listed polygons at equal distances
     }
 }
 
-// The lights lie in a ceiling of squares: a shadow ray meets the square around its light at the ray's end, or just
-// before or after the end.
+// The lights lie in a ceiling of squares. So, up to rounding, a shadow ray meets the square around its light at the
+// ray's end.
 TEST_CASE("a hit at the end of a shadow ray does not count, in any voxel", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(1, {"spa22", "fp32", "e5m10"})));

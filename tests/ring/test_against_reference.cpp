@@ -20,14 +20,15 @@ TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
         const reference::Image expected = reference::render(scene, options);
         const reference::Difference d = reference::compare(expected, result.image.rgb, scene, options);
         fmt::print(
-            "{:8} PSNR {:5.1f} dB, largest difference {:.4f}, {} pixels off by more than 2/255, of which {} graze an "
+            "{:8} PSNR {:5.1f} dB, largest difference {:.4f}, {} pixels differ by more than 2/255, of which {} graze "
+            "an "
             "edge ({:.2f} "
             "%)\n",
             name, d.psnr_db, d.largest, d.above_limit, d.excused, 100.0 * d.excused / (kSide * kSide));
         CHECK(d.psnr_db >= 50);
         CHECK(d.above_limit == d.excused);
         CHECK(d.excused <= kMaxExcused * kSide * kSide);
-        // Counts may differ only where a ray grazes an edge.
+        // Counts may differ a little, because rays that graze an edge may hit another object.
         const auto near = [](std::uint64_t got, std::uint64_t wanted) {
             return std::abs(double(got) - double(wanted)) <= 0.002 * double(wanted) + 2;
         };
@@ -40,7 +41,7 @@ TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
     }
 }
 
-TEST_CASE("corner sampling, other sizes and other bounces agree with the reference", "[ring]") {
+TEST_CASE("corner sampling, images that are not square and 0 to 12 bounces agree with the reference", "[ring]") {
     const Scene scene = project_scene("planes");
     for (const std::uint32_t bounces : {0u, 1u, 3u, 12u}) {
         CAPTURE(bounces);

@@ -19,8 +19,8 @@ using whole_image::value_at;
 
 constexpr double kPixelsPerUnit = 32;
 
-/// Image sizes: only a few, so that few reference images are rendered. In images with sides of one or two pixels,
-/// pixels have few neighbours.
+/// [size]: width, height. There are few sizes, so that few reference images are rendered. In images with sides of one
+/// or two pixels, pixels have few neighbours.
 constexpr std::array<std::array<std::uint32_t, 2>, 10> kSizes = {
     {{1, 1}, {1, 9}, {8, 1}, {2, 2}, {3, 2}, {7, 5}, {17, 13}, {32, 20}, {8, 40}, {39, 40}}};
 

@@ -87,7 +87,7 @@ void check_words(const RingResult& result, const RingCase& c) {
 }  // namespace
 
 TEST_CASE("lanes and group size change no bit, mark or count of anti-aliasing", "[ring][antialias]") {
-    // Pairs of lanes and group size. There are few, because each pair needs its own kernels.
+    // Pairs of lanes and group size. There are few pairs, because each pair needs its own kernels.
     using LanesAndGroups = std::vector<std::array<std::uint32_t, 2>>;
     const std::pair<std::string, LanesAndGroups> formats[] = {{"fp32", {{1, 1}, {4, 8}, {16, 8}}},
                                                               {"spa22", {{1, 8}, {16, 1}}}};
@@ -155,7 +155,7 @@ TEST_CASE("a second anti-aliased render with the same renderer gives the same re
     }
 }
 
-TEST_CASE("with one column of pixels per PE the vertical neighbours are p PEs away", "[ring][antialias]") {
+TEST_CASE("with one column of pixels per PE, the upper and lower neighbours are p PEs away", "[ring][antialias]") {
     Session session(choose_device(""));
     // The left and right neighbours take one rotation each, the upper and lower neighbours p rotations each: 2 + 2 p
     // rotations. With p = 0 the upper and lower neighbours are in the PE's own block.
@@ -173,8 +173,8 @@ TEST_CASE("with one column of pixels per PE the vertical neighbours are p PEs aw
 
 TEST_CASE("if a PE's memory is short, pixels rotate in bands, with the same image", "[ring][antialias]") {
     Session session(choose_device(""));
-    // The last band is shorter than the others if a PE's number of pixels is odd, or if the PE owns fewer pixels than
-    // others.
+    // The last band of a PE may be shorter than the others: the PE's number of pixels may be odd, or the PE may own
+    // fewer pixels than other PEs.
     const RingCase cases[] = {{.width = 512, .height = 512, .pes = 256, .offset = 16, .antialias = kFilter},
                               {.width = 45, .height = 45, .pes = 2, .antialias = kFilter},
                               {.width = 41, .height = 77, .pes = 3, .fold = Fold::kBlock, .antialias = kFilter},

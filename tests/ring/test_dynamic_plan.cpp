@@ -13,7 +13,8 @@ TEST_CASE("a plan's text omits default values at its end", "[schedule]") {
     CHECK(dynamic_text({4, 0, 0.5}) == "hybrid:4,0,0.5");
 }
 
-TEST_CASE("schedules reject invalid cost images, mappings and plans, and those that do not match", "[schedule]") {
+TEST_CASE("schedules reject invalid cost images, mappings and plans, and mappings that do not match the cost image",
+          "[schedule]") {
     const CostImage image{2, 2, {1, 2, 3, 4}};
     const raya_mapping fits{2, 2, 2, 0, RAYA_FOLD_CYCLIC};
     const auto check_error = [](const CostImage& costs, const raya_mapping& m) {

@@ -84,7 +84,8 @@ std::string render_hashes(Session& session, RingCase c, ExchangeMethod method, C
 
 }  // namespace
 
-TEST_CASE("ring, bus and broadcasts give the same bits, and as many moves as their formulas", "[ring][bus]") {
+TEST_CASE("ring, bus and broadcasts give the same bits, and their numbers of moves agree with the formulas",
+          "[ring][bus]") {
     constexpr std::uint64_t kSeed = 16;
     SplitMix random(kSeed);
     Session session(choose_device(""));

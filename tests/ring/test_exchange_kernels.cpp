@@ -164,9 +164,9 @@ Memory poisoned(SplitMix& random, const Launch& l, const Memory& clean, std::siz
 }
 
 struct Findings {
-    int poison_read = 0;     // PEs whose result depends on another PE's memory or on stale words
-    int stray_writes = 0;    // PEs that wrote outside their own block
-    int blocks_changed = 0;  // PEs whose block a launch changed; if 0, the test proves nothing
+    int poison_read = 0;     // number of PEs whose result depends on another PE's memory or on stale words
+    int stray_writes = 0;    // number of launches in which a PE wrote outside its own block
+    int blocks_changed = 0;  // number of PEs whose block a launch changed; if 0, the test proves nothing
 };
 
 Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
@@ -198,7 +198,7 @@ struct Fault {
     const char* effect;  // memory that the faulty kernel uses by mistake
     Step step;
     SourcePatch patch;
-    bool reads, writes;  // the kinds of findings that must detect the fault
+    bool reads, writes;  // the fault must be detected by Findings::poison_read, by Findings::stray_writes
 };
 
 const Fault kFaults[] = {

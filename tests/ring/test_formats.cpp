@@ -89,7 +89,7 @@ TEST_CASE("spa22 images show neither shadow acne nor light leaks", "[ring]") {
         const reference::Options options{.width = kSide, .height = kSide};
         const reference::Difference d =
             reference::compare(reference::render(scene, options), result.image.rgb, scene, options, 0.1, 1.0 / 8);
-        fmt::print("{:8} spa22: PSNR {:4.1f} dB, {} pixels off by more than 0.1, of which {} graze an edge\n", name,
+        fmt::print("{:8} spa22: PSNR {:4.1f} dB, {} pixels differ by more than 0.1, of which {} graze an edge\n", name,
                    d.psnr_db, d.above_limit, d.excused);
         CHECK(d.above_limit - d.excused <= kMaxWrongPixels * kSide * kSide);
     }

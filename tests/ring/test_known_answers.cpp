@@ -70,8 +70,8 @@ TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre
     CHECK(pixel(result, 32, 32, 1) == Approx(0.2 * (ambient + 1) + 0.3).epsilon(1e-5));
     CHECK(pixel(result, 32, 32, 2) == Approx(0.3).epsilon(1e-5));
     CHECK(pixel(result, 0, 0, 0) == 0);
-    // Half way to the rim of the sphere as seen from the eye. b is the angle of the ray to the axis; a, with sin(a) = 5
-    // sin(b), is the angle of the ray to the normal.
+    // Half way to the rim of the sphere as seen from the eye: b is the angle of the ray to the axis, and a is the angle
+    // of the ray to the normal, with sin(a) = 5 sin(b).
     const double slope = std::tan(20 * M_PI / 180) * 16 / 32.5, b = std::atan(slope), a = std::asin(5 * std::sin(b));
     const double cosine = std::cos(a), mirror = std::cos(2 * a);
     const double highlight = mirror > 0 ? 0.3 * std::pow(mirror, 20) : 0;
@@ -88,7 +88,7 @@ TEST_CASE("glass of index 1 is invisible, and a ray through the centre of a glas
     scene.spheres = {{{0, 0, 5}, 1, 0}};
     const RingResult through = render_scene(scene, c);
     CHECK(through.all.events[RAYA_REFRACTED] > 200);
-    int unequal = 0;  // number of values: at a corner of the checker, rounding may select the other colour
+    int unequal = 0;  // number of values that differ: at a checker corner, rounding may select the other colour
     for (std::size_t i = 0; i < wall.image.rgb.size(); ++i)
         unequal += std::abs(wall.image.rgb[i] - through.image.rgb[i]) > 1e-5f;
     CHECK(unequal <= 3);

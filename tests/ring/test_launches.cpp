@@ -85,7 +85,8 @@ TEST_CASE("a render completes if each launch runs one iteration of its loop", "[
     CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more than one launch per pixel of a lane
 }
 
-TEST_CASE("launches report increasing progress, for the first time when each lane has traced a few pixels", "[ring]") {
+TEST_CASE("launches report increasing progress; the first report comes when each lane has traced a few pixels",
+          "[ring]") {
     const Scene scene = project_scene("centre");
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 96, .height = 96, .pes = 4});
@@ -184,15 +185,16 @@ TEST_CASE("a launch whose loops are cut is repeated with half the work, and its 
     CHECK(launches_of(second) == launches_of(first) - (method == AntialiasMethod::kNone ? 3 : 6));
 }
 
-TEST_CASE("a device that ends loops early is an error, not an image", "[ring]") {
+TEST_CASE("on a device that ends loops early, the render ends with an error", "[ring]") {
     const Scene scene = project_scene("glass");
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 20, .height = 15, .pes = 4});
     settings.kernels.sources.patches = {{"shared/loop_canary.clh", "i < two", "i < two - 1"}};
-    for (const std::uint32_t limit : {UINT32_MAX, 300u}) {  // fails at once; repeats launches down to the smallest
+    for (const std::uint32_t limit :
+         {UINT32_MAX, 300u}) {  // without a limit the render fails at once; with 300 it first repeats launches
         session.launch_limit(kTracePass) = limit;
         CHECK_THROWS_WITH(RingRenderer(session, scene, settings).render(),
-                          Catch::Contains("has ended loops early") && Catch::Contains("remedy"));
+                          Catch::Contains("stopped this kernel's loops before their end") && Catch::Contains("remedy"));
     }
     CHECK(session.launch_limit(kTracePass) == 1);
 }

@@ -89,15 +89,15 @@ TEST_CASE("cyclic mapping with p = n and P = n x n: every n x n block has one pi
         }
 }
 
-TEST_CASE("block fold: a PE owns a run of slots if P < W, a run of a slot's rows if P > W", "[mapping]") {
-    const raya_mapping few{10, 3, 4, 0, RAYA_FOLD_BLOCK};  // the owner of column c is floor(4 c / 10)
+TEST_CASE("block fold: if P < W, a PE owns a run of slots; if P > W, it owns a run of rows of one slot", "[mapping]") {
+    const raya_mapping few_pes{10, 3, 4, 0, RAYA_FOLD_BLOCK};  // the owner of column c is floor(4 c / 10)
     std::vector<std::uint32_t> owners;
-    for (std::uint32_t x = 0; x < 10; ++x) owners.push_back(raya_owner(few, 2, x));
+    for (std::uint32_t x = 0; x < 10; ++x) owners.push_back(raya_owner(few_pes, 2, x));
     CHECK(owners == std::vector<std::uint32_t>{0, 0, 0, 1, 1, 2, 2, 2, 3, 3});
-    const raya_mapping many{2, 5, 5, 0, RAYA_FOLD_BLOCK};  // PEs 0 and 1 own slot 0; PEs 2, 3 and 4 own slot 1
+    const raya_mapping many_pes{2, 5, 5, 0, RAYA_FOLD_BLOCK};  // PEs 0 and 1 own slot 0; PEs 2, 3 and 4 own slot 1
     owners.clear();
     for (std::uint32_t x = 0; x < 2; ++x)
-        for (std::uint32_t j = 0; j < 5; ++j) owners.push_back(raya_owner(many, j, x));
+        for (std::uint32_t j = 0; j < 5; ++j) owners.push_back(raya_owner(many_pes, j, x));
     CHECK(owners == std::vector<std::uint32_t>{0, 0, 0, 1, 1, 2, 2, 3, 3, 4});
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("slot mappings of the largest images and arrays agree with the definit
                 std::uint32_t wrong = 0;
                 for (int i = 0; i < 100; ++i) {
                     const std::uint32_t edge =
-                        i < 4 ? kSide - 1 : random_below(random, kSide);  // also the last row or column
+                        i < 4 ? kSide - 1 : random_below(random, kSide);  // first the last row and column
                     const raya_pixel pixel{i % 2 ? edge : random_below(random, kSide),
                                            i % 2 ? random_below(random, kSide) : edge};
                     const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);

@@ -143,7 +143,8 @@ TEST_CASE("mappings of every kind agree with the definition on the largest image
         CAPTURE(kSeed, m.pes, mapping_text(m));
         std::uint32_t wrong = 0;
         for (int i = 0; i < 200; ++i) {
-            const std::uint32_t edge = i < 4 ? kSide - 1 : random_below(random, kSide);  // also the last row or column
+            const std::uint32_t edge =
+                i < 4 ? kSide - 1 : random_below(random, kSide);  // first the last row and column
             const raya_pixel pixel{i % 2 ? edge : random_below(random, kSide),
                                    i % 2 ? random_below(random, kSide) : edge};
             const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);

@@ -1,4 +1,4 @@
-// An image does not depend on the distribution of the work, on lanes, group size or the optimiser.
+// An image depends neither on the distribution of the work over PEs, nor on lanes, group size or the optimiser.
 #include <catch2/catch.hpp>
 #include <random>
 

@@ -67,7 +67,7 @@ TEST_CASE("anti-aliasing adds sums or marks, and the pixels in transit", "[ring]
     CHECK(sampled.bytes() == 4 * 1000 + ray_tree_bytes(8) + (12 + 12 + 1) * 255);
 }
 
-TEST_CASE("a machine without a limit holds everything", "[ring]") {
+TEST_CASE("a PE without a memory limit holds its whole share", "[ring]") {
     const PeMemory memory = plan_pe_memory(machine_named("grande"), demand(100'000'000, 1'000'000));
     CHECK(memory.block_pixels == 1'000'000);
     CHECK(memory.bytes() > 400'000'000);
@@ -108,7 +108,7 @@ TEST_CASE("PEs exchange the whole share, or the minimum number of equal parts of
         CAPTURE(kSeed, i, d.job_words, d.share_pixels, free_bytes, antialias_name(method));
         const PeMemory memory = plan_pe_memory(machine_of(bytes_without_band(d) + free_bytes), d);
         CHECK(memory.block_pixels ==
-              d.share_pixels);  // all pixels stay in the PE: any may be a neighbour of another PE's
+              d.share_pixels);  // all pixels stay in the PE, because other PEs may need any of them
         CHECK(memory.sum_pixels == (method == AntialiasMethod::kFilter ? d.share_pixels : 0));
         CHECK(memory.marks == (method == AntialiasMethod::kSupersample ? d.share_pixels : 0));
         CHECK(memory.band_pixels == longest_band(d.share_pixels, free_bytes));
@@ -157,7 +157,8 @@ TEST_CASE("a share that leaves no memory for a pixel in transit is refused with 
         CHECK_NOTHROW(plan_pe_memory(machine_of(minimum - 1), demand(700, 333)));
         d.scene = "wide.nff";
         d.share_pixels = 1;
-        d.job_words = (50 * 1024 - bytes_without_band(demand(0, 1, method)) - 12) / 4;  // 50 KB, less up to 3 bytes
+        d.job_words = (50 * 1024 - bytes_without_band(demand(0, 1, method)) - 12) /
+                      4;  // needs 50 KB, rounded down to whole words
         CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), d),
                           Contains("wide.nff with --antialias " + name) && Contains("50.0 KB") && Contains("32 KB") &&
                               Contains("the SPA") && Contains("more PEs") && Contains("smaller image") &&

@@ -19,15 +19,15 @@ class TestCheckpoint {
   public:
     explicit TestCheckpoint(int bands = 1 << 30, std::string resumed = "")
         : bands_left_(bands), saved_(std::move(resumed)) {
-        checkpointing_.band_s = 0;  // so that bands are as short as possible
+        checkpointing_.band_s = 0;  // shortest possible bands
         checkpointing_.due = [] { return true; };
         checkpointing_.save = [this](const RingState& state, const StateSettings& settings) {
             saved_ = state_bytes(state, settings);
             ++count_;
             if (--bands_left_ == 0) throw Stopped();
         };
-        checkpointing_.resume = [this](const StateSettings& settings, const RingState& shape) {
-            return saved_.empty() ? std::optional<RingState>() : read_state(saved_, settings, shape);
+        checkpointing_.resume = [this](const StateSettings& settings, const RingState& sized) {
+            return saved_.empty() ? std::optional<RingState>() : read_state(saved_, settings, sized);
         };
     }
     const RingCheckpointing* checkpointing() const { return &checkpointing_; }
@@ -185,11 +185,11 @@ TEST_CASE("a checkpoint with a valid hash is refused if its vector sizes are not
             {"a longer image", [](RingState& s) { s.image.resize(s.image.size() + 1); }},
             {"fewer pixels", [](RingState& s) { s.pixels.resize(1); }},
             {"more pixels", [](RingState& s) { s.pixels.resize(2 * s.pixels.size()); }},
-            {"other marks", [](RingState& s) { s.marks.resize(s.marks.size() + 1); }},
+            {"more marks", [](RingState& s) { s.marks.resize(s.marks.size() + 1); }},
             {"no cycles", [](RingState& s) { s.passes[0].cycles.clear(); }},
             {"more events", [](RingState& s) { s.passes[0].events.resize(2 * s.passes[0].events.size()); }},
             {"no costs", [](RingState& s) { s.passes[0].costs.clear(); }},
-            {"other costs of all", [](RingState& s) { s.all_costs.resize(s.all_costs.size() + 1); }}};
+            {"more costs in all_costs", [](RingState& s) { s.all_costs.resize(s.all_costs.size() + 1); }}};
         for (const auto& [name, damage] : damages) {
             CAPTURE(name);
             RingState damaged = saved;

@@ -164,7 +164,8 @@ TEST_CASE("routes have the minimum number of rotations: every set of distances o
             CAPTURE(pes, distances, route_rotations(route), min_rotations(pes, wanted), stops_of(route, pes));
             CHECK(good);
         }
-    CHECK(min_rotations(9, 0b000101001) == 5);  // checks min_rotations(): 5 rotations down reach 3 and 5, but 6 up
+    CHECK(min_rotations(9, 0b000101001) ==
+          5);  // checks min_rotations(): 5 rotations down reach 3 and 5; up, it takes 6
     CHECK(min_rotations(9, 0b100000010) == 2);  // 1 and 8 are one rotation away, in opposite directions
 }
 

@@ -67,7 +67,7 @@ Simulated simulated(const CostImage& image, const raya_mapping& m, const Dynamic
     }
     while (!queue.empty()) {
         const auto first_free = std::min_element(
-            run.finished.begin(), run.finished.end());  // of PEs that become free at the same time, the lowest
+            run.finished.begin(), run.finished.end());  // the lowest-numbered of the PEs that become free first
         *first_free += plan.overhead;
         ++run.requests;
         for (std::uint32_t i = 0; i < plan.chunk && !queue.empty(); ++i, queue.pop_front())
@@ -131,11 +131,13 @@ TEST_CASE("imbalance_of_offsets() agrees with static_load() to the bit", "[sched
 }
 
 TEST_CASE("dynamic and hybrid schedules agree with the simulation", "[schedule]") {
-    const CostImage six{6, 1, {5, 1, 1, 1, 1, 2}};
-    const raya_mapping two{6, 1, 2, 0, RAYA_FOLD_BLOCK};  // pixel costs: PE 0 owns 5 1 1, PE 1 owns 1 1 2
-    CHECK(dynamic_schedule(six, two, {1, 0, 0}).load.per_pe == Cycles{5, 6});
-    CHECK(dynamic_schedule(six, two, {2, 10, 0}).load.per_pe == Cycles{16, 12 + 13});  // 5 1, then 1 1, then 1 2
-    CHECK(dynamic_schedule(six, two, {1, 10, 0.5}).load.per_pe == Cycles{5 + 11 + 12, 1 + 11 + 11});  // 1 1 1 2 left
+    const CostImage six_pixels{6, 1, {5, 1, 1, 1, 1, 2}};
+    const raya_mapping two_pes{6, 1, 2, 0, RAYA_FOLD_BLOCK};  // pixel costs: PE 0 owns 5 1 1, PE 1 owns 1 1 2
+    CHECK(dynamic_schedule(six_pixels, two_pes, {1, 0, 0}).load.per_pe == Cycles{5, 6});
+    CHECK(dynamic_schedule(six_pixels, two_pes, {2, 10, 0}).load.per_pe ==
+          Cycles{16, 12 + 13});  // 5 1, then 1 1, then 1 2
+    CHECK(dynamic_schedule(six_pixels, two_pes, {1, 10, 0.5}).load.per_pe ==
+          Cycles{5 + 11 + 12, 1 + 11 + 11});  // 1 1 1 2 left
     constexpr std::uint64_t kSeed = 3;
     SplitMix random(kSeed);
     for (int i = 0; i < 1'500; ++i) {
@@ -184,7 +186,7 @@ TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]"
     }
 }
 
-TEST_CASE("extreme plans: one chunk, all static, one PE, more PEs than chunks", "[schedule]") {
+TEST_CASE("extreme plans have the expected loads: one chunk, all static, one PE, more PEs than chunks", "[schedule]") {
     constexpr std::uint64_t kSeed = 5;
     SplitMix random(kSeed);
     for (int i = 0; i < 300; ++i) {
@@ -219,17 +221,17 @@ TEST_CASE("extreme plans: one chunk, all static, one PE, more PEs than chunks", 
 }
 
 TEST_CASE("speed-up counts only the pixels' work, and is defined if all costs are 0", "[schedule]") {
-    const CostImage even{4, 1, {30, 30, 30, 30}};
-    const raya_mapping two{4, 1, 2, 0, RAYA_FOLD_CYCLIC};
-    const Schedule with_overhead = dynamic_schedule(even, two, {1, 10, 0});
+    const CostImage equal_costs{4, 1, {30, 30, 30, 30}};
+    const raya_mapping two_pes{4, 1, 2, 0, RAYA_FOLD_CYCLIC};
+    const Schedule with_overhead = dynamic_schedule(equal_costs, two_pes, {1, 10, 0});
     CHECK(makespan(with_overhead) == 80);
-    CHECK(speedup(with_overhead, even) == 1.5);  // 120 / 80
-    CHECK(with_overhead.load.speedup == 2);      // 160 / 80: both PEs are always busy
+    CHECK(speedup(with_overhead, equal_costs) == 1.5);  // 120 / 80
+    CHECK(with_overhead.load.speedup == 2);             // 160 / 80: both PEs are always busy
     const CostImage zero_costs{4, 1, {0, 0, 0, 0}};
-    CHECK(speedup(dynamic_schedule(zero_costs, two, {1, 0, 0}), zero_costs) == 2);
-    CHECK(speedup(dynamic_schedule(zero_costs, two, {1, 10, 0}), zero_costs) == 0);
+    CHECK(speedup(dynamic_schedule(zero_costs, two_pes, {1, 0, 0}), zero_costs) == 2);
+    CHECK(speedup(dynamic_schedule(zero_costs, two_pes, {1, 10, 0}), zero_costs) == 0);
     CHECK(imbalance_of_offsets(zero_costs, 2, RAYA_FOLD_CYCLIC, {0, 1}) == std::vector<double>{0, 0});
-    CHECK(lower_bound(even, 4) == 30);
+    CHECK(lower_bound(equal_costs, 4) == 30);
     CHECK(lower_bound({3, 1, {5, 5, 5}}, 2) == 8);
     CHECK(lower_bound({3, 1, {1, 9, 1}}, 2) == 9);
     CHECK(lower_bound(zero_costs, 3) == 0);

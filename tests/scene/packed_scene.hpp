@@ -35,7 +35,7 @@ class PackedScene {
     /// Returns the number of words that were never read.
     std::size_t unread_words() const { return static_cast<std::size_t>(std::count(reads_.begin(), reads_.end(), 0)); }
     /// Returns the number of words that were read more than once.
-    std::size_t shared_words() const {
+    std::size_t reread_words() const {
         return static_cast<std::size_t>(std::count_if(reads_.begin(), reads_.end(), [](int n) { return n > 1; }));
     }
 

@@ -24,6 +24,7 @@ using namespace raya;
 
 namespace {
 
+/// Returns the distance between two spheres; < 0 if they overlap.
 double gap(const Sphere& a, const Sphere& b) { return (a.centre - b.centre).length() - a.radius - b.radius; }
 
 using Point = std::tuple<double, double, double>;
@@ -36,12 +37,13 @@ std::size_t triangles_of(const Scene& scene) {
     return triangles;
 }
 
-double turn_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+/// Returns twice the signed area of a triangle as seen from above; > 0 if the triangle is counter-clockwise.
+double orientation_of(const Vec3& a, const Vec3& b, const Vec3& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 /// Returns true if edges of the two outlines cross, seen from above.
-bool cross(const Polygon& first, const Polygon& second) {
+bool edges_cross(const Polygon& first, const Polygon& second) {
     const auto ends = [](const Polygon& polygon, std::size_t i) {
         return std::pair{polygon.vertices[i], polygon.vertices[(i + 1) % polygon.vertices.size()]};
     };
@@ -49,7 +51,9 @@ bool cross(const Polygon& first, const Polygon& second) {
         for (std::size_t j = 0; j < second.vertices.size(); ++j) {
             const auto [a, b] = ends(first, i);
             const auto [c, d] = ends(second, j);
-            if (turn_of(a, b, c) * turn_of(a, b, d) <= 0 && turn_of(c, d, a) * turn_of(c, d, b) <= 0) return true;
+            if (orientation_of(a, b, c) * orientation_of(a, b, d) <= 0 &&
+                orientation_of(c, d, a) * orientation_of(c, d, b) <= 0)
+                return true;
         }
     return false;
 }
@@ -224,7 +228,7 @@ TEST_CASE("gears: teeth mesh with the neighbours' gaps without touching", "[gene
     for (std::size_t i = 0; i < layer.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) {
             CAPTURE(i, j);
-            CHECK_FALSE(cross(layer[i], layer[j]));
+            CHECK_FALSE(edges_cross(layer[i], layer[j]));
             const Vec3 offset = middle_of(layer[i]) - middle_of(layer[j]);
             CHECK(offset.z == 0);
             if (i + j == 3) continue;  // diagonal neighbours

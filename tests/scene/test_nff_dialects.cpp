@@ -138,7 +138,7 @@ TEST_CASE("entities of other dialects are skipped with the numbers that follow t
     CHECK(parsed.scene.spheres.size() == 2);
 }
 
-TEST_CASE("a mail header before the scene is skipped, and its lines count", "[dialects]") {
+TEST_CASE("a mail header before the scene is skipped, and line numbers include its lines", "[dialects]") {
     const std::string header =
         "From eye@world Thu Dec 10\nSubject: a teapot, at last: see below\nX-Mailer: none\n\tand more\n\n";
     for (const std::string end : {"\n", "\r\n"}) {
@@ -167,7 +167,7 @@ TEST_CASE("text that is not NFF is refused, and so are files without view or obj
     CHECK_THROWS_WITH(parse_lenient(kView + kView + kSphere), Contains("second 'v'"));
 }
 
-TEST_CASE("without a list for remarks, dialects are refused", "[dialects]") {
+TEST_CASE("if parse_nff() gets no list for remarks, it refuses dialects", "[dialects]") {
     for (const std::string entity :
          {"p 3\n0 0 0\n1 0 0\n2 0 0\n", "p 4\n0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n", "s 1 1 1 0\n", "la 1 1 1\n", "Q\n",
           "pp 3\n0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n", "p 2\n0 0 0\n1 0 0\n"}) {

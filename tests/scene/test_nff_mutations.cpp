@@ -102,7 +102,7 @@ std::string reader_defect(const std::string& text, int& accepted) {
     try {
         const Scene scene = parse_nff(text, "m.nff");
         ++accepted;
-        return parse_nff(write_nff(scene), "m.nff") == scene ? "" : "changed by being written and read";
+        return parse_nff(write_nff(scene), "m.nff") == scene ? "" : "the scene changes if it is written and read again";
     } catch (const UserError& error) {
         return has_file_and_line(error.what()) ? "" : std::string("message without file and line: ") + error.what();
     } catch (const std::exception& error) {
@@ -123,7 +123,7 @@ TEST_CASE("mutated files are either read or refused", "[nff]") {
         CAPTURE(seed, text);
         FAIL_CHECK(defect);
     }
-    INFO(accepted << " of " << count << " accepted");
+    INFO("the reader accepts " << accepted << " of " << count << " files");
     CHECK(accepted > count / 20);  // some mutated files stay valid
     CHECK(accepted < count / 2);   // most mutated files are invalid
 }

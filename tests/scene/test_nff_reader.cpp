@@ -63,7 +63,7 @@ TEST_CASE("the parts of v may have any order", "[nff]") {
     CHECK(s.view == scene_of("s 0 0 0 1\n").view);
 }
 
-TEST_CASE("defaults: black background, white matt surface, intensity sqrt(n) / (2 n) of n lights", "[nff]") {
+TEST_CASE("defaults: black background, white matt surface, intensity sqrt(n) / (2 n) of each of n lights", "[nff]") {
     const Scene s = scene_of("l 1 2 3\nl 3 2 1\ns 0 0 0 1\n");
     CHECK(s.background == Colour(0, 0, 0));
     CHECK(s.surfaces == std::vector<Surface>{Surface{}});

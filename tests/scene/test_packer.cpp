@@ -71,7 +71,7 @@ class JobCheck {
         for (const Polygon& polygon : scene_.polygons) check_faces(polygon, face);
         CHECK(face == job.objects.polygons);
         CHECK(packed_.unread_words() == 0);
-        CHECK(packed_.shared_words() == 0);
+        CHECK(packed_.reread_words() == 0);
     }
 
   private:
@@ -238,7 +238,7 @@ TEST_CASE("a job's header contains settings, background, ambient light and exten
     CHECK(std::equal(settings.cycles.begin(), settings.cycles.end(), job.cycles));
     CHECK(Vec3(job.eye[0], job.eye[1], job.eye[2]) == Vec3(0, 0, -5));
     CHECK(Vec3(job.background[0], job.background[1], job.background[2]) == fp32(scene.background));
-    CHECK(job.ambient == 1);  // of a scene without lights
+    CHECK(job.ambient == 1);  // the scene has no lights
     CHECK(job.extent == 5);   // the eye's distance
     scene.lights = {{{1, 2, 3}, {}}, {{4, 5, 6}, Colour(0.1, 0.2, 0.3)}};
     scene.spheres = {{{-8, 0, 0}, -2, 0}};
@@ -288,11 +288,11 @@ TEST_CASE("a job's corner and steps give the reference's primary rays", "[packer
             const auto vector = [](const float(&xyz)[3]) { return Vec3(xyz[0], xyz[1], xyz[2]); };
             for (std::uint32_t j = 0; j < height; ++j)
                 for (std::uint32_t x = 0; x < width; ++x) {
-                    const Vec3 through =
+                    const Vec3 direction =
                         vector(job.corner) + double(x) * vector(job.column_step) + double(j) * vector(job.row_step);
                     const reference::Ray ray = reference::primary_ray(scene, options, x, j);
                     CAPTURE(corners, width, height, x, j);
-                    CHECK((through.normalized() - ray.direction).length() <= 8 * kRounding);
+                    CHECK((direction.normalized() - ray.direction).length() <= 8 * kRounding);
                     CHECK(vector(job.eye) == ray.origin);
                 }
         }

@@ -26,8 +26,8 @@ TEST_CASE("a random view changes only the camera's position, at the same distanc
         const Vec3 arm = viewed.view.from - viewed.view.at;
         CHECK(arm.length() == Approx((scene.view.from - scene.view.at).length()).epsilon(1e-5));
         const double height = arm.normalized().dot(scene.view.up.normalized());
-        CHECK(height > sine(kLowestView) - 1e-5);
-        CHECK(height < sine(kHighestView) + 1e-5);
+        CHECK(height > sine(kMinElevationDegrees) - 1e-5);
+        CHECK(height < sine(kMaxElevationDegrees) + 1e-5);
         CHECK(random_view(scene, seed) == viewed);
         viewed.view.from = scene.view.from;
         CHECK(viewed == scene);
@@ -43,7 +43,8 @@ TEST_CASE("random views are uniform over the zone of the sphere", "[view]") {
         const View view = random_view(scene, seed).view;
         const Vec3 d = (view.from - view.at).normalized();
         x_components.insert(d.x);
-        const double zone_fraction = (d.z - sine(kLowestView)) / (sine(kHighestView) - sine(kLowestView));
+        const double zone_fraction =
+            (d.z - sine(kMinElevationDegrees)) / (sine(kMaxElevationDegrees) - sine(kMinElevationDegrees));
         const double turn = std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 0.5;
         ++heights[std::min(kParts - 1, std::max(0, static_cast<int>(zone_fraction * kParts)))];
         ++azimuths[std::min(kParts - 1, static_cast<int>(turn * kParts))];

@@ -1,5 +1,5 @@
 # For tests in a minimal Debian: make_bare_root BUILD installs one in the folder "$bare"; in_root COMMAND... runs a command in that Debian.
-# Needs root, debootstrap and the network; exit code 77 without. BUILD/debs caches packages for the next run.
+# Needs root, debootstrap and the network; without them the exit code is 77. BUILD/debs caches packages for the next run.
 # shellcheck shell=bash
 skip() { echo "skipped: $1"; exit 77; }
 fail() { echo "FAILED line ${BASH_LINENO[0]}: $1"; exit 1; }
@@ -14,7 +14,7 @@ in_root() {
 
 keep_packages() { cp -n "$bare"/var/cache/apt/archives/*.deb "$1/debs/" 2>/dev/null || true; }
 
-make_bare_root() {  # uses the mirror of apt's sources
+make_bare_root() {  # takes the packages from the mirror that apt's sources name
     local build=$1 suite=bookworm mirror
     ((EUID == 0)) || skip "chroot needs root"
     command -v debootstrap >/dev/null || skip "no debootstrap (tools/setup --bare-root)"

@@ -6,7 +6,7 @@ TIMEOUT_S = 60  # maximum time until the browser answers
 
 
 def program():
-    """Path of the browser; None if none is installed."""
+    """Returns the path of the browser; None if no browser is installed."""
     return next((path for path in map(shutil.which, PROGRAMS) if path), None)
 
 
@@ -18,7 +18,7 @@ class Browser:
         command_end, self.commands = os.pipe()  # the browser reads commands from fd 3 and writes answers to fd 4
         self.answers, answer_end = os.pipe()
 
-        def take_pipes():
+        def take_pipes():  # runs in the child process, before the browser starts
             ends = os.dup(command_end), os.dup(answer_end)  # duplicates, whose numbers are not 3 and 4
             os.dup2(ends[0], 3), os.dup2(ends[1], 4)
 
@@ -43,7 +43,7 @@ class Browser:
         shutil.rmtree(self.profile, ignore_errors=True)
 
     def message(self, seconds):
-        """The browser's next message; None if none arrives within `seconds`."""
+        """Returns the browser's next message; None if no message arrives within `seconds`."""
         end = time.monotonic() + seconds
         while b"\0" not in self.unparsed:
             if not select.select([self.answers], [], [], max(0, end - time.monotonic()))[0]:
@@ -95,14 +95,14 @@ class Browser:
         self.wait_for("Page.loadEventFired")
 
     def value(self, expression):
-        """Value of a JavaScript expression in the page."""
+        """Returns the value of a JavaScript expression in the page."""
         answer = self.ask("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
             raise RuntimeError(json.dumps(answer["exceptionDetails"])[:600])
         return answer["result"].get("value")
 
     def picture(self, file, max_height=12000):
-        """Writes a screenshot of the page, cut to `max_height` pixels because Chromium refuses higher ones."""
+        """Writes a screenshot of the page, cut to `max_height` pixels because Chromium refuses higher screenshots."""
         import base64
         width, height = self.value("[innerWidth, document.documentElement.scrollHeight]")
         clip = {"x": 0, "y": 0, "width": width, "height": min(height, max_height), "scale": 1}

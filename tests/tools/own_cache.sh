@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Runs a test program with its own kernel cache. ctest runs several programs at once, which must not share a cache (pocl issue 586).
 #   own_cache.sh NAME COMMAND...     cache: folder NAME in POCL_CACHE_DIR, by default build/pocl-cache. The next run reuses it.
-#                                    It starts as a copy of RAYA_KERNEL_STORE, and new kernels are added there (tests/kernel_cache.hpp)
+#                                    A new cache is a copy of RAYA_KERNEL_STORE; new kernels are also added to RAYA_KERNEL_STORE
+#                                    (tests/kernel_cache.hpp)
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
 POCL_CACHE_DIR=${POCL_CACHE_DIR:-$root/build/pocl-cache}/$1

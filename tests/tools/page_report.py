@@ -30,9 +30,10 @@ def values_of(value, predicate):
 
 
 def gpu_day(raya, folder):
-    """Returns the paths (report.json, page.html) of a run of tools/gpu_day whose steps are right, wrong, late or impossible on this machine."""
+    """Makes a report of tools/gpu_day with steps that are right, wrong, late or impossible on this machine. Returns (report.json, page.html)."""
     steps = Path(folder, "steps")
     steps.mkdir(parents=True)
+    # (step, "STAGE SECONDS VERDICT", output)
     for name, code, text in [("devices", "1 0 right", "$ raya devices\nGPU"), ("verify-quick", "1 12 exit code 4", "$ raya verify --quick\nGPU (maker, driver 1)\nFAIL  grid \"a\\b\""),
                              ("goal-spheres-group32", "5 3 right", "$ raya bench\ntrace  fp32  1  32  5120.5  5"), ("hash-ring-cones-fp32", "3 1 late", "not started"),
                              ("ranks", "5 0 not here: no mpirun", None)]:

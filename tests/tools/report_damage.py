@@ -8,8 +8,8 @@ OPEN = re.compile(r"study\.json: (settings|tables\[\]\.rows\[\])")  # objects wi
 SIGNED = "length_exponent"  # may be negative; it is 0 in the test
 
 
-def variant(value):
-    """Returns a text that identifies the variant of an object; the members of an object depend on its variant."""
+def object_kind(value):
+    """Returns a text that identifies the kind of an object; the members of an object depend on its kind."""
     words = [value[key] for key in ("kind", "method", "status") if isinstance(value.get(key), str)]
     return f"<{words[0] if words else ''}{' torus' * ('torus' in value)}>"
 
@@ -17,7 +17,7 @@ def variant(value):
 def values_of(value, path):
     """Yields (path, container, key) of every value in a report, but only of the first and last item of a list."""
     if isinstance(value, dict):
-        object_path = path + variant(value)
+        object_path = path + object_kind(value)
         for key in value:
             member_path = f"{object_path}.{key}"
             yield member_path, value, key
@@ -28,8 +28,8 @@ def values_of(value, path):
             yield from values_of(value[i], path + "[]")
 
 
-def without_variants(path):
-    """Returns the path without variants: 'render.json: load.per_pe[]'"""
+def without_kinds(path):
+    """Returns the path without the kinds of objects: 'render.json: load.per_pe[]'"""
     return re.sub(r": \.+", ": ", re.sub(r"<[^>]*>", "", path))
 
 
@@ -42,7 +42,7 @@ class Damage:
             for path, holder, key in values_of({"": report}, schema + ": "):
                 value = holder[key]
                 if isinstance(value, dict):
-                    object_path = path + variant(value)
+                    object_path = path + object_kind(value)
                     self.required[object_path] = self.required.get(object_path, set(value)) & set(value)
                 if isinstance(value, (int, float)) and value < 0:
                     self.negative.add(path)
@@ -53,9 +53,9 @@ class Damage:
         root = {"": copy.deepcopy(report)}
         path, holder, key = self.random.choice(list(values_of(root, schema + ": ")))
         value, kind = holder[key], self.random.choice(["drop", "other type", "unknown member", "negative"])
-        open_ended = OPEN.match(without_variants(path))
+        open_ended = OPEN.match(without_kinds(path))
         if kind == "drop" and isinstance(value, dict):
-            required = [k for k in self.required[path + variant(value)] if not self.optional(path, k)]
+            required = [k for k in self.required[path + object_kind(value)] if not self.optional(path, k)]
             if open_ended or not required:
                 return None
             key = self.random.choice(sorted(required))
@@ -69,10 +69,10 @@ class Damage:
             holder[key] = -1 - value
         else:
             return None
-        return schema, f"{name}: {kind} at {without_variants(path)}, {key!r}", root[""]
+        return schema, f"{name}: {kind} at {without_kinds(path)}, {key!r}", root[""]
 
     def optional(self, path, key):
-        return without_variants(f"{path}.{key}") in OPTIONAL
+        return without_kinds(f"{path}.{key}") in OPTIONAL
 
     def value_of_other_type(self, value):
         if isinstance(value, (bool, str)):

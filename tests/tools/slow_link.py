@@ -28,7 +28,7 @@ def open_end(namespace):
 
 
 def carry(ends, delay_s, lost_of, counts):
-    """Forwards packets between the two ends, without end, and counts them in `counts`."""
+    """Forwards packets between the two ends until the process exits, and counts them in `counts`."""
     others = dict(zip(ends, reversed(ends)))
     under_way = collections.deque()  # (time of arrival, receiving end of the link, packet)
     while True:

@@ -2,7 +2,7 @@
 # Installs the package of tools/package by apt in a minimal Debian, as in the last stage of tools/container/Dockerfile, and checks its size.
 #   test_bare_package.sh BUILD    BUILD/debs caches packages for the next run
 #   RAYA_THOROUGH=1: also with recommended packages, such as OpenImageIO (567 MB more)
-# Needs root, debootstrap and the network; exit code 77 without.
+# Needs root, debootstrap and the network; without them the exit code is 77.
 set -euo pipefail
 build=$(readlink -f "$1")
 root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
@@ -12,7 +12,7 @@ make_bare_root "$build"
 hash=474a384374e81c5144a0e5405232a750
 scene=/usr/share/raya/scenes/centre.nff
 
-# As in the base image, packages are installed without documentation, manual pages and translations.
+# As in the Dockerfile's base image, packages are installed without documentation, manual pages and translations.
 slim=$bare/etc/dpkg/dpkg.cfg.d/docker
 for path in doc man locale info lintian; do
     echo "path-exclude=/usr/share/$path/*" >>"$slim"

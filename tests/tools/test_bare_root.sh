@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs verify and a render of the tarball of tools/bundle in a minimal Debian with PoCL.
 #   test_bare_root.sh BUILD     the build folder, with the target `bundled` built. BUILD/debs caches packages for the next run
-# Needs root, debootstrap and the network; exit code 77 without.
+# Needs root, debootstrap and the network; without them the exit code is 77.
 set -euo pipefail
 build=$(readlink -f "$1")
 root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")

@@ -79,7 +79,7 @@ def wrong_with_cmake(words):
     if words[1] == "--preset":
         presets = {p["name"]: p for p in json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]}
         return "" if words[2] in presets else f"no preset {words[2]}"
-    return "" if words[1:3] == ("--build", "build") and re.fullmatch(r"(-j\d+)?", "".join(words[3:])) else "not as tools/test builds"
+    return "" if words[1:3] == ("--build", "build") and re.fullmatch(r"(-j\d+)?", "".join(words[3:])) else "differs from the build command of tools/test"
 
 
 def wrong_with_ctest(words):
@@ -87,20 +87,20 @@ def wrong_with_ctest(words):
     missing = [w for w in words[1:] if w.startswith("-") and not re.search(rf"(^|\s){re.sub(r'(?<=^-j)[0-9]+$', '', w)}\b", known)]
     wanted = junit_of(shlex.split(re.search(r"^ *ctest .*", (ROOT / "tools/test").read_text(), re.M)[0]))
     if missing:
-        return f"ctest has no {missing}"
-    return "" if junit_of(words) == wanted else f"tools/test writes {wanted}"
+        return f"ctest has no options {missing}"
+    return "" if junit_of(words) == wanted else f"writes another file than tools/test, which writes {wanted}"
 
 
 def wrong_with_packages(words):
     if words[1] != "install":
-        return "" if words[1:] == ("update",) else "unknown"
+        return "" if words[1:] == ("update",) else f"unknown command of apt-get: {words[1:]}"
     strange = {w for w in words[2:] if not w.startswith("-")} - packages_of_setup() - optional_packages()
-    return f"neither in tools/setup nor named by tools/portability: {strange}" if strange else ""
+    return f"packages that neither tools/setup nor tools/portability names: {strange}" if strange else ""
 
 
 @functools.cache  # most commands are the same with each injected fault
 def wrong_with(words, raya, scratch):
-    """Returns a text on what is wrong with one command; "" if nothing is."""
+    """Returns a text that says what is wrong with one command; "" if the command is right."""
     name = words[0]
     if name == "build/raya":
         return wrong_with_raya(words, raya, scratch)
@@ -119,7 +119,7 @@ def files_of(words, written):
 
 
 def faults_of(workflow, page, raya, scratch):
-    """Returns (texts on what is wrong with the workflow and the page, number of their commands)."""
+    """Returns (texts that say what is wrong in the workflow and in the page, total number of their commands)."""
     import yaml
     steps = [step for job in yaml.safe_load(workflow)["jobs"].values() for step in job["steps"]]
     workflow_commands = [pair for step in steps for pair in commands(step.get("run", ""))]
@@ -129,7 +129,7 @@ def faults_of(workflow, page, raya, scratch):
     faults = [f"{' '.join(words)}: {wrong}" for words, _ in workflow_commands + page_commands if (wrong := wrong_with(tuple(words), raya, scratch))]
     written = set().union(*(files_of(*pair) for pair in workflow_commands))
     uploaded = [name for step in steps for name in step.get("with", {}).get("path", "").split() if "upload" in step.get("uses", "")]
-    faults += [f"{name} is uploaded, and no step writes it" for name in uploaded if name not in written]
+    faults += [f"{name} is uploaded, but no step writes it" for name in uploaded if name not in written]
     faults += [] if ["tools/setup"] in [words for words, _ in workflow_commands] else ["no step runs tools/setup"]
     return faults, len(workflow_commands + page_commands)
 

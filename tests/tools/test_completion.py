@@ -16,7 +16,7 @@ import time
 raya = pathlib.Path(sys.argv[1]).resolve()
 faults = []
 
-# (start of a command line, names that are offered, names that are not). FOLDER: the folder of FILES.
+# (start of a command line, names that the completion must offer, names that it must not offer). FOLDER: the folder of FILES.
 FILES = ["ball.nff", "notes.txt", "below/cube.nff"]
 EXPECTED = [
     ("raya ", ["render", "study", "verify", "completion"], ["fig7", "--size"]),
@@ -134,7 +134,7 @@ def run():
         os.chdir("/")
     refused = subprocess.run([raya, "completion", "tcsh"], capture_output=True, text=True)
     if refused.returncode != 2 or "tcsh: must be bash, zsh, fish" not in refused.stderr:
-        faults.append(f"tcsh: {refused}")
+        faults.append(f"raya completion tcsh is not refused with the known shells: {refused}")
     return count
 
 

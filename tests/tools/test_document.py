@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Checks the laboratory's document in a browser: static HTML without requests, scripts and errors in the console; every figure is visible and has a
-description; text has enough contrast; at three widths, light and dark, on paper. The checks themselves are tested with injected faults.
+"""Checks the laboratory's document in a browser at three widths, light and dark, and printed: the document is static HTML; it sends no requests, runs
+no scripts and causes no messages in the console; every figure is visible and has a description; text has enough contrast. Injected faults test the
+checks.
 
     tests/tools/test_document.py PACKAGES       a small document, made with the package raya in this folder (build/python)
     tests/tools/test_document.py INDEX.html     another document, without injected faults; page_checks.py makes screenshots
@@ -73,17 +74,17 @@ def check_views(page, url, count):
     for width, dark, scripts, media in views + [(1000, False, False, ""), (700, False, True, "print")]:
         page.open(url, width, dark, scripts, media)
         page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")  # unfolds everything
-        view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
+        view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', printed' * bool(media)}: "
         found_elements = page.value(INSPECT)
         titles.add(found_elements["title"])
         yield from (view + wrong for wrong in [*found_elements["wrong"], *complaints(page)])
         if found_elements["figures"] != count or found_elements["texts"] < 50:
-            yield f"{view}{found_elements['figures']} figures of {count}, {found_elements['texts']} texts"
+            yield f"{view}{found_elements['figures']} figures, expected {count}; {found_elements['texts']} texts, expected at least 50"
         active = page.value("document.querySelectorAll('script, iframe, object, embed, form, button').length")
         if active:
             yield f"{view}{active} active elements"
     if len(titles) != 1 or titles == {"injected"}:
-        yield f"titles {titles}"
+        yield f"the title differs between views, or a scene's name has changed it: {titles}"
 
 
 # (text of the document, faulty replacement, part of the expected complaint)
@@ -119,7 +120,7 @@ def undetected_faults(page, text, count, folder):
             if expected in wrong:
                 break
         else:
-            yield f"with {new!r} for {old!r}: {found[:3]}"
+            yield f"{new!r} instead of {old!r} is not detected as '{expected}': {found[:3]}"
 
 
 def main(given):
@@ -136,9 +137,10 @@ def main(given):
         count = text.count("<figure class=\"plot\">")
         wrong = list(check_views(page, index.as_uri(), count))
         if is_package:
-            wrong += [f"{count} figures"] * (count != 5)
+            wrong += [f"the small document has {count} figures, expected 5"] * (count != 5)
             shown = page.value("document.body.textContent").replace("±", "+-")
-            wrong += [f"{shown.count(part)} times {part}" for part in HOSTILE.split("`") if shown.count(part) < 400]
+            wrong += [f"the document shows the hostile text {part!r} {shown.count(part)} times, expected at least 400 times"
+                      for part in HOSTILE.split("`") if shown.count(part) < 400]
             wrong += undetected_faults(page, text, count, folder) if not wrong else []
     for line in wrong:
         print("test_document.py:", line, file=sys.stderr)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks the explorer's page in a browser: its figures equal those of `raya render`, to the last printed digit, for every static mapping; it sends no
-requests; controls, pointer, keys and links work; at three widths, light and dark, on paper and without scripts. The checks themselves are tested
-with injected faults.
+"""Checks the explorer's page in a browser: its figures equal those of `raya render`, to the last printed digit, for every static mapping; the page
+sends no requests; controls, pointer, keys and links work; the page has no faults at three widths, light and dark, printed, and without scripts.
+Injected faults test the checks.
 
     tests/tools/test_explore.py RAYA
 RAYA_THOROUGH=1: more settings, all faults. RAYA_EXPLORE_SEED: another seed. Exit code 77: no Chromium.
@@ -50,7 +50,8 @@ def start(page, url, **view):
 
 WIDTH, HEIGHT = 48, 36
 SQUARE = ["--size", "64x64", "--lanes", "4", "--format", "fp32"]  # on the SPA, which has a time model
-# Both folds with fewer PEs than columns, as many and more, whose number divides that of the columns or does not; every other mapping.
+# Cyclic mappings with both folds: as many PEs as columns; fewer PEs, whose number divides the number of columns or not; more PEs than columns. Then
+# every other static mapping.
 SETTINGS = [("cyclic:7", 48, "cyclic"), ("cyclic:13", 12, "cyclic"), ("cyclic:5", 20, "cyclic"), ("cyclic:5", 20, "block"), ("cyclic:40", 12, "block"),
             ("cyclic:11", 100, "cyclic"), ("cyclic:11", 100, "block"), ("column", 7, "block"), ("rows", 7, ""), ("blocks", 10, ""), ("grid:3x8", 24, ""),
             ("grid:7x2", 14, ""), ("tiles:8x3", 9, ""), ("random:1", 17, ""), ("random:4000000000", 48, "")]
@@ -69,8 +70,9 @@ def with_separators(number):
 
 
 def expected_figures(raya, folder, scene, settings):
-    """Yields the figures that the page must show for each setting, from renders: loads, and moves of the 3 x 3 filter if the mapping allows it."""
-    # A machine without a memory limit, so that all pixels of a PE move at the same time.
+    """Renders with each setting. Yields the figures that the page must show: loads, and for mappings that allow antialiasing also the moves of the
+    3 x 3 filter."""
+    # The machine `grande` has no memory limit, so all pixels of a PE move at the same time.
     report = Path(folder, "report.json")
     size = ["--size", f"{WIDTH}x{HEIGHT}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32"]
 
@@ -100,18 +102,18 @@ def figure_differences(page, cases):
     asked = [{"link": case["link"], "whole": True} for case in cases]
     for case, answer in zip(cases, page.value(f"{FOLLOW_LINKS}({json.dumps(asked)})")):
         if answer["message"]:
-            yield f"{case['link']}: '{answer['message']}'"
+            yield f"{case['link']}: the page refuses this link: '{answer['message']}'"
         if case["mapping"].startswith("cyclic"):
-            case["u_here"], answer["u_here"] = case["imbalance"], answer[case["fold"]][int(case["mapping"].split(":")[1])]
+            case["u_in_curve"], answer["u_in_curve"] = case["imbalance"], answer[case["fold"]][int(case["mapping"].split(":")[1])]
         answer["texts"] = {name: answer["texts"][name] for name in case["texts"]}
-        for part in ("texts", "imbalance", "pes", "loads", "u_here", "moves"):
+        for part in ("texts", "imbalance", "pes", "loads", "u_in_curve", "moves"):
             if part in case and case[part] != answer[part]:
                 yield f"{case['link']}: {part}: the program has {str(case[part])[:200]}, the page {str(answer[part])[:200]}"
 
 
 def check_arithmetic(page):
-    """Returns complaints about figures that no render prints: shortest vectors (compared with a search of all pairs), rotations on Kohata & Ito's
-    array, digits (compared with fmt's), times."""
+    """Returns complaints about figures that no render prints: shortest vectors (compared with a search of all pairs), rotations and times on Kohata &
+    Ito's array, rounding to digits (compared with Python's)."""
     wrong = page.value("""(() => {
       const wrong = [], side = 48;
       const check = (setting, width) => {
@@ -139,7 +141,7 @@ def check_arithmetic(page):
     numbers = [(rng.choice([rng.randrange(1 << 20) * 2.0 ** -rng.randrange(12), rng.randrange(1 << 30) / rng.randint(1, 100000)]), i % 4) for i in range(400)]
     for (value, digits), text in zip(numbers, page.value(f"{json.dumps(numbers)}.map(([value, digits]) => fixed(value, digits))")):
         if text != f"{value:.{digits}f}":
-            wrong.append(f"{value!r} with {digits} digits: {text}")
+            wrong.append(f"{value!r} rounded to {digits} digits: {text}")
     return wrong
 
 
@@ -172,7 +174,7 @@ def check_views(page, html):
     """Yields complaints about the page at all widths, with both colour schemes, printed, and without scripts."""
     for width, dark, scripts, media in [(w, d, True, "") for w in WIDTHS for d in (False, True)] + [(820, False, False, ""), (700, False, True, "print")]:
         start(page, html.as_uri(), width=width, dark=dark, scripts=scripts, media=media)
-        view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
+        view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', printed' * bool(media)}: "
         if not scripts:
             yield from (view + wrong for wrong in [*page.value(INSPECT)["wrong"], *complaints(page)])
             if page.value("JSON.parse(document.getElementById('report').innerText).kind") != "raya explore":
@@ -182,19 +184,20 @@ def check_views(page, html):
         found_elements = page.value(INSPECT)
         yield from (view + wrong for wrong in [*found_elements["wrong"], *complaints(page)])
         if found_elements["texts"] < 50 or found_elements["title"] != "raya explore: spheres.nff":
-            yield f"{view}{found_elements['texts']} texts, title {found_elements['title']}"
+            yield f"{view}{found_elements['texts']} texts, expected at least 50; title {found_elements['title']}"
         controls = page.value(CONTROL_NAMES)
         if any(not name for _, name in controls):
-            yield f"{view}without a name: {controls}"
-        if bool([id for id, _ in controls if id == "offset"]) == bool(media):
-            yield f"{view}{len(controls)} controls"
+            yield f"{view}a control has no accessible name: {controls}"
+        has_offset = any(id == "offset" for id, _ in controls)
+        if has_offset == bool(media):
+            yield f"{view}the offset control is {'visible on the printed page' if has_offset else 'not visible'}"
         for canvas in page.value("[...document.querySelectorAll('canvas')].filter((e) => e.checkVisibility()).map((e) => [e.id, new Set(new Uint32Array("
                                  "e.getContext('2d').getImageData(0, 0, e.width, e.height).data.buffer)).size, e.getBoundingClientRect().width])"):
             if canvas[1] < 4 or canvas[2] < 200:
-                yield f"{view}canvas {canvas[0]} has {canvas[1]} colours and is {canvas[2]} pixels wide"
+                yield f"{view}the canvas {canvas[0]} is incomplete: {canvas[1]} colours, {canvas[2]} pixels wide"
         for name, marks, width_ in page.value("[...document.querySelectorAll('svg')].map((e) => [e.getAttribute('aria-label'), e.querySelectorAll('path').length, e.getBoundingClientRect().width])"):
             if len(name) < 20 or marks < 8 or width_ < 200:
-                yield f"{view}a drawing '{name}' of {marks} paths, {width_} pixels wide"
+                yield f"{view}the drawing '{name}' is incomplete: {marks} paths, {width_} pixels wide"
 
 
 def press_key(page, name):
@@ -225,38 +228,38 @@ def check_controls(page, html):
             yield f"{what}: {got}, not {wanted}"
 
     start(page, html.as_uri() + "#mapping=cyclic:8&pes=64", width=1400)
-    yield from expect("a link", "cyclic:8", 64, "cyclic", None, "owners")
+    yield from expect("a link with mapping and PEs", "cyclic:8", 64, "cyclic", None, "owners")
     page.value("document.getElementById('offset-slider').focus()")
     press_key(page, "ArrowRight")
-    yield from expect("right on the slider", "cyclic:9", 64)
+    yield from expect("the right arrow key on the slider of the offset", "cyclic:9", 64)
     press_key(page, "End")
-    yield from expect("end on the slider", "cyclic:63", 64)
+    yield from expect("the end key on the slider of the offset", "cyclic:63", 64)
     page.value("document.getElementById('pes-slider').focus()")
     press_key(page, "ArrowLeft")
-    yield from expect("left on the PEs' slider", "cyclic:63", 63)
+    yield from expect("the left arrow key on the slider of the PEs", "cyclic:63", 63)
     page.value("document.getElementById('root').click()")
     settle(page)
-    yield from expect("the root's button", "cyclic:8", 63)
+    yield from expect("the button p = sqrt(P)", "cyclic:8", 63)
     page.value("new Promise((done) => { const wait = () => explorer.curves.best ? done() : setTimeout(wait, 5); wait(); })")
     settle(page)
     page.value("document.getElementById('best').click()")
     settle(page)
     best_offset = page.value("explorer.curves.values.cyclic.indexOf(Math.min(...explorer.curves.values.cyclic))")
-    yield from expect("the best one's button", f"cyclic:{best_offset}", 63)
+    yield from expect("the button of the best offset", f"cyclic:{best_offset}", 63)
 
     page.value("document.getElementById('pe').focus()")
     page.ask("Input.insertText", text="12")
     settle(page)
-    yield from expect("a PE's number", f"cyclic:{best_offset}", 63, "cyclic", 12)
+    yield from expect("entering a PE's number", f"cyclic:{best_offset}", 63, "cyclic", 12)
     if "PE 12 owns" not in page.value("document.getElementById('pointed').textContent"):
-        yield "there is no text on the selected PE"
+        yield "the page does not describe the selected PE 12"
     white = page.value("(() => { const c = document.getElementById('picture'); return new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height)"
                        ".data.buffer).reduce((n, w, at) => n + (w === 0xffffffff) * (explorer.figures.owners[at] === 12 ? 1 : 1e6), 0); })()")
     owned = page.value("explorer.figures.sizes[12]")
     if white != owned:
-        yield f"{white} white pixels, {owned} of PE 12"
+        yield f"the pixels of the selected PE 12 are not white: {white} white pixels (10^6 for each of another PE), {owned} pixels of PE 12"
     page.value("document.getElementById('no-pe').click()")
-    yield from expect("all PEs", f"cyclic:{best_offset}", 63, "cyclic", None)
+    yield from expect("the button that shows all PEs", f"cyclic:{best_offset}", 63, "cyclic", None)
 
     mouse(page, "mouseMoved", "picture", (10 + 0.5) / 64, (20 + 0.5) / 64)
     words, owner, cost = page.value("[document.getElementById('pointed').textContent, explorer.figures.owners[20 * 64 + 10], grouped(explorer.costs[20 * 64 + 10])]")
@@ -277,16 +280,16 @@ def check_controls(page, html):
         settle(page)
         if name != "tiles":  # the page chooses the sides of tiles
             yield from expect(f"choosing {name}", mapping, 63)
-    yield from expect("view and fold", "column", 63, "block", owner, "loads")
+    yield from expect("choosing view and fold", "column", 63, "block", owner, "loads")
     page.value("new Promise((done) => setTimeout(done, 400))")
     link, shown = page.value("[location.href, document.getElementById('link').href]")
     if link != shown or "fold=block" not in link:
-        yield f"the address is {link}, the link {shown}"
+        yield f"the address {link} differs from the shown link {shown}, or does not contain fold=block"
     start(page, link)
     yield from expect("the link, opened", "column", 63, "block", owner, "loads")
     command = page.value("document.getElementById('command').textContent")
     if not command.endswith("--mapping column --pes 63 --fold block"):
-        yield f"the command is {command}"
+        yield f"the page shows the command {command}, expected the end --mapping column --pes 63 --fold block"
 
     for link in page.value("[...document.querySelectorAll('main li a')].map((a) => a.getAttribute('href').slice(1))"):
         answer = page.value(f"{FOLLOW_LINKS}([{{link: '{link}'}}])")[0]
@@ -373,7 +376,7 @@ def main():
         start(page, square.as_uri())
         time = page.value("explorer.texts.time")
         if not time.startswith(f"{json.loads(report.read_text())['modelled_ms']['compute']:.1f} ms to trace, "):
-            wrong.append(f"the page shows the time '{time}'")
+            wrong.append(f"the page shows the time '{time}', which is not the modelled computing time of the render")
         wrong += check_views(page, square)
         wrong += check_controls(page, square)
         if not wrong:

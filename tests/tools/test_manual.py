@@ -56,14 +56,14 @@ def commands_in(text):
     return re.findall(r"^  (\S+)", part[1], re.M) if part else []
 
 
-def check(page, command, below=False):
+def check(page, command, is_subcommand=False):
     text = help_of(command)
     for names, help_text in entries(text):
-        if below and "--help" in names:
+        if is_subcommand and "--help" in names:
             continue
         for name in re.findall(r"(?<!\S)--?[a-z][a-z-]*", names.replace(",", " ")):
             if not re.search(rf"(?<![\w-]){name}(?![\w-])", page):
-                faults.append(f"{' '.join(command)}: no {name}")
+                faults.append(f"{' '.join(command)}: the page does not contain {name}")
         if help_text not in page:
             faults.append(f"{' '.join(command)} {names}: '{help_text}' is not in the page")
     return commands_in(text)
@@ -75,26 +75,26 @@ def run():
         subprocess.run([raya, "manual", "-o", folder], check=True)
         names = {page.name for page in pathlib.Path(folder).iterdir()}
         commands = check(text_of_page(f"{folder}/raya.1"), [])
-        if names != {"raya.1"} | {f"raya-{one}.1" for one in commands}:
+        if names != {"raya.1"} | {f"raya-{command}.1" for command in commands}:
             faults.append(f"unexpected pages: {sorted(names)}")
-        for one in commands:
-            page = text_of_page(f"{folder}/raya-{one}.1")
-            for below in check(page, [one]):
-                check(page, [one, below], below=True)
+        for command in commands:
+            page = text_of_page(f"{folder}/raya-{command}.1")
+            for subcommand in check(page, [command]):
+                check(page, [command, subcommand], is_subcommand=True)
                 count += 1
-            printed = subprocess.run([raya, "manual", one], capture_output=True, text=True, check=True).stdout
-            if printed != pathlib.Path(f"{folder}/raya-{one}.1").read_text():
-                faults.append(f"raya manual {one}: another page than the file")
-            if printed != (built / "man1" / f"raya-{one}.1").read_text():
-                faults.append(f"raya-{one}.1 of the build differs from the program's output")
+            printed = subprocess.run([raya, "manual", command], capture_output=True, text=True, check=True).stdout
+            if printed != pathlib.Path(f"{folder}/raya-{command}.1").read_text():
+                faults.append(f"raya manual {command}: the printed page differs from the file of raya manual -o")
+            if printed != (built / "man1" / f"raya-{command}.1").read_text():
+                faults.append(f"raya-{command}.1 of the build differs from the program's output")
         if (built / "raya.1").read_text() != pathlib.Path(f"{folder}/raya.1").read_text():
             faults.append("raya.1 of the build differs from the program's output")
         if "EXIT CODES 0 done, 2 bad option" not in text_of_page(str(built / "raya.1")):
-            faults.append("raya.1: no exit codes")
+            faults.append("raya.1: the page does not contain the exit codes")
         count += len(names)
     refused = subprocess.run([raya, "manual", "rendr"], capture_output=True, text=True)
     if refused.returncode != 2 or "no command rendr (did you mean render?)" not in refused.stderr:
-        faults.append(f"rendr: {refused}")
+        faults.append(f"raya manual rendr is not refused with the name of the closest command: {refused}")
     return count
 
 

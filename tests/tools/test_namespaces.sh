@@ -2,7 +2,7 @@
 # Ranks on two hosts that are connected only by TCP make the same image as a single process, also if network packets are delayed and lost.
 #   tests/tools/test_namespaces.sh RAYA [MPIRUN]      the built program, with raya_mpi.so next to it; Open MPI's launcher, default `mpirun`
 # Each host is a network namespace with its own host name, /etc/hosts and disk, so the files of rank 0 do not exist on the other host. Needs root,
-# iproute2, /dev/net/tun and Open MPI; exit code 77 without.
+# iproute2, /dev/net/tun and Open MPI; without them the exit code is 77.
 set -euo pipefail
 raya=$(readlink -f "$1")
 tools=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
@@ -10,7 +10,7 @@ scenes=$tools/../../scenes
 
 skip() { echo "skipped: $1"; exit 77; }
 ((EUID == 0)) || skip "network namespaces need root"
-command -v ip >/dev/null || skip "no ip (Debian: iproute2)"
+command -v ip >/dev/null || skip "the program ip is missing (Debian: iproute2)"
 (: <>/dev/net/tun) 2>/dev/null || skip "no /dev/net/tun"
 [[ -e $(dirname "$raya")/raya_mpi.so ]] || skip "raya was built without MPI"
 mpirun=$(command -v "${2:-mpirun}") || skip "no ${2:-mpirun}"
@@ -76,13 +76,13 @@ ranks = found["measured"]["ranks"]
 messages, sent = (sum(rank[key] for rank in ranks) for key in ("messages_sent", "bytes_sent"))
 print(f"{name}: {messages} messages, {sent} bytes of {carried} on the link, "
       f"rendered in {1000 * found['measured']['render_s']:.1f} ms, alone in {1000 * alone['measured']['render_s']:.1f} ms")
-for what, right in {
-    "the image of one process": found["image"]["hash"] == alone["image"]["hash"],
-    "the two hosts": [rank["host"] for rank in ranks] == hosts,
-    "all messages on the link": carried >= sent > 0,
+for fault, is_right in {
+    "the image differs from that of one process": found["image"]["hash"] == alone["image"]["hash"],
+    "the ranks did not run on the two hosts": [rank["host"] for rank in ranks] == hosts,
+    "not all messages used the link": carried >= sent > 0,
 }.items():
-    if not right:
-        sys.exit(f"FAILED: {name}: not {what}")
+    if not is_right:
+        sys.exit(f"FAILED: {name}: {fault}")
 END
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks pages of reports in a browser: they send no requests, fit their window, and are readable at three widths, light and dark, on paper, without
-scripts, with a screen reader and by keyboard; their columns sort. No text of a report becomes markup, and a damaged report is reported. The
-checks themselves are tested with injected faults.
+"""Checks pages of reports in a browser: they send no requests, fit their window, and are readable at three widths, light and dark, printed, without
+scripts, with a screen reader and by keyboard; their columns sort. No text of a report becomes markup. A page of a damaged report says so. Injected
+faults test the checks.
 
     tests/tools/test_pages.py RAYA [FOLDER]      FOLDER: for screenshots of all views
 RAYA_PAGE_SEED: seed of the damage; RAYA_THOROUGH=1: all views, and more damage. Exit code 77: no Chromium.
@@ -25,8 +25,8 @@ VIEWS = VIEWS if THOROUGH else [VIEWS[0], VIEWS[-3]]
 INSPECT_STRUCTURE = r"""(() => {
   const wrong = [];
   for (const mark of ["header", "nav", "main", "footer"])
-    if (document.querySelectorAll(mark).length !== 1) wrong.push(`${document.querySelectorAll(mark).length} of ${mark}`);
-  if (document.querySelectorAll("h1").length !== 1) wrong.push("not one h1");
+    if (document.querySelectorAll(mark).length !== 1) wrong.push(`${document.querySelectorAll(mark).length} elements ${mark}, expected 1`);
+  if (document.querySelectorAll("h1").length !== 1) wrong.push("the number of h1 elements is not 1");
   let level = 0;
   for (const h of document.querySelectorAll("h1, h2, h3, h4")) {
     if (+h.tagName[1] > level + 1) wrong.push(`${h.tagName} after h${level}: ${h.textContent}`);
@@ -42,7 +42,7 @@ INSPECT_STRUCTURE = r"""(() => {
       if (b.x < -1 || b.y < -1 || b.x + b.width > box.width + 1 || b.y + b.height > box.height + 1) wrong.push(`out of its drawing: ${e.textContent || e.getAttribute("d").slice(0, 30)}`);
     }
   }
-  if (!document.documentElement.lang) wrong.push("no language");
+  if (!document.documentElement.lang) wrong.push("the document has no language");
   for (const c of document.querySelectorAll("canvas"))
     if (c.getAttribute("role") !== "img" || !c.getAttribute("aria-label") || new Set(new Uint32Array(c.getContext("2d").getImageData(0, 0, c.width, c.height).data.buffer)).size < 2)
       wrong.push("a map without a description or colours");
@@ -100,7 +100,7 @@ def start(page, url, **view):
 def check_views(page, name, html, folder):
     report = json.loads(html.with_suffix(".json").read_text())
     for width, dark, scripts, media in VIEWS:
-        view = f"{name}, {width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
+        view = f"{name}, {width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', printed' * bool(media)}: "
         start(page, html.as_uri(), width=width, dark=dark, scripts=scripts, media=media)
         if folder:
             page.picture(Path(folder, f"{name}-{width}-{media or ('dark' if dark else 'light') + '-plain' * (not scripts)}.png"))
@@ -113,7 +113,7 @@ def check_views(page, name, html, folder):
         found_elements = page.value(INSPECT)
         yield from (view + wrong for wrong in [*found_elements["wrong"], *page.value(INSPECT_STRUCTURE), *complaints(page)])
         if found_elements["texts"] < 40 or not found_elements["title"].startswith("raya ") or not found_elements["buttons"]:
-            yield f"{view}{found_elements['texts']} texts, {found_elements['buttons']} headers that sort, title {found_elements['title']}"
+            yield f"{view}{found_elements['texts']} texts, expected at least 40; {found_elements['buttons']} buttons that sort; title {found_elements['title']}"
     text = page.value("document.body.innerText")
     if "cannot be shown" in text:
         yield f"{name}: a part cannot be shown"
@@ -133,7 +133,7 @@ def check_map(page, name, html):
     start(page, html.as_uri())
     colours = page.value("(() => { const c = document.querySelector('canvas'); return new Set(new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height).data.buffer)).size; })()")
     if not 0.5 * len(loads) < colours <= len(loads) + 1:
-        yield f"{name}: {colours} colours of {len(loads)} loads"
+        yield f"{name}: the map has {colours} colours for {len(loads)} different loads"
 
 
 STRUCTURE = """[...document.querySelectorAll("*")].filter((e) => /^(SCRIPT|STYLE|TEMPLATE|IFRAME|OBJECT|LINK|META|BASE)$/.test(e.tagName)
@@ -175,7 +175,7 @@ def check_escaping(page, name, html, folder):
 
 
 def check_damaged_reports(page, name, html, folder, count):
-    """Removes members or changes their type: the page must report the damage, and no script may fail."""
+    """Removes members or changes their types. The page must then say which part it cannot show, and no script may fail."""
     text, rng, named, changed = html.read_text(), random.Random(SEED), 0, Path(folder, "damaged.html")
     for i in range(count):
         report = report_of(text)
@@ -195,7 +195,7 @@ def check_damaged_reports(page, name, html, folder, count):
         if len(shown) < 60:
             yield f"{name}, damage {i} at {key}: an empty page"
     if not named:
-        yield f"{name}: none of {count} damaged reports is reported"
+        yield f"{name}: for none of {count} damaged reports does the page say that a part cannot be shown"
 
 
 def check_sorting(page, html):
@@ -204,7 +204,7 @@ def check_sorting(page, html):
     order = page.value(r"""(() => { const t = document.querySelector("#counts table"); const b = t.tHead.querySelectorAll("button")[1]; b.click();
       return [...t.tBodies[0].rows].map((r) => +r.cells[1].textContent.replace(/\D/g, "")); })()""")
     if order != sorted(order) or len(order) < 5:
-        yield f"sorted by count: {order}"
+        yield f"the button does not sort the counts: {order}"
 
 
 # (text of the page, faulty replacement); the checks must then find a complaint.

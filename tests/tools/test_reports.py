@@ -53,7 +53,7 @@ class Rules:
         return jsonschema.Draft202012Validator(node.value, resolver=resolver)
 
     def wrong(self, name, report):
-        """Returns messages on the errors in a report."""
+        """Returns a message for each error in a report."""
         return [f"{'.'.join(map(str, e.absolute_path)) or 'the report'}: {e.message[:200]}" for e in self.whole[name].iter_errors(report)]
 
     def mark_used(self, node, value, used):
@@ -101,9 +101,9 @@ class Reports:
             Path(cache, self.folder.name).mkdir(exist_ok=True)
         self.made = []  # (file of the schema, command, report)
 
-    def run(self, *command, code=0, say=subprocess.DEVNULL, **variables):
+    def run(self, *command, code=0, stdout=subprocess.DEVNULL, **variables):
         command = [str(word) for word in command]
-        done = subprocess.run(command, cwd=self.folder, env={**os.environ, **self.environment, **variables}, stdout=say,
+        done = subprocess.run(command, cwd=self.folder, env={**os.environ, **self.environment, **variables}, stdout=stdout,
                               stderr=subprocess.PIPE, text=True)
         assert done.returncode == code, f"{' '.join(command)}: exit code {done.returncode}\n{done.stderr}"
         return done.stdout
@@ -147,7 +147,7 @@ class Reports:
             launcher = [self.mpirun, "-n", "2"]
             render(spheres, *ring, launcher=launcher)
             render(spheres, *torus, "--profile", launcher=launcher)
-            self.take("ping", "ping", self.run(*launcher, self.raya, "ping", say=subprocess.PIPE))
+            self.take("ping", "ping", self.run(*launcher, self.raya, "ping", stdout=subprocess.PIPE))
 
     def others(self):
         scene = SCENES / "spheres.nff"
@@ -162,7 +162,7 @@ class Reports:
         self.run(self.patch_kernels, "kernels", *FAULT)
         self.make("verify", *check, "--kernel-dir", "kernels", code=4)
         for words in ((self.odd_scene(), "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):
-            self.take("info", f"info {words[0]}", self.run(self.raya, "info", *words, "--json", say=subprocess.PIPE))
+            self.take("info", f"info {words[0]}", self.run(self.raya, "info", *words, "--json", stdout=subprocess.PIPE))
         self.take("gpu_day", "tools/gpu_day", gpu_day(self.raya, self.folder / "day")[0].read_text())
         for mapping in ("cyclic:3", "rows"):
             self.run(self.raya, "explore", scene, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "1", "--format", "fp32", "-o", "e.html")
@@ -234,7 +234,7 @@ def incomplete_schemas(rules):
 def relaxed(schema):
     """Returns the schema with all members optional, for shortened examples."""
     if isinstance(schema, list):
-        return [relaxed(one) for one in schema]
+        return [relaxed(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
     return {key: value if key == "if" else relaxed(value) for key, value in schema.items() if key not in ("required", "dependentRequired", "minItems")}

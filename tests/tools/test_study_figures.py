@@ -17,7 +17,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 SCENE = ROOT / "scenes" / "glass.nff"
 SIZE = 48
-FACTOR = 7 / (256 * 42 * 100e-6)  # ratio of the filter's 7 ms [D] to its budget: 42 cycles of 100 ns for each of 256 pixels
+# Ratio of the filter's time, 7 ms (FILTER_ARITHMETIC_MS of tools/lab/papers.py), to its budget: 42 cycles of 100 ns for each of 256 pixels.
+FACTOR = 7 / (256 * 42 * 100e-6)
 
 
 def run(*arguments):
@@ -36,7 +37,7 @@ def read_pfm(path):
 
 
 def loads(cost, p, pes=SIZE):
-    """Returns the load of each PE. Slot i has the pixels (row j, column (j p + i) mod N); a PE has the slots with the same i mod (number of PEs)."""
+    """Returns the load of each PE. Slot i has the pixels in row j and column (j p + i) mod N. PE k has the slots with i mod (number of PEs) = k."""
     sums = [0] * pes
     for j, row in enumerate(cost):
         for i in range(SIZE):

@@ -7,12 +7,12 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void voxel_hits(__global const uint* restrict memories,  // the words of all nodes
                 __global const float* restrict rays,
                 const uint start,                        // offset of the node's words
-                const uint voxel,                        // index of the voxel in the node; number of the
-                                                         // node's voxels: test planes only
+                const uint voxel,                        // index of the voxel in the node; if equal to the number of
+                                                         // the node's voxels, the kernel tests planes only
                 __global uint* restrict objects,         // [ray]: object number in the voxel; RAYA_NO_OBJECT: miss
                 __global float* restrict distances,      // [ray]: t; for a miss the ray's limit
-                __global float* restrict places)         // [ray][3][3]: geometric normal, normal, colour; for a
-                                                         // miss undefined
+                __global float* restrict places)         // [ray][3][3]: geometric normal, normal, colour; undefined
+                                                         // for a miss
 {
     const words scene = memories + start;
     __global const raya_node* const node = (__global const raya_node*)scene;

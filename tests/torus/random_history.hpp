@@ -23,49 +23,49 @@ class HistoryBuilder {
     }
     /// add_ray() and add_return() add a message that the last task sends: a ray to node `to`, or a return to the root.
     /// They return the message's number.
-    std::uint32_t add_ray(std::uint32_t to) { return send(to, RAYA_PACKET_WORDS, RAYA_KIND_PRIMARY); }
+    std::uint32_t add_ray(std::uint32_t destination) { return send(destination, RAYA_PACKET_WORDS, RAYA_KIND_PRIMARY); }
     std::uint32_t add_return() { return send(RAYA_ROOT, RAYA_RETURN_WORDS, RAYA_KIND_RETURN); }
 
     History history;
 
   private:
-    std::uint32_t send(std::uint32_t to, std::uint16_t words, std::uint16_t kind) {
-        history.messages.push_back({static_cast<std::uint32_t>(history.tasks.size()) - 1, to, words, kind});
+    std::uint32_t send(std::uint32_t destination, std::uint16_t words, std::uint16_t kind) {
+        history.messages.push_back({static_cast<std::uint32_t>(history.tasks.size()) - 1, destination, words, kind});
         return static_cast<std::uint32_t>(history.messages.size()) - 1;
     }
 };
 
-/// Returns a history of about `max_tasks` tasks of very different lengths. Injected tasks start at random nodes or all
-/// at the root. Rays have 8, 16 or 24 words and go to any node, including their sender.
+/// Returns a history of about `max_tasks` tasks of fewer than 4,000 cycles. Either all injected tasks start at the
+/// root, or each starts at a random node. Rays have 8, 16 or 24 words and any destination, including their sender.
 inline History random_history(SplitMix& random, const raya_torus& torus, std::uint32_t max_tasks) {
     struct PendingTask {
         std::uint32_t node, cause;
     };
-    const std::uint32_t nodes = raya_nodes(torus), injected = 1 + random_below(random, max_tasks / 4);
+    const std::uint32_t nodes = raya_nodes(torus), injected_tasks = 1 + random_below(random, max_tasks / 4);
     const bool at_root = random.next() % 3 == 0;
-    const std::uint32_t longest = 1 + random_below(random, 4000);
+    const std::uint32_t max_cycles = 1 + random_below(random, 4000);
     std::deque<PendingTask> pending;
-    for (std::uint32_t i = 0; i < injected; ++i)
+    for (std::uint32_t i = 0; i < injected_tasks; ++i)
         pending.push_back({at_root ? RAYA_ROOT : random_below(random, nodes), HistoryTask::kNoCause});
-    HistoryBuilder built;
+    HistoryBuilder builder;
     while (!pending.empty()) {
         const PendingTask next = pending.front();
         pending.pop_front();
-        built.add_task(next.node, random_below(random, longest), next.cause);
-        const bool more = built.history.tasks.size() + pending.size() < max_tasks;
-        const std::uint32_t rays = more ? random_below(random, 4) : 0;
+        builder.add_task(next.node, random_below(random, max_cycles), next.cause);
+        const bool adds_rays = builder.history.tasks.size() + pending.size() < max_tasks;
+        const std::uint32_t rays = adds_rays ? random_below(random, 4) : 0;
         for (std::uint32_t i = 0; i < rays; ++i) {
-            const std::uint32_t to = random.next() % 4 == 0 ? next.node : random_below(random, nodes);
-            pending.push_back({to, built.add_ray(to)});
-            built.history.messages.back().words = static_cast<std::uint16_t>(8 + 8 * random_below(random, 3));
+            const std::uint32_t destination = random.next() % 4 == 0 ? next.node : random_below(random, nodes);
+            pending.push_back({destination, builder.add_ray(destination)});
+            builder.history.messages.back().words = static_cast<std::uint16_t>(8 + 8 * random_below(random, 3));
         }
-        for (std::uint32_t i = random_below(random, 3); i > 0; --i) built.add_return();
+        for (std::uint32_t i = random_below(random, 3); i > 0; --i) builder.add_return();
     }
-    return built.history;
+    return builder.history;
 }
 
-/// Returns the input of torus_time(): the load of each node in cycles, and the numbers of words and messages on each
-/// link according to the routing rules.
+/// Returns a TorusResult with the members that torus_time() reads: the load of each node in cycles, and the numbers of
+/// words and messages on each link according to the routing rules.
 inline TorusResult traffic_of(const raya_torus& torus, const History& history) {
     TorusResult result;
     std::vector<std::uint64_t> loads(raya_nodes(torus));

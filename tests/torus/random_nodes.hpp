@@ -59,7 +59,7 @@ inline Partition partition_of(const Divisions& divisions, const std::vector<std:
         p.starts[voxel + 1] = static_cast<std::uint32_t>(p.objects.size());
         distinct.insert(lists[voxel].begin(), lists[voxel].end());
     }
-    p.distinct = distinct.size();
+    p.listed_objects = distinct.size();
     return p;
 }
 
@@ -72,8 +72,8 @@ inline std::vector<std::uint32_t> finite_objects(const PackedJob& job) {
     return finite;
 }
 
-/// Returns a partition that lists every finite object in random voxels: about half of the objects in one voxel, the
-/// others in up to `max_copies` voxels.
+/// Returns a partition that lists every finite object in random voxels: about half of the objects in one voxel, each
+/// remaining object in up to `max_copies` voxels.
 inline Partition random_partition(SplitMix& random, const PackedJob& job, const Divisions& divisions,
                                   std::uint32_t max_copies) {
     std::vector<std::set<std::uint32_t>> lists(divisions[0] * divisions[1] * divisions[2]);

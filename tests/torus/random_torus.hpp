@@ -12,18 +12,18 @@
 
 namespace raya {
 
-/// Returns three random sides of 1..`largest` nodes. At least a quarter of the sides have one node, so that their links
-/// lead back to the same node.
-inline std::array<std::uint32_t, 3> random_sides(SplitMix& random, std::uint32_t largest) {
-    const auto side = [&] { return random.next() % 4 == 0 ? 1 : 1 + random_below(random, largest); };
+/// Returns three random sides of 1..`max_side` nodes. At least a quarter of the sides have one node, so that their
+/// links lead back to their own node.
+inline std::array<std::uint32_t, 3> random_sides(SplitMix& random, std::uint32_t max_side) {
+    const auto side = [&] { return random.next() % 4 == 0 ? 1 : 1 + random_below(random, max_side); };
     const std::uint32_t first = side(), second = side();
     return {first, second, side()};
 }
 
-/// Returns a random torus with 2-D or 3-D links.
-inline raya_torus random_torus(SplitMix& random, std::uint32_t largest) {
+/// Returns a random torus of up to `max_side` nodes along each axis, with 2-D or 3-D links.
+inline raya_torus random_torus(SplitMix& random, std::uint32_t max_side) {
     const Links links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
-    return make_torus(random_sides(random, largest), links);
+    return make_torus(random_sides(random, max_side), links);
 }
 
 /// Returns numbers of nodes and torus sides as text for failure messages: "3x4x6 on 6x12x1".

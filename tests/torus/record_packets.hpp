@@ -1,4 +1,4 @@
-// Renders on a torus and records every packet that a node sends to another.
+// Renders on a torus and records every packet that a node sends to another node.
 #pragma once
 #include <vector>
 

@@ -18,6 +18,7 @@
 
 namespace raya {
 
+/// Settings of a render.
 struct TorusCase {
     std::uint32_t width = 20, height = 16;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
@@ -25,8 +26,9 @@ struct TorusCase {
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     PacketCharge packets{};
-    std::uint32_t queue = 0;                                // length in packets; 0: the default
-    std::uint32_t lanes = default_test_lanes(), group = 0;  // of lanes and of group: 0 is the device's default
+    std::uint32_t queue = 0;                     // capacity in packets; 0: the default
+    std::uint32_t lanes = default_test_lanes();  // 0: the device's default
+    std::uint32_t group = 0;                     // work-items in a work-group; 0: the device's default
     std::uint32_t bounces = 4;
     std::string format = "fp32";
     PixelSubset pixels{};
@@ -65,8 +67,9 @@ inline std::string case_text(const TorusCase& c) {
         "{}x{} nodes {} voxels {} {} {} {} words a ray, a return a {}, queue {} lanes {} group {} bounces {} {} pixels "
         "{}+{}",
         c.width, c.height, sides_text(c.nodes), sides_text(c.voxels), links_name(c.links),
-        c.inject == Injection::kRoot ? "root" : "all", c.packets.ray_words, c.packets.return_a_ray ? "ray" : "term",
-        c.queue, c.lanes, c.group, c.bounces, c.format, c.pixels.first, c.pixels.stride);
+        c.inject == Injection::kRoot ? "root" : "all", c.packets.ray_words,
+        c.packets.one_return_per_ray ? "ray" : "term", c.queue, c.lanes, c.group, c.bounces, c.format, c.pixels.first,
+        c.pixels.stride);
 }
 
 inline TorusResult render_torus(Session& session, const Scene& scene, const TorusCase& c, const PacketSink& sink = {}) {
@@ -80,7 +83,7 @@ inline TorusResult render_torus(const Scene& scene, const TorusCase& c, const Pa
 
 /// Returns the results that must be equal on all machines, as text: image hash and ray counts. Numbers of intersection
 /// tests and grid steps are omitted because they depend on the voxels. Numbers of highlights are omitted because a node
-/// computes a highlight before it is known whether the light is occluded.
+/// computes a highlight before the shadow ray to the light is traced.
 inline std::string image_and_counts(const Image& image, const EventCounts& e) {
     return fmt::format("{} primary {} hits {} reflected {} refracted {} shadow {} shadow hits {} lit {} shaded {}",
                        pixel_hash(image), e[RAYA_PRIMARY], e[RAYA_PRIMARY_HITS], e[RAYA_REFLECTED], e[RAYA_REFRACTED],
@@ -104,7 +107,8 @@ inline std::string ring_image_and_counts(const Scene& scene, const TorusCase& c)
     return image_and_counts(r.image, r.all.events);
 }
 
-/// Adds the packet's words to each link of its route according to the routing rules; `words`: [node][link].
+/// Adds the packet's number of words to `words`, [node][link], for each link of the packet's route according to the
+/// routing rules.
 inline void add_route(std::vector<std::uint64_t>& words, const raya_torus& torus, const PacketRecord& p) {
     for (std::uint32_t node = p.source; node != p.destination;) {
         const bool is_return = raya_state_kind(p.head.state) == RAYA_KIND_RETURN;
@@ -117,7 +121,8 @@ inline void add_route(std::vector<std::uint64_t>& words, const raya_torus& torus
 
 inline std::uint32_t lights_of(const Scene& scene) { return static_cast<std::uint32_t>(scene.lights.size()); }
 
-/// Returns a scene with objects of every kind, 1 to 4 lights, and an eye among, near or far from the objects.
+/// Returns a scene with objects of every kind and 1 to 4 lights. The eye is among the objects, near them or far from
+/// them.
 inline Scene random_view_scene(std::uint64_t seed) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0x5eed);
@@ -141,7 +146,8 @@ inline constexpr std::array<std::uint64_t, 11> kSceneSeeds = {27, 41, 53, 63, 14
 inline Scene far_mirror_scene(std::uint64_t seed, const std::string& format) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0xfa5);
-    // Rays are wide from 1024 times the scene's size on in fp32, from a few times its size on in formats of fewer bits.
+    // Rays are wide if their origin is 1024 times the scene's size away in fp32, a few times that size in formats of
+    // fewer bits.
     const double distance = (format == "fp32" ? 20'000 : 500) * (1 + random_below(random, 3));
     scene.surfaces.push_back({.colour = {0.9, 1, 0.9}, .diffuse = 0.5, .specular = 0.5, .shine = 5});
     scene.planes = {{{-1, 0, 0}, -distance, static_cast<int>(scene.surfaces.size()) - 1}};

@@ -12,9 +12,9 @@
 namespace raya {
 namespace {
 
-// Times in ms. kCycle: one cycle. kRayEnd, kReturnEnd: processing of a ray or of a return at one end of a link. kRay,
-// kReturn: transfer of a ray or of a return over a link with traffic in one direction. kRayBoth: transfer of a ray with
-// traffic in both directions.
+// Times in ms. kCycle: one cycle. kRayEnd: work of a processor for a ray at one end of a link; kReturnEnd: for a
+// return. kRay: transfer of a ray over a link with traffic in one direction; kReturn: of a return. kRayBoth: transfer
+// of a ray over a link with traffic in both directions.
 constexpr double kCycle = 40e-6, kRayEnd = 51 * kCycle, kReturnEnd = 35 * kCycle;
 constexpr double kRay = 64 / 1.7e3, kReturn = 32 / 1.7e3, kRayBoth = 64 / 1.2e3;
 
@@ -27,7 +27,7 @@ double total(const std::vector<AsyncNode>& nodes, double AsyncNode::*figure) {
                            [&](double sum, const AsyncNode& node) { return sum + node.*figure; });
 }
 
-TEST_CASE("a ray crosses one link after another, and its return crosses them back", "[torus]") {
+TEST_CASE("a ray crosses the links of its route one after another, and so does its return", "[torus]") {
     const std::uint32_t hops = GENERATE(0u, 1u, 2u, 3u);
     HistoryBuilder h;
     h.add_task(0, 1000);
@@ -48,7 +48,7 @@ TEST_CASE("a link carries one message at a time in each direction, and both dire
     const std::uint32_t first = one_way.add_ray(2), second = one_way.add_ray(2);
     one_way.add_task(2, 10, first);
     one_way.add_task(2, 20, second);
-    // The input thread holds one message, so the transfer of the second starts when the first has been received.
+    // The input thread holds one ray, so the transfer of the second ray starts when the first has been received.
     CHECK(simulate(ring_of(4), one_way.history).finish_ms == about(520 * kCycle + 4 * kRayEnd + 2 * kRay));
 
     HistoryBuilder both;
@@ -59,16 +59,17 @@ TEST_CASE("a link carries one message at a time in each direction, and both dire
     both.add_task(2, 10, up);
     both.add_task(1, 10, down);
     CHECK(simulate(ring_of(4), both.history).finish_ms == about(510 * kCycle + 2 * kRayEnd + kRayBoth));
-    // The second transfer starts when half of the first is done. Both continue at the lower rate; then the second
-    // continues alone.
-    const auto later = static_cast<std::uint64_t>(kRay / 2 / kCycle);
-    both.history.tasks[1].cycles = 500 + later;
-    const double alone = static_cast<double>(later) * kCycle, shared = (1 - alone / kRay) * kRayBoth;
-    const double rest = (1 - shared / kRayBoth) * kRay;
-    CHECK(simulate(ring_of(4), both.history).finish_ms == about(510 * kCycle + 2 * kRayEnd + alone + shared + rest));
+    // The second transfer starts when half of the first is done. Both transfers continue at the lower rate until the
+    // first is done; then the second continues alone.
+    const auto delay_cycles = static_cast<std::uint64_t>(kRay / 2 / kCycle);
+    both.history.tasks[1].cycles = 500 + delay_cycles;
+    const double first_ms = static_cast<double>(delay_cycles) * kCycle, both_ms = (1 - first_ms / kRay) * kRayBoth;
+    const double second_ms = (1 - both_ms / kRayBoth) * kRay;
+    CHECK(simulate(ring_of(4), both.history).finish_ms ==
+          about(510 * kCycle + 2 * kRayEnd + first_ms + both_ms + second_ms));
 }
 
-TEST_CASE("messages interrupt the main task, which ends later by their time", "[torus]") {
+TEST_CASE("messages preempt the main task and delay its end by their processor time", "[torus]") {
     HistoryBuilder h;
     h.add_task(1, 100'000);  // runs during all other tasks
     h.add_task(0, 10);
@@ -90,7 +91,8 @@ TEST_CASE("a full port makes the main task wait", "[torus]") {
     h.add_task(1, 1000);
     const AsyncMachine machine{.buffer = 5};
     const AsyncResult r = simulate(ring_of(4), h.history, machine);
-    // A ray may enter while two slots are free: four enter at once, each further one when another ray has left.
+    // A ray enters the port if two of its five slots are free: four rays enter at once, each further ray when a ray has
+    // left the port.
     CHECK(r.nodes[1].port_ms == about((kRays - 4) * (2 * kRayEnd + kRay) - kRayEnd));
     CHECK(r.finish_ms == about(kRays * (2 * kRayEnd + kRay)));
     CHECK(r.nodes[2].queue_max == 1);
@@ -100,8 +102,8 @@ TEST_CASE("a full port makes the main task wait", "[torus]") {
     CHECK_THROWS_AS(simulate(ring_of(4), h.history, {.buffer = 1}), UserError);
 }
 
-// Every node of a ring sends many rays to the opposite node, and each ray waits for a free slot in the next node.
-TEST_CASE("a ring whose buffers may fill up deadlocks; with one slot kept free it does not", "[torus]") {
+// Every node of a ring sends many rays to the opposite node, and each ray waits for a free slot in the next port.
+TEST_CASE("a ring whose ports may all fill up deadlocks; with one slot kept free it does not", "[torus]") {
     const raya_torus torus = ring_of(6);
     HistoryBuilder h;
     std::vector<std::uint32_t> sent;
@@ -118,8 +120,9 @@ TEST_CASE("a ring whose buffers may fill up deadlocks; with one slot kept free i
     }
 }
 
-// A node processes rays in order of arrival, so a ray that no other task depends on may delay one that others depend
-// on. Therefore the asynchronous machine is not always faster, although it is faster for renders (test_history.cpp).
+// A node processes rays in order of arrival. So a ray on which no task depends may delay a ray on which other tasks
+// depend. Therefore the asynchronous machine is not always faster than supersteps, although it is faster for renders
+// (test_history.cpp).
 TEST_CASE("supersteps can be faster than asynchronous execution, because they order the tasks", "[torus]") {
     constexpr std::uint64_t kLong = 10'000'000;
     HistoryBuilder h;
@@ -151,25 +154,25 @@ TEST_CASE("random histories: every message is delivered once, within the time bo
         const TorusResult traffic = traffic_of(torus, history);
         const TorusTime bound = torus_time(torus, traffic);
         CHECK(r.finish_ms >= bound.overlapped_ms * (1 - 1e-9));
-        double all = 0;  // upper bound: the sum, because some node or link is always busy
+        // Sum of the busy times of all nodes and links: an upper bound, because some node or link is always busy.
+        double sum_ms = 0;
         for (std::size_t link = 0; link < r.links.size(); ++link) {
             CHECK(r.links[link].words == traffic.link_words[link]);
             CHECK(r.links[link].messages == traffic.link_packets[link]);
             CHECK(r.links[link].busy_ms <= r.finish_ms * (1 + 1e-9));
-            all += 4e3 * static_cast<double>(traffic.link_words[link]) / 1.2e6;
+            sum_ms += 4e3 * static_cast<double>(traffic.link_words[link]) / 1.2e6;
         }
         for (std::size_t node = 0; node < r.nodes.size(); ++node) {
             const AsyncNode& n = r.nodes[node];
             CHECK(n.compute_ms == Approx(kCycle * static_cast<double>(traffic.load.per_pe[node])));
             CHECK(n.compute_ms + n.messages_ms <= r.finish_ms * (1 + 1e-9));
-            all += n.compute_ms + n.messages_ms;
+            sum_ms += n.compute_ms + n.messages_ms;
         }
-        CHECK(r.finish_ms <= all * (1 + 1e-9));
+        CHECK(r.finish_ms <= sum_ms * (1 + 1e-9));
     }
 }
 
-TEST_CASE("with messages that take no time, the compute bound and the time with messages enclose the result",
-          "[torus]") {
+TEST_CASE("with messages that take no time, the finish time is at least the maximum compute time", "[torus]") {
     constexpr std::uint64_t kSeed = 805;
     for (std::uint64_t i = 0; i < 50; ++i) {
         SplitMix random(kSeed + i);
@@ -178,7 +181,6 @@ TEST_CASE("with messages that take no time, the compute bound and the time with 
         CAPTURE(kSeed, i, torus_text(torus));
         const AsyncMachine machine{.message_cycles = 0, .word_cycles = 0, .one_way = 0, .both_ways = 0};
         const AsyncResult r = simulate(torus, history, machine);
-        // A task starts when its message has arrived and the node's previous task has ended.
         CHECK(r.delivered == history.messages.size());
         CHECK(total(r.nodes, &AsyncNode::messages_ms) == 0);
         const TorusTime bound = torus_time(torus, traffic_of(torus, history));
@@ -190,17 +192,17 @@ TEST_CASE("with messages that take no time, the compute bound and the time with 
 TEST_CASE("invalid histories are refused", "[torus]") {
     SplitMix random(7);
     const raya_torus torus = make_torus({3, 2, 1}, Links::kTorus3d);
-    const History right = random_history(random, torus, 100);
-    REQUIRE(right.tasks.size() > 50);
+    const History valid = random_history(random, torus, 100);
+    REQUIRE(valid.tasks.size() > 50);
     const auto refused = [&](const auto& spoil) {
-        History wrong = right;
-        spoil(wrong);
-        CHECK_THROWS_AS(simulate(torus, wrong), std::logic_error);
+        History invalid = valid;
+        spoil(invalid);
+        CHECK_THROWS_AS(simulate(torus, invalid), std::logic_error);
     };
     const auto is_ray = [](const HistoryMessage& m) { return m.kind != RAYA_KIND_RETURN; };
-    const auto ray = static_cast<std::size_t>(std::ranges::find_if(right.messages, is_ray) - right.messages.begin());
+    const auto ray = static_cast<std::size_t>(std::ranges::find_if(valid.messages, is_ray) - valid.messages.begin());
     const auto caused = [](const HistoryTask& t) { return t.cause != HistoryTask::kNoCause; };
-    const auto task = static_cast<std::size_t>(std::ranges::find_if(right.tasks, caused) - right.tasks.begin());
+    const auto task = static_cast<std::size_t>(std::ranges::find_if(valid.tasks, caused) - valid.tasks.begin());
     refused([&](History& h) { h.messages[ray].destination ^= 1; });
     refused([&](History& h) { h.messages[ray].kind = RAYA_KIND_RETURN; });
     refused([&](History& h) { h.messages[ray].words = 0; });
@@ -210,7 +212,7 @@ TEST_CASE("invalid histories are refused", "[torus]") {
     refused([&](History& h) { h.tasks[task].node = 6; });
     refused([&](History& h) { h.tasks.pop_back(); });
     refused([&](History& h) { h.tasks.front().cause = 0; });
-    CHECK_NOTHROW(simulate(torus, right));
+    CHECK_NOTHROW(simulate(torus, valid));
     CHECK(simulate(torus, {}).finish_ms == 0);
 }
 

@@ -1,5 +1,5 @@
-// The plan of a node's memory for queue and mailboxes, in addition to the node's words. The planned sizes are exact to
-// the byte, and error messages contain the figures and remedies.
+// The memory plan of a node: words, queue and mailboxes. The planned sizes are exact to the byte, and error messages
+// contain the figures and remedies.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -35,8 +35,8 @@ NodeMemories nodes_with_spheres(const std::vector<std::uint32_t>& counts, const 
 
 constexpr std::uint64_t padded_to_rows(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
 
-// Returns the size of such a node's words in bytes: header, one voxel, one surface, and six words per sphere. The
-// spheres are padded to whole rows.
+// Returns the size in bytes of the words of a node that nodes_with_spheres() makes: header, one voxel, one surface, and
+// six words per sphere. The words before the spheres and the spheres are each padded to whole rows.
 constexpr std::uint64_t node_words_bytes(std::uint32_t spheres) {
     return padded_to_rows(padded_to_rows(sizeof(raya_node) + sizeof(raya_voxel_memory) + 4 * RAYA_SURFACE_WORDS) +
                           24ull * spheres);
@@ -50,7 +50,7 @@ std::uint64_t packet_bytes(std::uint64_t queue, std::uint64_t links) {
     return 64 * (queue + 2 * links * box) + 32 * (links > 0 ? links + 1 : 0) * box;
 }
 
-// A NodeTrial whose machines share `words` evenly among their nodes. It counts its calls.
+// A NodeTrial that divides `words` words evenly among the nodes of every machine. It counts its calls.
 struct EvenTrial {
     std::uint64_t words = 0;
     int calls = 0;
@@ -62,7 +62,7 @@ struct EvenTrial {
 
 }  // namespace
 
-TEST_CASE("a node's bytes are its words, its queue and two mailboxes per link", "[torus]") {
+TEST_CASE("a node's bytes are its words, its queue and its mailboxes", "[torus]") {
     CHECK(node_bytes(100, {8, 2}, 6) == 400 + 64 * (8 + 24) + 32 * 14);
     CHECK(node_bytes(0, {1, 1}, 0) == 64);
     CHECK(node_bytes(std::uint64_t{1} << 40, {UINT32_MAX, UINT32_MAX}, 6) ==
@@ -131,20 +131,20 @@ TEST_CASE("the planned queue is the longest that fits, to the byte", "[torus]") 
         const std::uint32_t min_queue = 1 + random_below(random, 40), links = links_of_node(torus);
         const NodeMemories memories = nodes_with_spheres(counts, torus);
         const std::uint32_t queue = min_queue + random_below(random, kDefaultQueue - min_queue);
-        const std::uint64_t exact = node_words_bytes(max_count) + packet_bytes(queue, links);
+        const std::uint64_t exact_bytes = node_words_bytes(max_count) + packet_bytes(queue, links);
         CAPTURE(seed, torus_text(torus), max_count, min_queue, queue);
-        const auto plan = [&](std::uint64_t bytes, std::uint32_t asked) {
-            return plan_buffers("s", memories, torus, bytes, asked, min_queue);
+        const auto plan = [&](std::uint64_t bytes, std::uint32_t requested_queue) {
+            return plan_buffers("s", memories, torus, bytes, requested_queue, min_queue);
         };
         REQUIRE(node_bytes(memories.starts.back() - memories.starts[counts.size() - 1], {0, 0}, links) ==
                 node_words_bytes(counts.back()));
-        CHECK(plan(exact, 0).queue == queue);
-        CHECK(plan(exact, 0).box == (queue < 8 ? 1 : queue / 4));
-        CHECK(plan(exact + 63, 0).queue == queue);
-        CHECK(plan(exact, queue).queue == queue);
-        CHECK_THROWS_AS(plan(exact - 1, queue), UserError);
-        if (queue > min_queue) CHECK(plan(exact - 1, 0).queue == queue - 1);
-        if (queue == min_queue) CHECK_THROWS_AS(plan(exact - 1, 0), UserError);
+        CHECK(plan(exact_bytes, 0).queue == queue);
+        CHECK(plan(exact_bytes, 0).box == (queue < 8 ? 1 : queue / 4));
+        CHECK(plan(exact_bytes + 63, 0).queue == queue);
+        CHECK(plan(exact_bytes, queue).queue == queue);
+        CHECK_THROWS_AS(plan(exact_bytes - 1, queue), UserError);
+        if (queue > min_queue) CHECK(plan(exact_bytes - 1, 0).queue == queue - 1);
+        if (queue == min_queue) CHECK_THROWS_AS(plan(exact_bytes - 1, 0), UserError);
         CHECK(plan(std::uint64_t{1} << 32, 0).queue == kDefaultQueue);
     }
 }
@@ -175,7 +175,7 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
 
     try {
         plan_buffers("s.nff", memories, torus, limit, 0, 9);
-        FAIL("a scene that does not fit is accepted");
+        FAIL("plan_buffers() has accepted a scene that does not fit");
     } catch (const NodesDoNotFit& error) {
         CHECK(error.nodes == 4);
         CHECK(error.fitting == 3);
@@ -184,8 +184,8 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
         CHECK(error.memory_bytes == limit);
     }
 
-    // With six links instead of four, a node has four more mailboxes of two rays and two more of two returns. They
-    // leave 640 bytes less for the words.
+    // With six links instead of four, a node has four more mailboxes of two rays and two more mailboxes of two returns.
+    // These mailboxes leave 640 bytes less for the words.
     EvenTrial trial{8 * (node_words_bytes(200) - 640) / 4, 0};
     const auto remedy = [&](const char* nodes) {
         return figures + fmt::format("use --nodes {} or --pe-memory {}", nodes, sufficient_bytes);
@@ -200,19 +200,20 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
         refusal(0, std::ref(trial)),
         Contains(fmt::format("no machine of up to 65536 nodes is large enough; use --pe-memory {}", sufficient_bytes)));
     CHECK(trial.calls == 14);  // 2^3 to 2^16 nodes
-    const NodeTrial none = [](const auto&) { return std::nullopt; };
-    CHECK(refusal(0, none) ==
+    const NodeTrial failing_trial = [](const auto&) { return std::nullopt; };
+    CHECK(refusal(0, failing_trial) ==
           figures +
               fmt::format("no machine of up to 65536 nodes is large enough; use --pe-memory {}", sufficient_bytes));
-    const NodeTrial cut = [](const auto&) { return NodeTrialResult{1, {8, 8, 8}}; };
-    CHECK(refusal(0, cut) == remedy("2x2x2 --voxels 8x8x8"));
+    const NodeTrial trial_with_voxels = [](const auto&) { return NodeTrialResult{1, {8, 8, 8}}; };
+    CHECK(refusal(0, trial_with_voxels) == remedy("2x2x2 --voxels 8x8x8"));
 }
 
-TEST_CASE("machines too small even for evenly shared words are not tried", "[torus]") {
+TEST_CASE("machines that are too small even for evenly divided words are not tried", "[torus]") {
     const raya_torus torus = make_torus({2, 2, 2}, Links::kTorus3d);
     const NodeMemories memories = nodes_with_spheres(std::vector<std::uint32_t>(8, 1000), torus);
     EvenTrial trial{memories.words.size(), 0};
-    const std::uint64_t limit = node_words_bytes(1000) / 32 + packet_bytes(1, 6);  // an even share on 2^8 nodes
+    const std::uint64_t limit =
+        node_words_bytes(1000) / 32 + packet_bytes(1, 6);  // enough for words divided evenly among 2^8 nodes
     CHECK_THAT(user_error_message([&] { plan_buffers("s", memories, torus, limit, 0, 1, std::ref(trial)); }),
                Contains("use --nodes 8x8x4 or"));
     CHECK(trial.calls == 1);
@@ -269,7 +270,7 @@ TEST_CASE("each larger machine that is tried doubles the shortest side, up to 65
             return NodeTrialResult{~0ull / 8, nodes};
         };
         CAPTURE(seed, torus_text(torus));
-        // The limit is one byte too small for the fullest node, but large enough for an even share of the words on more
+        // The limit is one byte too small for the fullest node, but large enough for words divided evenly among more
         // nodes.
         const std::uint64_t limit = node_words_bytes(2000) + packet_bytes(1, links_of_node(torus)) - 1;
         CHECK_THROWS_AS(plan_buffers("s", memories, torus, limit, 0, 1, trial), UserError);

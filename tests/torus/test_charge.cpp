@@ -1,5 +1,5 @@
-// The model's charges that differ from the device's transfers: discarded rays, and one return per ray instead of one
-// per term.
+// Charges of the model that differ from the device's transfers: discarded rays, and one return per ray instead of one
+// return per term.
 #include <catch2/catch.hpp>
 #include <map>
 #include <tuple>
@@ -11,8 +11,9 @@
 namespace raya {
 namespace {
 
-// Returns the number of pixels in all windows. It is the number of discarded rays, because each node makes the rays of
-// its window's pixels and of the pixels in its own rows of the image, and the nodes together keep one ray per pixel.
+// Returns the number of pixels in all windows. This is also the number of discarded rays: each node makes the rays of
+// the pixels in its window and in its rows of the image, the rows contain every pixel once, and the nodes together keep
+// one ray per pixel.
 std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
     const PackedJob job = pack_job(scene, job_settings(s, length_scale(scene, s.format)));
     std::uint64_t pixels = 0;
@@ -26,13 +27,13 @@ std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
 using RayKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;  // pixel, path, level
 RayKey key_of(const PacketRecord& p) { return {p.head.pixel, p.head.path, raya_state_level(state_of(p))}; }
 
-// A ray has at most one return. It leaves from the node where the shadow ray to the last light that the surface faces
-// ends.
+// Checks that a ray has at most one return, and that the return leaves from the node in which the shadow ray to the
+// last light that the surface faces ends.
 void check_last_lights(const RecordedRender& r) {
-    std::map<RayKey, PacketRecord> last;  // by ray: the last record of its last shadow ray
+    std::map<RayKey, PacketRecord> last_records;  // by ray: last record of its last shadow ray
     for (const PacketRecord& p : r.records) {
         if (kind_of(p) != RAYA_KIND_SHADOW) continue;
-        PacketRecord& known = last.emplace(key_of(p), p).first->second;
+        PacketRecord& known = last_records.emplace(key_of(p), p).first->second;
         if (raya_state_light(state_of(p)) >= raya_state_light(state_of(known))) known = p;
     }
     std::size_t early_returns = 0, misplaced_returns = 0, repeated_returns = 0;
@@ -40,8 +41,8 @@ void check_last_lights(const RecordedRender& r) {
     for (const PacketRecord& p : r.records) {
         if (kind_of(p) != RAYA_KIND_RETURN) continue;
         repeated_returns += ++returns[key_of(p)] > 1;
-        const auto shadow = last.find(key_of(p));
-        if (shadow == last.end()) continue;
+        const auto shadow = last_records.find(key_of(p));
+        if (shadow == last_records.end()) continue;
         const std::uint32_t light = raya_state_light(state_of(shadow->second));
         early_returns += raya_state_light(state_of(p)) < light;
         misplaced_returns += raya_state_light(state_of(p)) == light && p.source != shadow->second.destination;
@@ -53,7 +54,8 @@ void check_last_lights(const RecordedRender& r) {
 
 }  // namespace
 
-TEST_CASE("nodes discard as many rays as their windows hold, and the root discards none", "[torus][slow]") {
+TEST_CASE("nodes discard one ray per pixel of their windows; a root that makes all rays discards none",
+          "[torus][slow]") {
     const std::uint64_t seed = 662;
     SplitMix random(seed);
     Session session(choose_device(""));
@@ -81,7 +83,7 @@ TEST_CASE("nodes discard as many rays as their windows hold, and the root discar
     CHECK(discarded > 1000);
 }
 
-TEST_CASE("one return per ray: it leaves where the ray's last shadow ray ends", "[torus]") {
+TEST_CASE("one return per ray: the return leaves from the node in which the last shadow ray ends", "[torus]") {
     const std::uint64_t seed = 81;
     SplitMix random(seed);
     Session session(choose_device(""));
@@ -102,7 +104,7 @@ TEST_CASE("one return per ray: it leaves where the ray's last shadow ray ends", 
         CHECK(r.result.contributions >= per_term_result.contributions);
         added_returns += r.result.contributions - per_term_result.contributions;
     }
-    CHECK(added_returns > 100);  // rays whose last shadow ray was blocked
+    CHECK(added_returns > 100);  // each is the return of a blocked last shadow ray
 }
 
 }  // namespace raya

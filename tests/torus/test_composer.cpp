@@ -17,8 +17,8 @@ namespace {
 // before refraction.
 class RandomRayTree {
   public:
-    RandomRayTree(SplitMix& random, std::vector<raya_head>& to, std::uint32_t pixel)
-        : random_(random), to_(to), pixel_(pixel) {}
+    RandomRayTree(SplitMix& random, std::vector<raya_head>& packets, std::uint32_t pixel)
+        : random_(random), packets_(packets), pixel_(pixel) {}
 
     void add_ray(std::uint32_t path, std::uint32_t level, std::uint32_t deepest) {
         add(path, level, 0);
@@ -26,9 +26,9 @@ class RandomRayTree {
             if (below(2)) add(path, level, light);
         if (below(6) == 0) add(path, level, RAYA_MAX_LIGHTS);
         if (level == deepest) return;
-        const std::uint32_t which = level < 3 ? 1 + below(3) : 1u << below(2);
-        if (which & 1) add_ray(raya_path_reflected(path), level + 1, deepest);
-        if (which & 2) add_ray(raya_path_refracted(path, level), level + 1, deepest);
+        const std::uint32_t children = level < 3 ? 1 + below(3) : 1u << below(2);  // bit 0: reflected, bit 1: refracted
+        if (children & 1) add_ray(raya_path_reflected(path), level + 1, deepest);
+        if (children & 2) add_ray(raya_path_refracted(path, level), level + 1, deepest);
     }
 
     std::uint32_t below(std::uint32_t end) { return random_below(random_, end); }
@@ -41,11 +41,11 @@ class RandomRayTree {
         p.path = path;
         p.weight = static_cast<float>(1 + below(1 << 23));
         for (float& colour : p.carries.colour) colour = static_cast<float>(1 + below(1 << 23));
-        to_.push_back(p);
+        packets_.push_back(p);
     }
 
     SplitMix& random_;
-    std::vector<raya_head>& to_;
+    std::vector<raya_head>& packets_;
     std::uint32_t pixel_;
 };
 
@@ -62,8 +62,8 @@ std::vector<float> colours_of(const std::vector<raya_head>& packets) {
     return colours;
 }
 
-// Returns random contributions in the format, one list per pixel; some lists are empty. The numbers are multiples of
-// 2^-38 below 2^12, so that products and sums are exact in double.
+// Returns random contributions in the format, one list per pixel; some lists are empty. In the reduced formats,
+// products and sums of the numbers are multiples of 2^-38 below 2^12, so that they are exact in double.
 Contributions random_lists(SplitMix& random, const NumberFormat& format, std::uint32_t pixels) {
     Contributions lists;
     lists.starts = {0};

@@ -20,8 +20,8 @@ std::uint64_t sum(const std::vector<std::uint64_t>& values) {
     return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
 }
 
-// Identifies a ray of a pixel, shadow rays included. The records with the same key are the stages of the ray's
-// traversal of the voxels.
+// Identifies a ray, which may be a shadow ray: pixel, path, level, light. The records with the same key are the stages
+// of the ray's traversal of the voxels.
 using LightKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
 LightKey light_key(const PacketRecord& p) {
     return {p.head.pixel, p.head.path, raya_state_level(state_of(p)), raya_state_light(state_of(p))};
@@ -35,7 +35,7 @@ std::map<LightKey, std::vector<PacketRecord>> stages_of(const std::vector<Packet
 }
 
 // Checks that the number of packets of each kind follows from the events.
-void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t lights, bool return_a_ray) {
+void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t lights, bool one_return_per_ray) {
     const EventCounts& e = r.events;
     CHECK(r.made == r.ended);
     CHECK(r.made[RAYA_KIND_NONE] == 0);
@@ -45,16 +45,18 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t light
     CHECK(r.made[RAYA_KIND_REFRACTED] == e[RAYA_REFRACTED]);
     CHECK(r.made[RAYA_KIND_SHADOW] == e[RAYA_SHADOW]);
     CHECK(e[RAYA_SHADOW] == e[RAYA_SHADOW_HITS] + e[RAYA_LIT]);
-    // Every ray returns an ambient term or the background, and each unblocked light adds a term. With one return per
-    // ray, a blocked last shadow ray also causes a return packet; with one light, every blocked shadow ray does.
+    // Every ray returns an ambient term or the background, and each unblocked light adds a term. If the terms
+    // of a ray travel in one return, its last shadow ray sends that return even if it is blocked. With one light, each
+    // shadow ray is the last one of its ray.
     const std::uint64_t rays = pixels + e[RAYA_REFLECTED] + e[RAYA_REFRACTED], terms = rays + e[RAYA_LIT];
-    const std::uint64_t stopped = return_a_ray ? e[RAYA_SHADOW_HITS] : 0;
-    CHECK(r.returns == (return_a_ray ? rays : terms));
+    const std::uint64_t stopped = one_return_per_ray ? e[RAYA_SHADOW_HITS] : 0;
+    CHECK(r.returns == (one_return_per_ray ? rays : terms));
     CHECK(r.made[RAYA_KIND_RETURN] >= terms + (lights > 1 ? 0 : stopped));
     CHECK(r.made[RAYA_KIND_RETURN] <= terms + stopped);
 }
 
-// Checks that each packet crosses as many links as the torus distance between its source and destination.
+// Checks that each packet crosses as many links as the torus distance between its source and destination, and that the
+// links' words are those of the routing rules.
 void check_traffic(const RecordedRender& r, const TorusSettings& s) {
     std::uint64_t hops = 0;
     std::vector<std::uint64_t> words(r.result.link_words.size());
@@ -88,7 +90,7 @@ std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
 // Returns true if each step of a ray leads to a neighbouring voxel and the ray never reverses its direction along an
 // axis.
 bool is_walk(const std::vector<PacketRecord>& stages) {
-    bool right = true;
+    bool is_valid = true;
     for (std::size_t i = 1; i < stages.size(); ++i) {
         const raya_place a = raya_unpack_place(stages[i - 1].head.voxel);
         const raya_place b = raya_unpack_place(stages[i].head.voxel);
@@ -98,27 +100,27 @@ bool is_walk(const std::vector<PacketRecord>& stages) {
             steps += static_cast<std::uint32_t>(std::abs(step));
             const raya_place first = raya_unpack_place(stages[0].head.voxel);
             const int so_far = static_cast<int>(a.at[axis]) - static_cast<int>(first.at[axis]);
-            right = right && step * so_far >= 0;  // never back
+            is_valid = is_valid && step * so_far >= 0;
         }
-        right = right && steps == 1;
+        is_valid = is_valid && steps == 1;
     }
-    return right;
+    return is_valid;
 }
 
-// Returns true if a wide ray visits all voxels in cyclic order, starting with the voxel after that of the node that
-// made it. A shadow ray may end earlier, where it is blocked. At most one more stage follows, to the voxel where the
-// ray is shaded.
+// Returns true if a wide ray visits all voxels in cyclic order. The node that made the ray tests its own voxel without
+// a packet, so the first record is for the next voxel. A shadow ray may end earlier, in the voxel in which it is
+// blocked. At most one more stage follows, to the voxel in which the ray's hit is shaded.
 bool is_tour(const std::vector<PacketRecord>& stages, const raya_torus& torus, const raya_grid& grid) {
     const std::uint32_t voxels = raya_voxels(grid);
     const std::size_t visits = stages.size() - (state_of(stages.back()) & RAYA_STATE_FOUND ? 1 : 0);
     std::uint32_t number = raya_voxel_of_node(torus, grid, stages[0].source, 0);
-    bool right = visits < voxels && (visits == voxels - 1 || kind_of(stages[0]) == RAYA_KIND_SHADOW);
+    bool is_valid = visits < voxels && (visits == voxels - 1 || kind_of(stages[0]) == RAYA_KIND_SHADOW);
     for (std::size_t i = 0; i < stages.size(); ++i) {
         number = (number + 1) % voxels;
-        right = right && (i >= visits || number_of(grid, stages[i]) == number);
-        right = right && (i < visits) == !(state_of(stages[i]) & RAYA_STATE_FOUND);
+        is_valid = is_valid && (i >= visits || number_of(grid, stages[i]) == number);
+        is_valid = is_valid && (i < visits) == !(state_of(stages[i]) & RAYA_STATE_FOUND);
     }
-    return right;
+    return is_valid;
 }
 
 // Numbers of rays.
@@ -129,24 +131,24 @@ struct RayCounts {
 // Checks the voxels that each ray visits. Each node must hold one voxel, so that every step sends a packet, which is
 // recorded.
 RayCounts check_walks(const RecordedRender& r, const TorusSettings& s) {
-    RayCounts walked;
-    std::size_t broken = 0, early = 0, wrong_walks = 0, wrong_tours = 0;
+    RayCounts counts;
+    std::size_t interrupted_routes = 0, early_stages = 0, wrong_walks = 0, wrong_tours = 0;
     raya_grid grid{};
     std::copy_n(s.voxels.begin(), 3, grid.divisions);
     for (const auto& [key, stages] : stages_of(r.records)) {
         for (std::size_t i = 1; i < stages.size(); ++i) {
-            broken += stages[i].source != stages[i - 1].destination;
-            early += stages[i].superstep <= stages[i - 1].superstep;
+            interrupted_routes += stages[i].source != stages[i - 1].destination;
+            early_stages += stages[i].superstep <= stages[i - 1].superstep;
         }
-        (is_wide(stages[0]) ? walked.wide : walked.narrow) += 1;
+        (is_wide(stages[0]) ? counts.wide : counts.narrow) += 1;
         wrong_walks += !is_wide(stages[0]) && !is_walk(stages);
         wrong_tours += is_wide(stages[0]) && !is_tour(stages, s.torus, grid);
     }
-    CHECK(broken == 0);
-    CHECK(early == 0);
+    CHECK(interrupted_routes == 0);
+    CHECK(early_stages == 0);
     CHECK(wrong_walks == 0);
     CHECK(wrong_tours == 0);
-    return walked;
+    return counts;
 }
 
 // Checks that every return goes to the root, and that each ray of a pixel's ray tree, shadow rays included, has at most
@@ -163,6 +165,7 @@ void check_returns(const RecordedRender& r) {
     CHECK(std::all_of(return_counts.begin(), return_counts.end(), [](const auto& a) { return a.second == 1; }));
 }
 
+// A row of a packet trace.
 struct Row {
     std::uint64_t superstep = 0, source = 0, destination = 0, bytes = 0, ray = 0;
     std::string kind, parent;
@@ -209,7 +212,8 @@ TEST_CASE("random machines: packets, hops and words agree with the events and th
         CAPTURE(seed, i, case_text(c));
         const TorusSettings s = settings_of(c);
         const RecordedRender r = render_and_record(session, scene, c);
-        check_kinds(r.result, (c.width * c.height - 1) / c.pixels.stride + 1, lights_of(scene), c.packets.return_a_ray);
+        check_kinds(r.result, (c.width * c.height - 1) / c.pixels.stride + 1, lights_of(scene),
+                    c.packets.one_return_per_ray);
         check_traffic(r, s);
         check_returns(r);
         if (!one_voxel_per_node) continue;
@@ -232,7 +236,8 @@ TEST_CASE("recording the packets changes no result", "[torus]") {
     CHECK(recorded.supersteps.size() == unrecorded.supersteps.size());
 }
 
-TEST_CASE("the supersteps' maxima sum to between the busiest node or link and the total", "[torus]") {
+TEST_CASE("the busiest node or link of each superstep, summed, is between the busiest one's total and the total of all",
+          "[torus]") {
     const TorusResult r =
         render_torus(random_view_scene(kSceneSeeds[2]), TorusCase{.nodes = {3, 2, 3}, .lanes = 4, .group = 1});
     std::uint64_t cycles = 0, words = 0;
@@ -248,7 +253,7 @@ TEST_CASE("the supersteps' maxima sum to between the busiest node or link and th
     CHECK(r.supersteps.back().max_link_words == 0);
 }
 
-TEST_CASE("the packet trace of a render gives each ray the right parent", "[torus]") {
+TEST_CASE("packet trace of a render: sizes, routes and parents of the rays are valid", "[torus]") {
     const TorusCase c{
         .nodes = {2, 3, 2}, .inject = GENERATE(Injection::kAll, Injection::kRoot), .lanes = 4, .group = 1};
     PacketTrace trace;
@@ -256,33 +261,33 @@ TEST_CASE("the packet trace of a render gives each ray the right parent", "[toru
         render_torus(random_view_scene(kSceneSeeds[0]), c, [&](const PacketRecord& record) { trace.add(record); });
     const std::vector<Row> rows = rows_of(gunzip(trace.finish()));
     REQUIRE(rows.size() == trace.rows());
-    std::map<std::uint64_t, Row> last;  // by ray: its latest row
-    std::size_t wrong_bytes = 0, changed = 0, broken = 0, twice = 0, primaries_with_parents = 0;
+    std::map<std::uint64_t, Row> last_rows;  // by ray: its last row
+    std::size_t wrong_bytes = 0, changed_rays = 0, interrupted_routes = 0, repeated_returns = 0, wrong_primaries = 0;
     for (const Row& row : rows) {
         wrong_bytes += row.bytes != (row.kind == "return" ? 32 : 64);
-        primaries_with_parents += (row.kind == "primary") != row.parent.empty();
-        const auto [before, is_new] = last.emplace(row.ray, row);
+        wrong_primaries += (row.kind == "primary") != row.parent.empty();  // only primary rays have no parent
+        const auto [before, is_new] = last_rows.emplace(row.ray, row);
         if (is_new) continue;
-        twice += row.kind == "return";
-        changed += before->second.kind != row.kind || before->second.parent != row.parent;
-        broken += before->second.destination != row.source || before->second.superstep >= row.superstep;
+        repeated_returns += row.kind == "return";
+        changed_rays += before->second.kind != row.kind || before->second.parent != row.parent;
+        interrupted_routes += before->second.destination != row.source || before->second.superstep >= row.superstep;
         before->second = row;
     }
     CHECK(wrong_bytes == 0);
-    CHECK(changed == 0);
-    CHECK(broken == 0);
-    CHECK(twice == 0);
-    CHECK(primaries_with_parents == 0);
-    std::map<std::string, std::uint64_t> sent;  // by kind: rays that left a node at least once
-    std::size_t strange_parents = 0;
-    for (const auto& [ray, row] : last) {
+    CHECK(changed_rays == 0);
+    CHECK(interrupted_routes == 0);
+    CHECK(repeated_returns == 0);
+    CHECK(wrong_primaries == 0);
+    std::map<std::string, std::uint64_t> sent;  // by kind: number of rays that left a node at least once
+    std::size_t wrong_parents = 0;
+    for (const auto& [ray, row] : last_rows) {
         ++sent[row.kind];
-        const auto parent = row.parent.empty() ? last.end() : last.find(std::stoull(row.parent));
-        if (parent == last.end()) continue;  // the parent never left its node
+        const auto parent = row.parent.empty() ? last_rows.end() : last_rows.find(std::stoull(row.parent));
+        if (parent == last_rows.end()) continue;  // the parent never left its node
         const std::string& kind = parent->second.kind;
-        strange_parents += kind == "return" || (kind == "shadow" && row.kind != "return");
+        wrong_parents += kind == "return" || (kind == "shadow" && row.kind != "return");
     }
-    CHECK(strange_parents == 0);
+    CHECK(wrong_parents == 0);
     CHECK(sent["primary"] <= r.made[RAYA_KIND_PRIMARY]);
     CHECK(sent["reflected"] <= r.made[RAYA_KIND_REFLECTED]);
     CHECK(sent["refracted"] <= r.made[RAYA_KIND_REFRACTED]);

@@ -1,4 +1,4 @@
-// Short queues. The shortest queue is sufficient if nodes need not wait for each other. A queue one packet shorter is
+// Short queues. The minimum queue is sufficient if nodes need not wait for each other. A queue one packet shorter is
 // refused. A machine that deadlocks finishes with the queue length that the search finds.
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -17,7 +17,8 @@ std::uint32_t min_queue_of(const Scene& scene, const TorusCase& c) {
 }
 
 // Returns a scene of mirrors and glass in a hollow mirror ball, which also contains the eye and the lights. A small
-// sphere in each of two distant corners enlarges the box, so that all rays stay in one of the 4 x 4 x 4 voxels.
+// sphere in each of two distant corners enlarges the bounding box, so that all rays stay in one of its 4 x 4 x 4
+// voxels.
 Scene scene_in_one_voxel(std::uint64_t seed) {
     SplitMix random(seed);
     Scene scene = empty_scene();
@@ -61,7 +62,7 @@ bool same_figures(const DeadlockFigures& a, const DeadlockFigures& b) {
 
 }  // namespace
 
-TEST_CASE("a single node renders with the shortest queue", "[torus]") {
+TEST_CASE("a single node renders with the minimum queue", "[torus]") {
     Session session(choose_device(""));
     for (std::size_t i = 0; i < 6; ++i) {
         const Scene scene = random_view_scene(kSceneSeeds[i]);
@@ -76,7 +77,7 @@ TEST_CASE("a single node renders with the shortest queue", "[torus]") {
     }
 }
 
-TEST_CASE("the shortest queue suffices if one node processes all rays", "[torus]") {
+TEST_CASE("the minimum queue suffices if one node processes all rays", "[torus]") {
     Session session(choose_device(""));
     for (std::uint64_t seed = 1; seed <= 2; ++seed)
         for (const Links links : {Links::kTorus3d, Links::kTorus2d})
@@ -144,9 +145,9 @@ TEST_CASE("a machine that deadlocks finishes with the queue that the search find
         CHECK(r.made == r.ended);
         // The deadlock repeats identically: no state of the first render or of the search remains.
         renderer.set_queue(short_queue.queue);
-        const RenderOutcome again = render_outcome(renderer);
-        REQUIRE(again.deadlock);
-        CHECK(same_figures(*again.deadlock, *first.deadlock));
+        const RenderOutcome second_outcome = render_outcome(renderer);
+        REQUIRE(second_outcome.deadlock);
+        CHECK(same_figures(*second_outcome.deadlock, *first.deadlock));
     }
     CHECK(deadlocks >= 2);  // otherwise the test checks nothing
 }
@@ -172,7 +173,7 @@ TEST_CASE("the queue that the search finds fits a node's memory", "[torus]") {
     CHECK(image_and_counts(TorusRenderer(session, scene, settings).render()) == ring_image_and_counts(scene, c));
 }
 
-TEST_CASE("with a queue one packet shorter than the shortest sufficient one, the machine deadlocks", "[torus]") {
+TEST_CASE("with a queue one packet shorter than the shortest sufficient queue, the machine deadlocks", "[torus]") {
     const Scene scene = project_scene("mirrors");
     Session session(choose_device(""));
     TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
@@ -195,8 +196,7 @@ TEST_CASE("with a queue one packet shorter than the shortest sufficient one, the
     CHECK_THAT(previous, Catch::Contains("deadlock") && Catch::Contains("are full at " + std::to_string(queue - 1)));
 }
 
-TEST_CASE("queues of any length give the ring's image, or a deadlock that does not occur with the queue found",
-          "[torus]") {
+TEST_CASE("queues of any length give the ring's image, if necessary after the search for a longer queue", "[torus]") {
     const std::uint64_t seed = 616;
     SplitMix random(seed);
     Session session(choose_device(""));

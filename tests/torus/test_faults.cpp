@@ -11,7 +11,7 @@ namespace raya {
 namespace {
 
 struct KernelFault {
-    const char* what;
+    const char* description;
     SourcePatch patch;
 };
 
@@ -25,7 +25,7 @@ const KernelFault kKernelFaults[] = {
     {"route swaps source and destination",
      {"shared/torus.h", "raya_next_link(raya_torus t, raya_u32 from, raya_u32 to)",
       "raya_next_link(raya_torus t, raya_u32 to, raya_u32 from)"}},
-    {"of two equally long routes, packets take the descending one",
+    {"of two equally long routes, packets take the descending route",
      {"shared/torus.h", "*up = higher <= side - higher;", "*up = higher < side - higher;"}},
     {"a wide ray records its last hit as the nearest",
      {"torus/outcome.clh", "!= RAYA_NO_VOXEL && !nearer) return;",
@@ -34,9 +34,9 @@ const KernelFault kKernelFaults[] = {
      {"torus/outcome.clh", "if (next == p->start)", "if (next_tour_voxel(n->grid, next) == p->start)"}},
     {"wide rays start at i = 0",
      {"torus/node.clh", "const raya_place p = n->place;", "raya_place p = n->place; p.at[0] = 0;"}},
-    {"hits behind the voxel's exit count", {"torus/outcome.clh", "(hits & (h.distance <= leaves))", "hits"}},
+    {"hits behind the voxel's exit count", {"torus/outcome.clh", "(hits & (h.distance <= exit_distance))", "hits"}},
     {"hits count only in the first half of a voxel",
-     {"torus/outcome.clh", "(hits & (h.distance <= leaves))", "(hits & (h.distance <= leaves * 0.5f))"}},
+     {"torus/outcome.clh", "(hits & (h.distance <= exit_distance))", "(hits & (h.distance <= exit_distance * 0.5f))"}},
     {"the traversal moves up by two voxels",
      {"grid/traversal.clh", "const index k = at + choose_index(a->up, (index)(1), (index)(0));",
       "const index k = at + choose_index(a->up, (index)(2), (index)(0));"}},
@@ -66,18 +66,19 @@ const KernelFault kKernelFaults[] = {
       "chosen.lane[lane] = RAYA_TRUE; continue;"}},
 };
 
+// Image and traffic of a render.
 struct Traffic {
     std::string image;
     PacketCounts made{};
     std::uint64_t discarded = 0;
     std::vector<std::uint64_t> words;     // [node][link]: number of words that the render counted
-    std::vector<std::uint64_t> expected;  // [node][link]: number of words by the routing rules
+    std::vector<std::uint64_t> expected;  // [node][link]: number of words according to the routing rules
     bool operator==(const Traffic&) const = default;
 };
 
 // Throws an exception at the 5001st call, to end the render of a mutant that does not finish.
 void limit_calls(int& calls) {
-    if (++calls > 5'000) throw std::runtime_error("does not end");
+    if (++calls > 5'000) throw std::runtime_error("the render does not end");
 }
 
 Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
@@ -96,14 +97,14 @@ Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
 }
 
 // Returns the first difference or error that reveals the fault; empty if there is none.
-std::string detect_fault(Session& session, const Scene& scene, TorusCase c, const Traffic& right,
+std::string detect_fault(Session& session, const Scene& scene, TorusCase c, const Traffic& expected,
                          const SourcePatch& patch) {
     c.sources.patches = {patch};
     try {
         const Traffic t = traffic_of(session, scene, c);
-        if (t.image != right.image) return "image: " + t.image;
-        if (t.words != t.expected) return "words over links";
-        return t == right ? "" : "traffic";
+        if (t.image != expected.image) return "image: " + t.image;
+        if (t.words != t.expected) return "the words over links differ from the routing rules";
+        return t == expected ? "" : "numbers of packets, discarded rays or words differ";
     } catch (const std::exception& error) {
         return error.what();
     }
@@ -127,17 +128,17 @@ TEST_CASE("every injected kernel fault is detected", "[torus][.][faults]") {
     const Trial trials[] = {{random_view_scene(kSceneSeeds[1]), narrow_rays},
                             {far_mirror_scene(kSceneSeeds[3], "spa22"), wide_rays},
                             {random_view_scene(kSceneSeeds[6]), outside}};
-    std::vector<Traffic> right;
-    for (const Trial& t : trials) right.push_back(traffic_of(session, t.scene, t.c));
-    for (std::size_t i = 0; i < right.size(); ++i)
-        CHECK(right[i].image == ring_image_and_counts(trials[i].scene, trials[i].c));
+    std::vector<Traffic> expected;
+    for (const Trial& t : trials) expected.push_back(traffic_of(session, t.scene, t.c));
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        CHECK(expected[i].image == ring_image_and_counts(trials[i].scene, trials[i].c));
     for (const KernelFault& fault : kKernelFaults) {
-        CAPTURE(fault.what);
+        CAPTURE(fault.description);
         check_patches({.patches = {fault.patch}});
         std::string detection;
-        for (std::size_t i = 0; i < right.size() && detection.empty(); ++i)
-            detection = detect_fault(session, trials[i].scene, trials[i].c, right[i], fault.patch);
-        WARN(fault.what << ": " << detection);
+        for (std::size_t i = 0; i < expected.size() && detection.empty(); ++i)
+            detection = detect_fault(session, trials[i].scene, trials[i].c, expected[i], fault.patch);
+        WARN(fault.description << ": detected by: " << detection);
         CHECK(detection != "");
     }
 }

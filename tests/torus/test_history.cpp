@@ -68,7 +68,7 @@ const Scene& test_scene() {
     return scene;
 }
 
-TEST_CASE("a history contains all that the render counted, on every kind of machine", "[torus]") {
+TEST_CASE("cycles, words and messages of a history equal the render's counts, on every kind of machine", "[torus]") {
     for (const TorusCase& c :
          quick(2, {TorusCase{.nodes = {2, 2, 2}, .voxels = {3, 3, 3}},
                    TorusCase{
@@ -87,7 +87,7 @@ TEST_CASE("recording a history does not change the image or the counts", "[torus
           image_and_counts(render_torus(test_scene(), c)));
 }
 
-TEST_CASE("the history contains wide rays, which visit all voxels and return to their hit", "[torus]") {
+TEST_CASE("cycles, words and messages of wide rays are in the history", "[torus]") {
     const RenderHistory r = render_with_history(far_mirror_scene(1, "fp32"), {.nodes = {2, 2, 1}, .voxels = {3, 2, 2}});
     check_against_counts(r);
 }

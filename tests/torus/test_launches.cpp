@@ -1,5 +1,5 @@
-// Image and counts do not change if each launch does little work, or if a kernel instead of copy commands moves the
-// packets over the links.
+// Image and counts do not change if each launch does little work. They do not change either if a kernel instead of copy
+// commands transfers the packets over the links.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -83,7 +83,7 @@ NodeMemories two_nodes(const raya_torus& torus, std::uint32_t spheres) {
 
 }  // namespace
 
-TEST_CASE("bounded launches and links moved by a kernel give the image and counts of one launch per step",
+TEST_CASE("bounded launches and exchanges by a kernel give the image and counts of unbounded launches and copies",
           "[torus][slow]") {
     const std::uint64_t seed = 20261;
     SplitMix random(seed);
@@ -117,17 +117,17 @@ TEST_CASE("work-groups of many work-items give the same image", "[torus][slow]")
     const Scene scene = random_view_scene(kSceneSeeds[0]);
     TorusCase c{.width = 12, .height = 10, .nodes = {2, 2, 1}, .lanes = 1, .group = 1, .bounces = 3};
     c.queue = 400;
-    const std::string right = image_and_counts(render_torus(session, scene, c));
+    const std::string expected = image_and_counts(render_torus(session, scene, c));
     for (const std::uint32_t group : quick(2, {128u, 64u, 33u, 256u, 1024u})) {
         if (group > session.device().max_group_size) continue;
         CAPTURE(group);
         c.group = group;
         c.link_move = group == 128 ? LinkMove::kKernel : LinkMove::kCopies;
-        CHECK(image_and_counts(render_torus(session, scene, c)) == right);
+        CHECK(image_and_counts(render_torus(session, scene, c)) == expected);
     }
 }
 
-TEST_CASE("the method that moves packets over links is tuned for the device unless an option names it", "[torus]") {
+TEST_CASE("the method of link exchange is tuned for the device unless an option names it", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kSceneSeeds[0]);
     const auto rendered = [&](LinkMove link_move) {
@@ -168,15 +168,15 @@ TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterati
     status.words[RAYA_STATUS_QUEUE] = 1000;
     status.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 500;  // may arrive at node 0
 
-    LaunchPlan few = plan_of(100), many = plan_of(1'000'000);
-    CHECK(many.trace_voxel().single_launch);  // the queue is empty
-    few.update(status);
-    many.update(status);
-    CHECK(few.trace_voxel().single_launch);
-    CHECK(few.inject().single_launch);
-    CHECK(many.trace_voxel() == LaunchBudget{100'000'000, false});
-    many.clear();
-    CHECK(many.trace_voxel().single_launch);
+    LaunchPlan few_spheres = plan_of(100), many_spheres = plan_of(1'000'000);
+    CHECK(many_spheres.trace_voxel().single_launch);  // the queue is empty
+    few_spheres.update(status);
+    many_spheres.update(status);
+    CHECK(few_spheres.trace_voxel().single_launch);
+    CHECK(few_spheres.inject().single_launch);
+    CHECK(many_spheres.trace_voxel() == LaunchBudget{100'000'000, false});
+    many_spheres.clear();
+    CHECK(many_spheres.trace_voxel().single_launch);
 
     device.max_loop_iterations = 65'535;
     LaunchPlan short_loops = plan_of(100), one_voxel_too_long = plan_of(10'000);
@@ -196,7 +196,7 @@ TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterati
     CHECK(one_voxel_too_long.trace_voxel() == LaunchBudget{1, false});  // one packet per launch
 }
 
-TEST_CASE("a launch of any kernel whose loops are cut is repeated with half the work", "[torus]") {
+TEST_CASE("a launch whose loops the device cuts short is repeated with half the work, for any kernel", "[torus]") {
     struct Row {
         const char* kernel;
         const char* corruption;  // statements that corrupt what a cut launch may have written
@@ -230,14 +230,14 @@ TEST_CASE("a launch of any kernel whose loops are cut is repeated with half the 
     }
 }
 
-TEST_CASE("compose uses more work-groups if its loops were cut", "[torus]") {
+TEST_CASE("compose is repeated with more work-groups if the device cuts its loops short", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kSceneSeeds[0]);
     TorusCase c{.width = 16, .height = 15, .nodes = {2, 1, 1}, .lanes = 1, .group = 1, .bounces = 1};
-    const std::string right = image_and_counts(render_torus(session, scene, c));
+    const std::string expected = image_and_counts(render_torus(session, scene, c));
     c.sources.patches = {
         {"torus/compose.cl", "if (loops_were_cut(", "if (pixels > 4 * get_global_size(0) || loops_were_cut("}};
-    CHECK(image_and_counts(render_torus(session, scene, c)) == right);
+    CHECK(image_and_counts(render_torus(session, scene, c)) == expected);
 }
 
 TEST_CASE("a loop that the device ends early is detected in every kernel", "[torus]") {
@@ -249,7 +249,8 @@ TEST_CASE("a loop that the device ends early is detected in every kernel", "[tor
         CAPTURE(file);
         c.sources.patches = {{file, "if (loops_were_cut(", "if (!loops_were_cut("}};
         CHECK_THROWS_WITH(render_torus(session, scene, c),
-                          Catch::Contains("has ended loops early without an error") && Catch::Contains("remedy"));
+                          Catch::Contains("stopped this kernel's loops before their end and reported no error") &&
+                              Catch::Contains("remedy"));
         CHECK_THROWS_AS(render_torus(session, scene, c), DeviceError);
     }
     // The canary must detect that its loop ends after the first iteration.

@@ -1,4 +1,4 @@
-// Links transfer each packet exactly once, from a node's outbox to the node at the other end.
+// Links transfer each packet exactly once, from a node's outbox to an inbox of the node at the end of the link.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-constexpr std::uint32_t kUnsent = 0xdead0000;
+constexpr std::uint32_t kUnsent = 0xdead0000;  // words of the outboxes that hold no packet
 
 // Fills and empties the mailboxes of all nodes, as the nodes' kernels would between two exchanges.
 class Mailboxes {
@@ -46,8 +46,8 @@ class Mailboxes {
             for (std::uint32_t node = 0; node < nodes_ && torus_.sides[link / 2] > 1; ++node) {
                 std::uint32_t& packets = outbox(link, node);
                 if (random_below(random, rareness) > 0) continue;
-                const std::uint32_t more = std::min(capacity_ - packets, random_below(random, max_packets + 1));
-                for (std::uint32_t i = 0; i < more; ++i) put_packet(link, node, packets++);
+                const std::uint32_t new_packets = std::min(capacity_ - packets, random_below(random, max_packets + 1));
+                for (std::uint32_t i = 0; i < new_packets; ++i) put_packet(link, node, packets++);
                 out_[at(link * nodes_ + node)] = packets;
             }
     }
@@ -70,21 +70,23 @@ class Mailboxes {
         session_.read("test", links_.inboxes(), in_);
         std::vector<std::uint32_t> sent(links_.sent_flags().size());
         session_.read("test", links_.sent_flags(), sent);
-        std::size_t wrong_flags = 0, touched = 0;
+        std::size_t wrong_flags = 0, changed_inboxes = 0;
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             for (std::uint32_t node = 0; node < nodes_; ++node) {
                 const std::uint32_t end = raya_link_end(torus_, node, link), packets = outbox(link, node);
                 const bool occupied = inbox(link, end) > 0, sends = packets > 0 && !occupied;
                 wrong_flags += sent[link * nodes_ + node] != sends;
                 const std::size_t to = at(link * nodes_ + node);
-                if (occupied) touched += !std::equal(&in_[to], &in_[to] + (1 + capacity_) * words_, &before[to]);
-                if (!occupied && !sends) touched += in_[to] != 0;  // an empty inbox stays empty; only its header counts
+                if (occupied)
+                    changed_inboxes += !std::equal(&in_[to], &in_[to] + (1 + capacity_) * words_, &before[to]);
+                if (!occupied && !sends)
+                    changed_inboxes += in_[to] != 0;  // an empty inbox stays empty; only its header counts
                 if (!sends) continue;
                 expected[node * RAYA_LINKS + link] += std::uint64_t{packets} * words_;
                 check_arrival(link, node, end);
             }
         CHECK(wrong_flags == 0);
-        CHECK(touched == 0);
+        CHECK(changed_inboxes == 0);
         CHECK(words == expected);
     }
 
@@ -99,8 +101,8 @@ class Mailboxes {
         session_.write("test", links_.inboxes(), in_);
     }
 
-    /// Checks that every packet has arrived once, except those that wait in outboxes, and if `record`, that every
-    /// packet has been visited once.
+    /// Checks that every packet has arrived once, except packets that wait in outboxes. If `record`, also checks that
+    /// every packet has been visited once.
     void check_totals(bool record) const {
         std::uint64_t waiting = 0, counted = 0;
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box)
@@ -128,7 +130,7 @@ class Mailboxes {
     }
     std::size_t at(std::uint32_t box) const { return std::size_t{box} * (1 + capacity_) * words_; }
 
-    // Writes a packet. Its first word is its number; the other words are computed from the number.
+    // Writes a packet. Its first word is its number; the remaining words are computed from the number.
     void put_packet(std::uint32_t link, std::uint32_t node, std::uint32_t slot) {
         const auto number = static_cast<std::uint32_t>(sources_.size());
         sources_.push_back(node);
@@ -227,7 +229,7 @@ TEST_CASE("a long mailbox is copied separately from short ones if that moves few
     }
 }
 
-TEST_CASE("a link's words are those of the charged messages, not of the packets that it moves", "[torus]") {
+TEST_CASE("a link's words are those of the charged messages, not of all packets that it transfers", "[torus]") {
     Session session(choose_device(""));
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     const NodeDistribution distribution(torus);

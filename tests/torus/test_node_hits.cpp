@@ -34,8 +34,8 @@ VoxelHits voxel_hits(KernelRunner& runner, const NodeMemories& memories, std::ui
     return {runner.read(objects), runner.read(distances), runner.read(places)};
 }
 
-// Returns the scene with all patches reduced to three corners. No patch is then split, so the job's objects match the
-// scene's objects one to one.
+// Returns the scene with all patches reduced to three corners. The packer does not split such patches, so the job's
+// objects match the scene's objects one to one.
 Scene with_triangles(Scene scene) {
     for (Polygon& polygon : scene.polygons)
         if (!polygon.normals.empty()) {

@@ -34,11 +34,12 @@ class NodeCheck {
             surface(node_words[RAYA_OBJECT_SURFACE_AT], job_words[RAYA_OBJECT_SURFACE_AT]);
             node_words[RAYA_OBJECT_SURFACE_AT] = job_words[RAYA_OBJECT_SURFACE_AT];
             if (words == RAYA_POLYGON_WORDS) outline(node_words, job_words);
-            if (node_words != job_words) FAIL("words of object " << numbers[i]);
+            if (node_words != job_words) FAIL("the words of object " << numbers[i] << " differ from the job's");
         }
     }
 
-    // Compares sphere rows, which start at a multiple of four words, and the surface references that follow them.
+    // Compares the rows of the spheres, which start at a multiple of four words, and the surface offsets that follow
+    // the rows.
     void spheres(const raya_objects& node_objects, const Words& numbers) {
         const raya_objects& all = header_.objects;
         const std::uint32_t own_surfaces = raya_sphere_surfaces_at(node_objects.spheres_at, node_objects.spheres);
@@ -47,16 +48,17 @@ class NodeCheck {
         for (std::uint32_t i = 0; i < numbers.size(); ++i) {
             const Words row = node_.section(node_objects.spheres_at + i * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS);
             if (row != job_section(all.spheres_at + numbers[i] * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS))
-                FAIL("words of sphere " << numbers[i]);
+                FAIL("the words of sphere " << numbers[i] << " differ from the job's");
             surface(node_.section(own_surfaces + i, 1)[0], job_section(all_surfaces + numbers[i], 1)[0]);
         }
     }
 
     void surface(std::uint32_t node_at, std::uint32_t job_at) {
         const auto [entry, is_new] = surfaces_.try_emplace(job_at, node_at);
-        if (entry->second != node_at) FAIL("two copies of the surface at " << job_at);
+        if (entry->second != node_at)
+            FAIL("the node has two copies of the surface at word " << job_at << " of the job");
         if (is_new && node_.section(node_at, RAYA_SURFACE_WORDS) != job_section(job_at, RAYA_SURFACE_WORDS))
-            FAIL("words of the surface at " << job_at);
+            FAIL("the words of the surface at word " << job_at << " of the job differ from the job's");
     }
 
     // Checks that the surfaces follow the header without gaps, in the job's order.
@@ -76,13 +78,13 @@ class NodeCheck {
         const std::size_t corners = job_words[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS;
         if (node_.section(node_words[RAYA_POLYGON_CORNERS_AT], corners) !=
             job_section(job_words[RAYA_POLYGON_CORNERS_AT], corners))
-            FAIL("corners");
+            FAIL("the corners of a polygon differ from the job's");
         if ((node_words[RAYA_POLYGON_NORMALS_AT] == 0) != (job_words[RAYA_POLYGON_NORMALS_AT] == 0))
-            FAIL("polygon or patch");
+            FAIL("a polygon is a patch in only one of node and job");
         if (job_words[RAYA_POLYGON_NORMALS_AT] != 0 &&
             node_.section(node_words[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS) !=
                 job_section(job_words[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS))
-            FAIL("normals");
+            FAIL("the normals of a patch differ from the job's");
         node_words[RAYA_POLYGON_CORNERS_AT] = job_words[RAYA_POLYGON_CORNERS_AT];
         node_words[RAYA_POLYGON_NORMALS_AT] = job_words[RAYA_POLYGON_NORMALS_AT];
     }
@@ -204,7 +206,8 @@ TEST_CASE("a node holds only the surfaces of its own objects and of the planes",
     const auto node_of = [&](std::size_t spheres, std::size_t surfaces, std::size_t planes) {
         const std::size_t before = (sizeof(raya_node) + sizeof(raya_voxel_memory)) / 4 + surfaces * RAYA_SURFACE_WORDS +
                                    planes * RAYA_PLANE_WORDS;
-        return in_rows(in_rows(before) + spheres * (RAYA_SPHERE_WORDS + 2));  // + surface and number
+        return in_rows(in_rows(before) +
+                       spheres * (RAYA_SPHERE_WORDS + 2));  // each sphere also has words for its surface and its number
     };
     CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 3, 0), node_of(1, 1, 0)});
     scene.spheres[2].surface = 0;
@@ -213,7 +216,7 @@ TEST_CASE("a node holds only the surfaces of its own objects and of the planes",
     CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 4, 2), node_of(1, 2, 2)});
 }
 
-TEST_CASE("nodes hold the same words on a 2-D torus as on a 3-D one", "[torus]") {
+TEST_CASE("nodes hold the same words on a 2-D torus as on a 3-D torus", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
         SplitMix random(seed);
         const PackedJob job = pack(random_objects(random, 3));
@@ -234,7 +237,7 @@ TEST_CASE("nodes hold the same words on a 2-D torus as on a 3-D one", "[torus]")
     }
 }
 
-TEST_CASE("nodes with more words than 32 bits can address are refused before they are packed", "[torus]") {
+TEST_CASE("nodes with more than 2^30 words in total are refused before they are packed", "[torus]") {
     Scene scene = empty_scene();
     Polygon disc;  // 100,000 corners, 400,000 words, in each of 4,096 voxels
     for (int i = 0; i < 100'000; ++i) disc.vertices.emplace_back(std::cos(i * 6.28e-5), std::sin(i * 6.28e-5), 0);

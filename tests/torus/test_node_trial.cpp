@@ -1,4 +1,5 @@
-// If a scene does not fit a machine, raya's message names a machine and a memory size that can hold the scene.
+// If a scene does not fit a machine, raya's message names a machine and a memory size that can hold the scene. A node
+// trial packs the scene for other numbers of nodes to find them.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <regex>
@@ -63,6 +64,7 @@ TEST_CASE("the scene fits on the machine and in the memory that a refusal names"
 
 TEST_CASE("if every object is in every voxel, the refusal names no larger machine", "[torus]") {
     SplitMix random(1);
+    // e8m7 is so coarse that the region of each sphere covers the whole scene.
     const PartitionedJob partitioned_job{pack(small_spheres(random, 5000)), parse_format("e8m7")};
     for (const auto& nodes : {std::array<std::uint32_t, 3>{1, 1, 1}, {4, 4, 4}})
         CHECK_THAT(user_error_message([&] { partitioned_job.plan(nodes, nodes, 32768); }),

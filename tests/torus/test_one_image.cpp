@@ -21,8 +21,8 @@ std::uint32_t random_cases() {
 
 constexpr std::uint32_t kMaxTestNodes = 100;
 
-// Returns c with random nodes, voxels, links, injection, packet charge and queue length. None of them requires other
-// builds of the kernels.
+// Returns c with random nodes, voxels, links, injection, packet charge and queue length. The kernels need not be
+// rebuilt for them.
 TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
     do c.nodes = random_sides(random, 5);
     while (c.nodes[0] * c.nodes[1] * c.nodes[2] > kMaxTestNodes);
@@ -55,7 +55,7 @@ TorusResult render_without_deadlock(Session& session, const Scene& scene, const 
 
 }  // namespace
 
-TEST_CASE("ten scenes on several machines and queue lengths: the image is the ring's", "[torus][slow]") {
+TEST_CASE("at least ten scenes on several machines and queue lengths: the image is the ring's", "[torus][slow]") {
     struct Row {
         std::array<std::uint32_t, 3> nodes;
         Divisions voxels;
@@ -84,7 +84,8 @@ TEST_CASE("ten scenes on several machines and queue lengths: the image is the ri
         const std::string expected = ring_image_and_counts(scene, c);
         CHECK_THAT(expected, Catch::Contains("primary 216 "));
         for (const Row& row : rows) {
-            if ((&row - rows + scenes_done) % 2 == (format == "spa22")) continue;  // each format takes half of the rows
+            if ((&row - rows + scenes_done) % 2 == (format == "spa22"))
+                continue;  // each format renders half of the rows
             if (!thorough() && (scenes_done % 2 == 1 || (&row - rows) / 2 % 4 != scenes_done % 4)) continue;
             c.nodes = row.nodes;
             c.voxels = row.voxels;

@@ -38,7 +38,8 @@ struct RandomTree {
             if (random.next() % 2) add(path, level, light);
         if (random.next() % 16 == 0) add(path, level, RAYA_MAX_LIGHTS);
         if (level == last_level || contributions.size() > max_contributions) return;
-        const std::uint64_t choice = random.next() % 64;  // of 64 values: 14 both, 24 reflected, 24 refracted, 2 no ray
+        // Of 64 values, 14 add both rays, 24 only a reflected ray, 24 only a refracted ray and 2 no ray.
+        const std::uint64_t choice = random.next() % 64;
         if (choice < 38) add_subtree(raya_path_reflected(path), level + 1);
         if (choice < 14 || (choice >= 38 && choice < 62)) add_subtree(raya_path_refracted(path, level), level + 1);
     }
@@ -72,7 +73,7 @@ TEST_CASE("contributions sort into the depth-first order of the ray tree, reflec
 }
 
 TEST_CASE("the contributions of a complete tree of ten levels sort into its order", "[torus]") {
-    struct Whole {
+    struct CompleteTree {
         std::vector<Contribution> contributions{};
         void add_subtree(std::uint32_t path, std::uint32_t level) {
             for (const std::uint32_t light : {0u, 1u})

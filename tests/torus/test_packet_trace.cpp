@@ -1,5 +1,4 @@
-// The packet trace: rows and the numbers of rays and parents are compared with the names of rays in generated ray
-// trees.
+// Packet trace. The numbers of rays and parents in its rows are compared with the names of rays in generated ray trees.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -45,10 +44,10 @@ class NamedRayTree {
             if (below(2) == 0) break;
         }
         if (level == depth) return;
-        const std::uint32_t which =
-            1 + below(level < 3 ? 3 : 2);  // both only near the primary ray, because there are up to 31 levels
-        if (which & 1) grow(pixel, raya_path_reflected(path), level + 1, name + "R", depth);
-        if (which & 2) grow(pixel, raya_path_refracted(path, level), level + 1, name + "T", depth);
+        // Bit 0: reflected ray, bit 1: refracted ray. Both only below level 3, because there are up to 31 levels.
+        const std::uint32_t children = 1 + below(level < 3 ? 3 : 2);
+        if (children & 1) grow(pixel, raya_path_reflected(path), level + 1, name + "R", depth);
+        if (children & 2) grow(pixel, raya_path_refracted(path, level), level + 1, name + "T", depth);
     }
 
     std::vector<SentPacket> shuffled() {
@@ -123,16 +122,16 @@ TEST_CASE("random ray trees: rays and parents are numbered in order of appearanc
     }
 }
 
-TEST_CASE("a return that comes first gets its shadow ray's number; expected rows by hand", "[torus]") {
+TEST_CASE("a shadow ray that is recorded after its return has the number of the return's parent", "[torus]") {
     PacketTrace trace;
     const auto row = [&](std::uint32_t kind, std::uint32_t level, std::uint32_t light, std::uint32_t path) {
         trace.add({3, 1, 2, head_of(9, raya_state(kind, level, light), path), kind == RAYA_KIND_RETURN ? 6u : 22u});
     };
-    row(RAYA_KIND_RETURN, 1, 4, 1u << 31);     // 0, return of the refracted ray's shadow ray
-    row(RAYA_KIND_SHADOW, 1, 4, 1u << 31);     // 1, the parent of the return; child of 2
-    row(RAYA_KIND_REFRACTED, 1, 0, 1u << 31);  // 2, child of the primary ray, 3
-    row(RAYA_KIND_PRIMARY, 0, 0, 0);
-    row(RAYA_KIND_REFLECTED, 1, 0, 0);
+    row(RAYA_KIND_RETURN, 1, 4, 1u << 31);     // number 0: return of the refracted ray's shadow ray
+    row(RAYA_KIND_SHADOW, 1, 4, 1u << 31);     // number 1: parent of 0, child of 2
+    row(RAYA_KIND_REFRACTED, 1, 0, 1u << 31);  // number 2: child of 3
+    row(RAYA_KIND_PRIMARY, 0, 0, 0);           // number 3
+    row(RAYA_KIND_REFLECTED, 1, 0, 0);         // number 4: child of 3
     CHECK(gunzip(trace.finish()) == kHeading +
                                         "3,1,2,return,24,0,1\n3,1,2,shadow,88,1,2\n3,1,2,refracted,88,2,3\n"
                                         "3,1,2,primary,88,3,\n3,1,2,reflected,88,4,3\n");

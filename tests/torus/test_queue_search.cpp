@@ -1,4 +1,5 @@
-// The search for a queue that is long enough to avoid a deadlock and within the limits of node, device and option.
+// The search for a queue that is long enough to avoid a deadlock. The limits of the search are the memory of a node,
+// the memory of the device and a maximum length.
 #include <catch2/catch.hpp>
 #include <vector>
 
@@ -13,8 +14,8 @@ namespace {
 struct SimulatedMachine {
     std::uint32_t sufficient_queue;
     std::uint64_t node_memory = UINT64_MAX;
-    std::uint32_t device_limit = UINT32_MAX;  // the longest queue that fits into the device
-    std::uint32_t driver_limit = UINT32_MAX;  // the longest queue that the driver allocates
+    std::uint32_t device_limit = UINT32_MAX;  // longest queue that fits the device, packets
+    std::uint32_t driver_limit = UINT32_MAX;  // longest queue that the driver allocates, packets
     std::uint32_t max_queue = kMaxQueue;
     std::vector<std::uint32_t> tried{};
 
@@ -25,7 +26,7 @@ struct SimulatedMachine {
         const auto fits = [this](const NodeBuffers& b) { return b.queue <= device_limit; };
         const auto completes = [this](const NodeBuffers& b) {
             tried.push_back(b.queue);
-            if (b.queue > driver_limit) throw DeviceError("too long");
+            if (b.queue > driver_limit) throw DeviceError("the driver cannot allocate the queues");
             return b.queue >= sufficient_queue;
         };
         return find_longer_queue(queue, {.node_bytes = bytes,

@@ -27,7 +27,8 @@ TEST_CASE("a platform has a host per node, two directions and a wire per link, a
         for (const char* part : {"<host id=\"63\" speed=\"25000000f\"/>", "<link_ctn id=\"0-x\"/><link_ctn id=\"wire "})
             CHECK_THAT(xml, Catch::Contains(part));
     }
-    // On a side of 2 nodes, two links join the nodes, one in each direction round the side. Each link has its own wire.
+    // On a side of 2 nodes, two links join the nodes, one in each direction round the side. Each link has a separate
+    // wire.
     const std::string two = simgrid_platform(make_torus({2, 1, 1}, Links::kTorus3d), {.one_way = 0});
     CHECK(number_of(two, "<route src=") == 2);
     CHECK_THAT(two, Catch::Contains("\"0+x\"/><link_ctn id=\"wire 0+x\"") &&

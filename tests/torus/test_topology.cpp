@@ -17,8 +17,8 @@ constexpr std::uint32_t kLinks[] = {0, 1, 2, 3, 4, 5};
 
 bool same(const raya_place& a, const raya_place& b) { return std::equal(a.at, a.at + 3, b.at); }
 
-// Returns the distances from one node to all nodes, found by breadth-first search over the links, independent of sides
-// and routing.
+// Returns [node]: distance from the node `from`. A breadth-first search over the links finds the distances
+// independently of the torus's sides and of routing.
 std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint32_t from) {
     std::vector<std::uint32_t> distances(raya_nodes(torus), UINT32_MAX), front = {from};
     distances[from] = 0;
@@ -36,12 +36,13 @@ std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint
     return distances;
 }
 
-// Returns the links that a packet takes, at most one more than there are nodes.
-std::vector<std::uint32_t> route_of(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
+// Returns the links that a packet takes. Stops after one link more than there are nodes. Returns RAYA_NO_LINK alone if
+// the route ends in a wrong node.
+std::vector<std::uint32_t> route_of(const raya_torus& torus, std::uint32_t source, std::uint32_t destination) {
     std::vector<std::uint32_t> links;
-    for (std::uint32_t node = from; links.size() <= raya_nodes(torus);) {
-        const std::uint32_t link = raya_next_link(torus, node, to);
-        if (link == RAYA_NO_LINK) return node == to ? links : std::vector<std::uint32_t>{RAYA_NO_LINK};
+    for (std::uint32_t node = source; links.size() <= raya_nodes(torus);) {
+        const std::uint32_t link = raya_next_link(torus, node, destination);
+        if (link == RAYA_NO_LINK) return node == destination ? links : std::vector<std::uint32_t>{RAYA_NO_LINK};
         links.push_back(link);
         node = raya_link_end(torus, node, link);
     }
@@ -49,8 +50,8 @@ std::vector<std::uint32_t> route_of(const raya_torus& torus, std::uint32_t from,
 }
 
 // Returns the route that kernels/shared/torus.h defines, found by trying both directions round each side.
-std::vector<std::uint32_t> defined_route(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
-    const raya_place a = raya_torus_place(torus, from), b = raya_torus_place(torus, to);
+std::vector<std::uint32_t> defined_route(const raya_torus& torus, std::uint32_t source, std::uint32_t destination) {
+    const raya_place a = raya_torus_place(torus, source), b = raya_torus_place(torus, destination);
     std::vector<std::uint32_t> links;
     for (std::uint32_t d = 0; d < 3; ++d) {
         std::uint32_t up = 0, down = 0;
@@ -140,12 +141,13 @@ TEST_CASE("every node has one number and one place", "[torus]") {
             for (std::uint32_t j = 0; j < t.nodes[1]; ++j)
                 for (std::uint32_t i = 0; i < t.nodes[0]; ++i) {
                     const std::uint32_t node = raya_node_of(t, i, j, k);
-                    if (!numbers.insert(node).second || node >= raya_nodes(t)) FAIL("node " << node);
-                    if (!same(raya_node_place(t, node), {{i, j, k}})) FAIL("place of node " << node);
+                    if (!numbers.insert(node).second) FAIL("two nodes have the number " << node);
+                    if (node >= raya_nodes(t)) FAIL("a node has the number " << node);
+                    if (!same(raya_node_place(t, node), {{i, j, k}})) FAIL("wrong raya_node_place() of node " << node);
                     const raya_place p = raya_torus_place(t, node);
-                    if (raya_node_at(t, p) != node) FAIL("number of node " << node);
+                    if (raya_node_at(t, p) != node) FAIL("wrong raya_node_at() of the place of node " << node);
                     for (int d = 0; d < 3; ++d)
-                        if (p.at[d] >= t.sides[d]) FAIL("place of node " << node << " on the torus");
+                        if (p.at[d] >= t.sides[d]) FAIL("node " << node << " has a place outside the torus");
                 }
         CHECK(numbers.size() == raya_nodes(t));
     }
@@ -162,16 +164,19 @@ TEST_CASE("every voxel has one node and one local number", "[torus]") {
         std::vector<std::set<std::uint32_t>> held(raya_nodes(t));
         for (std::uint32_t voxel = 0; voxel < raya_voxels(g); ++voxel) {
             const std::uint32_t node = raya_node_of_voxel(t, g, voxel), local = raya_local_voxel(t, g, voxel);
-            if (!held.at(node).insert(local).second) FAIL("two voxels " << local << " in node " << node);
-            if (raya_voxel_of_node(t, g, node, local) != voxel) FAIL("voxel " << voxel);
+            if (!held.at(node).insert(local).second)
+                FAIL("two voxels of node " << node << " have the local number " << local);
+            if (raya_voxel_of_node(t, g, node, local) != voxel) FAIL("wrong raya_voxel_of_node() of voxel " << voxel);
             const raya_place v = raya_place_of(voxel, divisions[0], divisions[1]), n = raya_node_place(t, node);
-            if (raya_voxel(g, v.at[0], v.at[1], v.at[2]) != voxel) FAIL("place of voxel " << voxel);
+            if (raya_voxel(g, v.at[0], v.at[1], v.at[2]) != voxel)
+                FAIL("wrong raya_voxel() of the place of voxel " << voxel);
             for (int d = 0; d < 3; ++d)
-                if (v.at[d] % t.nodes[d] != n.at[d]) FAIL("node of voxel " << voxel);
+                if (v.at[d] % t.nodes[d] != n.at[d]) FAIL("wrong node " << node << " of voxel " << voxel);
         }
         for (std::uint32_t node = 0; node < raya_nodes(t); ++node) {
-            if (held[node].size() != raya_node_voxels(t, g, node)) FAIL("voxels of node " << node);
-            if (!held[node].empty() && *held[node].rbegin() + 1 != held[node].size()) FAIL("numbers in node " << node);
+            if (held[node].size() != raya_node_voxels(t, g, node)) FAIL("wrong raya_node_voxels() of node " << node);
+            if (!held[node].empty() && *held[node].rbegin() + 1 != held[node].size())
+                FAIL("gaps between the local voxel numbers of node " << node);
         }
     }
 }
@@ -184,16 +189,17 @@ TEST_CASE("a link leads to a neighbouring place, and the opposite link of that p
         for (std::uint32_t node = 0; node < raya_nodes(t); ++node)
             for (const std::uint32_t link : kLinks) {
                 const std::uint32_t end = raya_link_end(t, node, link), d = link / 2;
-                if (raya_link_end(t, end, link ^ 1u) != node) FAIL("back over link " << link << " of node " << node);
+                if (raya_link_end(t, end, link ^ 1u) != node)
+                    FAIL("the opposite of link " << link << " of node " << node << " does not lead back");
                 raya_place lower = raya_torus_place(t, link % 2 ? end : node);
                 lower.at[d] = (lower.at[d] + 1) % t.sides[d];
                 if (!same(lower, raya_torus_place(t, link % 2 ? node : end)))
-                    FAIL("link " << link << " of node " << node);
+                    FAIL("link " << link << " of node " << node << " does not lead to the neighbouring place");
             }
     }
 }
 
-TEST_CASE("packets take a shortest route, the documented one", "[torus]") {
+TEST_CASE("packets take the documented route, which is a shortest route", "[torus]") {
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
         SplitMix random(seed);
         const raya_torus t = random_torus(random, 6);
@@ -204,9 +210,11 @@ TEST_CASE("packets take a shortest route, the documented one", "[torus]") {
             std::uint64_t sum = 0;
             for (std::uint32_t to = 0; to < raya_nodes(t); ++to) {
                 const std::vector<std::uint32_t> links = route_of(t, from, to);
-                if (links.size() != distances[to]) FAIL(links.size() << " links from " << from << " to " << to);
-                if (raya_node_distance(t, from, to) != distances[to]) FAIL("distance from " << from << " to " << to);
-                if (links != defined_route(t, from, to)) FAIL("route from " << from << " to " << to);
+                if (links.size() != distances[to])
+                    FAIL("not a shortest route: " << links.size() << " links from " << from << " to " << to);
+                if (raya_node_distance(t, from, to) != distances[to])
+                    FAIL("wrong raya_node_distance() from " << from << " to " << to);
+                if (links != defined_route(t, from, to)) FAIL("not the documented route from " << from << " to " << to);
                 sum += raya_node_distance(t, from, to);
             }
             sums.insert(sum);

@@ -30,7 +30,7 @@ void send(TorusResult& result, std::uint32_t node, std::uint32_t link, std::uint
 
 Approx about_ms(double value) { return Approx(value).epsilon(1e-12); }
 
-TEST_CASE("a node's time consists of computing, sending and receiving; a message takes time at both ends", "[torus]") {
+TEST_CASE("a node's processor time is the time for computing, sending and receiving", "[torus]") {
     const raya_torus torus = make_torus({4, 1, 1}, Links::kTorus3d);
     TorusResult result = result_of(torus);
     result.load = load_of({1'000'000, 2'000'000, 0, 0});
@@ -56,8 +56,7 @@ TEST_CASE("both directions share a link, wrap-around links included", "[torus]")
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
     send(result, from, 2, 100, 16);
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs + 1600 * kWordMs));
-    // Two nodes along x are joined by two links, one in each direction round the side. The links do not share their
-    // rate.
+    // Two links join two nodes along x, one in each direction round the side. The links do not share bandwidth.
     TorusResult two = result_of(torus);
     send(two, 0, 0, 100, 16);
     send(two, 1, 0, 100, 16);
@@ -80,21 +79,21 @@ TorusResult random_render(SplitMix& random, const raya_torus& torus) {
     const auto below = [&](std::uint64_t limit) { return random.next() % limit; };
     const std::uint64_t work = 1 + below(100'000), traffic = 1 + below(200), idle = 1 + below(4);
     for (std::uint64_t step = 1 + below(20); step-- > 0;) {
-        Superstep counted;
+        Superstep superstep;
         for (std::uint32_t node = 0; node < cycles.size(); ++node) {
             const std::uint64_t cost = below(idle) == 0 ? below(work) : 0;
             cycles[node] += cost;
-            counted.max_node_cycles = std::max(counted.max_node_cycles, cost);
+            superstep.max_node_cycles = std::max(superstep.max_node_cycles, cost);
             for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
                 if (raya_link_end(torus, node, link) == node) continue;
                 const std::uint64_t rays = below(traffic), returns = below(traffic);
                 send(result, node, link, rays, RAYA_PACKET_WORDS);
                 send(result, node, link, returns, RAYA_RETURN_WORDS);
-                counted.max_link_words =
-                    std::max(counted.max_link_words, rays * RAYA_PACKET_WORDS + returns * RAYA_RETURN_WORDS);
+                superstep.max_link_words =
+                    std::max(superstep.max_link_words, rays * RAYA_PACKET_WORDS + returns * RAYA_RETURN_WORDS);
             }
         }
-        result.supersteps.push_back(counted);
+        result.supersteps.push_back(superstep);
     }
     result.load = load_of(std::move(cycles));
     return result;

@@ -14,16 +14,16 @@ namespace {
 
 using Slices = std::vector<TraceSchema::Slice>;
 
-struct Traced {
+struct TracedRender {
     TorusSettings settings;
     TorusResult result;
     Document trace;
     std::uint64_t packets = 0;
 };
 
-Traced render(const Scene& scene, const TorusCase& c, std::size_t nodes) {
+TracedRender render(const Scene& scene, const TorusCase& c, std::size_t nodes) {
     Session session(choose_device(""));
-    Traced t{settings_of(c), {}, {}};
+    TracedRender t{settings_of(c), {}, {}};
     TorusTrace torus_trace(t.settings.torus);
     t.result = TorusRenderer(session, scene, t.settings)
                    .render({}, {.packets =
@@ -50,7 +50,7 @@ TEST_CASE("the traced torus ends at the stepwise time, and its nodes compute for
     for (const std::uint64_t seed : {27u, 53u, 19u, 21u}) {
         const TorusCase c{.nodes = {2, 2, 2}, .links = seed % 2 ? Links::kTorus2d : Links::kTorus3d, .lanes = 4};
         CAPTURE(seed, case_text(c));
-        const Traced t = render(random_view_scene(seed), c, 8);
+        const TracedRender t = render(random_view_scene(seed), c, 8);
         const TraceSchema schema(t.trace);
         CHECK(schema.faults() == std::vector<std::string>{});
         CHECK(schema.tracks().size() == 9);
@@ -73,8 +73,8 @@ TEST_CASE("the traced torus ends at the stepwise time, and its nodes compute for
     }
 }
 
-TEST_CASE("the trace has each superstep's counters", "[torus]") {
-    const Traced t = render(random_view_scene(27), {.lanes = 4}, 3);
+TEST_CASE("the trace has the counters of each superstep and a track for each requested node", "[torus]") {
+    const TracedRender t = render(random_view_scene(27), {.lanes = 4}, 3);
     std::vector<double> live, busiest_link_words;
     for (const Document& e : t.trace["traceEvents"]) {
         if (e["name"] == "live rays") live.push_back(e["args"]["packets"]);
@@ -116,7 +116,7 @@ TEST_CASE("recording every fourth superstep gives the same packets of these supe
     CHECK(record_packets(4) == all);
 }
 
-TEST_CASE("the packet sample has its maximum size and is uniform over time", "[torus]") {
+TEST_CASE("the packet sample has kMaxPackets packets and is uniform over time", "[torus]") {
     const raya_torus torus = make_torus({1, 2, 1}, Links::kTorus3d);
     TorusTrace torus_trace(torus);
     const std::uint32_t all = 5 * TorusTrace::kMaxPackets;
@@ -146,7 +146,7 @@ TEST_CASE("the packet sample has its maximum size and is uniform over time", "[t
 }
 
 TEST_CASE("the work of the torus's kernels agrees with the counts", "[torus]") {
-    const Traced t = render(random_view_scene(27), {.lanes = 4}, 0);
+    const TracedRender t = render(random_view_scene(27), {.lanes = 4}, 0);
     const auto works = torus_kernel_work(t.settings, t.result);
     REQUIRE(works.size() == 5);
     const Operations all = operations_of(t.result.events);

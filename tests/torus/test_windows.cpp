@@ -1,4 +1,4 @@
-// A node's pixel window contains all pixels whose rays enter the box at the node's voxels, and few others.
+// A node's pixel window contains all pixels whose rays enter the box at the node's voxels, and few other pixels.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -63,7 +63,7 @@ bool enters(const raya_grid& grid, const raya_place& at, const Vec3& origin, con
 // The range ([0]: rows, [1]: columns) of the image points whose rays enter the box at a node's voxels.
 struct EntryBounds {
     double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
-    bool any() const { return low[0] <= high[0]; }
+    bool is_nonempty() const { return low[0] <= high[0]; }
 };
 
 // Finds EntryBounds from `rays_per_side` x `rays_per_side` rays per pixel.
@@ -77,12 +77,12 @@ EntryBounds entry_bounds(const Camera& c, const raya_grid& grid, const raya_toru
             const double place[2] = {static_cast<double>(row) / rays_per_side,
                                      static_cast<double>(column) / rays_per_side};
             const Vec3 d = direction_of(c, place[0], place[1]);
-            bool hit = false;
-            for (std::uint32_t i = 0; i < raya_node_voxels(torus, grid, node) && !hit; ++i) {
+            bool enters_box = false;
+            for (std::uint32_t i = 0; i < raya_node_voxels(torus, grid, node) && !enters_box; ++i) {
                 const std::uint32_t voxel = raya_voxel_of_node(torus, grid, node, i);
-                hit = enters(grid, raya_place_of(voxel, grid.divisions[0], grid.divisions[1]), eye, d);
+                enters_box = enters(grid, raya_place_of(voxel, grid.divisions[0], grid.divisions[1]), eye, d);
             }
-            for (int i = 0; i < 2 && hit; ++i) {
+            for (int i = 0; i < 2 && enters_box; ++i) {
                 bounds.low[i] = std::min(bounds.low[i], place[i]);
                 bounds.high[i] = std::max(bounds.high[i], place[i]);
             }
@@ -106,8 +106,8 @@ Vec3 middle_of(const raya_grid& grid) {
     return middle;
 }
 
-// Returns a random camera whose eye is at `distance` from the middle of the box; for short distances the eye is in the
-// box.
+// Returns a random camera whose eye is at `distance` from the middle of the box. If the distance is short, the eye is
+// in the box. `angle`: field of view in degrees.
 Camera random_camera(SplitMix& random, const raya_grid& grid, const NumberFormat& format, double distance,
                      double angle) {
     Scene scene = empty_scene();
@@ -127,14 +127,14 @@ Camera random_camera(SplitMix& random, const raya_grid& grid, const NumberFormat
 TEST_CASE("a node's window holds every pixel whose ray enters the box at its voxels", "[torus]") {
     const std::uint64_t seed = 9183;
     SplitMix random(seed);
-    std::size_t met = 0, partial_windows = 0;
+    std::size_t entered_nodes = 0, partial_windows = 0;
     for (int i = 0; i < 800; ++i) {
         const NumberFormat format = parse_format(std::array{"fp32", "spa22", "e8m12t", "e5m10", "e5m6"}[i % 5u]);
         const raya_torus torus = random_torus(random, 3);
         const raya_grid grid = random_grid(
             random, {1 + random_below(random, 5), 1 + random_below(random, 5), 1 + random_below(random, 5)});
         const double distance = std::array{0.0, 0.3, 2.0, 8.0, 30.0, 300.0, 3000.0, 10000.0}[random_below(random, 8)];
-        // From far away, the pixel spacing is as small as the last bits of a direction.
+        // If the eye is far away, the pixel spacing is as small as the last bits of a direction.
         const double angle = distance < 50 ? random.uniform(10, 150) : random.uniform(50, 300) / distance;
         const Camera camera = random_camera(random, grid, format, distance, angle);
         const auto windows = pixel_windows(camera.job, grid, torus, format);
@@ -147,8 +147,8 @@ TEST_CASE("a node's window holds every pixel whose ray enters the box at its vox
             CHECK(w.rows[1] <= camera.job.mapping.height);
             CHECK(w.columns[1] <= camera.job.mapping.width);
             const EntryBounds m = entry_bounds(camera, grid, torus, node, 1);
-            if (!m.any()) continue;
-            ++met;
+            if (!m.is_nonempty()) continue;
+            ++entered_nodes;
             partial_windows += w.rows[1] - w.rows[0] < camera.job.mapping.height;
             CHECK(m.low[0] >= w.rows[0]);
             CHECK(m.high[0] < w.rows[1]);
@@ -156,7 +156,7 @@ TEST_CASE("a node's window holds every pixel whose ray enters the box at its vox
             CHECK(m.high[1] < w.columns[1]);
         }
     }
-    CHECK(met > 1000);
+    CHECK(entered_nodes > 1000);
     CHECK(partial_windows > 200);
 }
 
@@ -174,10 +174,10 @@ TEST_CASE("a window exceeds the projection of the node's outer faces by at most 
             const EntryBounds m = entry_bounds(camera, grid, torus, node, 4);
             CAPTURE(seed, i, node, w.rows[0], w.rows[1], w.columns[0], w.columns[1], m.low[0], m.high[0], m.low[1],
                     m.high[1]);
-            // If the image's edge clips the projection, the window may exceed the bounds by more.
+            // If the image's edge clips the projection, the window may exceed the bounds by more than five pixels.
             const bool clipped = m.low[0] <= 0 || m.low[1] <= 0 || m.high[0] > camera.job.mapping.height - 1.5 ||
                                  m.high[1] > camera.job.mapping.width - 1.5;
-            if (!m.any() || clipped) continue;
+            if (!m.is_nonempty() || clipped) continue;
             ++unclipped;
             CHECK(w.rows[0] + 4 >= m.low[0]);
             CHECK(w.rows[1] <= m.high[0] + 5);

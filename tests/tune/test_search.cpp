@@ -16,12 +16,12 @@ using Cost = std::function<double(const Candidate&)>;
 const ShouldStop kNeverStop = [] { return false; };
 
 Space random_space(std::mt19937& random) {
-    const auto below = [&](std::uint32_t end) { return static_cast<std::size_t>(random() % end); };
+    const auto random_below = [&](std::uint32_t end) { return static_cast<std::size_t>(random() % end); };
     Space space;
-    const std::size_t parameters = 3 + below(3);
+    const std::size_t parameters = 3 + random_below(3);
     for (std::size_t k = 0; k < parameters; ++k) {
-        space.parameters.push_back({&TunedValues::lanes, std::vector<std::uint32_t>(2 + below(5))});
-        space.start.push_back(below(static_cast<std::uint32_t>(space.parameters.back().values.size())));
+        space.parameters.push_back({&TunedValues::lanes, std::vector<std::uint32_t>(2 + random_below(5))});
+        space.start.push_back(random_below(static_cast<std::uint32_t>(space.parameters.back().values.size())));
     }
     return space;
 }
@@ -32,7 +32,7 @@ double minimum_cost(const Space& space, const Cost& cost) {
     return minimum;
 }
 
-// A cost factor for each parameter. Each parameter has a random best value and a random growth factor; each step away
+// Cost factors of the parameters. Each parameter has a random best value and a random growth factor. Each step away
 // from the best value multiplies the cost by the growth factor.
 struct CostValley {
     CostValley(const Space& space, std::mt19937& random) {
@@ -109,7 +109,7 @@ SearchQuality search_quality(const Space& space, const Cost& cost, std::mt19937&
 TEST_CASE("search: ends within 5 % of the minimum after trying a fraction of the space", "[tune]") {
     struct Family {
         const char* name;
-        Cost (*make)(const Space&, std::mt19937&);
+        Cost (*make_cost)(const Space&, std::mt19937&);
         int max_missed;  // maximum number of searches, of 200, that may end more than 5 % above the minimum
     };
     constexpr int kSpaces = 200;
@@ -121,14 +121,15 @@ TEST_CASE("search: ends within 5 % of the minimum after trying a fraction of the
             for (unsigned seed = 1; seed <= kSpaces; ++seed) {
                 std::mt19937 random(seed);
                 const Space space = random_space(random);
-                const SearchQuality found = search_quality(space, family.make(space, random), random, noise);
+                const SearchQuality found = search_quality(space, family.make_cost(space, random), random, noise);
                 missed += found.loss > 1.05;
                 tried_fraction += found.tried_fraction / kSpaces;
-                INFO(family.name << ", noise " << noise << ", seed " << seed << ": " << found.loss);
+                INFO(family.name << ", noise " << noise << ", seed " << seed << ": cost / minimum cost " << found.loss);
                 CHECK(found.loss < 1.5);
             }
-            INFO(family.name << ", noise " << noise << ": " << missed << " of " << kSpaces << " missed, "
-                             << tried_fraction << " tried");
+            INFO(family.name << ", noise " << noise << ": " << missed << " of " << kSpaces
+                             << " searches ended more than 5 % above the minimum; mean fraction of candidates tried "
+                             << tried_fraction);
             CHECK(missed <= family.max_missed);
             CHECK(tried_fraction < 0.2);
         }
@@ -139,14 +140,14 @@ TEST_CASE("search: never returns a dropped candidate", "[tune]") {
         std::mt19937 random(seed);
         const Space space = random_space(random);
         const Cost cost = separable(space, random);
-        const std::size_t bad = random() % space.parameters[0].values.size();
+        const std::size_t dropped_value = random() % space.parameters[0].values.size();
         const MeasureRatio measure = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
-            if (candidate[0] == bad) return {};
+            if (candidate[0] == dropped_value) return {};
             return cost(candidate) / cost(best);
         };
         const SearchResult result = search(space, measure, kNeverStop);
-        CAPTURE(seed, bad);
-        CHECK((result.best[0] != bad || space.start[0] == bad));
+        CAPTURE(seed, dropped_value);
+        CHECK((result.best[0] != dropped_value || space.start[0] == dropped_value));
     }
 }
 
@@ -171,7 +172,7 @@ TEST_CASE("search: tries the parameters with two values first", "[tune]") {
     for (unsigned seed = 1; seed <= 200; ++seed) {
         std::mt19937 random(seed);
         Space space = random_space(random);
-        const std::size_t added = space.parameters.size();  // index of the parameter that is added here
+        const std::size_t added = space.parameters.size();  // index of the parameter added in the next line
         space.parameters.push_back({&TunedValues::link_exchange, {0, 1}});
         space.start.push_back(random() % 2);
         const auto two_valued = static_cast<std::size_t>(
@@ -259,7 +260,7 @@ TEST_CASE(
 TEST_CASE(
     "space_of: link exchange is a parameter of the torus only; value 2, the kernel, only if it is not the default",
     "[tune]") {
-    const auto moves_of = [](const char* type, const TuningKey& workload) {
+    const auto link_exchanges_of = [](const char* type, const TuningKey& workload) {
         DeviceInfo device;
         device.type = type;
         device.max_group_size = 256;
@@ -267,9 +268,9 @@ TEST_CASE(
             if (parameter.value == &TunedValues::link_exchange) return parameter.values;
         return std::vector<std::uint32_t>{};
     };
-    CHECK(moves_of("cpu", {}).empty());
-    CHECK(moves_of("cpu", {.torus = true}) == std::vector<std::uint32_t>{0, 1});
-    CHECK(moves_of("gpu", {.torus = true}) == std::vector<std::uint32_t>{0, 1, 2});
+    CHECK(link_exchanges_of("cpu", {}).empty());
+    CHECK(link_exchanges_of("cpu", {.torus = true}) == std::vector<std::uint32_t>{0, 1});
+    CHECK(link_exchanges_of("gpu", {.torus = true}) == std::vector<std::uint32_t>{0, 1, 2});
     DeviceInfo cpu;
     cpu.type = "cpu";
     const Space space = space_of(cpu, {.torus = true});

@@ -11,7 +11,7 @@ namespace {
 Trial make_trial(TrialStatus status) {
     Trial trial;
     trial.status = status;
-    trial.when = "2026-11-22T23:59:59Z";
+    trial.ended_at = "2026-11-22T23:59:59Z";
     trial.build_s = 0.5;
     if (status == TrialStatus::kCorrect) trial.samples = {{0.2, 0.1, 0.3}, {0.08, 0.1, 0.24}};
     return trial;
@@ -63,12 +63,12 @@ TEST_CASE("wins_significantly: requires a gain in nearly all pairs, and above th
 }
 
 TEST_CASE("ratio_of: is the larger of the ratio of minimum times and the median ratio of pairs", "[tune]") {
-    const Trial wins = make_trial(TrialStatus::kCorrect);  // minima: 0.08 / 0.1; pairs: 0.4, 1.0, 0.8
-    CHECK(ratio_of(wins) == Approx(0.8));
-    Trial one_spike = wins;
-    one_spike.samples = {{0.2, 0.2, 0.2}, {0.1, 0.2, 0.21}};  // minima: 0.5; median of pairs: 1
-    CHECK(ratio_of(one_spike) == Approx(1.0));
-    Trial disturbed = wins;
+    const Trial faster = make_trial(TrialStatus::kCorrect);  // minima: 0.08 / 0.1; pairs: 0.4, 1.0, 0.8
+    CHECK(ratio_of(faster) == Approx(0.8));
+    Trial one_fast_sample = faster;
+    one_fast_sample.samples = {{0.2, 0.2, 0.2}, {0.1, 0.2, 0.21}};  // minima: 0.5; median of pairs: 1
+    CHECK(ratio_of(one_fast_sample) == Approx(1.0));
+    Trial disturbed = faster;
     disturbed.samples = {{0.1, 0.4, 0.4}, {0.2, 0.2, 0.2}};  // minima: 2; median of pairs: 0.5
     CHECK(ratio_of(disturbed) == Approx(2.0));
     CHECK(ratio_of(make_trial(TrialStatus::kTimeout)) == 1);

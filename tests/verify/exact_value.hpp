@@ -62,25 +62,25 @@ class IeeeOracle {
     }
     template <class Operation>
     float rounded(const Operation& operation) {
-        const mpfr_exp_t lowest = mpfr_get_emin(), highest = mpfr_get_emax();
+        const mpfr_exp_t min_exponent = mpfr_get_emin(), max_exponent = mpfr_get_emax();
         int inexact = operation(z_);
         mpfr_set_emin(-148);  // exponent range of binary32 (MPFR manual)
         mpfr_set_emax(128);
         inexact = mpfr_check_range(z_, inexact, MPFR_RNDN);
         mpfr_subnormalize(z_, inexact, MPFR_RNDN);
-        mpfr_set_emin(lowest);
-        mpfr_set_emax(highest);
+        mpfr_set_emin(min_exponent);
+        mpfr_set_emax(max_exponent);
         return mpfr_get_flt(z_, MPFR_RNDN);
     }
 
     Mpfr a_{24}, b_{24}, c_{24}, z_{24};
 };
 
-/// Feature of a result that would differ if it were rounded first to fp32 and then to the format.
-inline constexpr const char* kTwice = "rounded twice is wrong";
+/// Feature of a result: rounding the exact value first to fp32 and then to the format gives another result.
+inline constexpr const char* kDoubleRounding = "double rounding is wrong";
 
 /// Returns the features of the rounding of `exact` to `expected`: the position of `exact` between neighbouring numbers
-/// of the format, a result of 0, infinity or NaN, a carry into the exponent, and kTwice.
+/// of the format, a result of 0, infinity or NaN, a carry into the exponent, and kDoubleRounding.
 inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const NumberFormat& format) {
     const int bits = format.fraction_bits + 1;
     std::set<std::string> features;
@@ -95,8 +95,8 @@ inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const N
         note("flushed");
         return features;
     }
-    // `exact` truncated to the format's precision, to 1 bit more, and to 12 bits more; and rounded away from 0 to 12
-    // bits more.
+    // `exact` truncated to the format's precision, to 1 bit more and to 12 bits more; fine_away: 12 bits more, rounded
+    // away from zero.
     Mpfr truncated(bits), half_steps(bits + 1), fine(bits + 12), fine_away(bits + 12);
     Mpfr midpoint(bits + 1);           // of `truncated` and the format's next number away from 0
     Mpfr as_fp32(24), via_fp32(bits);  // `exact` rounded to fp32, and then to the format
@@ -126,7 +126,7 @@ inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const N
     // Does rounding to fp32 first give another result?
     mpfr_set(as_fp32, exact, MPFR_RNDN);
     mpfr_set(via_fp32, as_fp32, format.truncates ? MPFR_RNDZ : MPFR_RNDN);
-    if (bits < 24 && mpfr_get_flt(via_fp32, MPFR_RNDN) != expected) features.insert(kTwice);
+    if (bits < 24 && mpfr_get_flt(via_fp32, MPFR_RNDN) != expected) features.insert(kDoubleRounding);
     int exponent = 0;
     if (up && std::frexp(std::abs(expected), &exponent) == 0.5F) note("carries into the next binade");
     return features;

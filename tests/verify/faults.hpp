@@ -44,6 +44,7 @@ struct CountFault {
     const char* only;  // value of --only that selects one of the checks that must fail
 };
 
+// Values of CountFault::only.
 inline const char* const kOnGlass = "image glass fp32: tiles";
 inline const char* const kOnCones = "image cones e5m10";
 inline const char* const kOnGrid = "image polygons fp32: cyclic:8 on 20, grid";
@@ -88,8 +89,9 @@ inline const std::vector<CountFault> kCountFaults = {
      kOnTorus},
     {"shadow_hits", {"torus/shade_packets.clh", "RAYA_SHADOW_HITS, stopped", "RAYA_LIT, stopped"}, kOnTorus}};
 
-/// Return a fault in the code that sums the counts of a pixel (ring) or node (torus). `event`: RAYA_*. `how`: 0: the
-/// event is counted as another event; 1: not counted; 2: counted twice.
+/// ring_count_fault() returns a fault in the code that sums the counts of a pixel, torus_count_fault() in the code that
+/// sums the counts of a node. `event`: RAYA_*. `how`: 0: the event is counted as another event; 1: not counted; 2:
+/// counted twice.
 inline SourcePatch ring_count_fault(int event, int how) {
     if (how == 0)
         return {"ring/pixel_store.clh", "store->totals[e].all += events;",

@@ -14,8 +14,8 @@
 
 namespace raya {
 
-/// Feature of a row whose result would differ with another method: a * b + c fused instead of unfused or the reverse,
-/// or a division as multiplication by the reciprocal.
+/// Feature of a row whose result would differ with another method. For a * b + c the other method is unfused instead of
+/// fused, or the reverse; for a division it is the multiplication by the reciprocal.
 inline constexpr const char* kOtherMethod = "another method is wrong";
 
 /// Computes operations, and the rounding features of the results. `Oracle`: MpfrOracle, or IeeeOracle for fp32.
@@ -174,11 +174,11 @@ inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const
 }
 
 /// Returns the rows of one operation: goes through the candidates in order, and keeps a candidate if one of its
-/// features is in fewer than two rows so far (six for kOtherMethod and kTwice).
+/// features is in fewer than two rows so far (six for kOtherMethod and kDoubleRounding).
 template <class Oracle>
 std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t operation, const NumberFormat& format) {
     const auto wanted_rows = [](const std::string& feature) {
-        return feature == kOtherMethod || feature == kTwice ? 6 : 2;
+        return feature == kOtherMethod || feature == kDoubleRounding ? 6 : 2;
     };
     const std::size_t operands = kNumberOperations[operation].operands;
     std::map<std::string, int> seen;
@@ -220,8 +220,8 @@ inline FormatAnswers answers_in(const NumberFormat& format) {
     return oracle_answers(oracle, format);
 }
 
-/// Returns the text of host/verify/known_answers.csv. The text has at least one format for each code path of
-/// the number layer.
+/// Returns the text of host/verify/known_answers.csv. The text has at least one format for each code path of the number
+/// layer.
 inline std::string make_known_answers() {
     std::vector<FormatAnswers> all;
     for (const char* name :

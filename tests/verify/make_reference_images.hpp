@@ -20,7 +20,7 @@ inline std::string make_reference_images() {
     for (const ReferenceImage& image : reference_images()) {
         const Image pixels = render_reference(image);
         Session session(choose_device(""));
-        all.push_back({image.name, pixel_hash(pixels), pixels, counts_by_variant(session, image)});
+        all.push_back({image.name, pixel_hash(pixels), pixels, counts_by_check_kind(session, image)});
     }
     return reference_images_text(all);
 }

@@ -98,12 +98,14 @@ TEST_CASE("faults of arithmetic, hits and grid: image checks fail too", "[verify
     struct Row {
         SourcePatch fault;
         const char* only;
-        Names wrong;
+        Names wrong;  // names of the checks that must fail
     };
     const Row rows[] = {
         {kRoundingFault, "image cones e5m10", {"cones e5m10: cyclic:8 on 20, division refined"}},
         {kContractionFault, "image glass fp32: cyclic:8 on 20", {"glass fp32: cyclic:8 on 20"}},
-        {kDivisionFault, "image ties fp32: blocks on 5, global words, division refined", {}},
+        {kDivisionFault,
+         "image ties fp32: blocks on 5, global words, division refined",
+         {}},  // the patched code is not compiled
         {kDivisionFault,
          "image glass fp32: cyclic:8 on 7",
          {"glass fp32: cyclic:8 on 7, block fold, launches of 40 tests"}},
@@ -123,7 +125,7 @@ TEST_CASE("faults of arithmetic, hits and grid: image checks fail too", "[verify
 TEST_CASE("a kernel that does nothing: its checks fail", "[verify][faults]") {
     struct Row {
         const char *file, *kernel, *only;
-        std::size_t wrong;
+        std::size_t wrong;  // number of checks that must fail
     };
     const Row rows[] = {{"checks/hits.cl", "hits_without_accel", ", fp32", 5},
                         {"checks/hits.cl", "hits_with_accel", ", fp32", 5},
@@ -211,7 +213,7 @@ TEST_CASE("count faults: only image checks fail, all that count the event", "[ve
     CHECK(failures(checks).size() >= 8);
 }
 
-TEST_CASE("reference images: have the counts of the ring and of other variants", "[verify]") {
+TEST_CASE("reference images: have the counts of the ring and of other check kinds", "[verify]") {
     for (const ReferenceImage& image : reference_images()) CHECK(stored_image(image).counts.contains("ring"));
     CHECK_THAT(stored_image(reference_image_named("polygons fp32")).counts.at("bvh"),
                Catch::StartsWith("primary 400 "));

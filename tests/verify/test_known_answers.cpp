@@ -58,7 +58,7 @@ TEST_CASE("known answers: every format has every operation, and covers ties and 
                                         "just above a tie +", "just below a tie -", kOtherMethod})
                 CHECK(seen.count(feature) == 1);
             CHECK(seen.count(answers.format.truncates ? "tie down +" : "tie up +") == 1);
-            if (answers.format.fraction_bits >= 10) CHECK(seen.count(kTwice) == 1);
+            if (answers.format.fraction_bits >= 10) CHECK(seen.count(kDoubleRounding) == 1);
         }
     }
 }

@@ -11,9 +11,8 @@
 
 namespace raya {
 
-// The test tools.verify runs raya verify --quick, which compares the remaining images.
-TEST_CASE("reference images that verify --quick does not check: equal new renders on the default device",
-          "[verify][slow]") {
+// Another test, `tools.verify`, runs `raya verify --quick`, which compares the other images.
+TEST_CASE("reference images outside verify --quick equal new renders on the default device", "[verify][slow]") {
     const std::vector<std::string> quick = check_names(choose_device(""), {.only = "image "});
     std::size_t compared = 0;
     for (const ReferenceImage& image : reference_images()) {
@@ -23,13 +22,13 @@ TEST_CASE("reference images that verify --quick does not check: equal new render
             continue;
         CHECK(pixel_hash(render_reference(image)) == stored_image(image).hash);
         Session session(choose_device(""));
-        CHECK(counts_by_variant(session, image) == stored_image(image).counts);
+        CHECK(counts_by_check_kind(session, image) == stored_image(image).counts);
         ++compared;
     }
     CHECK(compared == 6);
 }
 
-TEST_CASE("reference images in fp32: equal the reference renderer within its tolerance", "[verify]") {
+TEST_CASE("fp32 reference images agree with the reference renderer within its tolerance", "[verify]") {
     for (const ReferenceImage& image : reference_images()) {
         if (image.format != "fp32" || image.antialias != AntialiasMethod::kNone) continue;
         CAPTURE(image.name);

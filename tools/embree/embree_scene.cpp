@@ -49,7 +49,7 @@ float cone_hit(const PeerCone& c, V3 origin, V3 direction, float near, float far
     const float constant = dot(side, side) - radius * radius, discriminant = b * b - a * constant;
     constexpr float kNoHit = 1e30f;
     if (!(discriminant > 0)) return kNoHit;
-    const float root = std::sqrt(discriminant), q = b > 0 ? -(b + root) : root - b;
+    const float square_root = std::sqrt(discriminant), q = b > 0 ? -(b + square_root) : square_root - b;
     const float by_a = q / a, by_q = constant / q;
     const float in = b > 0 ? by_a : by_q, out = b > 0 ? by_q : by_a;  // t where the ray enters and leaves the cone
     for (const float t : {std::min(in, out), std::max(in, out)}) {

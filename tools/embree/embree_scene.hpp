@@ -1,4 +1,5 @@
-// A raya scene in Embree: Embree's spheres and triangles; cones as user geometry; planes outside Embree.
+// A raya scene in Embree. Spheres and triangles are Embree's geometries, cones are user geometry. EmbreeScene itself
+// intersects planes, because Embree has no infinite ones.
 #pragma once
 #include <embree3/rtcore.h>
 

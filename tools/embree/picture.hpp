@@ -140,7 +140,7 @@ class Picture {
                 lanes[i].stack.push_back({camera_.eye, camera_.direction(row, column), 1, 0});
         }
         long rays = 0;
-        while (const long taken = step(lanes, context, rays)) rays += taken;
+        while (const long traced_rays = trace_next_rays(lanes, context, rays)) rays += traced_rays;
         for (int i = 0; i < kPacketRays; ++i) {
             const int row = top + i / kTileSide, column = left + i % kTileSide;
             if (row < camera_.height && column < camera_.width) pixel(row, column) = lanes[i].colour;
@@ -150,19 +150,19 @@ class Picture {
 
     // Traces the next ray of each lane's tree. Returns the number of traced rays; adds the number of shadow rays to
     // `rays`.
-    long step(std::array<Lane, kPacketRays>& lanes, RTCIntersectContext& context, long& rays) const {
+    long trace_next_rays(std::array<Lane, kPacketRays>& lanes, RTCIntersectContext& context, long& rays) const {
         alignas(64) std::array<int, kPacketRays> valid{};
         alignas(64) RTCRayHit16 q;
-        long taken = 0;
+        long traced_rays = 0;
         for (int i = 0; i < kPacketRays; ++i) {
             if (lanes[i].stack.empty()) continue;
             const PendingRay& r = lanes[i].ray = lanes[i].stack.pop();
             valid[i] = -1;
-            ++taken;
+            ++traced_rays;
             set_ray(q.ray, i, r.origin, r.direction, kFar);
             q.hit.geomID[i] = q.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         }
-        if (taken == 0) return 0;
+        if (traced_rays == 0) return 0;
         rtcIntersect16(valid.data(), whitted_.embree().rtc(), &context, &q);
         for (int i = 0; i < kPacketRays; ++i) {
             if (valid[i] == 0) continue;
@@ -181,17 +181,17 @@ class Picture {
         for (const PeerLight& light : whitted_.lights()) rays += add_light(lanes, valid, light, context);
         for (int i = 0; i < kPacketRays; ++i)
             if (valid[i] != 0) whitted_.push_secondary_rays(lanes[i].stack, lanes[i].ray, lanes[i].point);
-        return taken;
+        return traced_rays;
     }
 
-    // Adds the contribution of a light to the lanes with a hit. Returns the number of shadow rays.
+    // Adds the contribution of a light to the colours of the lanes with a hit. Returns the number of shadow rays.
     long add_light(std::array<Lane, kPacketRays>& lanes, const std::array<int, kPacketRays>& valid,
                    const PeerLight& light, RTCIntersectContext& context) const {
         alignas(64) std::array<int, kPacketRays> unblocked{};
         alignas(64) RTCRay16 s;
         std::array<V3, kPacketRays> to_light;
         long rays = 0;
-        bool any = false;
+        bool has_unblocked = false;
         for (int i = 0; i < kPacketRays; ++i) {
             const ShadingPoint& m = lanes[i].point;
             if (valid[i] == 0) continue;
@@ -203,9 +203,9 @@ class Picture {
             if (whitted_.embree().plane_blocks(m.outer, to_light[i], distance)) continue;
             set_ray(s, i, m.outer, to_light[i], distance);
             unblocked[i] = -1;
-            any = true;
+            has_unblocked = true;
         }
-        if (any) rtcOccluded16(unblocked.data(), whitted_.embree().rtc(), &context, &s);
+        if (has_unblocked) rtcOccluded16(unblocked.data(), whitted_.embree().rtc(), &context, &s);
         for (int i = 0; i < kPacketRays; ++i)
             if (unblocked[i] != 0 && s.tfar[i] > 0)
                 lanes[i].colour =

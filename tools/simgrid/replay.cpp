@@ -7,7 +7,10 @@
 // Prints "finish_ms T", the simulated time in ms, and "delivered N", the number of messages. --cfg: options of SimGrid.
 // Exit codes: 0 done; 2 bad arguments, or a file that cannot be read; 4 deadlock.
 // REPLAY is text, written by `raya render --machine torus --packets FILE.csv.gz --replay simgrid` (docs/packets.md):
-//   machine NODES BUFFER ENTERING MESSAGE_CYCLES WORD_CYCLES
+//   machine NODES BUFFER ENTRY_SLOTS MESSAGE_CYCLES WORD_CYCLES
+//       BUFFER: number of slots of an output thread for messages of one class; ENTRY_SLOTS: number of free slots that a
+//       ray needs to enter a link of another axis; MESSAGE_CYCLES + words x WORD_CYCLES: processor cycles for sending
+//       or for receiving a message
 //   t NODE CYCLES CAUSE             a task; CAUSE: index of the message whose arrival starts it, from 0, or -
 //   m WORDS CLASS DIRECTION NODE .. a message of the preceding task; CLASS 0: return, 1: ray; then its hops
 #include <array>
@@ -41,14 +44,14 @@ struct Message {
     double words = 0;
     int cls = 0;
     std::vector<Hop> route;
-    std::size_t hop = 0;  // number of links that the message has passed
-    std::size_t task = kNoTask;
+    std::size_t hop = 0;         // number of links that the message has passed
+    std::size_t task = kNoTask;  // the task that the message starts when it arrives
 };
 
 struct Task {
     std::size_t node = 0;
     double cycles = 0;
-    std::vector<Message*> sends;
+    std::vector<Message*> sent_messages;
 };
 
 // One direction of a link. For each class of messages: `out`, the messages in the output thread; `is_input_busy`, true
@@ -69,7 +72,7 @@ struct Node {
 };
 
 struct Machine {
-    std::size_t buffer = 0, entering = 0;
+    std::size_t buffer = 0, entry_slots = 0;
     double message_cycles = 0, word_cycles = 0;
     std::vector<Node> nodes;
     std::vector<Task> tasks;
@@ -106,17 +109,17 @@ void deliver(Message* message, std::size_t at) {
     wake(machine.nodes[at]);
 }
 
-// Puts a message into the output thread of its next link; waits for a free buffer. `arrival`: direction in which the
+// Puts a message into the output thread of its next link; waits for free slots. `arrival`: direction in which the
 // message arrived; -1: from the main task.
 void put(std::size_t at, Message* message, int arrival) {
     Node& node = machine.nodes[at];
     const Hop next = message->route[message->hop];
     Port& port = *machine.ports.at({at, next.direction});
     std::deque<Message*>& out = port.out[message->cls];
-    const bool stays_in_ring = message->cls == 0 || arrival == next.direction;
-    const std::size_t needs = stays_in_ring ? 1 : machine.entering;
+    const bool needs_one_slot = message->cls == 0 || arrival == next.direction;
+    const std::size_t required_slots = needs_one_slot ? 1 : machine.entry_slots;
     std::unique_lock<sg::Mutex> lock(*node.lock);
-    while (out.size() + needs > machine.buffer) node.changed->wait(lock);
+    while (out.size() + required_slots > machine.buffer) node.changed->wait(lock);
     out.push_back(message);
     wake(node);
 }
@@ -134,7 +137,7 @@ void main_task(std::size_t at) {
         }
         if (machine.tasks[task].cycles > 0) sg::this_actor::execute(machine.tasks[task].cycles);
         machine.finish_one();
-        for (Message* message : machine.tasks[task].sends)
+        for (Message* message : machine.tasks[task].sent_messages)
             if (message->route.empty())
                 deliver(message, at);
             else
@@ -189,7 +192,7 @@ void read_message(std::istringstream& words) {
     }
     if (!words.eof()) fail("expected a route DIRECTION NODE ...");
     machine.messages.push_back(message);
-    machine.tasks.back().sends.push_back(&machine.messages.back());
+    machine.tasks.back().sent_messages.push_back(&machine.messages.back());
 }
 
 void read_task(std::istringstream& words) {
@@ -213,9 +216,9 @@ void read_replay(const std::string& file) {
         words >> kind;
         if (kind == "machine") {
             std::size_t nodes = 0;
-            if (!(words >> nodes >> machine.buffer >> machine.entering >> machine.message_cycles >>
+            if (!(words >> nodes >> machine.buffer >> machine.entry_slots >> machine.message_cycles >>
                   machine.word_cycles))
-                fail("expected machine NODES BUFFER ENTERING MESSAGE_CYCLES WORD_CYCLES");
+                fail("expected machine NODES BUFFER ENTRY_SLOTS MESSAGE_CYCLES WORD_CYCLES");
             machine.nodes = std::vector<Node>(nodes);
         } else if (kind == "t") {
             read_task(words);
@@ -235,7 +238,7 @@ void start(const std::string& name, sg::Host* host, const std::function<void()>&
 // Creates ports and threads for the links that messages use.
 void start_actors() {
     for (const Task& task : machine.tasks)
-        for (const Message* message : task.sends) {
+        for (const Message* message : task.sent_messages) {
             std::size_t from = task.node;
             for (const Hop& hop : message->route) {
                 auto& port = machine.ports[{from, hop.direction}];

@@ -83,8 +83,8 @@ def render(scene, *, progress=False, session=None, **options):
 
 
 def program():
-    """Returns the path of the program `raya`: the value of the environment variable RAYA_PROGRAM if it is the path of a
-    program, else the program of the build or installation that contains this package, else the program in PATH. Raises FileNotFoundError."""
+    """Returns the path of the program `raya`: the value of the environment variable RAYA_PROGRAM if it is the path of a program, else
+    the program of the build or installation that contains this package, else the program in PATH. Raises FileNotFoundError."""
     package = Path(__file__).absolute().parent
     candidates = [os.environ.get("RAYA_PROGRAM"), package / "raya", package / "../../raya", package / "../../../../bin/raya",
                   shutil.which("raya")]

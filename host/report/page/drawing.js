@@ -5,8 +5,7 @@
 // --- Colours in OKLCH (B. Ottosson, "A perceptual color space for image processing", 2020), a colour space in which
 // all hues of a lightness look equally light.
 
-// Returns [red, green, blue], 0..255. light: 0..1, hue: degrees.
-
+// Returns [red, green, blue], 0..255. light: 0..1; chroma: 0 for grey, up to about 0.3; hue: degrees.
 function rgbOf(light, chroma, hue) {
   const a = chroma * Math.cos(hue * Math.PI / 180), b = chroma * Math.sin(hue * Math.PI / 180);
   const l = (light + 0.3963377774 * a + 0.2158037573 * b) ** 3, m = (light - 0.1055613458 * a - 0.0638541728 * b) ** 3;
@@ -48,7 +47,7 @@ function diverging(values) {
 
 // --- SVG. Lengths are in units of the view box, in which the font size is 12.5 (style.css).
 
-const WIDE = 480, HIGH = 250, LEFT = 52, RIGHT = 456, TOP = 26, BOTTOM = 212;
+const VIEW_WIDTH = 480, VIEW_HEIGHT = 250, LEFT = 52, RIGHT = 456, TOP = 26, BOTTOM = 212;
 
 function svg(tag, attributes, ...children) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
@@ -64,9 +63,9 @@ const box = (kind, x0, y0, x1, y1) => path(kind, `M${at(x0)} ${at(y0)}H${at(x1)}
 const label = (anchor, x, y, text) => svg("text", {x: at(x), y: at(y), "text-anchor": anchor}, text);
 const dot = (x, y, radius = 4, kind = "dot") => svg("circle", {class: kind, cx: at(x), cy: at(y), r: radius});
 
-const chart = (description, marks, high = HIGH) => svg(
-  "svg", {class: "chart", viewBox: `0 0 ${WIDE} ${high}`, role: "img", "aria-label": description},
-  box("ground", 0, 0, WIDE, high), ...marks.flat());
+const chart = (description, marks, height = VIEW_HEIGHT) => svg(
+  "svg", {class: "chart", viewBox: `0 0 ${VIEW_WIDTH} ${height}`, role: "img", "aria-label": description},
+  box("ground", 0, 0, VIEW_WIDTH, height), ...marks.flat());
 
 // Returns about `count` round numbers from 0 to `max`.
 function ticksOf(max, count) {
@@ -91,7 +90,7 @@ function linear(name, max, count, whole = false) {
   };
 }
 
-// Returns a logarithmic axis over whole decades.
+// Returns a logarithmic axis over the decades that contain the values from `min` to `max`.
 function decades(name, min, max) {
   const begin = Math.floor(Math.log10(min)), end = Math.max(begin + 1, Math.ceil(Math.log10(max)));
   const step = Math.max(1, Math.ceil((end - begin) / 8)), ticks = [];
@@ -109,17 +108,17 @@ function decades(name, min, max) {
 // and labels.
 function plane(across, up) {
   const x = (v) => LEFT + (RIGHT - LEFT) * across.to(v), y = (v) => BOTTOM - (BOTTOM - TOP) * up.to(v);
-  const grid = [label("start", 4, 14, up.name), label("end", RIGHT, HIGH - 4, across.name)];
+  const grid = [label("start", 4, 14, up.name), label("end", RIGHT, VIEW_HEIGHT - 4, across.name)];
   for (const tick of up.ticks)
     grid.push(line("grid", [LEFT, y(tick)], [RIGHT, y(tick)]), label("end", LEFT - 6, y(tick) + 4, up.text(tick)));
   for (const tick of across.ticks) grid.push(label("middle", x(tick), BOTTOM + 16, across.text(tick)));
   return {x, y, grid};
 }
 
-// Returns a chart with vertical bars of `values`, and a line at their mean. If there are more than 416 values, a column
-// shows several of them: dark up to their minimum, pale up to their maximum. colour(first, count), optional: returns
-// the colour of the column that shows the values first .. first + count - 1. top: minimum for the upper end of the
-// axis.
+// Returns a chart with a vertical bar for each of `values`, and a line at `mean`. [across, up]: names of the axes. If
+// there are more than 416 values, a column shows several values: dark up to their minimum, pale up to their maximum.
+// colour(first, count), optional: returns the colour of the column that shows the values first .. first + count - 1.
+// top: minimum for the upper end of the axis.
 function bars(description, [across, up], values, mean, {colour = null, top = 0} = {}) {
   const count = values.length, columns = count <= 416 ? count : 208, wide = (RIGHT - LEFT) / columns,
         gap = columns > 100 ? 0.1 : 0.2;
@@ -155,7 +154,8 @@ function namedBars(description, rows) {
 }
 
 // Returns a roofline chart: numbered points [operations per byte, thousand million operations per second], and the roof
-// min(x * slope, top). tops: [name, top]; the second, lower top is dashed.
+// min(x * slope, top). slope: thousand million bytes per second. tops: [name, top] of one or two roofs; the second roof
+// is lower and dashed.
 function roof(description, slope, tops, points) {
   const xs = [tops[0][1] / slope, ...points.map(([x]) => x)],
         ys = [...tops.map(([, v]) => v), ...points.map(([, y]) => y)];

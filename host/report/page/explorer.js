@@ -10,8 +10,9 @@ const explorer = {
   size: null,
   state: null,
   figures: null,
-  hovered: null,
-  pointed: "",
+  hovered: null,  // PE under the pointer, or null
+  pointed: "",    // text about the pixel under the pointer
+  // Imbalance u of each offset: number of PEs, number of offsets computed so far, u by fold, minimum, maximum.
   curves: {pes: 0, known: 0, values: null, best: null, worst: 0},
 
   // The highlighted PE, or null.

@@ -18,7 +18,7 @@ const CONTROLS = {
 
 function fillControls(page) {
   const {width, height} = page.size, root = rootOf(width) % width;
-  const ends = {
+  const maxima = {
     "offset-slider": width - 1,
     offset: width - 1,
     "pes-slider": width,
@@ -26,7 +26,7 @@ function fillControls(page) {
     "grid-a": height,
     "grid-b": width
   };
-  for (const [id, end] of Object.entries(ends)) $(id).max = end;
+  for (const [id, maximum] of Object.entries(maxima)) $(id).max = maximum;
   for (const [id, side] of [["tile-w", width], ["tile-h", height]])
     $(id).append(...divisorsOf(side).map((d) => new Option(d, d)));
   Object.assign($("picture"), page.size);
@@ -34,7 +34,7 @@ function fillControls(page) {
     [`cyclic:0&pes=${width}&view=loads`, "Columns, by load", ": red columns where rays bounce."],
     [
       `cyclic:${root}&pes=${width}&view=loads`, "The paper’s choice, p = √P, by load",
-      ": the same cycles, spread over all."
+      ": the same cycles, spread over all PEs."
     ],
     [`cyclic:${root}&pes=${width}&pe=0`, "One PE’s pixels", ": the lattice over the whole image."],
     [`blocks&pes=${Math.min(width, height)}&view=loads`, "Contiguous blocks of lines", ": the simplest mapping."],
@@ -76,7 +76,7 @@ function listenToPointer(page) {
     return [(clientX - left) / width, (clientY - top) / height];
   };
   const clampedIndex = (value, end) => Math.min(Math.max(Math.floor(value), 0), end - 1);
-  const positionOnAxis = (id, event) => (relativePosition(id, event)[0] * WIDE - LEFT) / (RIGHT - LEFT);  // 0..1
+  const positionOnAxis = (id, event) => (relativePosition(id, event)[0] * VIEW_WIDTH - LEFT) / (RIGHT - LEFT);  // 0..1
   // owner(event): returns [PE, text] for the pointer's position.
   const listenForOwner = (id, owner) => {
     $(id).addEventListener("pointermove", (event) => page.hover(...owner(event)));

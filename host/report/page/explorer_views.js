@@ -2,7 +2,7 @@
 // not depend on the controls.
 "use strict";
 
-// Palettes: RGBA words of `count` colours in LEVELS lightness levels, [colour][level].
+// Palettes. colours() returns the RGBA words of `count` colours in LEVELS levels of lightness, [colour][level].
 const HUES = 360, LEVELS = 64;
 const colours = (count, colour) => Uint32Array.from(
   {length: count * LEVELS},
@@ -27,13 +27,13 @@ function drawPicture(canvas, f, {levels, costs, maxCost, photo}, view, focus) {
   const colourOf = (pe) => view === "owners" ?
     Math.floor(hueOf(pe, pes)) :
     Math.round(64 * (1 + (mean > 0 ? Math.min(loads[pe] / mean - 1, 1) : 0)));
-  const row = Int32Array.from({length: pes}, (_, pe) => LEVELS * colourOf(pe)),
+  const paletteRow = Int32Array.from({length: pes}, (_, pe) => LEVELS * colourOf(pe)),
         palette = view === "owners" ? OWNERS : LOADS;
   const third = (word, shift) => (word >>> shift & 255) / 3 << shift;
   for (let i = 0; i < shown.length; ++i) {
     if (view === "costs") shown[i] = COSTS[Math.round(255 * Math.sqrt(maxCost > 0 ? costs[i] / maxCost : 0)) * LEVELS];
     else if (view !== "picture")
-      shown[i] = palette[row[owners[i]] + levels[i]];
+      shown[i] = palette[paletteRow[owners[i]] + levels[i]];
     if (focus === null) continue;
     shown[i] = owners[i] === focus ? 0xffffffff :
                                      (0xff000000 | third(shown[i], 16) | third(shown[i], 8) | third(shown[i], 0)) >>> 0;
@@ -72,7 +72,7 @@ function offsetCurves(f, texts, {values, known, best}, root, current) {
     current ?
       [
         line("mark", [x(current.offset), TOP], [x(current.offset), BOTTOM]),
-        dot(x(current.offset), y(f.imbalance), 5, "here")
+        dot(x(current.offset), y(f.imbalance), 5, "current")
       ] :
       [line("mark", [LEFT, y(f.imbalance)], [RIGHT, y(f.imbalance)])]
   ]);

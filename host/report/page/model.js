@@ -15,7 +15,8 @@ const floorRatio = (n, d) => Math.floor(n / d);
 // Returns the number of integers first, first + step, ... below `end`.
 const stepsBelow = (first, step, end) => first < end ? floorRatio(end - first - 1, step) + 1 : 0;
 
-// Returns the function that maps (row, slot) to a PE, for a mapping with slots.
+// Returns the function that maps (row, slot) to a PE, for a mapping with slots. If P > W, several PEs share a slot:
+// they own its rows in turn (cyclic fold) or contiguous parts of it (block fold).
 function slotOwner({fold, pes}, {width, height}) {
   if (fold === "cyclic")
     return pes <= width ? (row, slot) => slot % pes :
@@ -38,14 +39,14 @@ function mixed(x) {
 function scrambler(count, seed) {
   let bits = 0;
   while (2 ** bits < count) ++bits;
-  const low = bits - (bits >> 1), lowMask = 2 ** low - 1, highMask = 2 ** (bits >> 1) - 1;
+  const lowBits = bits - (bits >> 1), lowMask = 2 ** lowBits - 1, highMask = 2 ** (bits >> 1) - 1;
   const keys = [1, 2, 3, 4, 5, 6].map((round) => mixed(seed + Math.imul(round, 0x9e3779b9) | 0));
   return (number) => {
     do {
       for (let round = 0; round < 6; ++round)
-        if (round & 1) number = (number ^ (mixed(keys[round] ^ number >>> low) & lowMask)) >>> 0;
+        if (round & 1) number = (number ^ (mixed(keys[round] ^ number >>> lowBits) & lowMask)) >>> 0;
         else
-          number = (number ^ (mixed(keys[round] ^ (number & lowMask)) & highMask) << low) >>> 0;
+          number = (number ^ (mixed(keys[round] ^ (number & lowMask)) & highMask) << lowBits) >>> 0;
     } while (number >= count);
     return number;
   };
@@ -106,8 +107,8 @@ function balanceOf(loads) {
   };
 }
 
-// Computes the imbalance u of the offsets from `first` on until time `deadline`, and writes the values to the curves
-// that exist: curves.cyclic, curves.block. Returns the first offset that is not computed.
+// Computes the imbalance u of the offsets from `first` on until time `deadline`, and writes the values to the members
+// of `curves`: cyclic, and block if it exists. Returns the first offset that is not computed.
 function addToCurves(curves, costs, size, pes, first, deadline) {
   const {width, height} = size, folds = Object.keys(curves);
   const owner = folds.map((fold) => slotOwner({fold, pes}, size));

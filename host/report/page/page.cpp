@@ -22,14 +22,15 @@ std::string escape_tags(std::string json) {
 // again.
 std::string fill_template(const std::string& text, const Json& report) {
     std::string page;
-    std::size_t from = 0;
-    for (std::size_t at = text.find("{{"); at != std::string::npos; at = text.find("{{", from)) {
+    std::size_t text_begin = 0;  // of the text that is not copied to the page yet
+    for (std::size_t at = text.find("{{"); at != std::string::npos; at = text.find("{{", text_begin)) {
         const std::size_t end = text.find("}}", at);
         const std::string name = text.substr(at + 2, end - at - 2);
-        page += text.substr(from, at - from) + (name == "report" ? escape_tags(report.dump(2)) : asset(name));
-        from = end + 2;
+        page +=
+            text.substr(text_begin, at - text_begin) + (name == "report" ? escape_tags(report.dump(2)) : asset(name));
+        text_begin = end + 2;
     }
-    return page + text.substr(from);
+    return page + text.substr(text_begin);
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ const message = (text) => make("p", {class: "message"}, prose(text));
 const code = (text) => make("code", {}, text);
 const part = (title, ...children) => children.flat().length ? [make("h3", {}, prose(title)), ...children] : [];
 
-// Return a list of names and values. rows: [name, text or element]; rows whose text is "" are skipped.
+// definitions() and tiles() return a list of names and values. rows: [name, text or element]; rows whose text is "" are
+// skipped.
 const definitions = (rows, attributes = {}) => make(
   "dl", attributes,
   rows.filter(([, value]) => value !== "").map(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
@@ -68,7 +69,7 @@ const tiles = (rows) => make(
   rows.filter(([, value]) => value !== "")
     .map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value))));
 
-// kind: "yes", "no" or "open".
+// Returns a text coloured as a verdict. kind: "yes", "no" or "open".
 const verdict = (kind, text) => make("span", {class: `verdict ${kind}`}, text);
 
 // --- Tables. A cell is a text, a number as text, or an element. Columns of numbers are right-aligned and sorted by

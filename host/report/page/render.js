@@ -121,11 +121,11 @@ function nodeMaps(r) {
 
 function pictures(r) {
   const size = {width: whole(r, "image.width"), height: whole(r, "image.height")}, shown = [];
-  const pixels = `${size.width} × ${size.height} pixels`, small = num(r, "image.preview.width");
+  const pixels = `${size.width} × ${size.height} pixels`, previewWidth = num(r, "image.preview.width");
   shown.push(caption(
     picture(r, "image.preview.png", `The rendered image of ${str(r, "scene")}, ${pixels}`),
     `${str(r, "image.file")}, ${pixels}${
-      small < size.width ? `; shown with ${small} × ${num(r, "image.preview.height")}` : ""}.`));
+      previewWidth < size.width ? `; shown with ${previewWidth} × ${num(r, "image.preview.height")}` : ""}.`));
   if (has(r, "torus")) shown.push(...nodeMaps(r));
   else if (!has(r, "load.requests") && size.width * size.height <= 2 ** 24)
     shown.push(...ownerMaps(r, size));
@@ -153,7 +153,7 @@ function loads(r) {
   return [
     paragraph(
       `u = (max − mean) / mean = ${fixed(num(load, "imbalance"), 3)}. The load of a ${
-        unit} is the number of each event of its rays times its cost in the ` +
+        unit} is the sum over the events of its rays of the cycles that an event costs in the ` +
       `machine's instruction budget.${phases.length ? ` By phase: ${phases.join("; ")}.` : ""}`),
     caption(bars(description, [`number of the ${unit}`, "cycles"], values, mean), description),
     table(

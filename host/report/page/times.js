@@ -5,8 +5,8 @@
 const RING_PARTS = [
   ["objects", "objects", "the scene over the bus to all PEs", /^bus\.broadcast/],
   ["compute", "compute", "tracing, and anti-aliasing", /^(trace|supersample|filter\.)/],
-  ["of it filter", "filter", "sums and means of neighbours", /^filter\./],
-  ["of it compare", "compare", "finding pixels that differ from a neighbour", /^supersample\.compare/],
+  ["compute: filter", "filter", "sums and means of neighbours", /^filter\./],
+  ["compute: compare", "compare", "finding pixels that differ from a neighbour", /^supersample\.compare/],
   ["communication", "communication", "neighbours' pixels over ring or bus", /^(ring\.|bus\.send|bus\.pe)/],
   ["image", "image", "pixels to the host", /^bus\.gather/]
 ];
@@ -24,7 +24,7 @@ function model(r) {
         ms = (key) => msText(num(r, `modelled_ms.${key}`));
   for (const [name, key, what, labels] of torus ? TORUS_PARTS : RING_PARTS) {
     const partCommands = commands.filter((command) => labels.test(str(command, "label")));
-    if (name.startsWith("of it") && num(r, `modelled_ms.${key}`) === 0 && partCommands.length === 0) continue;
+    if (name.startsWith("compute: ") && num(r, `modelled_ms.${key}`) === 0 && partCommands.length === 0) continue;
     rows.push([
       name, what, ms(key),
       partCommands.length ? msText(1e-6 * sum(partCommands.map((command) => num(command, "total_ns")))) : "-",
@@ -39,7 +39,7 @@ function model(r) {
     if (has(r, "modelled_ms.asynchronous"))
       rows.push(["whole, without supersteps", "simulated packet by packet", ms("asynchronous.finish"), "-", ""]);
   } else
-    rows.push(["whole", "the sum; parts named \"of it\" are included in compute", ms("total"), ...measured]);
+    rows.push(["whole", "the sum; compute includes the parts named \"compute: ...\"", ms("total"), ...measured]);
   return [
     paragraph(`Modelled time of ${
       machine} at its own rates, next to the measured time of this device's corresponding commands.`),

@@ -34,7 +34,8 @@ cl_device_id first_device() {
 /// Returns the kernel's build options for a format, including whether the device's fma and division are exact.
 std::string build_options(cl_device_id device, const std::string& given, int exponent_bits, int fraction_bits) {
     cl_device_fp_config floats = 0;
-    check(clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr), "asking for CL_FP_*");
+    check(clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr),
+          "reading CL_DEVICE_SINGLE_FP_CONFIG");
     const bool exact = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     return given + " -DRAYA_EXPONENT_BITS=" + std::to_string(exponent_bits) +
            " -DRAYA_FRACTION_BITS=" + std::to_string(fraction_bits) +
@@ -49,10 +50,11 @@ cl_kernel build(cl_context context, cl_device_id device, const std::string& opti
     const char* text = source.c_str();
     cl_int error = CL_SUCCESS;
     cl_program program = clCreateProgramWithSource(context, 1, &text, nullptr, &error);
-    check(error, "making the program");
-    check(clBuildProgram(program, 1, &device, options.c_str(), nullptr, nullptr), options.c_str());
+    check(error, "making the program of harmonic.cl");
+    check(clBuildProgram(program, 1, &device, options.c_str(), nullptr, nullptr),
+          ("building harmonic.cl with" + options).c_str());
     cl_kernel kernel = clCreateKernel(program, "harmonic", &error);
-    check(error, "making the kernel");
+    check(error, "making the kernel harmonic");
     clReleaseProgram(program);
     return kernel;
 }

@@ -1,4 +1,4 @@
-// Pages of reports of `raya bench`, `raya verify` and tools/gpu_day.
+// Pages of the reports of `raya bench`, `raya verify` and `tools/gpu_day`.
 "use strict";
 
 // --- raya bench
@@ -102,7 +102,7 @@ function showBench(r) {
     "raya bench", `${str(rows[0], "scene")} on ${str(r, "device.name")}`,
     paragraph(`${str(rows[0], "size")} pixels, ${str(rows[0], "array")}, ${count(rows[0], "rays")} rays an image.`),
     tiles([
-      ["best rate", `${rate(num(best, "mrays_per_s.best"))} Mrays/s`], ["by", rowName(best)],
+      ["best rate", `${rate(num(best, "mrays_per_s.best"))} Mrays/s`], ["best row", rowName(best)],
       ["rows", String(rows.length)]
     ]));
   section("rates", "Rates", () => rates(r, rows));
