@@ -36,7 +36,8 @@ namespace fs = std::filesystem;
 
 struct StudyCommand {
     std::string study, folder, device;
-    std::optional<std::uint32_t> size;
+    std::optional<std::uint32_t> size, views;
+    std::uint32_t seed = 1;
     std::vector<std::string> scenes;
     std::vector<double> network;  // alpha in microseconds per message, beta in nanoseconds per byte
     bool strict = false, no_tuned = false;
@@ -85,6 +86,11 @@ void check_study(const StudyCommand& command) {
     if (command.size && (*command.size < kMinStudySide || *command.size > kMaxStudySide))
         throw UserError(
             fmt::format("--size {}: must be {}..{} pixels a side", *command.size, kMinStudySide, kMaxStudySide));
+    constexpr std::uint32_t kMinViews = 20, kMaxViews = 5'000, kMaxSeed = 90'000;
+    if (command.views && (*command.views < kMinViews || *command.views > kMaxViews))
+        throw UserError(fmt::format("--views {}: must be {}..{}", *command.views, kMinViews, kMaxViews));
+    if (command.seed < 1 || command.seed > kMaxSeed)
+        throw UserError(fmt::format("--seed {}: must be 1..{}", command.seed, kMaxSeed));
     const std::vector<double>& times = command.network;
     const auto is_time = [](double time) { return time >= 0 && time <= 1e9; };
     if (!times.empty() && (times.size() != 2 || !std::ranges::all_of(times, is_time)))
@@ -99,10 +105,12 @@ void check_study(const StudyCommand& command) {
 
 // Returns the settings that tools/lab/__main__.py reads.
 Json settings_of(const StudyCommand& command) {
-    Json settings = {{"study", command.study},   {"scenes", command.scenes},     {"output", command.folder},
-                     {"size", nullptr},          {"network", nullptr},           {"device", command.device},
-                     {"strict", command.strict}, {"no_tuned", command.no_tuned}, {"verbosity", verbosity()}};
+    Json settings = {
+        {"study", command.study},   {"scenes", command.scenes},     {"output", command.folder}, {"size", nullptr},
+        {"network", nullptr},       {"device", command.device},     {"views", nullptr},         {"seed", command.seed},
+        {"strict", command.strict}, {"no_tuned", command.no_tuned}, {"verbosity", verbosity()}};
     if (command.size) settings["size"] = *command.size;
+    if (command.views) settings["views"] = *command.views;
     if (!command.network.empty()) settings["network"] = command.network;
     return settings;
 }
@@ -124,6 +132,13 @@ void add_study_options(CLI::App& command, StudyCommand& options) {
     add_value(command, "--size", options.size,
               "Image size in pixels a side, 17..4096; default: the study's size, 256 in most studies")
         ->type_name("N");
+    add_value(
+        command, "--views", options.views,
+        "Pictures of the ensembles of the studies of load, 20..5000, divided among the scene families; default: 108")
+        ->type_name("N");
+    add_value(command, "--seed", options.seed,
+              "Seed of the first picture of a family, 1..90000; the others count up from it; default: 1")
+        ->type_name("S");
     group.next(kMachine);
     add_value(command, "--network", options.network,
               "For study ranks: add a network with a latency ALPHA in microseconds per message and a time BETA in "

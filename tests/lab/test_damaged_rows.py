@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 raya = pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
-from raya.lab import Claim, Comparison, Page, Plot, Series, Table, document, plots, worker  # noqa: E402
+from raya.lab import Comparison, Page, Plot, Series, Table, document, plots, worker  # noqa: E402
 from raya.lab.document import write_page  # noqa: E402
 
+OPTIONS = SimpleNamespace(size=None, network=None, views=None, seed=1, device=None, no_tuned=True, verbosity=0)
 STUDY = '''"""Damaged rows
 
 What becomes of them?
@@ -21,7 +22,7 @@ What becomes of them?
 """
 import numpy as np
 import pandas as pd
-from raya.lab import Claim, Comparison, Page, Plot, Series, Table, estimate
+from raya.lab import Comparison, Page, Plot, Series, Table, above, estimate, judged
 
 
 def run(lab, scenes):
@@ -34,13 +35,14 @@ def run(lab, scenes):
 # {code that damages the rows: expected parts of the error message}
 DAMAGES = {"rows = rows.drop(columns='u')": ["damaged.py, line 15", "KeyError", "'u'"],
            "rows['u'] = rows['u'].where(rows['p'] < 16)": ["comparison 'u(16)'", "nan", "not a number"],
-           "rows = rows[rows['p'] > 16]": ["damaged.py, line 15", "IndexError"],
+           "rows = rows[rows['p'] > 16]": ["damaged.py, line 15"],
            "rows['u'] = ['1.5', 'much', '0.1']": ["damaged.py, line 15", "ValueError", "much"],
            "rows['p'] = ['0', 'eight', '16']": ["series u", "eight"],
            "rows.columns = ['u', 'u']": ["damaged.py, line 15"],
            "return Page({}, tables=[Table('damaged', 'u', [])])": ["table damaged", "no rows"],
            "return Page({})": ["its docstring has {count}, which is not a setting"],
-           "return Page({'count': 3}, claims=[Claim('', '', 'u falls.', 'yes', '')])": ["u falls.", "verdict 'yes'"],
+           "return Page({'count': 3}, claims=[judged('u-falls', above(rows['u']))])": ["damaged.py, line 14", "KeyError", "u-falls"],
+           "rows['u'] = above(['much'])": ["damaged.py, line 14", "ValueError", "much"],
            "return Page({'count': 3}, tables=2 * [Table('damaged', 'u', rows)])": ["two files have the same name"],
            "return None": ["returns NoneType, not a Page"]}
 
@@ -59,23 +61,21 @@ def study_with(folder, damage):
 
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_error_names_the_damage(folder, damage):
-    options = SimpleNamespace(size=None, network=None, device=None, no_tuned=True)
     with pytest.raises(ValueError) as error:
-        worker.run_study(study_with(folder, damage), [], folder, options)
+        worker.run_study(study_with(folder, damage), [], folder, OPTIONS)
     assert str(error.value).startswith("study damaged: ")
     for part in DAMAGES[damage]:
         assert part in str(error.value)
 
 
 def test_rows_without_damage_give_a_page(folder):
-    options = SimpleNamespace(size=None, network=None, device=None, no_tuned=True)
-    page, _ = worker.run_study(study_with(folder, "pass"), [], folder, options)
+    page, _ = worker.run_study(study_with(folder, "pass"), [], folder, OPTIONS)
     assert (page.title, page.question, page.method) == ("Damaged rows", "What becomes of them?", ["Of 3 rows."])
 
 
 def test_program_with_damaged_rows_writes_no_files(folder):
     settings = {"study": study_with(folder, next(iter(DAMAGES))), "scenes": [], "output": str(folder / "made/x"),
-                "size": None, "network": None, "device": "", "strict": False, "no_tuned": True, "verbosity": 0}
+                "size": None, "network": None, "views": None, "seed": 1, "device": "", "strict": False, "no_tuned": True, "verbosity": 0}
     path = os.pathsep.join([str(Path(raya.__file__).absolute().parents[1]), os.environ.get("PYTHONPATH", "")])
     run = subprocess.run([sys.executable, "-m", "raya.lab", "--settings", json.dumps(settings)], text=True,
                          capture_output=True, env={**os.environ, "PYTHONPATH": path}, timeout=120)
@@ -130,8 +130,3 @@ def test_comparison_needs_a_number(ours):
 def test_series_needs_equal_lengths(half_widths, y):
     with pytest.raises(ValueError, match="series u: .*differ in length"):
         Series("u", [0, 1], y, half_widths=half_widths)
-
-
-def test_claim_needs_a_known_verdict():
-    with pytest.raises(ValueError, match="unknown verdict 'perhaps'"):
-        Claim("", "", "u falls.", "perhaps", "")

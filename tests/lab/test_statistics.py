@@ -1,18 +1,55 @@
 """The laboratory's statistics: worked examples and simulations. Simulations print their seed if they fail."""
 import numpy as np
 import pytest
+from scipy import stats
 
 pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
 from raya.lab import statistics as s  # noqa: E402
 
 SEED, DRAWS = 20261124, 2000
+SIDE, POWER = 0.025, 0.8  # probability of a wrong verdict on one side; power at the detectable deviation
+# Standard deviations of u(0) in the nine families of families.py, 64 x 64 pixels, 300 seeds.
+OF_FAMILIES = [0.55, 0.72, 0.60, 0.11, 0.62, 0.07, 0.20, 0.16, 0.16]
+ONE_DOMINATES = [1] + 8 * [0.01]
+
+
+def random():
+    return np.random.default_rng(SEED)
+
+
+def error_of(probability, draws):
+    """Three standard deviations of a simulated probability."""
+    return 3 * (probability * (1 - probability) / draws) ** 0.5
+
+
+def is_at_most(part, bound, draws=DRAWS):
+    assert part <= bound + error_of(bound, draws), f"{part} of {draws} instead of at most {bound}, seed {SEED}"
+
+
+def is_about(part, wanted, draws=DRAWS):
+    assert abs(part - wanted) <= error_of(wanted, draws), f"{part} of {draws} instead of {wanted}, seed {SEED}"
+
+
+def reproduced(test):
+    return test.supports and test.p <= s.LEVEL
+
+
+def contradicted(test):
+    return not test.supports and test.p <= s.LEVEL
+
+
+def parts(tests):
+    """The fractions of the tests that are reproduced and that are contradicted."""
+    tests = list(tests)
+    return np.mean([reproduced(test) for test in tests]), np.mean([contradicted(test) for test in tests])
+
+
+# Intervals
 
 
 def covered(distribution, true_mean, count, confidence=0.95):
     """The fraction of intervals, each computed from `count` values, that contain the true mean."""
-    generator = np.random.default_rng(SEED)
-    values = distribution(generator, (DRAWS, count))
-    estimates = [s.estimate(row, confidence) for row in values]
+    estimates = [s.estimate(row, None, confidence) for row in distribution(random(), (DRAWS, count))]
     return np.mean([e.low <= true_mean <= e.high for e in estimates])
 
 
@@ -27,20 +64,91 @@ def test_interval_of_64_skewed_values_contains_the_mean():
     assert 0.93 <= part <= 0.97, f"{part} of {DRAWS} intervals, seed {SEED}"
 
 
+def strata_covered(deviations, each, draw):
+    """The fraction of stratified intervals that contain the mean of the families' means. draw: function(generator, shape) with mean 0 and standard
+    deviation 1. The families' means are 0, 1, 2, ..., so that an interval that ignores the families is much too long."""
+    generator, families = random(), [name for name in range(len(deviations)) for _ in range(each)]
+    scale, shift = np.repeat(deviations, each), np.array(families)
+    estimates = [s.estimate(shift + scale * draw(generator, len(families)), families) for _ in range(DRAWS)]
+    return np.mean([e.low <= np.mean(range(len(deviations))) <= e.high for e in estimates])
+
+
+def normal(generator, shape):
+    return generator.normal(size=shape)
+
+
+def skewed(generator, shape):
+    return generator.gamma(4, 1, shape) / 2 - 2
+
+
+@pytest.mark.parametrize("draw", [normal, skewed])
+def test_interval_of_families_contains_the_mean_of_their_means(draw):
+    part = strata_covered([1] * 9, 12, draw)
+    assert 0.93 <= part <= 0.97, f"{part} of {DRAWS} intervals, seed {SEED}"
+
+
+@pytest.mark.parametrize("deviations, each", [(OF_FAMILIES, 12), (OF_FAMILIES, 2), (ONE_DOMINATES, 12), (ONE_DOMINATES, 4)])
+def test_interval_of_families_with_unequal_variances_is_not_too_short(deviations, each):
+    """With few values of a family its degrees of freedom count, not those of all families together."""
+    is_at_most(1 - strata_covered(deviations, each, normal), 0.05)
+
+
+def test_mean_and_error_of_strata_by_hand():
+    # Families 1, 3 and 10, 14: means 2 and 12, variances 2 and 8, so the error is sqrt(2 / 2 + 8 / 2) / 2.
+    e = s.estimate([1, 10, 3, 14], ["a", "b", "a", "b"])
+    mean, error, _ = s.mean_and_error([1, 10, 3, 14], ["a", "b", "a", "b"])
+    assert (e.mean, e.count, mean) == (7, 4, 7) and error == pytest.approx(5**0.5 / 2, rel=1e-12)
+
+
+def test_families_of_unequal_size_have_equal_weights():
+    assert s.estimate([0, 0, 0, 0, 6, 6], list("aaaabb")).mean == 3
+
+
+def test_one_family_is_no_stratum():
+    values = [1, 2, 3, 4, 5]
+    assert s.estimate(values, ["a"] * 5) == s.estimate(values)
+
+
+@pytest.mark.parametrize("values", [[], [[1, 2], [3, 4]], np.zeros((3, 0))])
+def test_only_a_list_of_values_has_an_estimate(values):
+    """A column of a table with damaged rows is empty, or is two columns."""
+    with pytest.raises(ValueError):
+        s.estimate(values)
+
+
+def test_variation_between_families_is_not_in_the_interval():
+    assert s.estimate([1, 1, 100, 100], list("aabb")).half == 0
+
+
+def test_a_family_with_one_value_has_no_interval():
+    e = s.estimate([1, 2, 3], list("aab"))
+    assert e.mean == (1.5 + 3) / 2 and np.isnan(e.half)
+    assert (e.low_or_mean, e.high_or_mean) == (e.mean, e.mean)
+
+
+@pytest.mark.parametrize("test", [lambda v, f: s.above(v, 0, f), lambda v, f: s.below(v, 0, f), lambda v, f: s.within(v, 5, 6, f)])
+def test_values_without_an_interval_are_compatible(test):
+    for values, families in (([1e9], None), ([1, 2, 3], list("aab"))):
+        assert s.verdicts({"it": test(values, families)}) == {"it": s.COMPATIBLE}
+
+
+def test_estimates_are_those_of_the_columns():
+    values, families = random().normal(size=(6, 3)), list("aaabbb")
+    assert s.estimates(values, families) == [s.estimate(values[:, i], families) for i in range(3)]
+
+
 @pytest.mark.parametrize("tests", [3, 16])
 def test_joint_intervals_contain_all_means(tests):
-    generator = np.random.default_rng(SEED)
-    values = generator.normal(0, 1, (DRAWS, tests, 20))
-    all_hold = [all(abs(e.mean) <= e.half for e in (s.estimate(row, s.bonferroni_confidence(tests)) for row in draw))
-                for draw in values]
-    assert 0.93 <= np.mean(all_hold) <= 0.97, f"{np.mean(all_hold)} of {DRAWS}, seed {SEED}"
+    draws, confidence = 8_000 // tests, s.bonferroni_confidence(tests)
+    values = random().normal(0, 1, (draws, tests, 20))
+    all_hold = [all(abs(e.mean) <= e.half for e in (s.estimate(row, None, confidence) for row in draw)) for draw in values]
+    is_about(np.mean(all_hold), 0.95, draws)
 
 
 @pytest.mark.parametrize("count", [39, 64, 200])
 @pytest.mark.parametrize("name", ["normal", "exponential", "uniform"])
 def test_prediction_interval_contains_one_more_value(name, count):
-    generator = np.random.default_rng(SEED)
-    values = getattr(generator, name)(size=(DRAWS * 4, count + 1))
+    values = getattr(random(), name)(size=(DRAWS * 4, count + 1))
     bounds = np.quantile(values[:, 1:], [0.025, 0.975], axis=1, method="weibull")
     assert np.allclose(bounds[:, 0], s.prediction_interval(values[0, 1:]))  # the same computation for all rows at once
     part = np.mean((bounds[0] <= values[:, 0]) & (values[:, 0] <= bounds[1]))
@@ -66,17 +174,248 @@ def test_prediction_of_39_values_is_their_range():
     assert s.prediction_interval(np.arange(39)) == (0, 38)
 
 
-@pytest.mark.parametrize("seen, contrary, word", [(True, False, s.REPRODUCED), (False, True, s.NOT_REPRODUCED),
-                                                  (False, False, s.UNDECIDED), (True, True, s.UNDECIDED)])
-def test_verdict(seen, contrary, word):
-    assert s.verdict(seen, contrary) == word
-    assert s.verdict(np.bool_(seen), np.bool_(contrary)) == word
+# Tests at the bound of their rule: a wrong verdict has at most 2.5 % on a side.
 
 
-@pytest.mark.parametrize("paper, count, word", [(20, 39, s.REPRODUCED), (50, 39, s.NOT_REPRODUCED),
-                                                (20, 38, s.REPRODUCED), (50, 38, s.UNDECIDED)])
-def test_verdict_among_values(paper, count, word):
-    assert s.verdict_by_prediction(paper, np.arange(count)) == word
+@pytest.mark.parametrize("families, count", [(None, 5), (9, 108)])
+def test_above_and_below_at_their_bound(families, count):
+    names = families and [i % families for i in range(count)]
+    values = 7 + random().normal(0, 3, (DRAWS, count))
+    tests = [s.above(row, 7, names) for row in values]
+    for part in parts(tests):
+        is_about(part, SIDE)  # the test is exact for normal values
+    is_about(np.mean([test.p_for <= 0.5 for test in tests]), 0.5)
+    is_about(np.mean([test.p <= s.LEVEL / 20 for test in tests]), s.LEVEL / 20)  # the first bound of Holm's correction for 20 tests
+    for row, test in zip(values[:20], tests):
+        below = s.below(row, 7, names)
+        assert (below.p_for, below.p_against, below.interval, below.detectable) == (test.p_against, test.p_for, test.interval, test.detectable)
+
+
+def test_above_of_a_worked_example():
+    # Mean 3, error sqrt(0.5): t = 3 / sqrt(0.5) = 4.2426 with 4 degrees of freedom; its one-sided p value is 0.00662 (from tables).
+    test = s.above([1, 2, 3, 4, 5])
+    assert test.p_for == pytest.approx(0.00662, abs=1e-5) and test.p_against == pytest.approx(1 - test.p_for)
+    assert test.p == pytest.approx(2 * test.p_for) and test.supports and test.interval == "3.000 +- 1.963"
+    assert not s.below([1, 2, 3, 4, 5]).supports
+
+
+@pytest.mark.parametrize("mean, wrong", [(1, 0), (2, 0), (1.5, 1)])
+def test_within_at_its_bounds(mean, wrong):
+    """At a bound a verdict on either side is wrong with 2.5 %; in the middle of the bounds only "not reproduced" is wrong."""
+    draws = DRAWS // 2
+    found = parts(s.within(row, 1, 2) for row in random().normal(mean, 1, (draws, 40)))
+    for part in found[wrong:]:
+        is_at_most(part, SIDE, draws)
+    if not wrong:
+        assert min(found) > SIDE / 2, f"{found}, seed {SEED}"
+
+
+def test_within_narrow_bounds_is_never_reproduced_without_the_precision():
+    draws = DRAWS // 2
+    right, wrong = parts(s.within(row, -0.01, 0.01) for row in random().normal(0, 1, (draws, 40)))
+    assert right == 0
+    is_at_most(wrong, 2 * SIDE, draws)
+
+
+@pytest.mark.parametrize("values, wanted", [
+    ([1.4, 1.5, 1.6], "yes"), ([0.4, 0.5, 0.6], "no"), ([2.4, 2.5, 2.6], "no"), ([0.5, 1.5, 2.5], "?"), ([0.99, 1.0, 1.01], "?"),
+    ([1.99, 2.0, 2.01], "?")])
+def test_within_three_ways(values, wanted):
+    assert s.verdicts({"it": s.within(values, 1, 2)})["it"] == {"yes": s.REPRODUCED, "no": s.NOT_REPRODUCED, "?": s.COMPATIBLE}[wanted]
+
+
+@pytest.mark.parametrize("value", [1, 1.5, 2])
+def test_equal_values_at_the_bounds_lie_within_them(value):
+    assert reproduced(s.within([value] * 3, 1, 2))
+
+
+@pytest.mark.parametrize("value, above, below", [(1, False, True), (1.5, True, False), (0.5, False, True)])
+def test_equal_values_decide_without_an_error(value, above, below):
+    assert reproduced(s.above([value] * 3, 1)) == above and contradicted(s.above([value] * 3, 1)) != above
+    assert reproduced(s.below([value] * 3, 1)) == below and contradicted(s.below([value] * 3, 1)) != below
+
+
+@pytest.mark.parametrize("count", [2, 20])
+def test_every_claim_must_hold(count):
+    """All but one of several claims hold clearly; the last one is at its bound, so "reproduced" is wrong. If all are at their bounds, "not
+    reproduced" is wrong."""
+    generator = random()
+    last = [s.above(row) for row in generator.normal(0, 1, (DRAWS, 20))]
+    clear = [s.Test(1e-9, 1 - 1e-9)] * (count - 1)
+    is_about(parts(s.every([*clear, one]) for one in last)[0], SIDE)
+    uniform = generator.uniform(size=(DRAWS, count))
+    at_bounds = [s.every(s.Test(p, 1 - p) for p in row) for row in uniform]
+    is_at_most(parts(at_bounds)[0], SIDE)
+    is_at_most(parts(at_bounds)[1], SIDE)
+    assert parts(at_bounds)[1] > SIDE / 2, f"seed {SEED}"
+
+
+def test_every_claim_of_a_worked_example():
+    tests = [s.Test(0.001, 0.999, "a", 0.1), s.Test(0.02, 0.98, "b", 0.2), s.Test(0.01, 0.99, "c", 0.3)]
+    test = s.every(tests)
+    assert (test.p_for, test.p_against, test.interval, test.detectable) == (0.02, 1, "weakest: b", 0.2)
+    test = s.every([*tests, s.Test(0.999, 0.001, "d", 0.4)])
+    assert (test.p_for, test.p_against, test.interval) == (0.999, 0.004, "weakest: d")
+    assert s.every(tests, "given").interval == "given"
+    assert contradicted(s.every([s.counted(False), tests[0]])) and reproduced(s.every([s.counted(True), tests[0]]))
+
+
+@pytest.mark.parametrize("total, bound", [(108, 0.95), (20, 0.5)])
+def test_proportion_at_its_bound(total, bound):
+    """Exact: the probabilities of the counts that decide, if the share is the bound."""
+    likely = [count for count in range(total + 1) if stats.binom.pmf(count, total, bound) > 1e-9]
+    found = {count: s.proportion([True] * count + [False] * (total - count), bound) for count in likely}
+    for decides in (reproduced, contradicted):
+        counts = [count for count, test in found.items() if decides(test)]
+        assert 0 < stats.binom.pmf(counts, total, bound).sum() <= SIDE
+    fewest = min(count for count, test in found.items() if reproduced(test))
+    share = bound + found[fewest].detectable  # the counts reach `fewest` with 80 % from this share on
+    assert stats.binom.sf(fewest - 1, total, share) >= POWER > stats.binom.sf(fewest - 1, total, share - (1 - bound) / 100)
+
+
+def test_proportion_of_a_worked_example():
+    # 9 of 10 against a half: (10 + 1) / 1024; the exact interval of Clopper & Pearson is 0.555 .. 0.997 (from tables).
+    test = s.proportion([True] * 9 + [False], 0.5)
+    assert test.p_for == pytest.approx(11 / 1024) and test.p_against == pytest.approx(1023 / 1024) and test.interval == "0.555 .. 0.997"
+
+
+def test_proportion_of_too_few_pictures_has_no_detectable_deviation():
+    test = s.proportion([True] * 10, 0.95)
+    assert np.isnan(test.detectable) and not reproduced(test)
+
+
+@pytest.mark.parametrize("count", [5])
+def test_another_picture_contradicts_a_true_figure_with_5_percent(count):
+    """The figure is one more value, so it is too small with 2.5 % and too large with 2.5 %."""
+    values = random().normal(100, 5, (DRAWS, count + 1))
+    tests = [s.one_more(row[0], row[1:], 1e-6) for row in values]
+    for side in (-1, 1):
+        is_at_most(np.mean([contradicted(test) and side * (row[0] - row[1:].mean()) > 0 for test, row in zip(tests, values)]), SIDE)
+
+
+@pytest.mark.parametrize("count, centre", [(5, 110), (40, 90), (40, 94), (40, 114)])
+def test_another_picture_at_the_bounds(count, centre):
+    """Wrong verdicts: "reproduced", and the next picture lies outside 10 % of the figure 100; "not reproduced", and it lies within."""
+    draws = DRAWS // 2
+    values = random().normal(centre, 3, (draws, count + 1))
+    tests = [s.one_more(100, row[1:], 0.1) for row in values]
+    inside = (90 <= values[:, 0]) & (values[:, 0] <= 110)
+    is_at_most(np.mean(~inside & [reproduced(test) for test in tests]), SIDE, draws)
+    is_at_most(np.mean(inside & [contradicted(test) for test in tests]), SIDE, draws)
+
+
+@pytest.mark.parametrize("values, wanted", [((99, 101), "yes"), ((94, 96), "yes"), ((104, 106), "yes"), ((79, 81), "no"), ((119, 121), "no"),
+                                            ((80, 100), "?"), ((100, 120), "?"), ((89, 91), "?")])
+def test_another_picture_three_ways(values, wanted):
+    """The rule is that one more value lies within 10 % of 100, not that our values equal 100."""
+    test = s.one_more(100, np.tile(values, 15), 0.1)
+    assert s.verdicts({"it": test})["it"] == {"yes": s.REPRODUCED, "no": s.NOT_REPRODUCED, "?": s.COMPATIBLE}[wanted]
+
+
+def test_interval_of_another_picture_is_the_one_that_is_tested():
+    """By Student's t distribution for one more value, as the p values are: 15 +- 2.262157 x sqrt(10 / 9 x 1.1) x 5 for ten values 10 and 20."""
+    half = 2.262157 * (10 / 9 * 1.1) ** 0.5 * 5
+    assert s.one_more(15, [10, 20] * 5, 0.1, 2).interval == f"{15 - half:.2f} .. {15 + half:.2f}"
+
+
+# The power at the detectable deviation
+
+
+def standardised(count, families=None):
+    """Values with standard deviation 1, in each family."""
+    values = random().normal(size=count)
+    for name in dict.fromkeys(families or [0]):
+        some = np.array(families or [0] * count) == name
+        values[some] = (values[some] - values[some].mean()) / values[some].std(ddof=1)
+    return values
+
+
+def is_power(part, draws=DRAWS):
+    """The detectable deviation is that of an approximation with two quantiles of Student's t distribution."""
+    assert abs(part - POWER) <= 0.01 + error_of(POWER, draws), f"{part} of {draws}, seed {SEED}"
+
+
+@pytest.mark.parametrize("families, count", [(None, 12), (9, 108)])
+def test_power_of_above_and_within(families, count):
+    names, draws = families and [i % families for i in range(count)], DRAWS // 2
+    d = s.above(standardised(count, names), 0, names).detectable
+    assert s.within(standardised(count, names), -1, 1, names).detectable == d
+    values = random().normal(size=(draws, count))
+    is_power(parts(s.above(row, -d, names) for row in values)[0], draws)
+    if not families:
+        is_power(parts(s.within(row, d, 9) for row in values)[1], draws)
+        is_power(parts(s.within(row, -9, d) for row in values)[0], draws)
+
+
+def test_power_of_another_picture():
+    """A figure that is drawn from a distribution whose mean is shifted by the detectable deviation."""
+    d = s.one_more(100, 100 + standardised(40), 1e-6).detectable
+    values = random().normal(100, 1, (DRAWS, 41))
+    is_power(np.mean([contradicted(s.one_more(row[0] + d, row[1:], 1e-6)) for row in values]))
+
+
+# Verdicts with Holm's correction
+
+
+def verdicts_of(p_values):
+    """Verdicts on null tests with these p values of "the claim is false"."""
+    return list(s.verdicts({i: s.Test(p, 1 - p) for i, p in enumerate(p_values)}).values())
+
+
+def test_holms_correction_by_hand():
+    """Two-sided p values 0.004, 0.012, 0.014, 0.028 and 0.04 of five tests. The bounds are 0.05 / 5 = 0.01, 0.05 / 4 = 0.0125, 0.05 / 3 = 0.0167,
+    0.05 / 2 = 0.025 and 0.05: the first three are decided, the fourth is not, and so neither is the fifth, whose p is below 0.05."""
+    tests = {"fourth": s.Test(0.014, 0.9), "first": s.Test(0.002, 0.9), "fifth": s.Test(0.02, 0.9), "third": s.Test(0.9, 0.007),
+             "second": s.Test(0.9, 0.006)}
+    assert [tests[name].p for name in ("first", "second", "third", "fourth", "fifth")] == [0.004, 0.012, 0.014, 0.028, 0.04]
+    assert s.verdicts(tests) == {"first": s.REPRODUCED, "second": s.NOT_REPRODUCED, "third": s.NOT_REPRODUCED, "fourth": s.COMPATIBLE,
+                                 "fifth": s.COMPATIBLE}
+
+
+def test_bonferronis_correction_would_decide_less():
+    tests = {i: s.Test(p, 0.9) for i, p in enumerate((0.002, 0.006, 0.007))}
+    assert list(s.verdicts(tests).values()) == [s.REPRODUCED] * 3  # 0.014 is above 0.05 / 5, but also above none of 0.05 / 3, / 2 and / 1
+
+
+def test_verdicts_on_no_test_and_on_one_test():
+    assert s.verdicts({}) == {}
+    assert s.verdicts({"it": s.Test(0.025, 0.9)}) == {"it": s.REPRODUCED}
+    assert s.verdicts({"it": s.Test(0.0251, 0.9)}) == {"it": s.COMPATIBLE}
+    assert s.verdicts({"it": s.Test(0.9, 0.025)}) == {"it": s.NOT_REPRODUCED}
+
+
+@pytest.mark.parametrize("clear, alike", [(0, False), (20, False), (0, True)])
+def test_one_or_more_wrong_verdicts_of_20_null_tests(clear, alike):
+    """20 tests at their bounds, where any verdict is wrong, next to others that are clearly reproduced; independent tests, and all with one p."""
+    draws, generator, wrong = 5000, random(), 0
+    for _ in range(draws):
+        null = np.repeat(generator.uniform(), 20) if alike else generator.uniform(size=20)
+        found = verdicts_of([*[1e-12] * clear, *null])
+        assert found[:clear] == [s.REPRODUCED] * clear
+        wrong += any(verdict != s.COMPATIBLE for verdict in found[clear:])
+    is_at_most(wrong / draws, s.LEVEL, draws)
+    assert alike or wrong / draws > 0.04, f"{wrong} of {draws}, seed {SEED}: the correction decides too little"
+
+
+def test_counted_claims_change_no_other_verdict():
+    generator = random()
+    for _ in range(DRAWS):
+        tests = {i: s.Test(p, 1 - p) for i, p in enumerate(generator.uniform(size=8) ** 3)}
+        counted = {f"counted {i}": s.counted(generator.uniform() < 0.5) for i in range(generator.integers(1, 9))}
+        some = [*tests.items(), *counted.items()]
+        found = s.verdicts(dict(some[i] for i in generator.permutation(len(some))))
+        assert {key: found[key] for key in tests} == s.verdicts(tests), f"{tests}, seed {SEED}"
+
+
+@pytest.mark.parametrize("holds, verdict", [(True, s.REPRODUCED), (False, s.NOT_REPRODUCED), (np.bool_(True), s.REPRODUCED),
+                                            (np.bool_(False), s.NOT_REPRODUCED)])
+def test_counted_claims_are_always_decided(holds, verdict):
+    others = {i: s.Test(0.5, 0.5) for i in range(100)}
+    assert s.verdicts({**others, "it": s.counted(holds)})["it"] == verdict
+    assert np.isnan(s.counted(holds).detectable) and s.counted(holds).interval == ""
+
+
+# Other functions
 
 
 @pytest.mark.parametrize("exponent", [-1, 0, 0.5, 3])

@@ -5,7 +5,7 @@ import pytest
 import raya
 from raya.lab.worker import Worker
 
-OPTIONS = SimpleNamespace(verbosity=0, no_tuned=True, size=32, network=None, device=None)
+OPTIONS = SimpleNamespace(verbosity=0, no_tuned=True, size=32, network=None, views=None, seed=1, device=None)
 STUDY = '''"""Title
 
 Question?

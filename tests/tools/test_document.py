@@ -31,11 +31,18 @@ What does `{scene}` show?
 """
 
 
+def claim(lab, paper, place, statement, test, reason=""):
+    """A claim with its result. The verdict follows from the p values of `test`; None: untestable."""
+    kind = "test" if test else "untestable"
+    return lab.Judgement(lab.Claim("id", paper, place, "原文", statement, "small", kind, f"Rule: {reason}"), f"Ensemble {reason}", reason, test)
+
+
 def small_page(lab):
     series = [lab.Series("ours", range(5), [x * x for x in range(5)]), lab.Series("the paper's", [4], [15], "paper")]
     return lab.Page({}, ["A finding."], [lab.Comparison("u", "ms", 15, 16, "a remark", True, 0.5)],
-                    [lab.Claim("A & B 1999", "Table 1", "It rises.", lab.REPRODUCED, "It does."),
-                     lab.Claim("A & B 1999", "Table 2", "It falls.", lab.UNDECIDED, "Once.")],
+                    [claim(lab, "A & B 1999", "Table 1", "It rises.", lab.Test(0, 1, "1.0 +- 0.1", 0.2), "It does."),
+                     claim(lab, "A & B 1999", "Table 2", "It falls.", lab.Test(0.5, 0.5), "Once."),
+                     claim(lab, "A & B 1999", "Table 3", "It stays.", None)],
                     [lab.Table("small", "Rows", [{"p": 0, "u": 1.5}, {"p": 8, "u": math.nan}])],
                     [lab.Plot("small", "A plot", "p", "u", series)], ["No paper has it."]).describe("small", SMALL)
 
@@ -49,7 +56,7 @@ def large_page(lab):
                           [0.4 * value for value in x] if number < 3 else [])
 
     return lab.Page({"scene": HOSTILE, "seeds": [1, 2, 3]}, [HOSTILE], [lab.Comparison(HOSTILE, "", None, math.inf)],
-                    [lab.Claim("C 1999", HOSTILE, "Never.", lab.NOT_REPRODUCED, HOSTILE)],
+                    [claim(lab, "C 1999", HOSTILE, "Never.", lab.Test(1, 0, HOSTILE), HOSTILE)],
                     [lab.Table("large", "All rows", [{"n": i * 37 % 500, HOSTILE: HOSTILE} for i in range(500)])],
                     [lab.Plot(f"large-{i}", f"Plot {i} {HOSTILE}", "x", "y (ms)", list(map(series, range(11))), log)
                      for i, log in enumerate(("", "x", "y", "xy"))]).describe("large", LARGE)
@@ -63,6 +70,7 @@ def write_small_document(packages, folder):
     folder = Path(folder)
     pages = [small_page(lab), large_page(lab)]
     for page in pages:
+        lab.decide(page.claims)
         page.run = {"command": f"raya study {page.name} '{HOSTILE}' -o DIR", "version": "raya 1.2.3", "device": HOSTILE}
     write_document(folder, pages, {page.name: write_page(folder, page) for page in pages}, [f"study x: {HOSTILE}"])
 

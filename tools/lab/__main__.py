@@ -17,6 +17,7 @@ from types import SimpleNamespace
 
 import raya
 from raya import _engine
+from raya.lab.claims import decide
 from raya.lab.document import write_document, write_page
 from raya.lab.page import format_value
 from raya.lab.study import studies, study_of_file
@@ -57,6 +58,8 @@ def command_of(study, options):
     arguments += [f"--size {options.size}"] if options.size else []
     arguments += [f"--device {quote(options.device)}"] if options.device else []
     arguments += [f"--network {options.network[0] * 1e6:g},{options.network[1] * 1e9:g}"] if options.network else []
+    arguments += [f"--views {options.views}"] if options.views else []
+    arguments += [f"--seed {options.seed}"] if options.seed != 1 else []
     arguments += ["--strict"] if options.strict else []
     arguments += ["--no-tuned"] if options.no_tuned else []
     return " ".join(arguments + ["-o DIR"])
@@ -106,6 +109,7 @@ def run_all(options, chosen, left_out, scenes):
                     continue
                 page.run = {"command": command_of(study, options), "version": f"raya {raya.__version__}",
                             "device": f"{device['name']} ({device['platform']}, driver {device['driver']})"}
+                decide(page.claims)  # write_document() decides again, over the claims of all pages
                 drawings[page.name] = write_page(folder, page)
                 pages.append(page)
                 if options.verbosity >= 0:

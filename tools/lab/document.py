@@ -11,11 +11,13 @@ from pathlib import Path
 
 import jinja2
 import numpy as np
+import pandas as pd
 from markupsafe import Markup, escape
 from raya.lab import plots
+from raya.lab.claims import decide, errors_sentence
 from raya.lab.page import format_value
 from raya.lab.papers import REFERENCES
-from raya.lab.statistics import NOT_REPRODUCED, REPRODUCED, UNDECIDED
+from raya.lab.statistics import COMPATIBLE, NOT_REPRODUCED, REPRODUCED, UNTESTABLE
 
 OPEN_ROWS, MAX_ROWS = 24, 400  # a table of at most OPEN_ROWS rows is unfolded; HTML shows at most MAX_ROWS rows
 
@@ -32,9 +34,10 @@ ABOUT = {
         "counts are compared with theirs.",
         "Both machines are models that run as OpenCL kernels. Every machine and every mapping gives the same image, bit for bit. "
         "The kernels count loads, packets and tests. Times are modelled from these counts unless a page calls them measured.",
-        "A claim is a statement of a paper. Its verdict, reproduced or not reproduced, follows by a stated rule from the figures in "
-        "the column \"reason\". The verdict is undecided if the paper does not give the facts that decide the claim, or if our "
-        "confidence interval contains both answers.",
+        "A claim is a statement of a paper; claims.toml has each once, with a rule that was fixed before the result. Reproduced: the "
+        "interval fulfils the rule. Not reproduced: it contradicts the rule. Compatible: it does neither, because the test has too little "
+        "power. Untestable: no study can decide it. Claims that follow from another claim or from figures that scenes were matched to are "
+        "derived and have no verdict. Holm's correction covers all tests of this document.",
         "\"Derived\" marks a figure that follows by arithmetic from figures that the paper prints. \"[D]\" marks such a figure in a "
         "text. \"+-\" is the half width of a 95 % confidence interval by Student's t.",
     ],
@@ -86,8 +89,17 @@ def json_of(page):
     comparisons = [{**json_value(c), "ratio": json_value(ratio(c))} for c in page.comparisons]
     drawn = [{**json_value(p), "description": plots.description(p)} for p in page.plots]
     members = {f.name: getattr(page, f.name) for f in dataclasses.fields(page) if f.name not in ("name", "placeholders")}
-    return {"study": page.name, **json_value({**members, "tables": tables, "pictures": pictures,
+    claims = [record_of(one) for one in page.claims]
+    return {"study": page.name, **json_value({**members, "tables": tables, "pictures": pictures, "claims": claims,
                                          "comparisons": comparisons, "plots": drawn})}
+
+
+def record_of(judgement):
+    """Returns a claim with its result as {name: value}: members of the JSON report and columns of claims.csv."""
+    test = judgement.test
+    return {**dataclasses.asdict(judgement.claim), "ensemble": judgement.ensemble, "interval": test.interval if test else "",
+            "p": test.p if test else math.nan, "detectable": test.detectable if test else math.nan, "verdict": judgement.verdict,
+            "reason": judgement.reason}
 
 
 def ratio(comparison):
@@ -120,8 +132,11 @@ def title_of_comparisons(page):
 
 
 def cells_of_claims(pages):
-    return [["paper", "statement", "verdict", "reason"]] + [
-        [f"{c.paper}, {c.place}", c.words, c.verdict, c.why] for page in pages for c in page.claims]
+    """Returns the table of claims, [row][column], the header first."""
+    return [["paper", "statement", "verdict", "rule", "interval", "ensemble", "result"]] + [
+        [f"{c.claim.paper}, {c.claim.place}", f"{c.claim.statement} {c.claim.original and '(' + c.claim.original + ')'}".rstrip(), c.verdict,
+         c.claim.rule, c.test.interval if c.test else "", c.ensemble, " ".join(filter(None, (c.reason, c.power)))]
+        for page in pages for c in page.claims]
 
 
 def cells_of_points(plot):
@@ -156,21 +171,21 @@ def verdict_sentences(pages):
     if not claims:
         return ["This study tests no claim of a paper."] if len(pages) == 1 else ["These studies test no claim of a paper."]
 
-    def sentence(counted_claims, source):
-        count = Counter(claim.verdict for claim in counted_claims)
-        return (f"Of {len(counted_claims)} claim{'' if len(counted_claims) == 1 else 's'} {source}: {count[REPRODUCED]} reproduced, "
-                f"{count[NOT_REPRODUCED]} not reproduced, {count[UNDECIDED]} undecided.")
+    def sentence(some, source):
+        count = Counter(one.verdict for one in some)
+        return (f"Of {len(some)} claim{'' if len(some) == 1 else 's'} {source}: "
+                + ", ".join(f"{count[verdict]} {verdict}" for verdict in (REPRODUCED, COMPATIBLE, NOT_REPRODUCED, UNTESTABLE, "derived")) + ".")
 
-    papers = list(dict.fromkeys(claim.paper for claim in claims))
-    if len(papers) == 1:
-        return [sentence(claims, f"of {papers[0]}")]
-    return [sentence(claims, f"of {len(papers)} papers")] + [
-        sentence([c for c in claims if c.paper == paper], f"of {paper}") for paper in papers]
+    papers = list(dict.fromkeys(one.claim.paper for one in claims))
+    sentences = [sentence(claims, f"of {papers[0]}" if len(papers) == 1 else f"of {len(papers)} papers")]
+    if len(papers) > 1:
+        sentences += [sentence([one for one in claims if one.claim.paper == paper], f"of {paper}") for paper in papers]
+    return [*sentences, *filter(None, [errors_sentence(claims)])]
 
 
-def not_reproduced(pages):
-    return [f'{c.paper}, {c.place}: "{c.words}" {c.why}' for page in pages for c in page.claims
-            if c.verdict == NOT_REPRODUCED]
+def claims_with(verdict, pages):
+    """Returns a sentence on each claim with the verdict."""
+    return [f'{c.claim.paper}, {c.claim.place}: "{c.claim.statement}" {c.reason}' for page in pages for c in page.claims if c.verdict == verdict]
 
 
 def prose(text):
@@ -210,13 +225,14 @@ def environment():
     jinja_environment.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
     jinja_environment.globals.update({function.__name__: function for function in (
         cells_of_claims, cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run,
-        not_reproduced, title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY),
+        claims_with, title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY),
         OPEN_ROWS=OPEN_ROWS, MAX_ROWS=MAX_ROWS)
     return jinja_environment
 
 
 def write_page(folder, page):
-    """Writes all files of one study. Returns its drawings for the document: {name: SVG of a plot, or base64 text of a PNG}."""
+    """Writes all files of one study. Returns its drawings for the document: {name: SVG of a plot, or base64 text of a PNG}. The verdicts must be
+    decided."""
     drawings, files = {}, {}
     for table in page.tables:
         files[f"{table.name}.csv"] = table.rows.to_csv(index=False, na_rep="-")
@@ -227,15 +243,27 @@ def write_page(folder, page):
         drawn = plots.files_of(plot)
         files.update({f"{plot.name}.{kind}": content for kind, content in drawn.items()})
         drawings[plot.name] = inlined(drawn["svg"].decode())
-    files[f"{page.name}.json"] = json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n"
-    files[f"{page.name}.md"] = environment().get_template("page.md.j2").render(page=page)
+    files.update(texts_of(page))
     for name, content in files.items():  # after all content has been made, so that an error leaves no partial output
         write_atomically(folder / name, content)
     return drawings
 
 
+def texts_of(page):
+    """Returns {file name: content} of the page as JSON and Markdown."""
+    return {f"{page.name}.json": json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n",
+            f"{page.name}.md": environment().get_template("page.md.j2").render(page=page)}
+
+
 def write_document(folder, pages, drawings, left_out=()):
-    """Writes index.html, and index.md if there are several pages. `left_out`: sentences on studies that did not run."""
+    """Writes index.html; for several pages also index.md and claims.csv, and again the pages' verdicts, which now take all claims into account.
+    `left_out`: sentences on studies that did not run."""
+    decide([one for page in pages for one in page.claims])
+    if len(pages) > 1:
+        claims = pd.DataFrame([record_of(one) for page in pages for one in page.claims])
+        write_atomically(folder / "claims.csv", claims.to_csv(index=False, na_rep="-"))
+        for name, content in (item for page in pages for item in texts_of(page).items()):
+            write_atomically(folder / name, content)
     jinja_environment = environment()
     body = jinja_environment.get_template("document.html.j2").render(pages=pages, drawings=drawings, left_out=left_out,
                                                         references=REFERENCES)

@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import raya
+from raya.lab.families import FAMILIES, view_of
 
 SPA = next(m for m in raya.machines() if m["name"] == "spa")
-VIEWS = 64  # default number of random views of a scene
+VIEWS = 108  # default number of pictures of an ensemble; docs/verdicts.md has more
+SEEDS, FAMILY_SEEDS = 100_000, 1000  # seeds of each part of a study; of each family of a part, as a seed gives all families the same view
 TESTS = tuple(f"{kind}_tests" for kind in ("sphere", "plane", "polygon", "cone"))
 
 
@@ -42,10 +44,15 @@ class Costs:
 
 @dataclass
 class Ensemble:
-    """Costs of a scene with its own camera (`picture`), and with random cameras with seeds 1, 2, ... (`views`)."""
+    """Cost images of several scene families (families.py), or of random views of scenes."""
 
-    picture: Costs
-    views: list
+    pictures: list  # of Costs
+    families: list  # family of each picture
+    description: str  # the families and seeds, for the method of a study
+
+    def of(self, measure):
+        """Array [picture, ...] of measure(costs)."""
+        return np.array([measure(costs) for costs in self.pictures])
 
 
 def format_for(scene):
@@ -56,12 +63,13 @@ def format_for(scene):
 class Laboratory:
     """Renders scenes. Cost images are cached in `folder`, by scene and settings, so that the studies of one run share them.
 
-    size: pixels per side; None: each study's default. network: (seconds per message, seconds per byte) or None. options: `device`, and options of
-    every render.
+    size: pixels per side; None: each study's default. views: pictures of an ensemble; seed: seed of the first one. network: (seconds per message,
+    seconds per byte) or None. options: `device`, and options of every render.
     """
 
-    def __init__(self, folder, size=None, network=None, **options):
+    def __init__(self, folder, size=None, network=None, views=None, seed=1, **options):
         self._folder, self._size, self.network, self._options = Path(folder), size, network, options
+        self.views, self.seed = views or VIEWS, seed
 
     @cached_property
     def session(self):
@@ -91,34 +99,24 @@ class Laboratory:
         file.write_bytes(pickle.dumps(costs))
         return costs
 
-    def ensemble(self, scene, size, antialias="none", max_views=VIEWS):
-        """Returns the costs of the scene and of random views (`Ensemble`). There are max_views views, or fewer so that views x pixels x objects is
-        at most 2^27, but at least min(4, max_views)."""
-        count = max(min(4, max_views), min(2**27 // (size * size * max(scene.objects, 1)), max_views))
-        views = [self.costs(scene.random_view(seed).renamed(f"{scene.name}, view {seed}"), size, antialias)
-                 for seed in range(1, count + 1)]
-        return Ensemble(self.costs(scene, size, antialias), views)
+    def ensemble(self, scenes, size, antialias="none", views=None, families=FAMILIES, part=0):
+        """Cost images (`Ensemble`) of `views` pictures, equally many of each family; of random views of the scenes if there are any. An expensive
+        scene has fewer views, so that views x pixels x objects is at most 2^29, but at least 4. part: numbers the ensembles of a study that must
+        not share a picture; each has seeds of its own."""
+        if scenes:
+            families = {scene.name: view_of(scene) for scene in scenes}
+        objects = max(make(1).objects for make in families.values())
+        limit = max(4, 2**29 // (size * size * max(objects, 1)))
+        each = max(2, min(limit, -(-(views or self.views) // len(families))))
+        first = {name: self.seed + part * SEEDS + i * FAMILY_SEEDS for i, name in enumerate(families)}
+        pictures = [(name, self.costs(make(first[name] + i), size, antialias)) for name, make in families.items() for i in range(each)]
+        return Ensemble([costs for _, costs in pictures], [name for name, _ in pictures],
+                        f"{len(pictures)} pictures: " + "; ".join(f"seeds {seed}..{seed + each - 1} of {name}" for name, seed in first.items()))
 
 
 def first_scene(scenes):
     """Returns the first scene of the command line; by default the example scene centre, which resembles the scene of Kohata & Ito."""
     return scenes[0] if scenes else raya.example("centre")
-
-
-def costs_of_pass(lab, scenes, first):
-    """Renders the cost images of the first pass, or of supersampling if `first` is false, for one scene with a PE for each column. Returns (settings,
-    cost image of the picture, cost images of the views). A cost image is uint64 [H, W]: modelled cycles of each pixel."""
-    scene, size = first_scene(scenes), lab.size(256)
-    ensemble = lab.ensemble(scene, size, "none" if first else "supersample")
-    picture, *views = (costs.trace if first else costs.supersample for costs in [ensemble.picture, *ensemble.views])
-    return {"scene": scene.name, "size": size, "pes": size, "views": len(views), "view_seeds": f"1..{len(views)}",
-            "lowest_view_degrees": 5, "highest_view_degrees": 75}, picture, views
-
-
-VIEWS_PROSE = """
-- {views} random views of the same scene, seeds {view_seeds}, are rendered in addition to the picture. The camera keeps its distance; its
-  direction is uniform on the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above the point that it
-  looks at."""  # part of the method of fig7, fig8, fig12 and fig13
 
 
 Timing = namedtuple("Timing", "minimum median maximum runs")  # minimum, median, maximum in seconds; runs: number of samples

@@ -6,7 +6,7 @@ from typing import Optional
 
 import numpy as np
 import pandas as pd
-from raya.lab.statistics import VERDICTS
+from raya.lab.claims import undecided_claims
 
 
 @dataclass
@@ -92,28 +92,13 @@ def with_paper(in_paper, comparisons):
 
 
 @dataclass
-class Claim:
-    """A statement (`words`) of a paper at a `place`, our verdict, and the reason (`why`)."""
-
-    paper: str
-    place: str
-    words: str
-    verdict: str
-    why: str
-
-    def __post_init__(self):
-        if self.verdict not in VERDICTS:
-            raise ValueError(f"claim '{self.words}': unknown verdict {self.verdict!r}; one of {', '.join(VERDICTS)}")
-
-
-@dataclass
 class Page:
     """The result of a study. A study's run() sets the members up to `compared_with`; describe() and the program set the others."""
 
     settings: dict  # values of {names} in the prose, written to the JSON report
     findings: list = field(default_factory=list)  # sentences, the most important one first
     comparisons: list = field(default_factory=list)
-    claims: list = field(default_factory=list)
+    claims: list = field(default_factory=list)  # judged(...): our results for claims of papers
     tables: list = field(default_factory=list)
     plots: list = field(default_factory=list)
     news: list = field(default_factory=list)  # sentences on results that go beyond the papers
@@ -131,6 +116,7 @@ class Page:
         """Sets title, question and method from a study's prose: its first line, the paragraph after it, and the items of its list. {names} are
         replaced by settings and placeholders. Raises ValueError for an unknown {name} and for two files with the same name."""
         self.name = name
+        self.claims = self.claims and [*self.claims, *undecided_claims(name)]
         try:
             prose = prose.format_map({**self.settings, **self.placeholders})
         except KeyError as error:

@@ -57,8 +57,10 @@ REFERENCES = [
     "Alan Heirich, James Arvo: A Competitive Analysis of Load Balancing Strategies for Parallel Ray Tracing. The "
     "Journal of Supercomputing 12, pp. 57-68, 1998.",
     "SGS-Thomson Microelectronics: IMS T805, 32-bit floating-point transputer. Data sheet, 1996.",
-    "Kohata, Ito: Parallel Computation of Ray Tracing on a One-dimensional DSP Array. IPSJ Journal (Information "
-    "Processing Society of Japan), 1993, in Japanese.",
+    "Sture Holm: A Simple Sequentially Rejective Multiple Test Procedure. Scandinavian Journal of Statistics 6 (2), "
+    "pp. 65-70, 1979.",
+    "Masaki Kohata, Taku Ito: Parallel Computation of Ray Tracing on a One-dimensional DSP Array "
+    "(1次元DSPアレイでの光線追跡法の並列計算). IPSJ Journal (Information Processing Society of Japan), 1993, in Japanese.",
     "Michael Potmesil, Eric M. Hoffert: The Pixel Machine: A Parallel Image Computer. Computer Graphics 23 (3) "
     "(SIGGRAPH '89), pp. 69-78, 1989.",
     "Henri Casanova, Arnaud Giersch, Arnaud Legrand, Martin Quinson, Frédéric Suter: Versatile, Scalable, and "
@@ -66,8 +68,8 @@ REFERENCES = [
     "(10), pp. 2899-2917, 2014.",
     "Ingo Wald, Sven Woop, Carsten Benthin, Gregory S. Johnson, Manfred Ernst: Embree: A Kernel Framework for "
     "Efficient CPU Ray Tracing. ACM Transactions on Graphics 33 (4), 2014.",
-    "Yoshitani, Yamazaki: Realisation and evaluation of space-partition parallel ray tracing. National convention of "
-    "the IPSJ, 4L-6, about 1995, in Japanese.",
+    "T. Yoshitani, K. Yamazaki: Realisation and evaluation of space-partition parallel ray tracing "
+    "(空間分割型並列レイティング法の実現と評価). National convention of the IPSJ, 4L-6, about 1995, in Japanese.",
 ]
 
 

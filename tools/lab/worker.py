@@ -26,7 +26,7 @@ def run_study(study, scenes, folder, options):
     chosen_study = study_of_file(study) if study.endswith(".py") else studies()[study]
     if laboratory is None:
         tuning_options = {"no_tuned": True} if options.no_tuned else {}
-        laboratory = Laboratory(folder, options.size, options.network, device=options.device, **tuning_options)
+        laboratory = Laboratory(folder, options.size, options.network, options.views, options.seed, device=options.device, **tuning_options)
     try:
         page = chosen_study.run(laboratory, scenes)
     except (raya.InputError, raya.DeviceError, OSError):

@@ -11,7 +11,7 @@ Into how many voxels should one machine divide space, for a given number of obje
 """
 import numpy as np
 import raya
-from raya.lab import Claim, Comparison, Page, Plot, Table, papers, series_by, study, verdict
+from raya.lab import Comparison, Page, Plot, Series, Table, counted, estimate, judged, papers, range_text, series_by, study, within
 from raya.lab.laboratory import TESTS
 from raya.lab.voxels import near_cube, powers_of_two, run_cases, run_in_one_pe
 
@@ -46,7 +46,7 @@ def divisions(lab, scenes):
                         "theirs fall to \"about 1/5\".")
     shown = rows.drop(columns=["cut", "objects", "voxels of an object", "run"])
     return Page({"size": size, "bounces": 0, "format": "fp32", "scenes": settings}, findings,
-                comparisons_of(by_scene, from_paper), claims_of(by_scene) if from_paper else [],
+                comparisons_of(by_scene, from_paper), claims_of(lab, size, by_scene) if from_paper else [],
                 [Table("divisions", "Each number of objects and divisions", shown)],
                 [Plot(f"divisions-{name}", title, "divisions", label, series_by(rows, "scene", "divisions", column),
                       "xy") for name, (title, label, column, _) in SUBJECTS.items()],
@@ -140,33 +140,48 @@ def finding_of_parts(runs):
             f"lies in {runs[-1].voxels_of_object:.1f} voxels.")
 
 
-def claims_of(by_scene):
-    near, fifth, paper = 1.25, (4, 6), papers.DIVISIONS_FALL  # our limits. near: ratio of equal times; fifth: range of "about 1/5"
-    modelled, measured, tests = (fall_of(by_scene[-1], name) for name in ("modelled", "measured", "tests"))
+RADII, VIEWS = (0.5, 1.0, 1.5, 2.0), 6  # layouts of the claim tests-to-a-fifth: radii / those of the even scene, random views
+FIFTH = 4, 6  # its bounds
 
-    def claim(place, words, seen, why, contrary=None):
-        return Claim(papers.TP, place, words, verdict(seen, not seen if contrary is None else contrary), why)
 
+def with_radii(scene, factor):
+    """The scene with all radii of spheres multiplied by `factor`."""
+    lines = (f"{line[:line.rindex(' ')]} {float(line.split()[4]) * factor:.9g}" if line.startswith("s ") else line
+             for line in scene.nff.splitlines())
+    return raya.parse("\n".join(lines) + "\n", f"{scene.name}, radii x {factor:g}")
+
+
+def falls_of_layouts(lab, size):
+    """Tests at 32 divisions / tests at 1024, for 1024 even spheres of several radii from several views."""
+    even, falls = raya.generate.uniform(1024, near_cube(1024)), []
+    for i, factor in enumerate(RADII):
+        for seed in range(lab.seed + i * VIEWS, lab.seed + (i + 1) * VIEWS):
+            scene = with_radii(even, factor).random_view(seed)
+            few, many = (run_in_one_pe(lab, scene, size, near_cube(n)).tests for n in (papers.FEW_DIVISIONS, papers.MANY_DIVISIONS))
+            falls.append(few / many)
+    return np.array(falls)
+
+
+def claims_of(lab, size, by_scene):
     def is_minimum_at_object_count(name):
         rows = [(some, row_at_object_count(some)) for some in by_scene]
         return all(row is not None and ratio_to_minimum(some, row, name) <= DIFFERENCE_RATIO for some, row in rows)
 
-    def why_optimum(name):
-        return (f"{finding_of_optimum(name, by_scene)} {finding_of_loss(by_scene)} Up to 2 % above the minimum counts as the "
-                "minimum.")
+    def falls_then_rises(some):
+        until = some[some["divisions"] <= some["objects"]]["modelled (s)"]
+        return bool((until.diff()[1:] < 0).all()) and some["modelled (s)"].iloc[-1] > DIFFERENCE_RATIO * until.iloc[-1]
 
-    rises = all(ratio_to_minimum(some, some.iloc[-1], "modelled") > DIFFERENCE_RATIO for some in by_scene)
     falls = [ratio_to_minimum(some, some.iloc[0], "modelled") for some in by_scene]
-    are_near = [max(fall / paper, paper / fall) <= near for fall in (modelled, measured)]
     texts = ", ".join(f"{fall:.1f} ({some['scene'].iloc[0]})" for fall, some in zip(falls, by_scene))
-    return [claim("Fig. 3", "Time falls until there are as many divisions as objects, then it rises.",
-                  is_minimum_at_object_count("modelled") and rises, f"{why_optimum('modelled')} {finding_of_rise(by_scene)}"),
-            claim("Fig. 3", "The more objects there are, the more the time falls.", bool((np.diff(falls) >= 0).all()),
-                  f"From one division to the minimum, the modelled time falls by a factor of {texts}."),
-            claim("Fig. 3", "1024 objects take 313 s with 32 divisions and 60 s with 1024, 5.2 times less.",
-                  all(are_near), f"Ours falls by a factor of {modelled:.2f} modelled and {measured:.2f} measured; a deviation of a "
-                  "quarter is accepted.", not any(are_near)),
-            claim("Fig. 3", "The tests fall to about 1/5 from 32 to 1024 divisions, 1024 objects.",
-                  fifth[0] <= tests <= fifth[1], f"They fall to 1 / {tests:.1f}; 1/4 to 1/6 is accepted."),
-            claim("conclusion", "The tests are fewest where there are as many divisions as objects.",
-                  is_minimum_at_object_count("tests"), why_optimum("tests"))]
+    layouts = falls_of_layouts(lab, size)
+    radii = [factor for factor in RADII for _ in range(VIEWS)]
+    about = f"1024 even spheres, {len(RADII)} radii, {VIEWS} views of each, seeds {lab.seed}..{lab.seed + len(RADII) * VIEWS - 1}"
+    return [judged("time-falls-then-rises", counted(all(map(falls_then_rises, by_scene))), "",
+                   f"{finding_of_optimum('modelled', by_scene)} {finding_of_rise(by_scene)}"),
+            judged("more-objects-gain-more", counted((np.diff(falls) > 0).all()), "",
+                   f"From one division to the minimum, the modelled time falls by a factor of {texts}."),
+            judged("tests-to-a-fifth", within(layouts, *FIFTH, radii, digits=1), about,
+                   f"From 32 to 1024 divisions the tests fall by a factor of {estimate(layouts, radii).text(1)}, {range_text(layouts, 1)} of single "
+                   "layouts."),
+            judged("tests-fewest-at-objects", counted(is_minimum_at_object_count("tests")), "",
+                   f"{finding_of_optimum('tests', by_scene)} {finding_of_loss(by_scene)} Up to 2 % above the minimum counts as the minimum.")]

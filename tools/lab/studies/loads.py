@@ -2,22 +2,23 @@
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, costs_of_pass, estimate, papers, range_text, study,
-                      verdict, with_paper)
-from raya.lab.laboratory import VIEWS_PROSE
+from raya.lab import (Comparison, Page, Plot, Series, Table, above, estimate, estimates, first_scene, judged, papers, range_text, study,
+                      with_paper, within)
+from raya.lab.families import CROWDED
 
 PROSE = """{figure}
 
 {question}
 
-- Source: Kohata & Ito 1993, {source}.
-- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; {phase}.
+- Source: Kohata & Ito 1993, {place}.
+- {size} x {size} pixels on {pes} PEs of the SPA, a PE for each column; {phase}. The picture of the plots is {scene}.
 - The load of a PE is the sum of the modelled cycles that the kernels counted for its pixels, divided by the mean load of all PEs. It
-  needs no clock.""" + VIEWS_PROSE + """
-- Output: {csv} has a row for each PE: its load in the picture (cycles) with p = 0 and p = 16, and its load / mean load, mean of the views, +-
-  the half width of the 95 % interval."""
+  needs no clock.
+- {ensemble}: scenes with their objects in the middle, as that of Fig. 6.
+- Output: {name}.csv has a row for each PE: loads with p = 0 and p = 16 (cycles), mean load of the ensemble and +- the half width of its 95 %
+  interval (1: the mean load of all PEs)."""
 
-FLAT_LIMIT = 0.1  # our limit: in a flat distribution, the loads of middle and sides differ by at most this fraction of the mean load
+FLAT_LIMIT = 0.1  # bound of the claim no-hump, as a fraction of the mean load
 
 
 def relative_loads(image, offset):
@@ -34,67 +35,65 @@ def middle_and_sides(loads):
 
 
 def page_of(name, lab, scenes, first):
-    settings, picture, views = costs_of_pass(lab, scenes, first)
-    scene, size = settings["scene"], settings["size"]
-    offsets = (0, 16 % size)
+    scene, size = first_scene(scenes), lab.size(256)
+    antialias, image_of = ("none", lambda costs: costs.trace) if first else ("supersample", lambda costs: costs.supersample)
+    offsets, picture = (0, 16 % size), image_of(lab.costs(scene, size, antialias))
+    ensemble = lab.ensemble(scenes, size, antialias, families=CROWDED)
     own = [relative_loads(picture, p) for p in offsets]
-    of_views = [np.array([relative_loads(view, p) for view in views]) for p in offsets]  # [view, PE]
-    u = np.transpose([raya.imbalances(view, size, offsets) for view in views])  # [offset, view]
+    of_pictures = [ensemble.of(lambda costs, p=p: relative_loads(image_of(costs), p)) for p in offsets]  # [picture, PE]
+    u = ensemble.of(lambda costs: raya.imbalances(image_of(costs), size, offsets)).T  # [offset, picture]
     own_u = raya.imbalances(picture, size, offsets)
     rows = pd.DataFrame({"PE": range(size), "p = 0 (cycles)": raya.loads(picture, offset=0),
                          "p = 16 (cycles)": raya.loads(picture, offset=offsets[1])})
-    for label, some in zip(("p = 0", "p = 16"), of_views):
-        means = [estimate(column) for column in some.T]
-        rows[f"{label}, mean of views"], rows[f"{label}, +-"] = [m.mean for m in means], [m.half for m in means]
-    place, phase = ("Fig. 7", "first pass") if first else ("Fig. 12", "supersampling alone")
-    return Page({**settings, "offsets": list(offsets)}, findings_of(own, own_u, u),
-                comparisons_of(own_u, u, first and papers.is_papers(scene, size)), claims_of(place, of_views),
+    for label, some in zip(("p = 0", "p = 16"), of_pictures):
+        means = estimates(some)
+        rows[f"{label}, mean of the ensemble"], rows[f"{label}, +-"] = [m.mean for m in means], [m.half for m in means]
+    place, phase = ("Fig. 7", "first pass") if first else ("Fig. 12", "supersampling without the first pass")
+    return Page({"scene": scene.name, "size": size, "pes": size, "pictures": len(u[0]), "offsets": list(offsets)},
+                findings_of(own, own_u, u),
+                comparisons_of(own_u, u, first and papers.is_papers(scene.name, size)),
+                claims_of(of_pictures, ensemble.description) if first and not scenes else [],
                 [Table(name, "Load of each PE", rows, on_page=False)],
-                plots_of(name, scene, phase, rows, own, len(views)),
-                ["Kohata & Ito show one image. Many views of a scene separate the effect of the mapping from that of the picture."],
+                plots_of(name, scene.name, phase, rows, own, len(u[0])),
+                ["Kohata & Ito show one image. Many pictures separate the effect of the mapping from that of the picture."],
                 compared_with=papers.SPA,
-                placeholders={"figure": f"{place}: load of each PE{'' if first else ' in supersampling'}", "phase": phase, "csv": f"{name}.csv",
-                              "source": f"{place}; u(0) and u(16) are derived from Table 3" if first else place,
+                placeholders={"figure": f"{place}: load of each PE{'' if first else ' in supersampling'}", "phase": phase, "place": place,
+                              "name": name, "ensemble": ensemble.description,
                               "question": "How is the work of one image spread over the PEs, by columns and by the cyclic mapping?"
                               if first else "Is the extra work of supersampling spread as evenly as the first pass?"})
 
 
 def findings_of(own, own_u, u):
     (middle, sides), mean_u = middle_and_sides(own[0]), [estimate(some) for some in u]
-    return [f"In the picture, with the column split, the PEs of the middle quarter carry {middle:.2f} times the mean load and "
-            f"those of the quarter at the sides {sides:.2f} times. With p = 16 the PE with the least load carries "
-            f"{own[1].min():.2f} times the mean and the PE with the most {1 + own_u[1]:.2f} times.",
-            f"Over {len(u[0])} views u is {mean_u[0].text()} with the column split ({range_text(u[0])}) and {mean_u[1].text()} "
-            f"with p = 16 ({range_text(u[1])})."]
+    return [f"Over {len(u[0])} pictures u is {mean_u[0].text()} with columns ({range_text(u[0])}) and {mean_u[1].text()} "
+            f"with p = 16 ({range_text(u[1])}).",
+            f"In the picture the PEs of the middle quarter carry {middle:.2f} times the mean load with columns and "
+            f"those of the quarter at the sides {sides:.2f} times; with p = 16 the lightest PE carries "
+            f"{own[1].min():.2f} times and the heaviest {1 + own_u[1]:.2f} times the mean."]
 
 
 def comparisons_of(own_u, u, in_paper):
     figures = papers.IMBALANCE_0, papers.IMBALANCE_16
     remarks = ("our scene is calibrated on it: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
-    mean_u = [estimate(some) for some in u]
-    own = [Comparison(f"u({p})", "", *some, True) for p, *some in zip((0, 16), figures, own_u, remarks)]
-    return with_paper(in_paper, own + [Comparison(f"u({p}), mean of views", "", figure, mean.mean, "", True, mean.half)
-                                       for p, figure, mean in zip((0, 16), figures, mean_u)])
+    own = [Comparison(f"u({p}) of the picture", "", *some, True) for p, *some in zip((0, 16), figures, own_u, remarks)]
+    return with_paper(in_paper, own) + [Comparison(f"u({p}), mean of the ensemble", "", None, mean.mean, "", False, mean.half)
+                                        for p, mean in zip((0, 16), map(estimate, u))]
 
 
-def claims_of(place, of_views):
-    columns, cyclic = (estimate(np.subtract(*middle_and_sides(some))) for some in of_views)
-    over = f"Over {len(of_views[0])} views a PE of the middle quarter carries "
-    return [Claim(papers.SPA, place, "With p = 0 the load has a hump in the middle.",
-                  verdict(columns.low > 0, columns.high <= 0),
-                  f"{over}{columns.text(2)} mean loads more than one of the quarter at the sides."),
-            Claim(papers.SPA, place, "With p = 16 the load is flat.",
-                  verdict(cyclic.low >= -FLAT_LIMIT and cyclic.high <= FLAT_LIMIT, cyclic.high < -FLAT_LIMIT or cyclic.low > FLAT_LIMIT),
-                  f"{over}{cyclic.text(2)} mean loads more than one of the quarter at the sides; within {FLAT_LIMIT} counts as flat.")]
+def claims_of(of_pictures, about):
+    columns, cyclic = (np.subtract(*middle_and_sides(some)) for some in of_pictures)
+    text = "A PE of the middle quarter carries {} mean loads more than one of the quarter at the sides."
+    return [judged("hump", above(columns, 0, digits=2), about, text.format(estimate(columns).text(2))),
+            judged("no-hump", within(cyclic, -FLAT_LIMIT, FLAT_LIMIT, digits=2), about, text.format(estimate(cyclic).text(2)))]
 
 
-def plots_of(name, scene, phase, rows, own, views):
+def plots_of(name, scene, phase, rows, own, pictures):
     some = rows[rows["PE"] % max(len(rows) // 64, 1) == 0]
     labels, mean_line = ("p = 0, column split", "p = 16, cyclic mapping"), Series("mean", [0, len(rows) - 1], [1, 1])
     return [Plot(name, f"Load of each PE, {scene}, {phase}", "PE", "load / mean load",
                  [Series(label, rows["PE"], one) for label, one in zip(labels, own)] + [mean_line]),
-            Plot(f"{name}-views", f"Load of each PE, {phase}, mean of {views} views", "PE", "load / mean load",
-                 [Series(label, some["PE"], some[f"{p}, mean of views"], half_widths=some[f"{p}, +-"])
+            Plot(f"{name}-views", f"Load of each PE, {phase}, mean of {pictures} pictures", "PE", "load / mean load",
+                 [Series(label, some["PE"], some[f"{p}, mean of the ensemble"], half_widths=some[f"{p}, +-"])
                   for label, p in zip(labels, ("p = 0", "p = 16"))] + [mean_line])]
 
 

@@ -19,30 +19,24 @@ Are random objects slower than even ones, are their copies the reason, and why d
   of spheres, but no sphere is in two voxels. This separates the effect of copies from that of unequal numbers.
 - In all three kinds the outermost spheres touch the sides of one cube, so that all scenes have the same voxels. Registration enlarges each
   sphere by up to a 16th of a voxel's side; even and moved spheres keep that distance from the sides.
-- Random is slower if the 95 % interval of random over even lies above 1; it is not slower if the interval reaches 1 and ends below 1.02.
-  The claim is reproduced if random is slower for all numbers of objects; it is not reproduced if random is slower for none and not slower
-  for at least half of them.
 - The asynchronous machine decides, because the paper describes it: it is simulated packet by packet, with two tasks a node, links that carry
   while nodes compute, and finite buffers. Overlapped (nothing waits) and stepwise (everything waits) are shown as bounds.
 - The depth of primary rays is counted without lights. The growth of time is analysed from the fewest to the most objects, overlapped:
   objects over time is a product of four ratios, see the table.
-- Time counts as linear if objects over time is less than 1.1. The reason that Yoshitani & Yamazaki give, rays that end earlier, is
-  confirmed if fewer voxels a ray explain more than half of the product, by logarithms, for even and for random objects.
 - Output: objects.csv (modelled times in ms and counts), objects-ratios.csv, objects-growth.csv, objects-primary.csv and objects-words.csv.
   Columns +- are half widths of 95 % intervals.
 """
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Claim, Page, Plot, Series, Table, estimate, papers, series_by, study, verdict
+from raya.lab import Page, Plot, Series, Table, above, counted, estimate, every, judged, papers, series_by, study
 from raya.lab.voxels import CLOCK, even_scene, run_on_torus
 
 COUNTS, SEEDS, OTHER_WORDS = (64, 192, 256, 512, 1024, 8320), 5, (32, 48)
 EVEN, RANDOM, WITHIN = "even", "random", "random, none across voxels"
 PAPER, RAYA = "Yoshitani & Yamazaki", "raya"
 PROTOCOLS = {PAPER: {"inject": "root", "packet_words": papers.RAY_WORDS, "returns": "rays"}, RAYA: {}}
-# Ratio of times below which random scenes count as not slower; maximum growth of objects / time that counts as linear.
-SLOWER_RATIO, LINEAR_LIMIT = 1.02, 1.1
+LINEAR_LIMIT, HALF = 1.25, 0.5  # bounds of the claims not-linear and front-voxels
 TIMES = ("overlapped", "stepwise", "asynchronous")
 
 
@@ -98,7 +92,7 @@ def objects(lab, scenes):
     return Page({"nodes": "4x4x4", "voxels": "4x4x4", "links": "torus2d", "size": size, "bounces": 0, "format": "fp32",
                  "words": papers.RAY_WORDS, "seeds": SEEDS, "objects": list(COUNTS)},
                 findings_of(runs, rows, ratios, growth, depths, words) + more,
-                claims=[claim_of_random(ratios), claim_of_growth(growth), claim_of_depth(growth)],
+                claims=claims_of(runs, ratios, growth),
                 tables=tables_of(rows, ratios, growth, depths, words), plots=plots_of(rows, ratios, depths),
                 news=["Yoshitani & Yamazaki print no times for Fig. 4, and have one scene of each kind. This study has intervals over "
                       "scenes and both protocols, separates the effect of copies from that of unequal numbers, and explains the "
@@ -145,39 +139,26 @@ def texts_of(some, time):
     return ", ".join(f"{e.text(2)} ({count})" for e, count in zip(some[time], some["objects"]))
 
 
-def claim_of_random(ratios):
-    """The verdict uses times of the asynchronous machine, because the paper's machine is asynchronous. The reason also states the two bounds."""
-    some = select(ratios, RANDOM, PAPER)
-    slower = sum(e.low > 1 for e in some["asynchronous"])
-    not_slower = sum(e.low <= 1 and e.high < SLOWER_RATIO for e in some["asynchronous"])
-    return Claim(papers.TP, "Fig. 4", "Random objects take longer than even ones, as those that straddle voxels are "
-                 "registered more than once.",
-                 verdict(slower == len(some), slower == 0 and 2 * not_slower >= len(some)),
-                 f"Random over even, asynchronous (number of objects in brackets): {texts_of(some, 'asynchronous')}. Slower, by the "
-                 f"95 % interval, for {slower} of {len(some)} numbers of objects; not slower, or by less than 2 %, for "
-                 f"{not_slower}. Bounds: overlapped {texts_of(some, 'overlapped')}; stepwise {texts_of(some, 'stepwise')}.")
-
-
-def claim_of_growth(growth):
+def claims_of(runs, ratios, growth):
+    """The asynchronous machine decides about random scenes, because the paper's machine is asynchronous; the reason has the two bounds."""
+    some, about = select(ratios, RANDOM, PAPER), f"{SEEDS} random scenes of each number of objects"
+    slower = [above([run.asynchronous_ms / runs[count, EVEN, PAPER][0].asynchronous_ms for run in runs[count, RANDOM, PAPER]], 1)
+              for count in COUNTS]
     even, random = growth[0][2], growth[1][2]
-    of_even, of_random = estimate(even["objects / time"]), estimate(random["objects / time"])
-    return Claim(papers.TP, "Fig. 4", "Time does not grow linearly with the objects.",
-                 verdict(min(of_even.low_or_mean, of_random.low_or_mean) > LINEAR_LIMIT,
-                         min(of_even.high_or_mean, of_random.high_or_mean) <= LINEAR_LIMIT),
-                 f"{even['objects'][0]:.0f} times the objects take {even['time'][0]:.2f} times the time for even objects and "
-                 f"{estimate(random['time']).text(2)} times for random ones.")
-
-
-def claim_of_depth(growth):
-    """The paper's reason is confirmed if its factor is more than half of the logarithm of the product, for both kinds of scenes."""
-    even, random = growth[0][2], growth[1][2]
-    shares = [estimate(np.log(rows["fewer voxels a ray"]) / np.log(rows["objects / time"])) for rows in (even, random)]
-    return Claim(papers.TP, "Fig. 4", "The reason is that the share of rays that end in the front voxels differs.",
-                 verdict(min(e.low_or_mean for e in shares) > 0.5, min(e.high_or_mean for e in shares) <= 0.5),
-                 f"Rays end earlier: fewer voxels a ray explain a factor of {even['fewer voxels a ray'].mean():.2f} of "
-                 f"{even['objects / time'].mean():.2f} for even objects and {random['fewer voxels a ray'].mean():.2f} of "
-                 f"{random['objects / time'].mean():.2f} for random ones, which is {100 * shares[0].mean:.0f} % and "
-                 f"{100 * shares[1].mean:.0f} % by logarithms.")
+    linear = [counted(even["objects / time"].min() > LINEAR_LIMIT), above(random["objects / time"], LINEAR_LIMIT)]
+    parts = [np.log(rows["fewer voxels a ray"]) / np.log(rows["objects / time"]) for rows in (even, random)]
+    more = [np.log(rows["fewer voxels a ray"]) - HALF * np.log(rows["objects / time"]) for rows in (even, random)]
+    return [judged("random-is-slower", every(slower), about,
+                   f"Random over even, asynchronous (number of objects in brackets): {texts_of(some, 'asynchronous')}. "
+                   f"Bounds: overlapped {texts_of(some, 'overlapped')}; stepwise {texts_of(some, 'stepwise')}."),
+            judged("not-linear", every(linear), about,
+                   f"{even['objects'][0]:.0f} times the objects take {even['time'][0]:.2f} times the time for even objects and "
+                   f"{estimate(random['time']).text(2)} times for random ones."),
+            judged("front-voxels", every([counted(more[0].min() > 0), above(more[1])]), about,
+                   f"Rays end earlier: fewer voxels a ray explain a factor of {even['fewer voxels a ray'].mean():.2f} of "
+                   f"{even['objects / time'].mean():.2f} for even objects and {random['fewer voxels a ray'].mean():.2f} of "
+                   f"{random['objects / time'].mean():.2f} for random ones, which is {100 * parts[0].mean():.0f} % and "
+                   f"{100 * parts[1].mean():.0f} % by logarithms.")]
 
 
 def findings_of(runs, rows, ratios, growth, depths, words):
