@@ -38,15 +38,12 @@ TEST_CASE("study: writes figures, tables, JSON and a document", "[cli]") {
     for (const char* part : {"u(0)", "u(8)", "u(16)", "best p of all 32", "fig8.md"})
         CHECK_THAT(run.out, Catch::Contains(part));
     const std::filesystem::path folder = outputs / "made/x";
-    CHECK(files_in(folder) == Files{"fig8-all.png", "fig8-all.svg", "fig8-near.csv", "fig8.csv", "fig8.json", "fig8.md",
-                                    "fig8.png", "fig8.svg", "index.html"});
+    CHECK(files_in(folder) == Files{"fig8-all.png", "fig8-all.svg", "fig8-families.csv", "fig8-near.csv", "fig8.csv",
+                                    "fig8.json", "fig8.md", "fig8.png", "fig8.svg", "index.html"});
     const auto json = Document::parse(file_contents(folder / "fig8.json"));
     CHECK(json["study"] == "fig8");
-    for (const auto& [key, value] : {std::pair<const char*, Document>{"scene", "centre"},
-                                     {"size", 32},
-                                     {"pes", 32},
-                                     {"views", 64},
-                                     {"view_seeds", "1..64"}})
+    for (const auto& [key, value] :
+         {std::pair<const char*, Document>{"scene", "centre"}, {"size", 32}, {"pes", 32}, {"pictures", 108}})
         CHECK(json["settings"][key] == value);
     CHECK(json["tables"][1]["name"] == "fig8");
     CHECK(json["tables"][1]["rows"].size() == 32);

@@ -167,8 +167,8 @@ class Reports:
         for mapping in ("cyclic:3", "rows"):
             self.run(self.raya, "explore", scene, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "1", "--format", "fp32", "-o", "e.html")
             self.take("explore", "raya explore", json.dumps(report_of((self.folder / "e.html").read_text())))
-        for study in ("table2", "table4"):
-            self.make("study", "study", study, "--size", "32", "-o", "study", file=f"study/{study}.json")
+        for study in ("table2", "table4", "fig8"):
+            self.make("study", "study", study, "--size", "32", "--views", "20", "-o", "study", file=f"study/{study}.json")
 
     def tune(self, scene):
         """Repeats tune with increasing time limits until at least one candidate has finished, because the machine may be slow."""

@@ -54,8 +54,8 @@ def page_of(name, lab, scenes, first):
                 comparisons_of(rows, of_pictures, n, in_paper),
                 claims_of(of_pictures, ensemble, n, first) if not scenes else [],
                 [Table(f"{name}-near", f"Offsets 0..{n}: the picture's u and that of {len(of_pictures)} pictures", near),
-                 table_of_families(name, of_pictures, ensemble.families, n),
-                 Table(name, "Imbalance for each offset", rows, on_page=False)],
+                 Table(name, "Imbalance for each offset", rows, on_page=False),
+                 table_of_families(name, of_pictures, ensemble.families, n)],
                 plots_of(name, scene.name, phase, rows, near, len(of_pictures), in_paper),
                 ["Kohata & Ito plot u for one picture. The best offset changes from picture to picture. Means over many pictures, with "
                  "intervals, show the effect of the offset itself."],
