@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/accel/partition.hpp"
+#include "host/scene/packer.hpp"
 #include "host/scene/split_mix.hpp"
 #include "kernels/shared/grid.h"
 #include "tests/kernels/random_scene.hpp"
@@ -16,6 +17,13 @@ namespace raya {
 
 inline std::uint32_t below(SplitMix& random, std::uint32_t end) {
     return static_cast<std::uint32_t>(random.next() % end);
+}
+
+/// Returns the words of a grid's header, as kernels read it.
+inline std::vector<std::uint32_t> grid_words(const raya_grid& grid) {
+    std::vector<std::uint32_t> words(kWordsOf<raya_grid>);
+    put_record(words, 0, grid);
+    return words;
 }
 
 /// Returns a grid of random size, proportions and divisions, around the origin or far from it.

@@ -17,16 +17,10 @@ struct SteppedVoxels {
     std::vector<float> t_exits;         // [ray][max_count]: t at which the ray leaves each voxel
 };
 
-std::vector<std::uint32_t> words_of(const raya_grid& grid) {
-    std::vector<std::uint32_t> words(kWordsOf<raya_grid>);
-    put_record(words, 0, grid);
-    return words;
-}
-
 SteppedVoxels plain_traversal(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
     const std::size_t count = rays.size() / 7;
     const std::uint32_t max_count = max_voxels(grid);
-    const auto grid_buffer = runner.filled("grid", words_of(grid));
+    const auto grid_buffer = runner.filled("grid", grid_words(grid));
     const auto ray_buffer = runner.filled("rays", rays);
     auto wide = runner.constant<std::uint32_t>("wide", count, 0);
     auto voxels = runner.constant<std::uint32_t>("voxels", count * max_count, RAYA_NO_VOXEL);
@@ -40,7 +34,7 @@ SteppedVoxels plain_traversal(KernelRunner& runner, const raya_grid& grid, const
 SteppedVoxels stepped_traversal(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
     const std::size_t count = rays.size() / 7;
     const std::uint32_t max_count = max_voxels(grid);
-    const auto grid_buffer = runner.filled("grid", words_of(grid));
+    const auto grid_buffer = runner.filled("grid", grid_words(grid));
     const auto ray_buffer = runner.filled("rays", rays);
     auto voxels = runner.constant<std::uint32_t>("voxels", count * max_count, RAYA_NO_VOXEL);
     auto t_exits = runner.constant<float>("t_exits", count * max_count, 0);

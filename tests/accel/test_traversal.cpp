@@ -24,12 +24,6 @@ struct Traversals {
     std::vector<std::uint32_t> next_voxels;  // [ray][max_count]: voxel after each voxel, if resumed in it
 };
 
-std::vector<std::uint32_t> grid_words(const raya_grid& grid) {
-    std::vector<std::uint32_t> words(kWordsOf<raya_grid>);
-    put_record(words, 0, grid);
-    return words;
-}
-
 Traversals traverse(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
     const std::size_t count = rays.size() / 7;
     const std::uint32_t max_count = max_voxels(grid);

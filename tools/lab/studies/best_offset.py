@@ -16,7 +16,6 @@ Which offset of the cyclic mapping renders this image fastest, communication inc
 - Output: best-offset-views.csv, best-offset.csv and best-offset-all.csv (every offset). Times are in ms, u is (max load - mean load) / mean
   load, and "takes longer" is in % of the chosen offset's time.
 """
-import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, below, estimate, every, judged, papers, study

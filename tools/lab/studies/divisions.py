@@ -11,7 +11,7 @@ Into how many voxels should one machine divide space, for a given number of obje
 """
 import numpy as np
 import raya
-from raya.lab import Comparison, Page, Plot, Series, Table, counted, estimate, judged, papers, range_text, series_by, study, within
+from raya.lab import Comparison, Page, Plot, Table, counted, estimate, judged, papers, range_text, series_by, study, within
 from raya.lab.laboratory import TESTS
 from raya.lab.voxels import near_cube, powers_of_two, run_cases, run_in_one_pe
 

@@ -59,7 +59,7 @@ def lattice(lab, scenes):
 
 
 def claims_of(u, ensemble, rows, n, beyond):
-    size, families = len(rows), ensemble.families
+    families = ensemble.families
     confidence = bonferroni_confidence(len(beyond))
     differences = [estimate(u[:, p] - u[:, n], families, confidence) for p in beyond]
     worse, better = sum(d.low > 0 for d in differences), sum(d.high < 0 for d in differences)
