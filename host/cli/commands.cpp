@@ -183,6 +183,7 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     add_render_command(program, ranks);
     add_explore_command(program);
     add_devices_command(program);
+    add_machines_command(program);
     add_info_command(program);
     add_generate_command(program);
     add_bench_command(program);

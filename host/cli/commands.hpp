@@ -26,6 +26,7 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build);
 
 void add_render_command(CLI::App& program, Ranks& ranks);
 void add_devices_command(CLI::App& program);
+void add_machines_command(CLI::App& program);
 void add_explore_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
 void add_info_command(CLI::App& program);

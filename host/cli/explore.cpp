@@ -74,13 +74,13 @@ std::string command_of(const ExploreCommand& command, const RingSettings& settin
     return text;
 }
 
-// Returns the machine's rates, from which the page computes modelled times; empty if a rate is not known.
-Json rates_of(const Machine& machine) {
-    if (!machine.cycle_ns || !machine.link_words_per_s || !machine.rotation_sync_ms || !machine.host_words_per_s)
-        return {};
-    return {{"cycle_ns", *machine.cycle_ns},
-            {"link_words_per_s", *machine.link_words_per_s},
-            {"rotation_sync_ms", *machine.rotation_sync_ms}};
+// Returns the rates from which the page computes modelled times.
+Json rates_of(const MachineClock& clock) {
+    return {{"cycle_ns", clock.cycle_ns},
+            {"cycle_factor", clock.cycle_factor},
+            {"setup_ms", clock.setup_ms},
+            {"link_words_per_s", clock.link_words_per_s},
+            {"rotation_sync_ms", clock.rotation_sync_ms}};
 }
 
 Json machine_json(const RingSettings& settings) {
@@ -94,7 +94,7 @@ Json machine_json(const RingSettings& settings) {
             {"format", format_name(settings.format)},
             {"bounces", settings.bounces},
             {"accel", accel_text(settings.accel)},
-            {"rates", rates_of(settings.machine)}};
+            {"rates", rates_of(settings.machine.clock)}};
 }
 
 // Returns the page's data. The data contain no measured times, so that equal renders give equal pages.

@@ -64,9 +64,9 @@ std::uint32_t parse_parameter(const MappingText& mapping, std::string_view text)
 
 [[noreturn]] void refuse_dynamic_mapping(const std::string& text) {
     throw UserError(
-        fmt::format("--mapping {}: must be dynamic:CHUNK[,OVERHEAD] or hybrid:CHUNK[,OVERHEAD[,SHARE]] with "
-                    "CHUNK 1..{} pixels per request, OVERHEAD 0..{} cycles per request, SHARE 0..1 of the pixels "
-                    "assigned statically",
+        fmt::format("--mapping {}: must be dynamic:CHUNK[,OVERHEAD[,ROOT]] or hybrid:CHUNK[,OVERHEAD[,SHARE[,ROOT]]] "
+                    "with CHUNK 1..{} pixels per request, OVERHEAD 0..{} cycles of the PE per request, ROOT as many "
+                    "cycles of the root, SHARE 0..1 of the pixels assigned statically",
                     text, kMaxChunk, kMaxOverhead));
 }
 
@@ -122,16 +122,18 @@ Fold parse_fold(const std::string& text) {
 
 bool is_dynamic(const std::string& text) { return text.starts_with("dynamic") || text.starts_with("hybrid"); }
 
-DynamicPlan parse_dynamic(const std::string& text) {
+DynamicPlan parse_dynamic(const std::string& text, const DynamicPlan& defaults) {
     const std::string_view view = text;
     const bool hybrid = view.starts_with("hybrid:");
     if (!hybrid && !view.starts_with("dynamic:")) refuse_dynamic_mapping(text);
     const auto fields = split_at_commas(view.substr(view.find(':') + 1));
-    DynamicPlan plan;
+    DynamicPlan plan = defaults;
     if (hybrid) plan.static_fraction = 0.5;
-    const bool is_valid = fields.size() <= (hybrid ? 3 : 2) && read_number(fields[0], plan.chunk) &&
+    const std::size_t root = hybrid ? 3 : 2;  // index of the field ROOT
+    const bool is_valid = fields.size() <= root + 1 && read_number(fields[0], plan.chunk) &&
                           (fields.size() < 2 || read_number(fields[1], plan.overhead)) &&
-                          (fields.size() < 3 || read_number(fields[2], plan.static_fraction));
+                          (fields.size() < 3 || !hybrid || read_number(fields[2], plan.static_fraction)) &&
+                          (fields.size() <= root || read_number(fields[root], plan.root_cycles));
     if (!is_valid || !is_valid_plan(plan)) refuse_dynamic_mapping(text);
     return plan;
 }

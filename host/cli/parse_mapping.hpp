@@ -39,9 +39,10 @@ Fold parse_fold(const std::string& text);
 /// Returns true if the text names a dynamic or hybrid mapping, which parse_dynamic() parses.
 bool is_dynamic(const std::string& text);
 
-/// Parses "dynamic:chunk[,overhead]" or "hybrid:chunk[,overhead[,share]]". `chunk`: pixels per request; `overhead`:
-/// cycles per request, default 0; `share`: fraction of a PE's pixels that is assigned statically, default 0.5. Throws
-/// UserError with the option and its legal forms.
-DynamicPlan parse_dynamic(const std::string& text);
+/// Parses "dynamic:chunk[,overhead[,root]]" or "hybrid:chunk[,overhead[,share[,root]]]". `chunk`: pixels per request;
+/// `overhead`: cycles of the PE per request; `root`: cycles of the root per request; `share`: fraction of a PE's pixels
+/// that is assigned statically, default 0.5 for hybrid. Other missing numbers are those of `defaults`. Throws UserError
+/// with the option and its legal forms.
+DynamicPlan parse_dynamic(const std::string& text, const DynamicPlan& defaults = {});
 
 }  // namespace raya

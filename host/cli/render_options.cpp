@@ -97,10 +97,10 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
         "Assignment of pixels to PEs: cyclic (slots of a sheared image, --offset), cyclic:p, column (cyclic with "
         "offset 0: whole columns), rows (scan lines round robin), blocks (contiguous scan lines), grid:AxB (A rows "
         "of B PEs; a PE has every B-th pixel of every A-th line), tiles:WxH (tiles of W x H pixels round robin), "
-        "random:seed (default seed 1); dynamic:CHUNK[,OVERHEAD]: PEs request CHUNK pixels at a time, each request "
-        "costs OVERHEAD cycles; hybrid:CHUNK[,OVERHEAD[,SHARE]]: PEs request pixels after rendering a fraction "
-        "SHARE (0.5) of their cyclic pixels; the loads of dynamic and hybrid are simulated; default: the machine's, "
-        "cyclic on spa")
+        "random:seed (default seed 1); dynamic:CHUNK[,OVERHEAD[,ROOT]]: PEs request CHUNK pixels at a time, each "
+        "request costs the PE OVERHEAD cycles and occupies the root, which answers one at a time, for ROOT cycles; "
+        "hybrid:CHUNK[,OVERHEAD[,SHARE[,ROOT]]]: PEs request pixels after rendering a fraction SHARE (0.5) of their "
+        "cyclic pixels; the loads of dynamic and hybrid are simulated; default: the machine's, cyclic on spa")
         ->type_name("NAME");
     add_value(command, "--fold", o.fold, "PE of slot c if P is not W: cyclic (c mod P) or block (c P div W)")
         ->type_name("cyclic|block")
@@ -199,7 +199,7 @@ void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize
     if (o.mapping.empty())
         settings.dynamic = machine.dynamic;
     else if (is_dynamic(o.mapping))
-        settings.dynamic = parse_dynamic(o.mapping);
+        settings.dynamic = parse_dynamic(o.mapping, machine.dynamic.value_or(DynamicPlan{}));
     const MappingText mapping = requested_mapping(o, machine);
     check_slot_options(o, mapping, image);
     const std::uint32_t pes = o.pes.value_or(mapping.rule.pes().value_or(machine.pes.value_or(image.width)));

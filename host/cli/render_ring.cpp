@@ -28,10 +28,10 @@ std::optional<Antialiasing> antialiasing(const RingSettings& settings, const Rin
     return report;
 }
 
-std::optional<ModelledTime> ring_time(const RingSettings& settings, const RingResult& result) {
+ModelledTime ring_time(const RingSettings& settings, const RingResult& result) {
     std::vector<Load> loads;
     for (const Phase& phase : result.phases) loads.push_back(phase.load);
-    return modelled_time(settings.machine, loads, result.communication, 1,
+    return modelled_time(settings.machine.clock, loads, result.communication,
                          smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
 }
 

@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "host/error.hpp"
 #include "host/model/budget.hpp"
@@ -13,49 +15,91 @@
 namespace raya {
 namespace {
 
-// Kohata & Ito 1993. Marks: [P] printed there, [D] derived from printed figures, [?] assumed here. The paper gives no
-// time of a transfer between PEs over the bus: the model uses the rate of a link and the overhead of a rotation [?].
+// Marks of sources: [P] printed in the paper that describes the machine, [D] derived from printed figures, [T] data
+// sheet,
+// [?] assumed here.
+
+constexpr double kNoTime = std::numeric_limits<double>::infinity();  // rate of a transfer that takes no time
+constexpr const char *kCyclePrinted = "[P] 100 ns, 20 MFLOPS: one multiply-accumulate a cycle",
+                     *kOfSpa = "[?] as the SPA";
+
+std::string rate_text(double per_s, const char* unit) {
+    return per_s == kNoTime ? "takes no time" : fmt::format("{:.4g} M{}/s", 1e-6 * per_s, unit);
+}
+
+std::string memory_text(const std::optional<std::uint64_t>& bytes) {
+    return bytes ? fmt::format("{} KB", *bytes / 1024) : "no limit";
+}
+
+// Sources of the numbers of a ring machine, in the order of ring_facts().
+struct RingSources {
+    const char *pes, *memory, *bounces, *format, *mapping, *cycle, *factor, *link, *sync, *setup, *broadcast, *gather,
+        *display;
+};
+
+std::vector<Fact> ring_facts(const Machine& m, const std::string& mapping, const RingSources& from) {
+    const MachineClock& c = m.clock;
+    return {{"PEs", m.pes ? fmt::format("{}", *m.pes) : "one per image column", from.pes},
+            {"memory of a PE", memory_text(m.pe_memory_bytes), from.memory},
+            {"reflections and refractions", fmt::format("at most {}", m.bounces), from.bounces},
+            {"number format", format_name(m.format), from.format},
+            {"mapping of pixels", mapping, from.mapping},
+            {"cycle of a PE", fmt::format("{:g} ns", c.cycle_ns), from.cycle},
+            {"cycles per budget cycle", fmt::format("{:.4g}", c.cycle_factor), from.factor},
+            {"link to a neighbour", rate_text(c.link_words_per_s, "words"), from.link},
+            {"synchronisation of a rotation", fmt::format("{:g} ms", c.rotation_sync_ms), from.sync},
+            {"set-up of a transfer", fmt::format("{:g} ms", c.setup_ms), from.setup},
+            {"broadcast by the host", rate_text(c.broadcast_words_per_s, "words"), from.broadcast},
+            {"gather of the image", rate_text(c.gather_words_per_s, "words"), from.gather},
+            {"display", rate_text(c.display_pixels_per_s, "pixels"), from.display}};
+}
+
+// Kohata & Ito 1993. The clock is derived from the printed times in Tables 2 to 4, each rounded to 1 ms; docs/clock.md
+// has the derivation.
+MachineClock spa_clock() {
+    constexpr double kRotationMs = (12. - 2) / (34 - 2);  // Table 4: exchanges with 34 and 2 rotations
+    constexpr double kColumnWords = 256 * 3, kImageWords = 256 * kColumnWords;
+    MachineClock clock;
+    clock.cycle_ns = 100;
+    clock.cycle_factor = 7 / (1e-6 * clock.cycle_ns * static_cast<double>(filter_cycles(256)));
+    clock.link_words_per_s = 6e6;
+    clock.rotation_sync_ms = kRotationMs - 1e3 * kColumnWords / clock.link_words_per_s;
+    clock.setup_ms = 2 - 2 * kRotationMs;
+    clock.broadcast_words_per_s = clock.gather_words_per_s = 1e3 * kImageWords / (140 - clock.setup_ms);
+    clock.display_pixels_per_s = 1e3 * 256 * 256 / 1130;
+    return clock;
+}
+
+constexpr RingSources kSpaSources = {
+    .pes = "[P] 256 DSPs",
+    .memory = "[P]",
+    .bounces = "[P]",
+    .format = "[P] 22 bits; [?] their division into 1 sign, 6 exponent and 15 fraction bits",
+    .mapping = "[P] the offset with the smallest imbalance",
+    .cycle = kCyclePrinted,
+    .factor = "[D] Tables 3 and 4: the filter's arithmetic takes 9 - 2 = 19 - 12 = 7 ms; its budget is 1.0752 ms",
+    .link = "[P] DMA; [?] the bus between PEs has the same rate",
+    .sync = "[D] Table 4: 34 rotations of 768 words take 10 ms longer than 2",
+    .setup = "[D] Table 4: 2 ms for 2 rotations; [?] a broadcast or gather takes the same",
+    .broadcast = "[?] as the gather",
+    .gather = "[D] Table 2: 140 ms for 256 x 256 pixels of 3 words",
+    .display = "[P] Table 2: 1,130 ms for 256 x 256 pixels"};
+
 Machine spa() {
-    return {
-        .name = "spa",
-        .title = "the SPA",
-        .topology = "ring+bus",                          // [P]
-        .pes = 256,                                      // [P] DSPs
-        .pe_memory_bytes = 32 * 1024,                    // [P]
-        .bounces = 8,                                    // [P] at most 8 reflections and refractions
-        .format = {6, 15, false},                        // [P] 22 bits; [?] their division into exponent and fraction
-        .mapping = cyclic_mapping(16),                   // [P] the offset with the smallest imbalance
-        .cycle_ns = 100,                                 // [P] 20 MFLOPS
-        .link_words_per_s = 6e6,                         // [P] DMA
-        .rotation_sync_ms = 10. / 32 - 1e3 * 768 / 6e6,  // [D] Tables 3 and 4: 32 more rotations of 768 words, 10 ms
-        .host_words_per_s = 196'608 / 0.140};            // [D] Table 2: 256 x 256 pixels of 3 words in 140 ms
-}
-
-// Returns an array with a mapping that the paper compares with the SPA's. Its PEs are those of the SPA without a memory
-// limit, so that loads can be compared. It has no modelled times, because the rates of the real PEs and links are
-// unknown.
-Machine array_of_spa_pes(const std::string& name, const std::string& title, const std::string& topology,
-                         const MappingRule& mapping, std::uint32_t pes) {
-    Machine machine;
-    machine.name = name;
-    machine.title = title;
-    machine.topology = topology;
-    machine.pes = pes;
-    machine.format = spa().format;
-    machine.mapping = mapping;
+    Machine machine = {.name = "spa",
+                       .title = "the SPA",
+                       .topology = "ring+bus",  // [P]
+                       .pes = 256,
+                       .pe_memory_bytes = 32 * 1024,
+                       .bounces = 8,
+                       .format = {6, 15, false},
+                       .mapping = cyclic_mapping(16),
+                       .clock = spa_clock()};
+    machine.facts = ring_facts(machine, "cyclic, offset 16", kSpaSources);
     return machine;
 }
 
-// [P] When a PE has finished a pixel, it requests the next one from a root PE. [?] The array has as many PEs as the
-// SPA.
-Machine links() {
-    Machine machine =
-        array_of_spa_pes("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", cyclic_mapping(0), 256);
-    machine.dynamic = DynamicPlan{.chunk = 1};
-    return machine;
-}
-
-// [?] The SPA without a memory limit, with one PE per image column, fp32 and a BVH: for scenes that do not fit the SPA.
+// The SPA without a memory limit, with one PE per image column, fp32 and a BVH: for scenes that do not fit the SPA.
 Machine grande() {
     Machine machine = spa();
     machine.name = machine.title = "grande";
@@ -63,33 +107,140 @@ Machine grande() {
     machine.pe_memory_bytes = {};
     machine.format = {};
     machine.accel = {AccelKind::kBvh};
+    RingSources sources = kSpaSources;
+    sources.pes = sources.memory = sources.format = "[?] no machine of the papers";
+    machine.facts = ring_facts(machine, "cyclic, offset 16", sources);
     return machine;
 }
 
-// [P] The machine with one DSP in the paper's Table 2; its host is that of the SPA.
+// The machine with one DSP in the paper's Table 2; its host is that of the SPA.
 Machine spa1() {
     Machine machine = spa();
     machine.name = "spa1";
     machine.title = "the SPA with one DSP";
     machine.pes = 1;
     machine.mapping = cyclic_mapping(0);  // no effect with one PE
+    RingSources sources = kSpaSources;
+    sources.pes = "[P] Table 2";
+    sources.mapping = "no effect with one PE";
+    machine.facts = ring_facts(machine, "cyclic, offset 0", sources);
     return machine;
 }
 
-// Yoshitani & Yamazaki, about 1995. Marks: [P] printed there, [T] data sheet of the T805, [?] assumed here. The cycles
-// of nodes and links are in model/t805.hpp. link_words_per_s is the rate of one link in one direction.
+// Returns an array with a mapping that the paper compares with the SPA's. Its PEs are those of the SPA without a memory
+// limit, so that loads can be compared.
+Machine array_of_spa_pes(const std::string& name, const std::string& title, const std::string& topology,
+                         const MappingRule& mapping, std::uint32_t pes) {
+    Machine machine = spa();
+    machine.name = name;
+    machine.title = title;
+    machine.topology = topology;
+    machine.pes = pes;
+    machine.pe_memory_bytes = {};
+    machine.mapping = mapping;
+    return machine;
+}
+
+constexpr RingSources kOtherSources = {.pes = "",
+                                       .memory = "[?] no limit, so that loads can be compared",
+                                       .bounces = kOfSpa,
+                                       .format = kOfSpa,
+                                       .mapping = "",
+                                       .cycle = kOfSpa,
+                                       .factor = kOfSpa,
+                                       .link = kOfSpa,
+                                       .sync = kOfSpa,
+                                       .setup = kOfSpa,
+                                       .broadcast = kOfSpa,
+                                       .gather = "[P] PEs hold the frame buffer",
+                                       .display = "[P] PEs hold the frame buffer"};
+
+// Ishii, Sato et al., "Cellular array processor CAP and applications", 1988: 256 cells; an interface chip with two
+// buses for broadcasts, 2 MB/s each, and six serial ports, 15 Mbit/s each; every cell holds and displays its part of
+// the image.
+Machine cap() {
+    Machine machine =
+        array_of_spa_pes("cap", "the array of the CAP, on PEs of the SPA", "2-D array", grid_mapping(16, 16), 256);
+    constexpr double kWordBytes = 4;
+    machine.clock.link_words_per_s = 15e6 / 8 / kWordBytes;
+    machine.clock.broadcast_words_per_s = 2e6 / kWordBytes;
+    machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kNoTime;
+    machine.clock.rotation_sync_ms = machine.clock.setup_ms = 0;
+    RingSources sources = kOtherSources;
+    sources.pes = "[P] 256 cells";
+    sources.mapping = "[P] Kohata & Ito 1993, Fig. 5: every 16th pixel in both directions";
+    sources.link = "[P] six serial ports of 15 Mbit/s; [?] words of 4 bytes";
+    sources.sync = sources.setup = "[?] not printed: taken as 0";
+    sources.broadcast = "[P] common bus of 2 MB/s; [?] words of 4 bytes, one of the two buses";
+    sources.gather = sources.display = "[P] every cell displays its own pixels over the video bus";
+    machine.facts = ring_facts(machine, "grid:16x16", sources);
+    return machine;
+}
+
+// Potmesil & Hoffert 1989: m x n pixel nodes, each with every m-th pixel of every n-th scan line, behind a pipeline of
+// pipe nodes. The scene passes the pipeline on its way to the pixel nodes.
+Machine pixel_machine() {
+    Machine machine = array_of_spa_pes("pixel-machine", "the array of the Pixel Machine, on PEs of the SPA",
+                                       "pipeline and 2-D array", grid_mapping(8, 8), 64);
+    machine.clock.cycle_ns = 200;
+    machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kNoTime;
+    RingSources sources = kOtherSources;
+    sources.pes = "[P] 64 pixel nodes";
+    sources.mapping = "[P] every m-th pixel on every n-th scan line; [D] m = n = 8";
+    sources.cycle = "[D] 820 MFLOPS of 82 nodes are two operations in 200 ns; the 18 pipe nodes only pass the scene on";
+    machine.facts = ring_facts(machine, "grid:8x8", sources);
+    return machine;
+}
+
+// Nishimura et al. 1982 and 1985: a root computer and up to 256 node computers in a star. An idle node requests work
+// from the root, which serves one node at a time; nodes write pixels into the frame memory through a FIFO.
+Machine links() {
+    Machine machine =
+        array_of_spa_pes("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", cyclic_mapping(0), 256);
+    machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kNoTime;
+    const MachineClock& c = machine.clock;
+    const double request_ms = 2 * c.rotation_sync_ms + 1e3 * 3 / c.link_words_per_s;
+    const double cycle_ms = 1e-6 * c.cycle_ns * c.cycle_factor;
+    machine.dynamic = DynamicPlan{.root_cycles = static_cast<std::uint64_t>(std::lround(request_ms / cycle_ms))};
+    RingSources sources = kOtherSources;
+    sources.pes = "[P] up to 256 node computers and a root";
+    sources.mapping = "[P] idle nodes request pixels from the root; [?] one pixel a request";
+    sources.gather = sources.display = "[P] pixels pass a FIFO to the frame memory without conflicts";
+    machine.facts = ring_facts(machine, "dynamic", sources);
+    machine.facts.push_back(
+        {"request to the root",
+         fmt::format("{:.3g} ms = {} budget cycles, one at a time", request_ms, machine.dynamic->root_cycles),
+         "[?] a transfer of one word and one of two over the SPA's bus"});
+    return machine;
+}
+
+// Yoshitani & Yamazaki, about 1995. The cycles of nodes and links are in model/t805.hpp.
 Machine torus() {
     Machine machine;
     machine.name = "torus";
     machine.title = "the torus of transputers";
-    machine.kind = MachineKind::kTorus;                   // [P]
-    machine.topology = "torus3d";                         // [P] a torus; [?] six links, the T805 has four
-    machine.pes = 64;                                     // [P] T805s, one voxel each: 4 x 4 x 4
-    machine.pe_memory_bytes = 4 * 1024 * 1024;            // [?] a T805 board
-    machine.bounces = 8;                                  // [?] as on the SPA; the paper traces shadow rays only
-    machine.format = {};                                  // [T] IEEE, single precision
-    machine.cycle_ns = kT805CycleNs;                      // [T] 25 MHz
-    machine.link_words_per_s = kT805OneWayBytesPerS / 4;  // [T]
+    machine.kind = MachineKind::kTorus;
+    machine.topology = "torus3d";
+    machine.pes = 64;
+    machine.pe_memory_bytes = 4 * 1024 * 1024;
+    machine.bounces = 8;
+    machine.format = {};
+    machine.facts = {
+        {"nodes", "64 = 4 x 4 x 4", "[P] T805s, one voxel each"},
+        {"memory of a node", memory_text(machine.pe_memory_bytes), "[?] a T805 board"},
+        {"reflections and refractions", fmt::format("at most {}", machine.bounces),
+         "[?] as the SPA; the paper traces shadow rays only"},
+        {"number format", format_name(machine.format), "[T] IEEE single precision"},
+        {"links of a node", "6", "[P] a torus; [?] six links, as a T805 has four (--links 2d: four)"},
+        {"cycle of a node", fmt::format("{:g} ns", kT805CycleNs), "[T] the 25 MHz part"},
+        {"addition, multiplication, division, square root",
+         fmt::format("{}, {}, {}, {} cycles", kT805AdditionCycles, kT805MultiplicationCycles, kT805DivisionCycles,
+                     kT805RootCycles),
+         "[T] typical, single precision"},
+        {"message of w words, at each end", fmt::format("{} w + {} cycles", kT805MessageWordCycles, kT805MessageCycles),
+         "[T]"},
+        {"link, one way; both ways",
+         fmt::format("{:g}; {:g} MB/s", 1e-6 * kT805OneWayBytesPerS, 1e-6 * kT805BothWaysBytesPerS), "[T] 20 Mbit/s"}};
     return machine;
 }
 
@@ -104,18 +255,18 @@ std::string accel_text(const Accel& accel) {
 }
 
 const std::vector<Machine>& machines() {
-    static const std::vector<Machine> all = {
-        spa(),
-        grande(),
-        spa1(),
-        // [P] 256 cells; each has every 16th pixel in both directions [D: n = 16 if P = n x n]
-        array_of_spa_pes("cap", "the array of the CAP, on PEs of the SPA", "2-D array", grid_mapping(16, 16), 256),
-        // [P] 64 nodes; each has every 8th pixel of every 8th line [D]
-        array_of_spa_pes("pixel-machine", "the array of the Pixel Machine, on PEs of the SPA", "2-D array",
-                         grid_mapping(8, 8), 64),
-        links(),
-        torus(),
-    };
+    static const std::vector<Machine> all = {spa(), grande(), spa1(), cap(), pixel_machine(), links(), torus()};
+    return all;
+}
+
+const std::vector<CitedMachine>& cited_machines() {
+    static const std::vector<CitedMachine> all = {
+        {"sight",
+         "Kohata & Ito 1993 names it in one sentence, as a machine with processors of its own (Yoshida et al. 1985); "
+         "its "
+         "successor SIGHT-2 had 16 PEs, static load distribution and an efficiency above 99 % (Yoshida, Naruse & "
+         "Takahashi 1989)",
+         "no public description states which pixels each of its PEs computes"}};
     return all;
 }
 
@@ -123,6 +274,9 @@ const Machine& machine_named(const std::string& name) {
     const auto& all = machines();
     const auto found = std::find_if(all.begin(), all.end(), [&](const Machine& m) { return m.name == name; });
     if (found != all.end()) return *found;
+    for (const CitedMachine& cited : cited_machines())
+        if (cited.name == name)
+            throw UserError(fmt::format("--machine {}: not modelled: {}; known: {}", name, cited.reason, cited.facts));
     std::vector<std::string> names;
     for (const Machine& m : all) names.push_back(m.name);
     throw UserError(fmt::format("--machine {}: no such machine; available: {}", name, fmt::join(names, ", ")));

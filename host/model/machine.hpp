@@ -63,6 +63,26 @@ enum class MachineKind {
     kTorus  // the scene: the PEs are nodes that store voxels and send rays to each other (host/torus/)
 };
 
+/// Rates from which modelled_time() (model/time_model.hpp) computes the time of a ring machine. An infinite rate
+/// stands for a transfer that takes no time. docs/clock.md has the origin of the SPA's numbers.
+struct MachineClock {
+    double cycle_ns = 0;               // time of a cycle of a PE
+    double cycle_factor = 1;           // number of the machine's cycles per cycle of the budgets (model/budget.hpp)
+    double link_words_per_s = 0;       // rate of a link from a PE to its neighbour, and of the bus between PEs
+    double rotation_sync_ms = 0;       // overhead of one rotation, or of one transfer over the bus between PEs
+    double setup_ms = 0;               // set-up of a broadcast, of a gather, and of an exchange of neighbours
+    double broadcast_words_per_s = 0;  // from the host to the PEs
+    double gather_words_per_s = 0;     // from the PEs to the host
+    double display_pixels_per_s = 0;   // display of the image
+
+    bool operator==(const MachineClock&) const = default;
+};
+
+/// A number of a machine, as text with its unit, and its source.
+struct Fact {
+    std::string what, value, source;
+};
+
 /// Description of an array of PEs.
 struct Machine {
     std::string name;
@@ -77,18 +97,21 @@ struct Machine {
     Accel accel{};                         // of a ring: acceleration structure in every PE
     std::optional<DynamicPlan> dynamic{};  // empty: PEs do not request pixels at run time
 
-    // Rates of the time model (model/time_model.hpp); empty if unknown.
-    std::optional<double> cycle_ns;  // cycle time of a PE
-    std::optional<double>
-        link_words_per_s;  // rate of a link from a PE to its neighbour, and rate of the bus between PEs
-    std::optional<double> rotation_sync_ms;  // overhead of one rotation, or of one transfer over the bus
-    std::optional<double> host_words_per_s;  // rate of broadcasts from the host and gathers to the host
+    MachineClock clock{};       // of a ring
+    std::vector<Fact> facts{};  // numbers of the machine and their sources, for `raya machines`
 };
 
 /// Returns the machines that the option `--machine` accepts. The first is the default.
 const std::vector<Machine>& machines();
 
-/// Returns the machine called `name`. Throws UserError, with a list of all machines, if there is no such machine.
+/// A machine that the papers cite and that raya does not model.
+struct CitedMachine {
+    const char *name, *facts, *reason;  // `facts`: what is known of it; `reason`: why it is not modelled
+};
+const std::vector<CitedMachine>& cited_machines();
+
+/// Returns the machine called `name`. Throws UserError if there is no such machine, with a list of all machines, or if
+/// raya does not model it, with the reason.
 const Machine& machine_named(const std::string& name);
 
 /// Returns the modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h) on a PE of the SPA, from

@@ -68,6 +68,8 @@ struct DynamicPlan {
     std::uint64_t overhead = 0;  // cycles that a request costs the PE, 0..kMaxOverhead
     /// Fraction, 0..1, of a PE's pixels under the static mapping that it renders before its first request.
     double static_fraction = 0;
+    /// Cycles for which a request occupies the root, 0..kMaxOverhead. The root answers one request at a time.
+    std::uint64_t root_cycles = 0;
 
     bool operator==(const DynamicPlan&) const = default;
 };
@@ -75,7 +77,8 @@ struct DynamicPlan {
 /// Returns true if all members of `plan` are in their ranges.
 inline bool is_valid_plan(const DynamicPlan& plan) {
     const bool is_fraction = !std::signbit(plan.static_fraction) && plan.static_fraction <= 1;  // no NaN, no -0
-    return plan.chunk >= 1 && plan.chunk <= kMaxChunk && plan.overhead <= kMaxOverhead && is_fraction;
+    return plan.chunk >= 1 && plan.chunk <= kMaxChunk && plan.overhead <= kMaxOverhead &&
+           plan.root_cycles <= kMaxOverhead && is_fraction;
 }
 
 }  // namespace raya

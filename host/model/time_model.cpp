@@ -1,15 +1,18 @@
 #include "host/model/time_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace raya {
 namespace {
 
-double milliseconds(std::uint64_t words, double words_per_s) { return 1e3 * static_cast<double>(words) / words_per_s; }
+double milliseconds(double words, double words_per_s) { return 1e3 * words / words_per_s; }
 
-double milliseconds(std::uint64_t cycles, double cycle_ns, double factor) {
-    return 1e-6 * cycle_ns * factor * static_cast<double>(cycles);
+// Returns the time of `calls` broadcasts or gathers.
+double host_ms(const MachineClock& clock, std::uint64_t calls, std::uint64_t words, double words_per_s) {
+    if (std::isinf(words_per_s)) return 0;
+    return static_cast<double>(calls) * clock.setup_ms + milliseconds(static_cast<double>(words), words_per_s);
 }
 
 }  // namespace
@@ -30,30 +33,37 @@ Load load_of(std::vector<std::uint64_t> per_pe) {
     return load;
 }
 
-std::optional<ModelledTime> modelled_time(const Machine& machine, std::span<const Load> phases,
-                                          const Communication& communication, double factor,
-                                          const SmoothingCycles& smoothing) {
-    if (!machine.cycle_ns || !machine.link_words_per_s || !machine.rotation_sync_ms || !machine.host_words_per_s)
-        return {};
+double compute_ms(const MachineClock& clock, double cycles) {
+    return 1e-6 * clock.cycle_ns * clock.cycle_factor * cycles;
+}
+
+double exchange_ms(const MachineClock& clock, std::uint64_t rotations, double words) {
+    if (rotations == 0) return 0;
+    return clock.setup_ms + static_cast<double>(rotations) * clock.rotation_sync_ms +
+           milliseconds(words, clock.link_words_per_s);
+}
+
+ModelledTime modelled_time(const MachineClock& clock, std::span<const Load> phases, const Communication& communication,
+                           const SmoothingCycles& smoothing) {
+    const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
+    const Communication& c = communication;
     ModelledTime time;
-    time.factor = factor;
+    time.factor = clock.cycle_factor;
     std::uint64_t cycles = smoothing.filter + smoothing.compare;
     for (const Load& load : phases) cycles += load.max;
-    time.objects_ms = milliseconds(communication.broadcast_words, *machine.host_words_per_s);
-    time.compute_ms = milliseconds(cycles, *machine.cycle_ns, factor);
-    time.filter_ms = milliseconds(smoothing.filter, *machine.cycle_ns, factor);
-    time.compare_ms = milliseconds(smoothing.compare, *machine.cycle_ns, factor);
+    time.compute_ms = compute_ms(clock, number(cycles));
+    time.filter_ms = compute_ms(clock, number(smoothing.filter));
+    time.compare_ms = compute_ms(clock, number(smoothing.compare));
+    time.objects_ms = host_ms(clock, c.broadcasts, c.broadcast_words, clock.broadcast_words_per_s);
     // In a rotation all P PEs send at the same time, each 1/P of the words. Transfers and broadcasts of PEs go over the
     // bus one at a time, so their words are not divided by P.
-    const auto pes = static_cast<double>(phases.front().per_pe.size());
-    const std::uint64_t synchronisations =
-        communication.rotations + communication.transfers + communication.pe_broadcasts;
-    time.communication_ms =
-        static_cast<double>(synchronisations) * *machine.rotation_sync_ms +
-        milliseconds(communication.rotation_words, *machine.link_words_per_s) / pes +
-        milliseconds(communication.transfer_words + communication.pe_broadcast_words, *machine.link_words_per_s);
-    time.image_ms = milliseconds(communication.gather_words, *machine.host_words_per_s);
-    time.total_ms = time.objects_ms + time.compute_ms + time.communication_ms + time.image_ms;
+    const double link_words = number(c.rotation_words) / number(phases.front().per_pe.size()) +
+                              number(c.transfer_words + c.pe_broadcast_words);
+    time.communication_ms = exchange_ms(clock, c.rotations + c.transfers + c.pe_broadcasts, link_words);
+    time.image_ms = host_ms(clock, c.gathers, c.gather_words, clock.gather_words_per_s);
+    constexpr double kPixelWords = 3;
+    time.display_ms = milliseconds(number(c.gather_words) / kPixelWords, clock.display_pixels_per_s);
+    time.total_ms = time.objects_ms + time.compute_ms + time.communication_ms + time.image_ms + time.display_ms;
     return time;
 }
 

@@ -39,16 +39,17 @@ struct SmoothingCycles {
     std::uint64_t filter = 0, compare = 0;
 };
 
-/// Modelled times of a render on a ring, in milliseconds, without the display of the image.
+/// Modelled times of a render on a ring, in milliseconds.
 struct ModelledTime {
-    double objects_ms = 0;        // broadcast of the scene
+    double objects_ms = 0;        // broadcast of the scene by the host
     double compute_ms = 0;        // computation of the PEs: ray tracing, filter_ms and compare_ms
     double filter_ms = 0;         // part of compute_ms: means of neighbouring pixels
     double compare_ms = 0;        // part of compute_ms: comparisons with neighbouring pixels
     double communication_ms = 0;  // rotations of the ring; transfers and broadcasts of PEs on the bus
     double image_ms = 0;          // gather of the image by the host
-    double total_ms = 0;          // objects_ms + compute_ms + communication_ms + image_ms
-    double factor = 1;            // argument of modelled_time(); the compute times above include it
+    double display_ms = 0;        // display of the image by the host
+    double total_ms = 0;          // objects_ms + compute_ms + communication_ms + image_ms + display_ms
+    double factor = 1;            // MachineClock::cycle_factor, which the compute times above include
 };
 
 /// Modelled times of a torus whose nodes compute while its links transfer (host/torus/async_machine.hpp), milliseconds.
@@ -74,13 +75,17 @@ struct TorusTime {
     std::optional<AsynchronousTime> asynchronous{};  // times without supersteps; empty: not simulated
 };
 
-/// Returns the modelled time of a ring; empty if the machine's rates are unknown. `phases`: the loads of all PEs in
-/// each phase, not empty; the machine waits for the busiest PE of each phase. The bus carries the words of one PE at a
-/// time, at the rate of a link and with the overhead of a rotation (Machine). `factor` > 0 scales the compute time, to
-/// account for cycles that the budgets do not include. If `factor` was fitted to a published time, the report must say
-/// so.
-std::optional<ModelledTime> modelled_time(const Machine& machine, std::span<const Load> phases,
-                                          const Communication& communication, double factor = 1,
-                                          const SmoothingCycles& smoothing = {});
+/// Returns the modelled time of a ring machine. `phases`: the loads of all PEs in each phase, not empty; the machine
+/// waits for the busiest PE of each phase. The bus carries the words of one PE at a time, at the rate of a link and
+/// with the overhead of a rotation. docs/clock.md describes the model.
+ModelledTime modelled_time(const MachineClock& clock, std::span<const Load> phases, const Communication& communication,
+                           const SmoothingCycles& smoothing = {});
+
+/// Returns the time of `rotations` rotations or transfers between PEs in which each link carries `words` words in
+/// total, with the set-up of the exchange; 0 if there are none.
+double exchange_ms(const MachineClock& clock, std::uint64_t rotations, double words);
+
+/// Returns the time of a PE for `cycles` cycles of the budgets, milliseconds.
+double compute_ms(const MachineClock& clock, double cycles);
 
 }  // namespace raya

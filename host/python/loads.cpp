@@ -108,8 +108,8 @@ py::dict schedule(const py::array& costs, const std::string& plan, const std::st
     py::dict results;
     results["loads"] = copy_of(run.load.per_pe);
     results["requests"] = run.requests;
-    results["makespan"] = makespan(run);
-    results["speedup"] = speedup(run, cost);
+    results["makespan"] = run.load.max;
+    results["speedup"] = run.load.speedup;
     return results;
 }
 
@@ -151,15 +151,14 @@ py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::stri
                       const std::optional<py::array>& supersample) {
     const CostImage trace_cost = cost_image_of(trace);
     const AntialiasMethod method = parse_antialias(antialias);
-    const Machine& spa = machine_named("spa");
+    const MachineClock& clock = machine_named("spa").clock;
     std::vector<std::uint32_t> offsets(trace_cost.width);
     std::iota(offsets.begin(), offsets.end(), 0u);
     const std::vector<double> u = imbalance_of_offsets(trace_cost, pes, RAYA_FOLD_CYCLIC, offsets);
     const auto busiest_ms = [&](const CostImage& cost, const std::vector<double>& imbalance) {
         const double mean = static_cast<double>(total_cycles(cost)) / pes;
         std::vector<double> ms;
-        for (const double offset_imbalance : imbalance)
-            ms.push_back(mean * (1 + offset_imbalance) * *spa.cycle_ns * 1e-6);
+        for (const double offset_imbalance : imbalance) ms.push_back(compute_ms(clock, mean * (1 + offset_imbalance)));
         return ms;
     };
     std::vector<double> supersample_ms(trace_cost.width), smooth_ms(trace_cost.width), ring_ms(trace_cost.width);
@@ -174,10 +173,9 @@ py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::stri
             const raya_mapping mapping = make_mapping(cyclic_mapping(p), size_of(trace_cost), pes);
             const std::uint32_t pixels = largest_share(mapping);
             const SmoothingCycles cycles = smoothing_cycles(method, pixels);
-            smooth_ms[p] = static_cast<double>(cycles.filter + cycles.compare) * *spa.cycle_ns * 1e-6;
+            smooth_ms[p] = compute_ms(clock, static_cast<double>(cycles.filter + cycles.compare));
             rotations[p] = neighbour_rotations(mapping);
-            const double words_ms = 1e3 * 3.0 * pixels / *spa.link_words_per_s;
-            ring_ms[p] = static_cast<double>(rotations[p]) * (*spa.rotation_sync_ms + words_ms);
+            ring_ms[p] = exchange_ms(clock, rotations[p], 3. * static_cast<double>(rotations[p] * pixels));
         }
     py::dict arrays;
     arrays["offset"] = copy_of(offsets);
@@ -223,6 +221,13 @@ py::array link_ends(const std::array<std::uint32_t, 3>& nodes) {
     return array;
 }
 
+// Returns (number, value, source) of each number of a machine.
+py::list facts_of(const Machine& machine) {
+    py::list facts;
+    for (const Fact& fact : machine.facts) facts.append(py::make_tuple(fact.what, fact.value, fact.source));
+    return facts;
+}
+
 py::list all_machines() {
     py::list dicts;
     for (const Machine& machine : machines()) {
@@ -233,10 +238,19 @@ py::list all_machines() {
         fields["pe_memory_bytes"] = machine.pe_memory_bytes;
         fields["bounces"] = machine.bounces;
         fields["format"] = format_name(machine.format);
-        fields["cycle_ns"] = machine.cycle_ns;
-        fields["link_words_per_s"] = machine.link_words_per_s;
-        fields["rotation_sync_ms"] = machine.rotation_sync_ms;
-        fields["host_words_per_s"] = machine.host_words_per_s;
+        fields["facts"] = facts_of(machine);
+        if (machine.kind == MachineKind::kRing) {
+            const MachineClock& clock = machine.clock;
+            fields["cycle_ns"] = clock.cycle_ns;
+            fields["cycle_factor"] = clock.cycle_factor;
+            fields["link_words_per_s"] = clock.link_words_per_s;
+            fields["rotation_sync_ms"] = clock.rotation_sync_ms;
+            fields["setup_ms"] = clock.setup_ms;
+            fields["broadcast_words_per_s"] = clock.broadcast_words_per_s;
+            fields["gather_words_per_s"] = clock.gather_words_per_s;
+            fields["display_pixels_per_s"] = clock.display_pixels_per_s;
+            fields["root_cycles"] = machine.dynamic ? machine.dynamic->root_cycles : 0;
+        }
         dicts.append(fields);
     }
     return dicts;
@@ -275,11 +289,12 @@ void add_loads(py::module_& module) {
     module.def(
         "schedule", schedule, py::arg("cost"), py::arg("plan"), py::arg("mapping") = "", py::arg("offset") = py::none(),
         py::arg("fold") = "", py::arg("pes") = py::none(),
-        "Simulates a dynamic or hybrid distribution of pixels. plan: 'dynamic:CHUNK[,OVERHEAD]' or "
-        "'hybrid:CHUNK[,OVERHEAD[,SHARE]]' with CHUNK in pixels per request, OVERHEAD in cycles per request and "
-        "SHARE the fraction of each PE's pixels that is assigned statically. mapping, offset, fold: the mapping of "
-        "the static part. Returns a dict: loads (uint64 [P]: finishing time of each PE in cycles), requests (number "
-        "of requests to the host), makespan (cycles), speedup (total cycles / makespan).");
+        "Simulates a dynamic or hybrid distribution of pixels. plan: 'dynamic:CHUNK[,OVERHEAD[,ROOT]]' or "
+        "'hybrid:CHUNK[,OVERHEAD[,SHARE[,ROOT]]]' with CHUNK in pixels per request, OVERHEAD in cycles of the PE per "
+        "request, SHARE the fraction of each PE's pixels that is assigned statically, and ROOT in cycles of the "
+        "root, which answers one request at a time. mapping, offset, fold: the mapping of the static part. Returns a "
+        "dict: loads (uint64 [P]: finishing time of each PE in cycles), requests (number of requests to the root), "
+        "makespan (cycles), speedup (total cycles / makespan).");
     module.def(
         "lower_bound", [](const py::array& costs, std::uint32_t pes) { return lower_bound(cost_image_of(costs), pes); },
         py::arg("cost"), py::arg("pes"), "Lower bound in cycles of any distribution of whole pixels over P PEs.");
@@ -290,10 +305,10 @@ void add_loads(py::module_& module) {
     module.def(
         "offset_times", offset_times, py::arg("cost"), py::arg("pes"), py::arg("antialias") = "none",
         py::arg("supersample") = py::none(),
-        "Modelled ms that the SPA takes with each offset of the cyclic mapping, without broadcast, gather and the "
-        "set-up of exchanges. cost, supersample: modelled cycles of each pixel in the two passes, [H, W]. Returns a "
-        "dict of arrays [W]: offset, imbalance (of the first pass), trace_ms and supersample_ms (of the busiest "
-        "PE), smooth_ms (filter and comparison), ring_ms (rotations), rotations (their number).");
+        "Modelled ms that the SPA takes with each offset of the cyclic mapping, without broadcast and gather. cost, "
+        "supersample: modelled cycles of each pixel in the two passes, [H, W]. Returns a dict of arrays [W]: offset, "
+        "imbalance (of the first pass), trace_ms and supersample_ms (of the busiest PE), smooth_ms (filter and "
+        "comparison), ring_ms (exchange of neighbours), rotations (their number).");
     module.def("ranks_of_pes", ranks_of_pes, py::arg("pes"), py::arg("ranks"),
                "uint32 [P]: the MPI rank of each PE of a ring.");
     module.def("ranks_of_nodes", ranks_of_torus, py::arg("nodes"), py::arg("ranks"),

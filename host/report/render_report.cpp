@@ -97,16 +97,16 @@ Json budget_json(const EventCounts& events) {
             {"branches", sum.branches}};
 }
 
-Json modelled_json(const std::optional<ModelledTime>& time) {
-    if (!time) return {};
-    return {{"objects", time->objects_ms},
-            {"compute", time->compute_ms},
-            {"filter", time->filter_ms},
-            {"compare", time->compare_ms},
-            {"communication", time->communication_ms},
-            {"image", time->image_ms},
-            {"total", time->total_ms},
-            {"factor", time->factor}};
+Json modelled_json(const ModelledTime& time) {
+    return {{"objects", time.objects_ms},
+            {"compute", time.compute_ms},
+            {"filter", time.filter_ms},
+            {"compare", time.compare_ms},
+            {"communication", time.communication_ms},
+            {"image", time.image_ms},
+            {"display", time.display_ms},
+            {"total", time.total_ms},
+            {"factor", time.factor}};
 }
 
 Json measured_json(const RenderReport& report) {

@@ -85,7 +85,7 @@ struct RenderReport {
     std::optional<Antialiasing> antialias;
     std::optional<AccelSummary> accel;  // empty: no accelerator
     Communication communication;
-    std::optional<ModelledTime> modelled;  // empty: the machine's rates are unknown
+    ModelledTime modelled;                 // of a ring
     std::optional<TorusReport> torus;      // torus machine only; replaces antialias, accel, communication and modelled
 
     std::vector<Json> ranks;  // device, times and messages of each MPI rank; empty for one rank

@@ -36,11 +36,11 @@ std::string antialias_lines(const RenderReport& r) {
 }
 
 std::string model_line(const RenderReport& r) {
-    if (!r.modelled) return {};
-    const ModelledTime& t = *r.modelled;
-    return fmt::format("model   objects {}, compute {}, communication {}, image {}: {} (modelled time of {})\n",
-                       time_text(t.objects_ms), time_text(t.compute_ms), time_text(t.communication_ms),
-                       time_text(t.image_ms), time_text(t.total_ms), r.machine.name);
+    const ModelledTime& t = r.modelled;
+    return fmt::format(
+        "model   objects {}, compute {}, communication {}, image {}, display {}: {} (modelled time of {})\n",
+        time_text(t.objects_ms), time_text(t.compute_ms), time_text(t.communication_ms), time_text(t.image_ms),
+        time_text(t.display_ms), time_text(t.total_ms), r.machine.name);
 }
 
 // Returns PEs and mapping of the ring, or nodes and voxels of the torus.

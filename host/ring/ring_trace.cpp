@@ -19,7 +19,7 @@ constexpr std::array<const char*, RAYA_SIDES> kSides = {"left", "right", "above"
 class RingTimeline {
   public:
     RingTimeline(TraceFile& trace, const Machine& machine, std::vector<TracedPe> pes)
-        : trace_(trace), cycle_ms_(1e-6 * *machine.cycle_ns), pes_(std::move(pes)) {
+        : trace_(trace), cycle_ms_(compute_ms(machine.clock, 1)), pes_(std::move(pes)) {
         trace.name_process(kTraceMachine, machine.name + " (modelled time)");
         trace.name_track(kPhases, "phases");
         for (const TracedPe& p : pes_) trace.name_track(track_of(p), traced_pe_name("PE", p));
@@ -133,23 +133,22 @@ void add_ring_machine(TraceFile& trace, const RingSettings& settings, const Ring
     std::vector<Load> loads;
     for (const Phase& phase : result.phases) loads.push_back(phase.load);
     const Communication& c = result.communication;
-    const auto time = modelled_time(settings.machine, loads, c, 1,
-                                    smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
-    if (!time || pes == 0) {
-        trace.metadata()["machine"] =
-            time ? "left out: the number of PEs to trace is 0"
-                 : fmt::format("left out: {} has no modelled time, as its rates are unknown", settings.machine.name);
+    if (pes == 0) {
+        trace.metadata()["machine"] = "left out: the number of PEs to trace is 0";
         return;
     }
+    const ModelledTime time = modelled_time(
+        settings.machine.clock, loads, c, smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
     RingTimeline timeline(trace, settings.machine, traced_pes(result.all.load.per_pe, pes));
-    timeline.add_common_phase("broadcast", time->objects_ms, {{"words", c.broadcast_words}});
+    timeline.add_common_phase("broadcast", time.objects_ms, {{"words", c.broadcast_words}});
     timeline.add_tracing_phase(result.phases[0].name, result.phases[0].load);
     if (settings.antialias.method != AntialiasMethod::kNone)
-        add_smoothing(timeline, settings, result, time->communication_ms);
+        add_smoothing(timeline, settings, result, time.communication_ms);
     if (result.phases.size() > 1) timeline.add_tracing_phase(result.phases[1].name, result.phases[1].load);
-    timeline.add_common_phase("gather", time->image_ms, {{"words", c.gather_words}});
+    timeline.add_common_phase("gather", time.image_ms, {{"words", c.gather_words}});
+    if (time.display_ms > 0) timeline.add_common_phase("display", time.display_ms, Json::object());
     trace.metadata()["machine"] = {{"name", settings.machine.name},
-                                   {"modelled_ms", time->total_ms},
+                                   {"modelled_ms", time.total_ms},
                                    {"pes", settings.mapping.pes},
                                    {"note",
                                     "modelled time, from time 0 of the trace; independent of the measured times "

@@ -88,27 +88,33 @@ std::vector<std::uint64_t> chunks_of(const CostImage& image, const std::vector<b
     return chunks;
 }
 
-/// Assigns each chunk to the PE that becomes idle first. `busy`: finishing time of each PE, in and out.
-void assign_chunks(const std::vector<std::uint64_t>& chunks, std::uint64_t overhead, std::vector<std::uint64_t>& busy) {
+/// Assigns each chunk to the PE that becomes idle first. The root answers one request after another. `finish`:
+/// finishing time of each PE, in and out.
+void assign_chunks(const std::vector<std::uint64_t>& chunks, const DynamicPlan& plan,
+                   std::vector<std::uint64_t>& finish) {
     using IdleTime = std::pair<std::uint64_t, std::uint32_t>;  // time at which a PE becomes idle, PE number
     std::vector<IdleTime> all;
-    all.reserve(busy.size());
-    for (std::uint32_t pe = 0; pe < busy.size(); ++pe) all.emplace_back(busy[pe], pe);
+    all.reserve(finish.size());
+    for (std::uint32_t pe = 0; pe < finish.size(); ++pe) all.emplace_back(finish[pe], pe);
     std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle(std::greater<>{}, std::move(all));
+    std::uint64_t answered = 0;  // time at which the root has answered the previous request
     for (const std::uint64_t cost : chunks) {
-        const std::uint32_t pe = idle.top().second;
+        const auto [time, pe] = idle.top();
         idle.pop();
-        idle.emplace(busy[pe] += overhead + cost, pe);
+        answered = std::max(answered, time) + plan.root_cycles;
+        finish[pe] = (plan.root_cycles > 0 ? answered : time) + plan.overhead + cost;
+        idle.emplace(finish[pe], pe);
     }
 }
 
 }  // namespace
 
 std::string dynamic_text(const DynamicPlan& plan) {
+    const std::string root = plan.root_cycles > 0 ? fmt::format(",{}", plan.root_cycles) : "";
     if (plan.static_fraction > 0)
-        return fmt::format("hybrid:{},{},{}", plan.chunk, plan.overhead, plan.static_fraction);
-    return plan.overhead > 0 ? fmt::format("dynamic:{},{}", plan.chunk, plan.overhead)
-                             : fmt::format("dynamic:{}", plan.chunk);
+        return fmt::format("hybrid:{},{},{}{}", plan.chunk, plan.overhead, plan.static_fraction, root);
+    return plan.overhead > 0 || plan.root_cycles > 0 ? fmt::format("dynamic:{},{}{}", plan.chunk, plan.overhead, root)
+                                                     : fmt::format("dynamic:{}", plan.chunk);
 }
 
 Load static_load(const CostImage& image, const raya_mapping& mapping) {
@@ -143,23 +149,20 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
 Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, const DynamicPlan& plan) {
     check_mapping(image, start);
     if (!is_valid_plan(plan))
-        throw std::invalid_argument("a plan's chunk, overhead or static fraction is out of its range");
-    std::vector<std::uint64_t> busy(start.pes);
-    const auto done = add_static_costs(image, start, plan.static_fraction, busy);
+        throw std::invalid_argument("a plan's chunk, overhead, static fraction or root cycles are out of range");
+    std::vector<std::uint64_t> finish(start.pes);
+    const auto done = add_static_costs(image, start, plan.static_fraction, finish);
     const auto chunks = chunks_of(image, done, plan.chunk);
-    assign_chunks(chunks, plan.overhead, busy);
-    return {load_of(std::move(busy)), chunks.size()};
+    assign_chunks(chunks, plan, finish);
+    Schedule schedule{load_of(std::move(finish)), chunks.size()};
+    Load& load = schedule.load;
+    if (load.max > 0) load.speedup = static_cast<double>(total_cycles(image)) / static_cast<double>(load.max);
+    load.efficiency = load.speedup / start.pes;
+    return schedule;
 }
 
 std::uint64_t total_cycles(const CostImage& image) {
     return std::accumulate(image.cycles.begin(), image.cycles.end(), std::uint64_t{0});
-}
-
-std::uint64_t makespan(const Schedule& schedule) { return schedule.load.max; }
-
-double speedup(const Schedule& schedule, const CostImage& image) {
-    if (makespan(schedule) == 0) return static_cast<double>(schedule.load.per_pe.size());
-    return static_cast<double>(total_cycles(image)) / static_cast<double>(makespan(schedule));
 }
 
 std::uint64_t lower_bound(const CostImage& image, std::uint32_t pes) {

@@ -21,10 +21,10 @@ struct CostImage {
 /// Returns the argument of --mapping for this plan.
 std::string dynamic_text(const DynamicPlan& plan);
 
-/// Result of a simulated run. A PE is never idle before its last pixel, so its finishing time equals its busy time.
+/// Result of a simulated run.
 struct Schedule {
-    Load load;  // finishing time of each PE in cycles, including the overhead of requests. load.speedup is sum / max
-                // of these times, a measure of balance; speedup() is the gain over one PE
+    Load load;  // finishing time of each PE in cycles, including overhead and waiting for the root. load.max is the
+                // makespan. load.speedup is total_cycles() / makespan: the gain over one PE without requests
     std::uint64_t requests = 0;  // number of requests to which the host answered with pixels
 };
 
@@ -43,21 +43,13 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
 /// Simulates list scheduling. Each PE first renders its static part: the first floor(static_fraction x n) of the n
 /// pixels that it owns under `start`. The other pixels, in scan-line order, are divided into chunks of plan.chunk
 /// pixels; the last chunk may be smaller. The PE that becomes idle first (in a tie, the one with the lowest number)
-/// takes the next chunk, which costs it the overhead of a request plus the costs of the pixels. If static_fraction is
-/// 0, only the image size and the number of PEs of `start` are used; if it is 1, the result is that of static_load().
-/// Time: O(pixels + P + chunks log P).
+/// takes the next chunk: it waits until the root has answered all earlier requests and its own, and then spends the
+/// overhead plus the costs of the pixels. If static_fraction is 0, only the image size and the number of PEs of `start`
+/// are used; if it is 1, the result is that of static_load(). Time: O(pixels + P + chunks log P).
 Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, const DynamicPlan& plan);
 
 /// Returns the sum of all pixels' costs, without overhead.
 std::uint64_t total_cycles(const CostImage& image);
-
-/// Returns the finishing time of the last PE, cycles.
-std::uint64_t makespan(const Schedule& schedule);
-
-/// Returns total_cycles() / makespan(): the speed-up over a single PE that renders all pixels without requests. The
-/// result is at most Schedule::load.speedup, whose numerator includes the overhead. Returns P if the makespan is 0, as
-/// in Load.
-double speedup(const Schedule& schedule, const CostImage& image);
 
 /// Returns a lower bound, in cycles, of the makespan of every distribution of whole pixels over P PEs: max(ceil(total /
 /// P), cost of the most expensive pixel).

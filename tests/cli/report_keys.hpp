@@ -111,6 +111,7 @@ inline std::set<std::string> fixed_keys() {
                                   "modelled_ms.compare number",
                                   "modelled_ms.communication number",
                                   "modelled_ms.image number",
+                                  "modelled_ms.display number",
                                   "modelled_ms.total number",
                                   "modelled_ms.factor number",
                                   "measured.build_s number",

@@ -81,13 +81,18 @@ TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with
     CHECK(parse_dynamic("hybrid:8,50") == DynamicPlan{8, 50, 0.5});
     CHECK(parse_dynamic("hybrid:8,50,0.75") == DynamicPlan{8, 50, 0.75});
     CHECK(parse_dynamic("hybrid:8,50,0") == DynamicPlan{8, 50, 0});
+    CHECK(parse_dynamic("dynamic:8,50,7") == DynamicPlan{8, 50, 0, 7});
+    CHECK(parse_dynamic("hybrid:8,50,0.25,7") == DynamicPlan{8, 50, 0.25, 7});
+    CHECK(parse_dynamic("dynamic:8", {1, 2, 0, 3}) == DynamicPlan{8, 2, 0, 3});  // missing numbers are the defaults
+    CHECK(parse_dynamic("hybrid:8,0", {1, 2, 0, 3}) == DynamicPlan{8, 0, 0.5, 3});
     constexpr std::uint64_t kSeed = 7;
     SplitMix random(kSeed);
     for (int i = 0; i < 500; ++i) {
         const double shares[] = {0, 0.5, 1, random.uniform(0, 1)};
         const DynamicPlan plan{1 + random_below(random, kMaxChunk >> random.next() % 28),
-                               random.next() % 2 * random_below(random, kMaxOverhead + 1), shares[i % 4]};
-        CAPTURE(kSeed, i, plan.chunk, plan.overhead, plan.static_fraction, dynamic_text(plan));
+                               random.next() % 2 * random_below(random, kMaxOverhead + 1), shares[i % 4],
+                               random.next() % 2 * random_below(random, kMaxOverhead + 1)};
+        CAPTURE(kSeed, i, plan.chunk, plan.overhead, plan.static_fraction, plan.root_cycles, dynamic_text(plan));
         CHECK(parse_dynamic(dynamic_text(plan)) == plan);
     }
     for (const std::string text : {"dynamic",
@@ -106,6 +111,8 @@ TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with
                                    "dynamic:1,1000000001",
                                    "dynamic:1,99999999999999999999",
                                    "dynamic:1,2,0.5",
+                                   "dynamic:1,2,1000000001",
+                                   "dynamic:1,2,3,4",
                                    "dynamic:,1",
                                    "hybrid",
                                    "hybrid:1,0,",
@@ -116,8 +123,8 @@ TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with
                                    "hybrid:1,0,-nan",
                                    "hybrid:1,0,inf",
                                    "hybrid:1,0,0.5x",
-                                   "hybrid:1,0,0.5,1",
-                                   "hybrid:1,0,0,5",
+                                   "hybrid:1,0,0.5,-1",
+                                   "hybrid:1,0,0.5,1,2",
                                    "Dynamic:1",
                                    "cyclic:16",
                                    ""}) {

@@ -28,25 +28,25 @@ TEST_CASE("grande is the SPA without limits on PEs and memory", "[machine]") {
     CHECK(grande.bounces == machine_named("spa").bounces);
 }
 
-TEST_CASE("the SPA's rates are those of the paper's tables", "[machine]") {
-    const Machine& spa = machine_named("spa");
-    CHECK(spa.cycle_ns == 100.0);
+TEST_CASE("the SPA's clock has the rates of the paper's tables, and so have spa1 and grande", "[machine]") {
+    const MachineClock& spa = machine_named("spa").clock;
+    CHECK(spa.cycle_ns == 100);
+    CHECK(spa.cycle_factor == Approx(7 / 1.0752).epsilon(1e-12));
     CHECK(spa.link_words_per_s == 6e6);
-    CHECK(spa.rotation_sync_ms.value() == 0.1845);  // 10 ms / 32 - 768 / 6e6 s
-    CHECK(spa.host_words_per_s.value() == Approx(1.40e6).epsilon(0.005));
+    CHECK(spa.rotation_sync_ms == 0.1845);  // 10 ms / 32 - 768 / 6e6 s
+    CHECK(spa.setup_ms == 1.375);           // 2 ms - 2 x 10 ms / 32
+    CHECK(spa.gather_words_per_s == Approx(196'608 / 0.138625).epsilon(1e-12));
+    CHECK(spa.broadcast_words_per_s == spa.gather_words_per_s);
     for (const char* name : {"spa1", "grande"}) {
         CAPTURE(name);
-        CHECK(machine_named(name).cycle_ns == spa.cycle_ns);
-        CHECK(machine_named(name).link_words_per_s == spa.link_words_per_s);
-        CHECK(machine_named(name).rotation_sync_ms == spa.rotation_sync_ms);
-        CHECK(machine_named(name).host_words_per_s == spa.host_words_per_s);
+        CHECK(machine_named(name).clock == spa);
         CHECK(machine_named(name).mapping.has_slots());
     }
     CHECK(machine_named("spa1").pes == 1u);
-    CHECK(machine_named("spa1").pe_memory_bytes == spa.pe_memory_bytes);
+    CHECK(machine_named("spa1").pe_memory_bytes == machine_named("spa").pe_memory_bytes);
 }
 
-TEST_CASE("other papers' arrays have their mapping, the SPA's number format and no rates", "[machine]") {
+TEST_CASE("other papers' arrays have their mapping and the SPA's number format", "[machine]") {
     struct Row {
         const char* name;
         MappingRule mapping;
@@ -54,7 +54,7 @@ TEST_CASE("other papers' arrays have their mapping, the SPA's number format and 
         std::uint32_t pes;
     };
     for (const Row& row : {Row{"cap", grid_mapping(16, 16), {}, 256}, Row{"pixel-machine", grid_mapping(8, 8), {}, 64},
-                           Row{"links", cyclic_mapping(0), DynamicPlan{1, 0, 0}, 256}}) {
+                           Row{"links", cyclic_mapping(0), DynamicPlan{.root_cycles = 568}, 256}}) {
         CAPTURE(row.name);
         const Machine& machine = machine_named(row.name);
         CHECK(machine.mapping == row.mapping);
@@ -62,8 +62,7 @@ TEST_CASE("other papers' arrays have their mapping, the SPA's number format and 
         CHECK(machine.pes == row.pes);
         CHECK(machine.format == machine_named("spa").format);
         CHECK_FALSE(machine.pe_memory_bytes.has_value());
-        CHECK_FALSE(
-            (machine.cycle_ns || machine.link_words_per_s || machine.rotation_sync_ms || machine.host_words_per_s));
+        CHECK(machine.clock.cycle_factor == machine_named("spa").clock.cycle_factor);
         CHECK_THAT(machine.title, Contains("on PEs of the SPA"));
     }
 }
@@ -74,8 +73,6 @@ TEST_CASE("the machine torus is the paper's 64 transputers, and no other machine
     CHECK(torus.pe_memory_bytes == 4u << 20);
     CHECK(torus.bounces == 8);
     CHECK(torus.format.is_fp32());
-    CHECK(torus.cycle_ns == 40.0);
-    CHECK(torus.link_words_per_s == 425e3);
     for (const Machine& machine : machines()) {
         CAPTURE(machine.name);
         CHECK((machine.kind == MachineKind::kTorus) == (machine.name == "torus"));
@@ -98,3 +95,27 @@ TEST_CASE("every machine is found by its exact name only", "[machine]") {
                           Contains("--machine " + name + ": no such machine") && Contains("spa, grande"));
     }
 }
+
+TEST_CASE("every number of every machine has a source, and every ring machine has all rates", "[machine]") {
+    for (const Machine& machine : machines()) {
+        CAPTURE(machine.name);
+        CHECK(machine.facts.size() >= 9);
+        for (const Fact& fact : machine.facts) {
+            CAPTURE(fact.what);
+            CHECK_FALSE(fact.value.empty());
+            CHECK_FALSE(fact.source.empty());
+        }
+        if (machine.kind != MachineKind::kRing) continue;
+        const MachineClock& c = machine.clock;
+        for (const double rate : {c.cycle_ns, c.cycle_factor, c.link_words_per_s, c.broadcast_words_per_s,
+                                  c.gather_words_per_s, c.display_pixels_per_s})
+            CHECK(rate > 0);
+    }
+}
+
+TEST_CASE("a cited machine without a model is refused with the reason", "[machine]") {
+    CHECK_THROWS_AS(machine_named("sight"), UserError);
+    CHECK_THROWS_WITH(machine_named("sight"),
+                      Contains("--machine sight: not modelled: no public description") && Contains("16 PEs"));
+}
+

@@ -10,7 +10,9 @@ using namespace raya;
 TEST_CASE("a plan's text omits default values at its end", "[schedule]") {
     CHECK(dynamic_text({4, 0, 0}) == "dynamic:4");
     CHECK(dynamic_text({4, 9, 0}) == "dynamic:4,9");
+    CHECK(dynamic_text({4, 0, 0, 7}) == "dynamic:4,0,7");
     CHECK(dynamic_text({4, 0, 0.5}) == "hybrid:4,0,0.5");
+    CHECK(dynamic_text({4, 0, 0.5, 7}) == "hybrid:4,0,0.5,7");
 }
 
 TEST_CASE("schedules reject invalid cost images, mappings and plans, and mappings that do not match the cost image",
@@ -31,6 +33,7 @@ TEST_CASE("schedules reject invalid cost images, mappings and plans, and mapping
         CHECK_THROWS_AS(dynamic_schedule(image, fits, {1, 0, static_fraction}), std::invalid_argument);
     CHECK_THROWS_AS(dynamic_schedule(image, fits, {0, 0, 0}), std::invalid_argument);
     CHECK_THROWS_AS(dynamic_schedule(image, fits, {1, kMaxOverhead + 1, 0}), std::invalid_argument);
+    CHECK_THROWS_AS(dynamic_schedule(image, fits, {1, 0, 0, kMaxOverhead + 1}), std::invalid_argument);
     CHECK_THROWS_AS(imbalance_of_offsets(image, 2, RAYA_FOLD_CYCLIC, {0, 2}), std::invalid_argument);
     CHECK_THROWS_AS(imbalance_of_offsets(image, 2, 7, {0}), std::invalid_argument);
     CHECK_THROWS_AS(imbalance_of_offsets(image, 5, RAYA_FOLD_BLOCK, {0}), std::invalid_argument);

@@ -37,6 +37,7 @@ DynamicPlan random_plan(SplitMix& random, std::uint32_t pixels) {
     plan.overhead = random.next() % 3 * random_below(random, 500);
     const double fractions[] = {0, 0, 0.25, 0.5, 0.9, 1, random.uniform(0, 1)};
     plan.static_fraction = fractions[random_below(random, 7)];
+    plan.root_cycles = random.next() % 2 * random_below(random, 500);
     return plan;
 }
 
@@ -65,9 +66,14 @@ Simulated simulated(const CostImage& image, const raya_mapping& m, const Dynamic
             queue.erase(std::find(queue.begin(), queue.end(), at));
         }
     }
+    std::uint64_t root_is_free = 0;
     while (!queue.empty()) {
         const auto first_free = std::min_element(
             run.finished.begin(), run.finished.end());  // the lowest-numbered of the PEs that become free first
+        if (plan.root_cycles > 0) {
+            root_is_free = std::max(root_is_free, *first_free) + plan.root_cycles;
+            *first_free = root_is_free;
+        }
         *first_free += plan.overhead;
         ++run.requests;
         for (std::uint32_t i = 0; i < plan.chunk && !queue.empty(); ++i, queue.pop_front())
@@ -138,6 +144,9 @@ TEST_CASE("dynamic and hybrid schedules agree with the simulation", "[schedule]"
           Cycles{16, 12 + 13});  // 5 1, then 1 1, then 1 2
     CHECK(dynamic_schedule(six_pixels, two_pes, {1, 10, 0.5}).load.per_pe ==
           Cycles{5 + 11 + 12, 1 + 11 + 11});  // 1 1 1 2 left
+    // The root answers at 3, 6, 9: PE 0 takes 5 at 3, PE 1 takes 1 at 6, 1 at 10, and so on.
+    const raya_mapping one_row{3, 1, 2, 0, RAYA_FOLD_BLOCK};
+    CHECK(dynamic_schedule({3, 1, {5, 1, 1}}, one_row, {1, 0, 0, 3}).load.per_pe == Cycles{3 + 5, 6 + 1 + 3 + 1});
     constexpr std::uint64_t kSeed = 3;
     SplitMix random(kSeed);
     for (int i = 0; i < 1'500; ++i) {
@@ -150,7 +159,7 @@ TEST_CASE("dynamic and hybrid schedules agree with the simulation", "[schedule]"
         const Simulated run = simulated(image, m, plan);
         CHECK(schedule.load.per_pe == run.finished);
         CHECK(schedule.requests == run.requests);
-        CHECK(makespan(schedule) == *std::max_element(run.finished.begin(), run.finished.end()));
+        CHECK(schedule.load.max == *std::max_element(run.finished.begin(), run.finished.end()));
     }
 }
 
@@ -166,11 +175,12 @@ TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]"
         CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_fraction, total,
                 bound);
         const Schedule any = dynamic_schedule(image, m, plan);
-        CHECK(sum_of(any.load.per_pe) == total + any.requests * plan.overhead);
-        CHECK(makespan(any) >= bound);
-        CHECK(speedup(any, image) <= any.load.speedup);
+        const std::uint64_t work = total + any.requests * (plan.overhead + plan.root_cycles);
+        CHECK(sum_of(any.load.per_pe) >= work);
+        if (plan.root_cycles == 0) CHECK(sum_of(any.load.per_pe) == work);
+        CHECK(any.load.max >= std::max(bound, any.requests * plan.root_cycles));
 
-        plan.overhead = 0;
+        plan.overhead = plan.root_cycles = 0;
         plan.static_fraction = 0;
         const Schedule list_schedule = dynamic_schedule(image, m, plan);
         std::uint64_t largest_chunk = 0;
@@ -179,10 +189,9 @@ TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]"
             largest_chunk = std::max(largest_chunk, sum_of({&image.cycles[at], image.cycles.data() + end}));
         }
         CHECK(list_schedule.requests == (width * height + plan.chunk - 1) / plan.chunk);
-        CHECK(pes * makespan(list_schedule) <= total + (pes - 1) * largest_chunk);
-        CHECK(speedup(list_schedule, image) == list_schedule.load.speedup);  // equal without overhead
+        CHECK(pes * list_schedule.load.max <= total + (pes - 1) * largest_chunk);
         plan.chunk = 1;
-        CHECK(pes * makespan(dynamic_schedule(image, m, plan)) <= (2 * pes - 1) * bound);  // 2 - 1/P times the optimum
+        CHECK(pes * dynamic_schedule(image, m, plan).load.max <= (2 * pes - 1) * bound);  // 2 - 1/P times the optimum
     }
 }
 
@@ -216,7 +225,7 @@ TEST_CASE("extreme plans have the expected loads: one chunk, all static, one PE,
 
         m.pes = 1;
         const Schedule on_one_pe = dynamic_schedule(image, m, plan);
-        CHECK(makespan(on_one_pe) == total + on_one_pe.requests * plan.overhead);
+        CHECK(on_one_pe.load.max == total + on_one_pe.requests * (plan.overhead + plan.root_cycles));
     }
 }
 
@@ -224,12 +233,12 @@ TEST_CASE("speed-up counts only the pixels' work, and is defined if all costs ar
     const CostImage equal_costs{4, 1, {30, 30, 30, 30}};
     const raya_mapping two_pes{4, 1, 2, 0, RAYA_FOLD_CYCLIC};
     const Schedule with_overhead = dynamic_schedule(equal_costs, two_pes, {1, 10, 0});
-    CHECK(makespan(with_overhead) == 80);
-    CHECK(speedup(with_overhead, equal_costs) == 1.5);  // 120 / 80
-    CHECK(with_overhead.load.speedup == 2);             // 160 / 80: both PEs are always busy
+    CHECK(with_overhead.load.max == 80);
+    CHECK(with_overhead.load.speedup == 1.5);  // 120 / 80
+    CHECK(with_overhead.load.efficiency == 0.75);
     const CostImage zero_costs{4, 1, {0, 0, 0, 0}};
-    CHECK(speedup(dynamic_schedule(zero_costs, two_pes, {1, 0, 0}), zero_costs) == 2);
-    CHECK(speedup(dynamic_schedule(zero_costs, two_pes, {1, 10, 0}), zero_costs) == 0);
+    CHECK(dynamic_schedule(zero_costs, two_pes, {1, 0, 0}).load.speedup == 2);
+    CHECK(dynamic_schedule(zero_costs, two_pes, {1, 10, 0}).load.speedup == 0);
     CHECK(imbalance_of_offsets(zero_costs, 2, RAYA_FOLD_CYCLIC, {0, 1}) == std::vector<double>{0, 0});
     CHECK(lower_bound(equal_costs, 4) == 30);
     CHECK(lower_bound({3, 1, {5, 5, 5}}, 2) == 8);
@@ -250,6 +259,6 @@ TEST_CASE("large images: schedules contain all work on few PEs, and on as many P
         CAPTURE(kSeed, pes);
         const Schedule schedule = dynamic_schedule(image, on(pes), {2, 100, 0.25});
         CHECK(sum_of(schedule.load.per_pe) == total + 100 * schedule.requests);
-        CHECK(pes * makespan(dynamic_schedule(image, on(pes), {1, 0, 0})) <= (2 * pes - 1) * lower_bound(image, pes));
+        CHECK(pes * dynamic_schedule(image, on(pes), {1, 0, 0}).load.max <= (2 * pes - 1) * lower_bound(image, pes));
     }
 }

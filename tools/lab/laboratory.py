@@ -10,7 +10,8 @@ import numpy as np
 import raya
 from raya.lab.families import FAMILIES, view_of
 
-SPA = next(m for m in raya.machines() if m["name"] == "spa")
+MACHINES = {machine["name"]: machine for machine in raya.machines()}
+SPA = MACHINES["spa"]
 VIEWS = 108  # default number of pictures of an ensemble
 SEEDS, FAMILY_SEEDS = 100_000, 1000  # seeds of each part of a study; of each family of a part, as a seed gives all families the same view
 TESTS = tuple(f"{kind}_tests" for kind in ("sphere", "plane", "polygon", "cone"))

@@ -28,7 +28,6 @@ IMBALANCE_16_ROUNDING = "the paper's lies in 0.115 .. 0.121, as its times are ro
 EFFICIENCY_0, EFFICIENCY_16 = 0.388, 0.895
 CAP_RATIO = 3.86  # text next to Fig. 9: speed-up of CAP with 256 PEs over CAP with 64 PEs
 PIXEL_MACHINE_SPEEDUP = 60  # text next to Fig. 9: 64 nodes, "60 or more"
-EXCHANGE_SETUP_MS = 1.375  # [D] Table 4: 2 - 2 x 0.3125 = 12 - 34 x 0.3125
 
 # Yoshitani & Yamazaki, about 1995.
 RAY_WORDS = 22  # [D] Table 1: scalars of a ray packet, without the data for the voxel search and the data of the object hit

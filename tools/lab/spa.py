@@ -12,19 +12,18 @@ ROUNDING = 0.5  # ms: the tables print whole milliseconds
 FACTORS = list(range(1, 9))  # of the clock model: the range for which conclusions are shown
 
 
-def spa_ms(cycles):
-    """Returns the milliseconds of a PE for modelled cycles, without the clock model's factor (FACTOR)."""
-    return cycles * SPA["cycle_ns"] * 1e-6
-
-
-FILTER_BUDGET_MS = spa_ms(raya.filter_cycles(papers.SIZE))
+FACTOR = SPA["cycle_factor"]
 # The filter's arithmetic takes 9 - 2 = 19 - 12 = 7 ms (Tables 3 and 4); each of these four times is rounded to 1 ms.
-FACTOR, FACTOR_MIN, FACTOR_MAX = ((papers.FILTER_ARITHMETIC_MS + rounding_ms) / FILTER_BUDGET_MS
-                                     for rounding_ms in (0, -2 * ROUNDING, 2 * ROUNDING))
-CLOCK = (f"modelled on one clock. Computing takes the instruction budget's cycles of 100 ns times a factor of {FACTOR:.2f} "
-         f"({FACTOR_MIN:.2f} .. {FACTOR_MAX:.2f} by rounding): the filter's 7 ms [D] over the time that the budget gives it, "
+FACTOR_MIN, FACTOR_MAX = (FACTOR * (1 + rounding_ms / papers.FILTER_ARITHMETIC_MS) for rounding_ms in (-2 * ROUNDING, 2 * ROUNDING))
+CLOCK = (f"modelled by the program's clock (docs/clock.md). Computing takes the instruction budget's cycles of 100 ns times a factor of "
+         f"{FACTOR:.2f} ({FACTOR_MIN:.2f} .. {FACTOR_MAX:.2f} by rounding): the filter's 7 ms [D] divided by the time of its budget, "
          "which does not depend on a scene. Rotations, exchanges and transfers take the printed rates. Nothing is fitted to a "
          "scene. We assume that the factor holds for ray tracing too; conclusions are therefore shown for factors of 1 to 8.")
+
+
+def spa_ms(cycles):
+    """Returns the milliseconds of a PE for modelled cycles, without the clock's factor."""
+    return cycles * SPA["cycle_ns"] * 1e-6
 
 
 def host_model():
@@ -48,12 +47,11 @@ class SpaRun:
     report: dict
 
     def time(self, factor=FACTOR):
-        """Returns the report's modelled_ms. Computing times are multiplied by the factor; the set-up time of exchanges is added."""
-        t = dict(self.report["modelled_ms"])
-        added_ms = (factor - 1) * t["compute"]
-        setup = papers.EXCHANGE_SETUP_MS if self.rotations else 0
-        t.update(compute=factor * t["compute"], filter=factor * t["filter"], compare=factor * t["compare"],
-                 communication=t["communication"] + setup, total=t["total"] + added_ms + setup)
+        """Returns the report's modelled_ms, with another factor of the clock."""
+        t, ratio = dict(self.report["modelled_ms"]), factor / FACTOR
+        t["total"] += (ratio - 1) * t["compute"]
+        for part in ("compute", "filter", "compare"):
+            t[part] *= ratio
         return t
 
     @property
@@ -77,9 +75,7 @@ def offset_times(costs, pes, antialias, factor=FACTOR):
     supersample_ms, ring_ms, rotations, total_ms. Broadcast and gather are excluded, because they take the same time for every offset."""
     times = pd.DataFrame(raya.offset_times(costs.trace, pes, antialias,
                                            costs.supersample if antialias == "supersample" else None))
-    times[["trace_ms", "smooth_ms", "supersample_ms"]] *= factor
-    if antialias != "none":
-        times["ring_ms"] += papers.EXCHANGE_SETUP_MS
+    times[["trace_ms", "smooth_ms", "supersample_ms"]] *= factor / FACTOR
     times["total_ms"] = times["trace_ms"] + times["smooth_ms"] + times["supersample_ms"] + times["ring_ms"]
     return times
 

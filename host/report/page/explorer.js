@@ -25,7 +25,7 @@ const explorer = {
     const {width, height} = this.size = {width: whole(report, "image.width"), height: whole(report, "image.height")};
     this.report = report;
     this.initialState = stateOf(member(report, "machine", "object"), this.size);
-    this.rates = has(report, "machine.rates") ? member(report, "machine.rates", "object") : null;
+    this.rates = member(report, "machine.rates", "object");
     this.costs = await this.decodeCosts();
     this.maxCost = this.costs.reduce((max, cost) => Math.max(max, cost), 0);
     await this.decodeImage();

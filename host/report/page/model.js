@@ -215,13 +215,13 @@ function figuresOf(setting, size, costs, rates) {
   const balance = balanceOf(loads), moves = movesOf(owners, size, setting.pes);
   const figures =
     {setting, owners, loads, sizes, maxShare, ...balance, ...moves, vector: vectorOf(setting, size), time: null};
-  if (rates) {  // host/model/time_model.cpp
-    const words = moves.rotations * setting.pes * 3 * maxShare;
-    figures.time = {
-      compute: 1e-6 * rates.cycle_ns * balance.max,
-      rotations: moves.rotations * rates.rotation_sync_ms + 1e3 * words / rates.link_words_per_s / setting.pes
-    };
-  }
+  // As in host/model/time_model.cpp.
+  const words = moves.rotations * 3 * maxShare, moving = moves.rotations > 0;
+  figures.time = {
+    compute: 1e-6 * rates.cycle_ns * rates.cycle_factor * balance.max,
+    rotations: (moving ? rates.setup_ms : 0) + moves.rotations * rates.rotation_sync_ms +
+      1e3 * words / rates.link_words_per_s
+  };
   return figures;
 }
 

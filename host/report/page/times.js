@@ -8,7 +8,8 @@ const RING_PARTS = [
   ["compute: filter", "filter", "sums and means of neighbours", /^filter\./],
   ["compute: compare", "compare", "finding pixels that differ from a neighbour", /^supersample\.compare/],
   ["communication", "communication", "neighbours' pixels over ring or bus", /^(ring\.|bus\.send|bus\.pe)/],
-  ["image", "image", "pixels to the host", /^bus\.gather/]
+  ["image", "image", "pixels to the host", /^bus\.gather/],
+  ["display", "display", "the image on the host's screen", /^$/]
 ];
 const TORUS_PARTS = [
   ["compute", "compute", "the busiest processor: generating and tracing packets", /^(inject|trace_voxel)/],
@@ -18,8 +19,6 @@ const TORUS_PARTS = [
 
 function model(r) {
   const torus = has(r, "torus"), machine = torus ? "the torus of T805s" : str(r, "machine.name");
-  if (!has(r, "modelled_ms"))
-    return [paragraph(`There is no modelled time, because the rates of ${machine} are unknown.`)];
   const commands = list(r, "measured.commands", "object"), rows = [],
         ms = (key) => msText(num(r, `modelled_ms.${key}`));
   for (const [name, key, what, labels] of torus ? TORUS_PARTS : RING_PARTS) {

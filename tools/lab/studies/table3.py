@@ -17,6 +17,7 @@ import pandas as pd
 from raya.lab import Comparison, Page, Plot, Series, Table, above, counted, estimate, judged, papers, study, with_paper
 from raya.lab.families import CROWDED
 from raya.lab.laboratory import format_for
+from raya.lab.laboratory import SPA
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, offset_times, smoothing_runs
 from raya.lab.studies.cluster import matched_scenes
 
@@ -68,7 +69,7 @@ def comparisons_of(rows):
     return all_of + [
         Comparison("filter's arithmetic", "ms", papers.FILTER_ARITHMETIC_MS, first["filter"],
                    "the clock's factor is derived from it", derived=True),
-        Comparison("exchange's set-up", "ms", None, papers.EXCHANGE_SETUP_MS,
+        Comparison("exchange's set-up", "ms", None, SPA["setup_ms"],
                    "from Table 4, 2 - 2 x 0.3125 ms; included in the filtering"),
         Comparison("total, p = 0 over p = 16", "", papers.FILTERED_0_MS / papers.FILTERED_16_MS,
                    first["filtered"] / last["filtered"], "depends little on the clock", derived=True)]
