@@ -27,13 +27,13 @@ Machine spa() {
         .mapping = cyclic_mapping(16),                   // [P] the offset with the smallest imbalance
         .cycle_ns = 100,                                 // [P] 20 MFLOPS
         .link_words_per_s = 6e6,                         // [P] DMA
-        .rotation_sync_ms = 10. / 32 - 1e3 * 768 / 6e6,  // [D] Tables 3 and 4: 32 more rotations of 768 words, 10 ms
+        .rotation_sync_ms = 10. / 32 - 1e3 * 768 / 6e6,  // [D] Tables 3, 4: 32 more rotations of 768 words take 10 ms
         .host_words_per_s = 196'608 / 0.140};            // [D] Table 2: 256 x 256 pixels of 3 words in 140 ms
 }
 
-// Returns an array with a mapping that the paper compares with the SPA's. Its PEs are those of the SPA without a memory
-// limit, so that loads can be compared. It has no modelled times, because the rates of the real PEs and links are
-// unknown.
+// Returns an array with a mapping that the paper compares with the SPA's. The array's PEs are those of the SPA without
+// a memory limit, so that loads can be compared. The array has no modelled times, because the rates of the real PEs and
+// links are unknown.
 Machine array_of_spa_pes(const std::string& name, const std::string& title, const std::string& topology,
                          const MappingRule& mapping, std::uint32_t pes) {
     Machine machine;

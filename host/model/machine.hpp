@@ -37,8 +37,8 @@ struct AccelSummary {
     AccelKind kind = AccelKind::kNone;
     std::uint64_t words = 0;  // number of 32-bit words of the structure in the job
     Divisions divisions{};    // of a grid
-    std::uint64_t copies =
-        0;  // of a grid: number of entries in the voxels' lists minus number of distinct objects in them
+    // Of a grid: number of entries in the voxels' lists minus number of distinct objects in the lists.
+    std::uint64_t copies = 0;
     std::uint32_t separate = 0;  // number of separate objects (docs/glossary.md)
     std::uint64_t nodes = 0;     // number of nodes of a BVH
     std::uint64_t leaves = 0;    // number of leaves of a BVH
@@ -72,15 +72,14 @@ struct Machine {
     std::optional<std::uint32_t> pes;              // number of PEs; empty: one per image column
     std::optional<std::uint64_t> pe_memory_bytes;  // memory of a PE; empty: no limit
     std::uint32_t bounces = 8;             // maximum number of reflections and refractions after the primary ray
-    NumberFormat format{};                 // of the PEs' arithmetic
+    NumberFormat format{};                 // number format of the PEs' arithmetic
     MappingRule mapping{};                 // of a ring: mapping of pixels to PEs
     Accel accel{};                         // of a ring: acceleration structure in every PE
     std::optional<DynamicPlan> dynamic{};  // empty: PEs do not request pixels at run time
 
     // Rates of the time model (model/time_model.hpp); empty if unknown.
-    std::optional<double> cycle_ns;  // cycle time of a PE
-    std::optional<double>
-        link_words_per_s;  // rate of a link from a PE to its neighbour, and rate of the bus between PEs
+    std::optional<double> cycle_ns;          // cycle time of a PE
+    std::optional<double> link_words_per_s;  // rate of a link between neighbouring PEs, and of the bus between PEs
     std::optional<double> rotation_sync_ms;  // overhead of one rotation, or of one transfer over the bus
     std::optional<double> host_words_per_s;  // rate of broadcasts from the host and gathers to the host
 };

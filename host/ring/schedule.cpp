@@ -37,7 +37,7 @@ std::vector<std::uint32_t> owners_of_slots(const raya_mapping& without_offset) {
     return owners;
 }
 
-/// Adds the PEs' loads with the given offset to `per_pe`. `owners`: [row][slot].
+/// Adds the PEs' loads under the cyclic mapping with `offset` to `per_pe`. `owners`: [row][slot].
 void add_loads_of_offset(const CostImage& image, const std::vector<std::uint32_t>& owners, std::uint32_t offset,
                          std::vector<std::uint64_t>& per_pe) {
     const std::uint64_t* costs = image.cycles.data();
@@ -52,17 +52,17 @@ void add_loads_of_offset(const CostImage& image, const std::vector<std::uint32_t
     }
 }
 
-/// Adds the costs of each PE's static part to `busy`. Returns a flag for each pixel of the image: true if it is in a
-/// static part. `fraction`: fraction of each PE's pixels that is in the static part.
-std::vector<bool> add_static_costs(const CostImage& image, const raya_mapping& start, double fraction,
+/// Adds the costs of each PE's static part to `busy`. Returns a flag for each pixel of the image: true if the pixel is
+/// in a static part. `fraction`: fraction of each PE's pixels that is in the static part.
+std::vector<bool> add_static_costs(const CostImage& image, const raya_mapping& static_mapping, double fraction,
                                    std::vector<std::uint64_t>& busy) {
     std::vector<bool> done(image.cycles.size());
     if (fraction == 0) return done;
-    for (std::uint32_t pe = 0; pe < start.pes; ++pe) {
-        const raya_share share = raya_share_of(start, pe);
+    for (std::uint32_t pe = 0; pe < static_mapping.pes; ++pe) {
+        const raya_share share = raya_share_of(static_mapping, pe);
         const auto pixels = static_cast<std::uint32_t>(fraction * raya_share_size(share));
         for (std::uint32_t k = 0; k < pixels; ++k) {
-            const raya_pixel pixel = raya_pixel_of(start, share, k);
+            const raya_pixel pixel = raya_pixel_of(static_mapping, share, k);
             const std::size_t at = std::size_t{pixel.row} * image.width + pixel.column;
             busy[pe] += image.cycles[at];
             done[at] = true;
@@ -91,10 +91,10 @@ std::vector<std::uint64_t> chunks_of(const CostImage& image, const std::vector<b
 /// Assigns each chunk to the PE that becomes idle first. `busy`: finishing time of each PE, in and out.
 void assign_chunks(const std::vector<std::uint64_t>& chunks, std::uint64_t overhead, std::vector<std::uint64_t>& busy) {
     using IdleTime = std::pair<std::uint64_t, std::uint32_t>;  // time at which a PE becomes idle, PE number
-    std::vector<IdleTime> all;
-    all.reserve(busy.size());
-    for (std::uint32_t pe = 0; pe < busy.size(); ++pe) all.emplace_back(busy[pe], pe);
-    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle(std::greater<>{}, std::move(all));
+    std::vector<IdleTime> idle_times;
+    idle_times.reserve(busy.size());
+    for (std::uint32_t pe = 0; pe < busy.size(); ++pe) idle_times.emplace_back(busy[pe], pe);
+    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle(std::greater<>{}, std::move(idle_times));
     for (const std::uint64_t cost : chunks) {
         const std::uint32_t pe = idle.top().second;
         idle.pop();
@@ -140,12 +140,12 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
     return imbalances;
 }
 
-Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, const DynamicPlan& plan) {
-    check_mapping(image, start);
+Schedule dynamic_schedule(const CostImage& image, const raya_mapping& static_mapping, const DynamicPlan& plan) {
+    check_mapping(image, static_mapping);
     if (!is_valid_plan(plan))
         throw std::invalid_argument("a plan's chunk, overhead or static fraction is out of its range");
-    std::vector<std::uint64_t> busy(start.pes);
-    const auto done = add_static_costs(image, start, plan.static_fraction, busy);
+    std::vector<std::uint64_t> busy(static_mapping.pes);
+    const auto done = add_static_costs(image, static_mapping, plan.static_fraction, busy);
     const auto chunks = chunks_of(image, done, plan.chunk);
     assign_chunks(chunks, plan.overhead, busy);
     return {load_of(std::move(busy)), chunks.size()};

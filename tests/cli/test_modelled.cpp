@@ -36,8 +36,8 @@ TEST_CASE("report: modelled times follow from counted cycles and words", "[cli]"
                    &load = report["load"];
     INFO(modelled_ms.dump());
     const bool filter = antialias == "filter", supersample = antialias == "supersample";
-    const double max_pixels = 3 * 12;            // number of pixels of the busiest PE: 3 of 20 columns, 12 rows
-    const double ms_per_word = 140 / 196'608.0;  // between host and PEs
+    const double max_pixels = 3 * 12;            // of the PE with the most pixels: 3 of 20 columns, 12 rows
+    const double ms_per_word = 140 / 196'608.0;  // transfers between host and PEs
     CHECK(modelled_ms["filter"] == approximately(filter ? 42e-4 * max_pixels : 0));
     CHECK(modelled_ms["compare"] == approximately(supersample ? 121e-4 * max_pixels : 0));
     double max_load = load["trace"]["max"];

@@ -1,4 +1,4 @@
-// Modelled times, compared with times computed by hand and with times in the paper.
+// Modelled times, compared with times computed by hand and with those of Kohata & Ito (1993).
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -64,7 +64,7 @@ TEST_CASE("an image of 256 x 256 takes 140 ms to the host, and objects take the 
 TEST_CASE("the machine waits for the busiest PE of each phase", "[machine]") {
     CHECK(time_of({load_with(2'830'000)}).compute_ms == Approx(283).epsilon(1e-12));
     const std::vector<Load> phases = {load_of({5'000, 30'000, 10'000}), load_of({40'000, 0, 20'000})};
-    CHECK(time_of(phases).compute_ms == Approx(7).epsilon(1e-12));  // 3 + 4; the busiest PE computes for 4.5 ms
+    CHECK(time_of(phases).compute_ms == Approx(7).epsilon(1e-12));  // 3 + 4 ms; no PE computes for more than 4.5 ms
     CHECK(time_of(phases, {}, 2.5).compute_ms == Approx(17.5).epsilon(1e-12));
     CHECK(time_of(phases, {}, 2.5).factor == 2.5);
 }

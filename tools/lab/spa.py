@@ -9,7 +9,7 @@ from raya.lab import papers
 from raya.lab.laboratory import SPA, first_scene, format_for
 
 ROUNDING = 0.5  # ms: the tables print whole milliseconds
-FACTORS = list(range(1, 9))  # of the clock model: the range for which conclusions are shown
+FACTORS = list(range(1, 9))  # factors of the clock model for which conclusions are shown
 
 
 def spa_ms(cycles):
@@ -22,8 +22,8 @@ FILTER_BUDGET_MS = spa_ms(raya.filter_cycles(papers.SIZE))
 FACTOR, FACTOR_MIN, FACTOR_MAX = ((papers.FILTER_ARITHMETIC_MS + rounding_ms) / FILTER_BUDGET_MS
                                      for rounding_ms in (0, -2 * ROUNDING, 2 * ROUNDING))
 CLOCK = (f"modelled on one clock. Computing takes the instruction budget's cycles of 100 ns times a factor of {FACTOR:.2f} "
-         f"({FACTOR_MIN:.2f} .. {FACTOR_MAX:.2f} by rounding): the filter's 7 ms [D] over the time that the budget gives it, "
-         "which does not depend on a scene. Rotations, exchanges and transfers take the printed rates. Nothing is fitted to a "
+         f"({FACTOR_MIN:.2f} .. {FACTOR_MAX:.2f} by rounding). The factor is the ratio of the filter's 7 ms [D] to its time in the "
+         "budget; neither depends on a scene. Rotations, exchanges and transfers take the printed rates. Nothing is fitted to a "
          "scene. We assume that the factor holds for ray tracing too; conclusions are therefore shown for factors of 1 to 8.")
 
 
